@@ -372,6 +372,27 @@ def _norm_of(row, spread):
 
 
 @compiled
+def least_squares(columns, values, coefficients):
+    """Fit `values` (m,) by independent columns, shape (m, n). Return the standard error of the first coefficient.
+
+    Output are the `coefficients` (n,). The error is a little enlarged if there are few values beyond the unknowns.
+    """
+    m, n = columns.shape
+    A, diagonal, inverse = np.empty((n + 1, m)), np.empty(n), np.empty((n, n))
+    for i in range(m):
+        for k in range(n):
+            A[k, i] = columns[i, k]
+        A[n, i] = values[i]
+    _factor(A, diagonal)
+    _invert(A, diagonal, inverse)
+    for k in range(n):
+        coefficients[k] = _product(inverse[k], A[n, :n], 0)
+    spare = m - n
+    misfit = _product(A[n], A[n], n)
+    return math.sqrt(misfit / spare) * (1.0 + 10.0 / spare) * math.sqrt(_product(inverse[0], inverse[0], 0))
+
+
+@compiled
 def solve(values, degree, ends, tables, coefficients, spread):
     """Fit the values of a window.
 

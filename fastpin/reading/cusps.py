@@ -53,6 +53,9 @@ BEYOND, TRIED = 6.0, 81
 The largest shear lies a little beyond the border. The places gather at the border.
 """
 
+LAW_ERROR = 0.01
+"""Largest standard error of the height of a power law at an old border, in parts of it."""
+
 SPARE = 2
 """Least number of nodes of a window beyond the number of unknowns."""
 
@@ -74,6 +77,34 @@ class Cusp(NamedTuple):
     error: float
     angle: float
     node: int
+
+
+@dataclass(frozen=True)
+class ShearLaw:
+    """The power law of T at an old border: T gains height * x^exponent in the zone that ended there.
+
+    Attributes
+    ----------
+    place : float
+        Angle, rad.
+    inwards : int
+        1 if the zone lies at larger angles, otherwise -1.
+    exponent, height : float
+        For the distance x from the place in node distances.
+    spacing : float
+        Node distance, rad.
+    """
+
+    place: float
+    inwards: int
+    exponent: float
+    height: float
+    spacing: float
+
+    def values(self, theta: np.ndarray) -> np.ndarray:
+        """The part of T that the law adds, shape (m,)."""
+        inside = np.maximum(self.inwards * (theta - self.place), 0.0) / self.spacing
+        return np.asarray(self.height * inside**self.exponent)
 
 
 class _Window(NamedTuple):
@@ -274,6 +305,11 @@ class ShearNodes:
         """Read the cusp at an old border; None if no fit has it near its node."""
         around = run[max(border.at - 2, 0) : border.at + 3]
         highest = int(around[np.argmax(np.abs(self.shear[around]))])
+        best = self._best_at(run, border, borders, GOOD_ENOUGH * abs(float(self.shear[highest])))
+        return None if best is None else self._read(best, int(run[border.at]), border, highest)
+
+    def _best_at(self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], enough: float) -> _Reading | None:
+        """The best fit at an old border in the stick zone of the nodes `run`, see :func:`_best`."""
         windows = []
         for first, last in _spans(border.at, run.size):
             nodes = run[first:last]
@@ -282,8 +318,24 @@ class ShearNodes:
             values = self.friction * self.pressure[nodes] - sign * self.shear[nodes] if sign else self.shear[nodes]
             shapes = list(self._shapes(run, border, borders, first, last, sign))
             windows.append(_Window(first, sign, values, shapes, nodes.size == run.size))
-        best = _best(windows, None, GOOD_ENOUGH * abs(float(self.shear[highest])))
-        return None if best is None else self._read(best, int(run[border.at]), border, highest)
+        return _best(windows, None, enough)
+
+    def shear_laws(self, run: np.ndarray, most_pressure: float) -> Iterator[ShearLaw]:
+        """The power laws of T at the old borders in the stick zone of the nodes `run`, up to a nodal pressure."""
+        borders, largest = self.old_borders(run), float(np.abs(self.shear).max())
+        for border in borders:
+            node = int(run[border.at])
+            if border.is_end(run.size) or self.pressure[node] > most_pressure:
+                continue
+            best = self._best_at(run, border, borders, GOOD_ENOUGH * largest)
+            if best is None or math.isnan(place := best.fit.place(0)):
+                continue
+            series, error = best.fit.series(0)
+            if error <= LAW_ERROR * abs(series[0]):
+                end = self._end(border, best.window.first, CUSP_TERMS, best.window.sign)
+                height = sum(end.parts) * float(series[0]) * (-best.window.sign or 1)
+                angle = self._angle(node, place + best.window.first - border.at)
+                yield ShearLaw(angle, border.inwards, end.half_line.exponent, height, float(self.grid.weights[node]))
 
     def _read(self, reading: _Reading, node: int, border: OldBorder, highest: int) -> Cusp | None:
         """Read the cusp at an old border, whose outermost node is `node`, from the best fit beside it."""

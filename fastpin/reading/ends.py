@@ -119,3 +119,47 @@ def _tries(line: HalfLine, others: tuple[End, ...], most: int) -> tuple[list[Try
         if count <= most and fit.spare >= 1:
             tries.append(fit)
     return tries, Tries(tries) if tries else None
+
+
+def end_angle(
+    theta: np.ndarray, quantity: np.ndarray, line: HalfLine, outside: float, cusps: Sequence[OldBorder] = ()
+) -> float:
+    """Angle at which a quantity falls to zero at the end of a zone, rad.
+
+    Parameters
+    ----------
+    theta, quantity : ndarray, shape (n,)
+        Angles (rad) of the nodes of the zone, from the outermost node inwards, in either direction; and the values at
+        these nodes, >= 0.
+    line : HalfLine
+    outside : float
+        Angle of the next node outwards, where the quantity is zero, rad.
+    cusps : sequence of OldBorder
+        The old borders in the zone.
+
+    Returns
+    -------
+    float
+        An angle, not beyond `outside`. If no solution of the half line fits, the zero of the line through the two
+        outermost nodes. A zone of one node ends halfway to `outside`.
+    """
+    if theta.size == 1:
+        return 0.5 * float(theta[0] + outside)
+    spacing = float(theta[1] - theta[0])
+    place = end_place(quantity, line, cusps)
+    if math.isnan(place):
+        low = (outside - float(theta[0])) / spacing
+        return float(theta[0]) + spacing * by_two_nodes(float(quantity[0]), float(quantity[1]), line.exponent, low)
+    if place < 0.0:
+        return float(theta[0] - max(place, -1.0) * (outside - theta[0]))
+    return float(theta[0] + place * spacing)
+
+
+def by_two_nodes(first: float, second: float, exponent: float, low: float) -> float:
+    """Zero of the line through two nodes, in node distances from the first one, the outermost node of a zone.
+
+    The line goes through the values to the power 1/`exponent`. If it does not fall outwards, the result is halfway to
+    the next node outwards at `low` < 0.
+    """
+    outer, inner = abs(first) ** (1.0 / exponent), abs(second) ** (1.0 / exponent)
+    return max(-outer / (inner - outer), low) if inner > outer else 0.5 * low

@@ -363,7 +363,7 @@ class Fit:
         return self._error(self._rows_at(np.array([x]))[0])
 
     def series(self, at: int) -> tuple[np.ndarray, float]:
-        """The power series at the end number `at`, whose place is fitted.
+        """The power series at the end number `at`.
 
         Returns
         -------
@@ -375,8 +375,11 @@ class Fit:
         end, first = self._ends[at], self._degree + 1 + sum(end.unknowns for end in self._ends[:at])
         line, terms = end.half_line, end.terms
         series = np.zeros((terms - 1, self._coefficients.size))
-        moved = _shift(float(self._matches[at, 1]), terms) @ line.matching[:terms, :terms]
-        series[:, first : first + terms] = moved[1:] / [[math.gamma(line.exponent + m)] for m in range(1, terms)]
+        powers = np.eye(terms - 1)  # if the place is known
+        if end.place is None:
+            powers = (_shift(float(self._matches[at, 1]), terms) @ line.matching[:terms, :terms])[1:]
+        gammas = [[math.gamma(line.exponent + m)] for m in range(1, terms)]
+        series[:, first : first + end.unknowns] = powers / gammas
         return np.asarray(series @ self._coefficients), self._error(series[0])
 
     def _error(self, row: np.ndarray) -> float:

@@ -10,9 +10,9 @@ import numpy as np
 
 from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.grid import Grid
-from fastpin.reading import fits
 from fastpin.reading.cusps import ShearNodes
-from fastpin.reading.zones import Interval, is_all_round, runs, unrolled
+from fastpin.reading.ends import by_two_nodes
+from fastpin.reading.zones import Interval, is_all_round, runs
 
 NEAR = 12
 """Reach of the cusp at a stick-slip border of unlike bodies, in node distances.
@@ -57,30 +57,16 @@ TIE = 1e-9
 """Relative difference below which two peaks are equal. Of equal peaks the one farthest to the right is taken."""
 
 
-def pressure_peak(grid: Grid, pressure: np.ndarray, coupled: bool = False) -> tuple[float, float]:
+def pressure_peak(grid: Grid, pressure: np.ndarray) -> tuple[float, float]:
     """Largest contact pressure and its angle (rad), read between the nodes.
-
-    If friction couples pressure and shear (unlike bodies), the pressure has a corner where the pin first touched.
 
     Parameters
     ----------
     grid : Grid
     pressure : ndarray, shape (n,)
         Nodal pressure N >= 0, in any unit; the peak has the same unit.
-    coupled : bool
-        Whether the peak may be such a corner.
     """
-    top = _top(grid, pressure)
-    value, place, smooth = _smooth_peak(grid, pressure, top)
-    if smooth or not coupled:
-        return value, place
-    best = None
-    for node in range(top - 2, top + 3):
-        nodes, x = _around(grid, pressure > 0.0, node % grid.size)
-        found = fits.corner(x, pressure[nodes]) if nodes.size else None
-        if found is not None and found.value >= value and (best is None or found.error < best[0]):
-            best = found.error, found.value, float(grid.theta[node % grid.size])
-    return best[1:] if best is not None else (value, place)
+    return _smooth_peak(grid, pressure, _top(grid, pressure))
 
 
 def shear_peak(contact: ShearNodes, stick: list[Interval]) -> tuple[float, float]:
@@ -97,14 +83,13 @@ def shear_peak(contact: ShearNodes, stick: list[Interval]) -> tuple[float, float
     """
     grid, pressure, shear, sticking = contact.grid, contact.pressure, contact.shear, contact.sticking
     top = _top(grid, np.abs(shear))
-    peaks, fitted_here, border_nearby = _peaks_at_borders(contact, stick, top)
+    peaks, fitted_here = _peaks_at_borders(contact, stick, top)
     for cusp in contact.old_cusps(RIVAL * float(abs(shear[top]))):
         if cusp.error <= CUSP_ERROR * cusp.value and _likely(grid, np.abs(shear), cusp.node, cusp.value):
             peaks.append((cusp.value, cusp.angle, cusp.node))
             fitted_here = fitted_here or abs((cusp.node - top + 2) % grid.size - 2) <= 2
     if not fitted_here:
-        upright, bent = (shear, contact.tilt) if shear[top] >= 0.0 else (-shear, -contact.tilt)
-        value, place, _ = _peak_of_nodes(grid, upright, sticking, top, border_nearby, bent)
+        value, place = _peak_of_nodes(grid, shear if shear[top] >= 0.0 else -shear, sticking, top)
         if sticking[top]:  # Coulomb's law also holds between the nodes
             value = min(value, contact.friction * float(pressure[[top - 1, top, (top + 1) % grid.size]].max()))
         peaks.append((value, place, top))
@@ -116,7 +101,7 @@ def shear_peak(contact: ShearNodes, stick: list[Interval]) -> tuple[float, float
 
 def _peaks_at_borders(
     contact: ShearNodes, stick: list[Interval], top: int
-) -> tuple[list[tuple[float, float, int]], bool, bool]:
+) -> tuple[list[tuple[float, float, int]], bool]:
     """Peaks at stick-slip borders, as candidates for the largest one.
 
     Returns
@@ -125,13 +110,11 @@ def _peaks_at_borders(
         Value, angle and highest node of each.
     fitted_here : bool
         Whether the peak at `top` is among them, and was fitted on both sides of its border.
-    border_nearby : bool
-        Whether a border lies within two node distances of the node `top`.
     """
     grid, pressure, shear, tilt = contact.grid, contact.pressure, contact.shear, contact.tilt
     sticking, friction = contact.sticking, contact.friction
     magnitude, slipping = np.abs(shear), (pressure > 0.0) & ~sticking
-    peaks, fitted_here, border_nearby = [], False, False
+    peaks, fitted_here = [], False
     bound = friction * pressure
     for border, outwards, nodes in _borders(grid, sticking, stick):
         offsets = outwards * angle_between(grid.theta, border)
@@ -140,7 +123,6 @@ def _peaks_at_borders(
             continue  # no slip beside this end of the stick zone: it is the end of the contact
         beside = np.flatnonzero((offsets >= -2.0 * spacing) & (offsets <= (NEAR if tilt else 2.0) * spacing))
         highest = int(beside[np.argmax(magnitude[beside])])
-        border_nearby = border_nearby or abs(offsets[top]) <= 2.0 * spacing
         if magnitude[highest] < RIVAL * magnitude[top]:
             continue
         exponent = 0.5 + (outwards * tilt if shear[highest] >= 0.0 else -outwards * tilt)
@@ -150,18 +132,13 @@ def _peaks_at_borders(
             fitted_here = fitted_here or highest == top
             peaks.append((read.value, read.angle, highest))
             continue
-        peak = _border_peak(grid, bound, border, outwards, exponent, highest) if tilt != 0.0 else None
-        if peak is not None and _likely(grid, magnitude, highest, peak[0]):
-            fitted_here = fitted_here or highest == top
-            peaks.append((*peak, highest))
-            continue
         at_border = friction * _interpolated(grid, pressure, border)
         if _likely(grid, magnitude, highest, at_border):
-            by_two_nodes = _bound_by_two_nodes(grid, bound, magnitude, nodes, outwards, exponent)
-            if at_border > (1.0 + BORDER_DOUBT) * by_two_nodes:
-                at_border = min(at_border, max(by_two_nodes, float(magnitude[highest])))
+            by_line = _bound_by_two_nodes(grid, bound, magnitude, nodes, outwards, exponent)
+            if at_border > (1.0 + BORDER_DOUBT) * by_line:
+                at_border = min(at_border, max(by_line, float(magnitude[highest])))
             peaks.append((min(at_border, _highest_cusp(grid, magnitude, highest)), border, highest))
-    return peaks, fitted_here, border_nearby
+    return peaks, fitted_here
 
 
 def _top(grid: Grid, values: np.ndarray) -> int:
@@ -194,7 +171,7 @@ def _bound_by_two_nodes(
         before, after = float(grid.theta[inner] - left[inner]), float(right[inner] - grid.theta[inner])
         low = -after / before if outwards > 0 else -before / after
         first, second = (float(value) for value in (bound - magnitude)[nodes[:2]])
-        part = fits.by_two_nodes(first, second, exponent, low) / low
+        part = by_two_nodes(first, second, exponent, low) / low
     return float(bound[inner] + part * (bound[outer] - bound[inner]))
 
 
@@ -207,55 +184,16 @@ def _highest_cusp(grid: Grid, values: np.ndarray, top: int) -> float:
     return float(values[top]) + STEEPEST_RISE * min(drops)
 
 
-def _peak_of_nodes(
-    grid: Grid, shear: np.ndarray, sticking: np.ndarray, top: int, border_nearby: bool, tilt: float
-) -> tuple[float, float, int]:
-    """Value, angle and node of the peak at the node `top`, without a fit at a border.
+def _peak_of_nodes(grid: Grid, shear: np.ndarray, sticking: np.ndarray, top: int) -> tuple[float, float]:
+    """Value and angle of the peak at the node `top`, without a fit at a border.
 
-    The peak is smooth. Unless there is a `border_nearby`, it may also be the cusp of an earlier border. If only some of
-    the node and its neighbours stick, it is the nodal value. `shear` is the shear traction with the sign that makes it
-    positive at `top`.
+    If only some of the node and its neighbours stick, it is the nodal value. `shear` is the shear traction with the
+    sign that makes it positive at `top`.
     """
     neighbours = sticking[[top - 1, top, (top + 1) % grid.size]]
     if not np.all(neighbours == neighbours[0]):
-        return float(shear[top]), float(grid.theta[top]), top
-    value, place, smooth = _smooth_peak(grid, shear, top)
-    if not smooth and not border_nearby:
-        value, place = _old_cusp(grid, sticking, shear, top, tilt) or (value, place)
-    return value, place, top
-
-
-def _border_peak(
-    grid: Grid, bound: np.ndarray, border: float, outwards: float, exponent: float, node: int
-) -> tuple[float, float] | None:
-    """Largest mu N on the slip side of a border, and its angle; None if it is not within three nodes of `node`."""
-    nodes, x = _around(grid, bound > 0.0, node)
-    spacing = float(grid.weights[node])
-    offset = outwards * math.remainder(float(grid.theta[node]) - border, 2.0 * math.pi) / spacing
-    order = slice(None) if outwards > 0.0 else slice(None, None, -1)
-    found = fits.border_peak(outwards * x[order] + offset, bound[nodes[order]], exponent)
-    if found is None or abs(found.place - offset) > 3.0:
-        return None
-    return found.value, border + outwards * spacing * found.place
-
-
-def _old_cusp(grid: Grid, sticking: np.ndarray, shear: np.ndarray, top: int, tilt: float) -> tuple[float, float] | None:
-    """Height and angle of the cusp of an earlier border inside a stick zone; None if the fits are not plausible.
-
-    A plausible cusp is not below the largest nodal value, and not higher than the values on both sides allow.
-    """
-    nodes, x = _around(grid, sticking, top)
-    if nodes.size < 3:
-        return None
-    highest, best = _highest_cusp(grid, shear, top), None
-    for outwards in (1.0, -1.0):
-        order = slice(None) if outwards > 0.0 else slice(None, None, -1)
-        found = fits.cusp(outwards * x[order], shear[nodes[order]], 0.5 + outwards * tilt)
-        if found is None or not shear[top] <= found.value <= highest:
-            continue
-        if best is None or found.error < best[0]:
-            best = found.error, found.value, float(grid.theta[top] + outwards * found.place * grid.weights[top])
-    return None if best is None else best[1:]
+        return float(shear[top]), float(grid.theta[top])
+    return _smooth_peak(grid, shear, top)
 
 
 def _likely(grid: Grid, values: np.ndarray, top: int, peak: float) -> bool:
@@ -270,45 +208,28 @@ def _likely(grid: Grid, values: np.ndarray, top: int, peak: float) -> bool:
     return bool(-min(*drops, LARGEST_FALL * values[top]) <= peak - values[top] <= max(drops))
 
 
-def _around(grid: Grid, mask: np.ndarray, node: int) -> tuple[np.ndarray, np.ndarray]:
-    """The run of `mask` that contains `node`, and the distances of its nodes from `node`.
-
-    The distances are in node distances and increase. Both arrays are empty if `mask` is False at `node`.
-    """
-    for run in runs(grid, mask):
-        at = np.flatnonzero(run == node)
-        if at.size:
-            if run.size == grid.size and grid.closed:
-                run = np.roll(run, run.size // 2 - at[0])
-            theta = unrolled(grid, run)
-            spacing = float(grid.weights[node])
-            return run, (theta - theta[np.flatnonzero(run == node)[0]]) / spacing
-    return np.zeros(0, dtype=int), np.zeros(0)
-
-
-def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float, bool]:
-    """Value and angle of the top of the parabola through node `top` and its neighbours, and whether it is smooth there.
+def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float]:
+    """Value and angle of the top of the parabola through node `top` and its neighbours.
 
     If the values have a kink at the node, the peak is the node itself.
     """
     n = grid.size
     at_node = float(values[top]), float(grid.theta[top])
     if not grid.closed and not 2 <= top <= n - 3:
-        return *at_node, True
+        return at_node
     left, right = grid.knots()
     nodes = [(top + k) % n for k in (-2, -1, 0, 1, 2)]
     slopes = [(values[j] - values[i]) / (right[i] - grid.theta[i]) for i, j in pairwise(nodes)]
     bends = [before - after for before, after in pairwise(slopes)]
-    smooth = 0.0 < max(bends) <= 3.0 * min(bends)
     if abs(bends[1]) > 3.0 * min(abs(bends[0]), abs(bends[2])):
-        return *at_node, smooth
+        return at_node
     before, after = left[top] - grid.theta[top], right[top] - grid.theta[top]
     curvature = (slopes[2] - slopes[1]) / (after - before)  # values = values[top] + slope x + curvature x^2
     slope = slopes[2] - curvature * after
     if curvature >= 0.0:
-        return *at_node, smooth
+        return at_node
     place = min(max(-0.5 * slope / curvature, before), after)
-    return at_node[0] + float(slope * place + curvature * place**2), at_node[1] + float(place), smooth
+    return at_node[0] + float(slope * place + curvature * place**2), at_node[1] + float(place)
 
 
 def _interpolated(grid: Grid, values: np.ndarray, angle: float) -> float:

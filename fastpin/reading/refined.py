@@ -1,7 +1,7 @@
 """Tractions refined at contact edges and stick-slip borders, where they go like a root of the distance.
 
 Straight lines between the nodes give the hoop stress at these places to O(sqrt(h)) only. So the tractions near them are
-taken from power laws in the distance x, which are fitted to the nodes (:func:`fastpin.reading.fits.law`):
+taken from power laws in the distance x, which are fitted to the nodes (:func:`fastpin.reading.power_laws.fit_law`):
 
 * N beside a contact edge, with the exponents (T21);
 * mu N - s T on the stick side of a border, with the exponents (T26), where T = s mu N in the slip zone;
@@ -22,16 +22,19 @@ import numpy as np
 
 from fastpin.elasticity.tractions import RefinedTractions, Tractions
 from fastpin.kernels.status import OPEN
-from fastpin.reading import fits
-from fastpin.reading.cusps import ShearNodes
+from fastpin.reading.cusps import ShearLaw, ShearNodes
+from fastpin.reading.ends import end_angle
 from fastpin.reading.exponents import contact_exponents, signs_beside, stick_exponents
-from fastpin.reading.fits import Law
 from fastpin.reading.half_line import half_line
 from fastpin.reading.old_borders import OldBorder
+from fastpin.reading.power_laws import Law, fit_law, law_of_nodes
 from fastpin.reading.zones import Interval, is_all_round, runs, unrolled
 
 REACH = 20.0
 """Nodes on the side of a cusp within which it is refined."""
+
+RIVAL = 0.6
+"""Largest pressure at a cusp, in parts of the peak pressure. Where it is higher the hoop stress is no peak."""
 
 PIECES = 60
 """Linear pieces of a power law."""
@@ -42,20 +45,6 @@ GRADED = np.linspace(0.0, 1.0, PIECES + 1) ** 4
 EXCESS = 1.1
 """Least |T| / (mu N) at a sticking edge that shows a slip zone between the edge and the outermost node."""
 
-CUSP_ROOM = 7
-"""Nodes on either side beside which a kink of T must be the largest. A cusp is sought only so far inside its zone."""
-
-KINK = 15.0
-"""Least change of the slope of T at a node, over the median beside it, at which a cusp is looked for."""
-
-LEAST_KINK = 0.005
-"""Least change of T over a node distance by which the slope changes at a cusp, in parts of the largest T."""
-
-RIVAL = 0.6
-"""Largest pressure at a cusp, in parts of the peak pressure. Where it is higher the hoop stress is no peak."""
-
-CUSP_ERROR = 0.01
-"""Largest standard error of T at a cusp, in parts of the cusp at a node distance."""
 
 BORDER_NEAR, BORDER_FAR, BORDER_LEAST = 2.5, 9.0, 4
 """Beside a border of unlike bodies the pressure is fitted.
@@ -84,6 +73,8 @@ class Zone:
         Of mu N - |T|, (T26).
     cusps : list of OldBorder
         The old borders in it.
+    shear_laws : tuple of ShearLaw
+        The power laws of T at those where the pressure is low: there the hoop stress may be high.
     """
 
     ends: tuple[float, float]
@@ -91,6 +82,7 @@ class Zone:
     signs: tuple[int, int]
     exponents: tuple[float, float]
     cusps: list[OldBorder]
+    shear_laws: tuple[ShearLaw, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,34 +115,6 @@ class Patch:
     friction: float
     beta: float
     tilt: float
-
-
-@dataclass(frozen=True, eq=False)
-class OldCusp:
-    """The cusp of T that an earlier border left in a stick zone: T gains height * x^exponent on one side.
-
-    Attributes
-    ----------
-    place : float
-        Angle, rad.
-    side : int
-        1 if the cusp is at larger angles, otherwise -1.
-    exponent, height : float
-        For the distance x from the place in node distances.
-    spacing : float
-        Node distance, rad.
-    """
-
-    place: float
-    side: int
-    exponent: float
-    height: float
-    spacing: float
-
-    def values(self, theta: np.ndarray) -> np.ndarray:
-        """The part of T that the cusp adds, shape (m,)."""
-        beyond = np.maximum(self.side * (theta - self.place), 0.0) / self.spacing
-        return np.asarray(self.height * beyond**self.exponent)
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +165,7 @@ def refined_tractions(
         pressure = _pressure_laws(patch)
         zones = tuple(_with_hidden_slip(patch, zone, pressure) for zone in patch.stick)
         hidden = [end for zone, was in zip(zones, patch.stick, strict=True) if zone is not was for end in zone.ends]
-        laws, cusps = _laws(replace(patch, stick=zones), pressure), _old_cusps(patch)
+        laws, cusps = _laws(replace(patch, stick=zones), pressure), [cusp for zone in zones for cusp in zone.shear_laws]
         arrays.append(_refined(replace(patch, pressure=_pressure_at_borders(patch, laws), stick=zones), laws, cusps))
         resolved += [*(law.place for law in laws.all), *(cusp.place for cusp in cusps)]
         unresolved += laws.unresolved + hidden
@@ -217,7 +181,7 @@ def _pressure_laws(patch: Patch) -> tuple[Law | None, ...]:
     if patch.exponents is None:
         return ()
     return tuple(
-        fits.law_of_nodes(edge, half_line(exponent), patch.theta[order], patch.pressure[order])
+        law_of_nodes(edge, half_line(exponent), patch.theta[order], patch.pressure[order])
         for edge, exponent, order in zip(patch.edges, patch.exponents, BOTH_ENDS, strict=True)
     )
 
@@ -228,17 +192,17 @@ def _with_hidden_slip(patch: Patch, zone: Zone, pressure: tuple[Law | None, ...]
     There all nodes stick, and T at the edge would exceed mu N.
     """
     for k, order in enumerate(BOTH_ENDS):
-        law = pressure[k] if pressure else None
-        if zone.signs[k] == 0 and law is not None and patch.beta == 0.0:
+        of_pressure = pressure[k] if pressure else None
+        if zone.signs[k] == 0 and of_pressure is not None and patch.beta == 0.0:
             nodes = zone.nodes[order]
             theta, shear = patch.theta[nodes], patch.shear[nodes]
-            of_shear = fits.law(law.place, law.exponent, theta, shear)
-            steepest = patch.friction * law.coefficients[0].real
+            of_shear = fit_law(of_pressure.place, of_pressure.exponent, theta, shear)
+            steepest = patch.friction * of_pressure.coefficients[0].real
             if of_shear is None or abs(of_shear.coefficients[0].real) < EXCESS * steepest:
                 continue
             sign = int(np.sign(of_shear.coefficients[0].real))
             reserve = patch.friction * patch.pressure[nodes] - sign * shear
-            border = fits.edge(theta, reserve, zone.exponents[k], law.place, nodes.size)
+            border = end_angle(theta, reserve, half_line(zone.exponents[k]), of_pressure.place)
             one, two = (border, zone.ends[1]) if k == 0 else (zone.ends[0], border)
             first, second = (sign, zone.signs[1]) if k == 0 else (zone.signs[0], sign)
             zone = replace(zone, ends=(one, two), signs=(first, second))
@@ -255,12 +219,12 @@ def _laws(patch: Patch, pressure: tuple[Law | None, ...]) -> Laws:
                 reserve = patch.friction * patch.pressure[nodes] - sign * patch.shear[nodes]
                 line, cusps = half_line(zone.exponents[k], patch.beta), zone.cusps
                 inside = cusps if k == 0 else [cusp.mirrored(nodes.size) for cusp in cusps]
-                found = fits.law_of_nodes(place, line, patch.theta[nodes], reserve, inside)
+                found = law_of_nodes(place, line, patch.theta[nodes], reserve, inside)
                 if found is not None:
                     laws.borders.append((found, sign))
             elif patch.exponents is not None:
                 exponent = patch.exponents[k] + 1j * math.atanh(patch.beta) / math.pi
-                found = fits.law(place, exponent, patch.theta[nodes], patch.shear[nodes])
+                found = fit_law(place, exponent, patch.theta[nodes], patch.shear[nodes])
                 if found is not None:
                     laws.sticking.append(found)
             else:
@@ -270,48 +234,10 @@ def _laws(patch: Patch, pressure: tuple[Law | None, ...]) -> Laws:
     return laws
 
 
-def _old_cusps(patch: Patch) -> list[OldCusp]:
-    """The cusps of earlier borders inside stick zones, where the pressure is low: there the hoop stress may be high."""
-    most = RIVAL * float(patch.pressure.max())
-    fitted = (
-        _fitted_cusp(patch, zone, node, side)
-        for zone in patch.stick
-        for node, side in _kinks(patch, zone)
-        if patch.pressure[zone.nodes[node]] <= most
-    )
-    return [cusp for cusp in fitted if cusp is not None]
-
-
-def _kinks(patch: Patch, zone: Zone) -> Iterator[tuple[int, int]]:
-    """Nodes of a stick zone at which the slope of T changes much more than beside them.
-
-    With each node stands the side of its cusp: 1 for larger angles. There the slope changes quickly.
-    """
-    theta, shear = patch.theta[zone.nodes], patch.shear[zone.nodes]
-    steps = np.diff(theta)
-    bends = np.abs(np.diff(np.diff(shear) / steps)) * steps[1:]  # of the nodes from the second to the last but one
-    for k in np.flatnonzero(bends > LEAST_KINK * np.abs(shear).max()).tolist():
-        around = bends[max(k - CUSP_ROOM, 0) : k + CUSP_ROOM + 1]
-        if around.size == 2 * CUSP_ROOM + 1 and bends[k] == around.max() > KINK * float(np.median(around)):
-            yield k + 1, 1 if around[CUSP_ROOM + 2 :].sum() > around[: CUSP_ROOM - 1].sum() else -1
-
-
-def _fitted_cusp(patch: Patch, zone: Zone, node: int, side: int) -> OldCusp | None:
-    """The cusp beside a node of a stick zone; None if the nodes do not show it."""
-    order = BOTH_ENDS[int(side > 0)]  # the fit wants the cusp at smaller x
-    theta, shear = patch.theta[zone.nodes][order], patch.shear[zone.nodes][order]
-    place, spacing = float(patch.theta[zone.nodes[node]]), float(np.diff(patch.theta[zone.nodes])[node])
-    exponent = 0.5 - side * patch.tilt * float(np.sign(patch.shear[zone.nodes[node]]))
-    cusp = fits.cusp(-side * (theta - place) / spacing, shear, exponent)
-    if cusp is None or cusp.error > CUSP_ERROR * abs(cusp.cusp):
-        return None
-    return OldCusp(place - side * cusp.place * spacing, side, exponent, cusp.cusp, spacing)
-
-
-def _refined(patch: Patch, laws: Laws, cusps: list[OldCusp]) -> np.ndarray:
+def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
     """Angle, pressure and shear of the refined patch, shape (m, 3)."""
     graded = [_graded(law) for law in laws.all]
-    graded += [cusp.place + cusp.side * REACH * cusp.spacing * GRADED for cusp in cusps]
+    graded += [cusp.place + cusp.inwards * REACH * cusp.spacing * GRADED for cusp in cusps]
     if patch.beta != 0.0:
         graded += [2.0 * law.place - _graded(law) for law, _ in laws.borders]
     nodes, values = _with_ends(patch, laws.pressure)
@@ -455,9 +381,10 @@ def _zones(nodes: ShearNodes, stick: list[tuple[np.ndarray, Interval]], run: np.
     """The stick zones in the contact of the nodes `run`, in their order there. They may cross the first node."""
     places = np.full(nodes.grid.size, -1)
     places[run] = np.arange(run.size)
-    zones = []
+    zones, most = [], RIVAL * float(nodes.pressure[run].max())
     for inside, ends in stick:
         if places[inside[0]] >= 0:
             signs, exponents = signs_beside(nodes.shear, inside), stick_exponents(nodes.shear, nodes.tilt, inside)
-            zones.append(Zone(ends, places[inside], signs, exponents, nodes.old_borders(inside)))
+            shear_laws = tuple(nodes.shear_laws(inside, most))
+            zones.append(Zone(ends, places[inside], signs, exponents, nodes.old_borders(inside), shear_laws))
     return tuple(sorted(zones, key=lambda zone: int(zone.nodes[0])))

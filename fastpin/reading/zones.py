@@ -1,4 +1,4 @@
-"""Intervals of contact, stick and slip. Their ends are read between the nodes with the fits of fits.py."""
+"""Intervals of contact, stick and slip. Their ends are read between the nodes, see ends.py."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ import numpy as np
 
 from fastpin.model.angles import BOTTOM, angle_between, interval_near_bottom
 from fastpin.model.grid import Grid
-from fastpin.reading import fits
-from fastpin.reading.ends import end_place
+from fastpin.reading.ends import end_angle
 from fastpin.reading.half_line import HalfLine, half_line
 from fastpin.reading.old_borders import OldBorder
 
@@ -79,7 +78,6 @@ def intervals(
     mask: np.ndarray,
     quantity: np.ndarray,
     lines: Lines = square_root,
-    kinds: np.ndarray | None = None,
     cusps: Cusps = lambda run: [],
     sides: Sides = lambda run: (True, True),
 ) -> list[Interval]:
@@ -95,8 +93,6 @@ def intervals(
         differ.
     lines : callable
         Gives for the node indices of a zone the half lines at its start and stop.
-    kinds : ndarray, shape (n,), optional
-        The quantity may have a kink inside a zone where `kinds` changes.
     cusps : callable
         Gives for the node indices of a zone the old borders in it, at which the quantity has a cusp. None by default.
     sides : callable
@@ -108,7 +104,6 @@ def intervals(
     list of (float, float)
         Start and stop, rad. A zone round the whole circle is one interval of length 2 pi.
     """
-    kinds = mask if kinds is None else kinds
     if mask.all() and grid.closed:
         start = float(grid.theta[0])
         return [(start, start + 2.0 * math.pi)]
@@ -122,39 +117,13 @@ def intervals(
         is_read = sides(run)
         if is_read[0]:
             outside = float(theta[0] - (grid.theta[run[0]] - left[run[0]]))
-            ends[0] = _end(theta, at_starts[run], at_start, outside, kinds[run], inside)
+            ends[0] = end_angle(theta, at_starts[run], at_start, outside, inside)
         if is_read[1]:
             outside = float(theta[-1] + (right[run[-1]] - grid.theta[run[-1]]))
             inside = [cusp.mirrored(run.size) for cusp in inside]
-            ends[1] = _end(theta[::-1], at_stops[back], at_stop, outside, kinds[back], inside)
+            ends[1] = end_angle(theta[::-1], at_stops[back], at_stop, outside, inside)
         zones.append((ends[0], ends[1]))
     return zones
-
-
-def _end(
-    theta: np.ndarray,
-    quantity: np.ndarray,
-    line: HalfLine,
-    outside: float,
-    kinds: np.ndarray,
-    cusps: list[OldBorder],
-) -> float:
-    """Angle of an end of a zone, rad: see :func:`fastpin.reading.fits.edge`.
-
-    `cusps` are the old borders in the zone. The quantity may have a kink where `kinds` changes.
-    """
-    place = end_place(quantity, line, cusps)
-    if math.isnan(place):
-        return float(fits.edge(theta, quantity, line.exponent, outside, _alike(kinds)))
-    if place < 0.0:
-        return float(theta[0] - max(place, -1.0) * (outside - theta[0]))
-    return float(theta[0] + place * (theta[1] - theta[0]))
-
-
-def _alike(kinds: np.ndarray) -> int:
-    """The number of values at the beginning that equal the first one."""
-    other = kinds != kinds[0]
-    return int(np.argmax(other)) if other.any() else kinds.size
 
 
 def stick_intervals(

@@ -171,7 +171,7 @@ class State(ReadOnly):
     def contact(self) -> list[Interval]:
         """Contact intervals (start, stop), rad, read between the nodes.
 
-        The pressure is extrapolated to zero, see :mod:`fastpin.reading.fits`. A contact round the whole circle is one
+        The pressure is extrapolated to zero, see :mod:`fastpin.reading.ends`. A contact round the whole circle is one
         interval of length 2 pi.
         """
         return zones.in_order(self.contact_in_runs)
@@ -179,13 +179,13 @@ class State(ReadOnly):
     @cached_property
     def contact_in_runs(self) -> list[Interval]:
         """The contact intervals of the runs of closed nodes, in their order and in the turns of the grid."""
-        return zones.intervals(self.grid, self.status != OPEN, self.pressure, self._contact_lines, self._sticking)
+        return zones.intervals(self.grid, self.status != OPEN, self.pressure, self._contact_lines)
 
     @cached_property
     def stick(self) -> list[Interval]:
         """Stick intervals (start, stop), rad, read between the nodes.
 
-        mu N - |T| is extrapolated to zero, see :mod:`fastpin.reading.fits`. Sticking nodes that reach |T| = mu N
+        mu N - |T| is extrapolated to zero, see :mod:`fastpin.reading.ends`. Sticking nodes that reach |T| = mu N
         exactly at this load count as slipping.
         """
         return zones.in_order(self._stick)
@@ -245,7 +245,7 @@ class State(ReadOnly):
     def _pressure_peak(self) -> tuple[float, float]:
         if not self.in_contact:
             return 0.0, math.nan
-        peak, place = peaks.pressure_peak(self.grid, self.pressure, self.tilt != 0.0)
+        peak, place = peaks.pressure_peak(self.grid, self.pressure)
         return peak, near_bottom(place)
 
     @cached_property

@@ -13,7 +13,7 @@ from fastpin.reading.half_line import End, Tries, Try
 from fastpin.reading.half_line import half_line as line_of
 from tests.support.half_line import NaiveFit, columns, powers, shift
 
-KERNELS = ("exponential", "solve", "match", "evaluate", "end_places", "value_errors")
+KERNELS = ("exponential", "solve", "match", "evaluate", "end_places", "value_errors", "least_squares")
 INNER = ("_product", "_unknowns", "_known_solution", "_fill", "_factor", "_invert", "_rotate", "_pseudo_invert",
          "_solve", "_match", "_end_row", "_row", "_match_all", "_norm_of")  # fmt: skip
 
@@ -179,3 +179,49 @@ def test_the_exponential_of_a_power_series(kernels):
     assert found == pytest.approx([math.exp(0.3) * 2.0**k / math.factorial(k) for k in range(6)], rel=1e-15)
     kernels.exponential(np.array([0.0, -1.0, -0.5, -1.0 / 3.0, -0.25, -0.2]), found)  # log(1 - x)
     assert found == pytest.approx([1.0, -1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-15)
+
+
+# --- any columns ---------------------------------------------------------------------------------------------
+
+
+def by_pseudo_inverse(columns, values):
+    """Coefficients and the standard error of the first one."""
+    inverse = np.linalg.pinv(columns)
+    coefficients = inverse @ values
+    spare = values.size - columns.shape[1]
+    misfit = np.sum((columns @ coefficients - values) ** 2)
+    return coefficients, math.sqrt(misfit / spare) * np.linalg.norm(inverse[0]) * (1.0 + 10.0 / spare)
+
+
+@pytest.mark.parametrize("shape", [(9, 1), (12, 7), (41, 5)])
+def test_a_fit_of_any_columns_is_that_of_the_pseudo_inverse(kernels, shape):
+    rng = np.random.default_rng(1)
+    of_fit, values = rng.normal(size=shape), rng.normal(size=shape[0])
+    coefficients = np.empty(shape[1])
+    error = kernels.least_squares(of_fit, values, coefficients)
+    expected, expected_error = by_pseudo_inverse(of_fit, values)
+    assert coefficients == pytest.approx(expected, abs=1e-13 * np.abs(expected).max())
+    assert error == pytest.approx(expected_error, rel=1e-12)
+
+
+def test_powers_lose_no_more_digits_than_singular_values(kernels):
+    """A polynomial of degree 8, whose columns have a condition of 500, is found again."""
+    x = np.linspace(-1.0, 1.0, 40)
+    of_fit, wanted = x[:, None] ** np.arange(9), np.arange(1.0, 10.0)
+    assert np.linalg.cond(of_fit) > 400.0
+    coefficients = np.empty(9)
+    kernels.least_squares(of_fit, of_fit @ wanted, coefficients)
+    assert coefficients == pytest.approx(wanted, abs=1e-12)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_column_with_one_large_entry_loses_no_digits(kernels, sign):
+    """A reflection adds to this entry, whatever its sign. It must not subtract nearly equal numbers."""
+    rng = np.random.default_rng(6)
+    of_fit, values, coefficients = rng.normal(size=(12, 3)), rng.normal(size=12), np.empty(3)
+    of_fit[1:, 0] *= 1e-7
+    of_fit[0, 0] = sign
+    error = kernels.least_squares(of_fit, values, coefficients)
+    expected, expected_error = by_pseudo_inverse(of_fit, values)
+    assert coefficients == pytest.approx(expected, rel=1e-12)
+    assert error == pytest.approx(expected_error, rel=1e-12)
