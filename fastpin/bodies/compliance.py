@@ -97,9 +97,9 @@ class Compliance(PlateBody):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "nu", number("nu", self.nu, 0.0, 0.5))
-        choice("plane", self.plane, PLANES)
+        object.__setattr__(self, "plane", choice("plane", self.plane, PLANES))
         object.__setattr__(self, "hole_radius", positive("hole_radius", self.hole_radius))
-        string("made_by", self.made_by)
+        object.__setattr__(self, "made_by", string("made_by", self.made_by))
         matrix = numbers("matrix", self.matrix).copy()
         size = matrix.shape[0] if matrix.ndim == 2 else 0
         if matrix.shape != (size, size) or size % 4 != 2 or not LEAST_ORDER <= (size - 2) // 4 <= MOST_ORDER:

@@ -59,7 +59,7 @@ class Ring(PlateBody):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
-        choice("support", self.support, SUPPORTS)
+        object.__setattr__(self, "support", choice("support", self.support, SUPPORTS))
 
     @property
     def held(self) -> bool:

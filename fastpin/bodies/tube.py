@@ -50,7 +50,7 @@ class Tube(PinBody):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "bore_radius", positive("bore_radius", self.bore_radius))
-        choice("load", self.load, TUBE_LOADS)
+        object.__setattr__(self, "load", choice("load", self.load, TUBE_LOADS))
 
     @property
     def held(self) -> bool:

@@ -39,7 +39,7 @@ class About:
 
     def __post_init__(self) -> None:
         for one in fields(self):
-            string(one.name, getattr(self, one.name))
+            object.__setattr__(self, one.name, string(one.name, getattr(self, one.name)))
 
     def given(self) -> dict[str, str]:
         """The fields that are not empty, by name."""
@@ -77,7 +77,7 @@ class Case:
         instance("problem", self.problem, Problem, "a Problem")
         instance("history", self.history, LoadHistory, "a LoadHistory")
         instance("options", self.options, SolveOptions, "a SolveOptions")
-        string("title", self.title)
+        object.__setattr__(self, "title", string("title", self.title))
 
 
 def check_arc(problem: Problem, options: SolveOptions) -> None:

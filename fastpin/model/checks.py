@@ -99,7 +99,7 @@ def is_whole(value: object) -> bool:
 def choice(field: str, value: object, allowed: Sequence[str]) -> str:
     """Check that a value is one of the words `allowed`."""
     if isinstance(value, str) and value in allowed:
-        return value
+        return str.__str__(value)  # a plain word, also for words of NumPy and of enumerations
     hint = closest(value, allowed) if isinstance(value, str) else ""
     raise InputError(field, f"must be {alternatives(allowed)}, not {as_toml(value)}{hint}")
 
@@ -123,7 +123,7 @@ def string(field: str, value: object) -> str:
     if printable(found) != found:
         first = next(letter for letter in found if printable(letter) != letter)
         raise InputError(field, f"must be one line of printable characters, without {ascii(first)[1:-1]}")
-    return found
+    return str.__str__(found)
 
 
 def any_text(field: str, value: object) -> str:

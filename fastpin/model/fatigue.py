@@ -70,7 +70,7 @@ class FatigueConstants:
     source: str = ""
 
     def __post_init__(self) -> None:
-        string("source", self.source)
+        object.__setattr__(self, "source", string("source", self.source))
         for name, value in self.given().items():
             if name != "source":
                 check = negative if name in _EXPONENTS else positive

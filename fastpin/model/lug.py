@@ -69,7 +69,7 @@ class Part:
     through: complex | None = None
 
     def __post_init__(self) -> None:
-        string("name", self.name)
+        object.__setattr__(self, "name", string("name", self.name))
         for name in ("start", "end") if self.through is None else ("start", "end", "through"):
             object.__setattr__(self, name, point(name, getattr(self, name)))
 
@@ -140,7 +140,7 @@ class Hole:
     radius: float
 
     def __post_init__(self) -> None:
-        string("name", self.name)
+        object.__setattr__(self, "name", string("name", self.name))
         object.__setattr__(self, "centre", point("centre", self.centre))
         object.__setattr__(self, "radius", positive("radius", self.radius))
 
@@ -177,7 +177,7 @@ class PartLoad:
     normal: float = 0.0
 
     def __post_init__(self) -> None:
-        choice("load", self.name, COLUMNS)
+        object.__setattr__(self, "name", choice("load", self.name, COLUMNS))
         names = tuple(string("parts", name) for name in items("parts", self.parts, "a list of names"))
         object.__setattr__(self, "parts", names)
         for direction in ("x", "y", "normal"):
@@ -220,7 +220,7 @@ class Lug:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "nu", number("nu", self.nu, 0.0, 0.5))
-        choice("plane", self.plane, PLANES)
+        object.__setattr__(self, "plane", choice("plane", self.plane, PLANES))
         object.__setattr__(self, "hole_radius", number("hole_radius", self.hole_radius, LEAST_RADIUS, MOST_RADIUS))
         object.__setattr__(self, "outline", tuple(instances("outline", self.outline, Part, "a list of parts")))
         object.__setattr__(self, "loads", tuple(instances("loads", self.loads, PartLoad, "a list of loads")))

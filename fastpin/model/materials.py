@@ -92,7 +92,7 @@ class Material:
             raise InputError("nu", f"Poisson's ratio must lie between 0 and 0.5, not {ratio:g}")
         object.__setattr__(self, "E", float(modulus))
         object.__setattr__(self, "nu", ratio)
-        string("name", self.name)
+        object.__setattr__(self, "name", string("name", self.name))
         if self.fatigue is not None:
             instance("fatigue", self.fatigue, FatigueConstants, "fastpin.model.FatigueConstants")
         if self.yield_strength is not None:
@@ -249,7 +249,7 @@ class MaterialPair:
     plane: Plane = "strain"
 
     def __post_init__(self) -> None:
-        choice("plane", self.plane, PLANES)
+        object.__setattr__(self, "plane", choice("plane", self.plane, PLANES))
         for field, body in (("pin", self.pin), ("plate", self.plate)):
             instance(field, body, Material, "a Material")
         if self.pin.is_rigid and self.plate.is_rigid:

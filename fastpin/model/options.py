@@ -64,7 +64,7 @@ class KeepRule:
     every: int = 1
 
     def __post_init__(self) -> None:
-        choice("keep", self.which, KEEP_WORDS)
+        object.__setattr__(self, "which", choice("keep", self.which, KEEP_WORDS))
         whole_number("keep", self.every, 1, None if self.which == "corners" else 1)
 
     @classmethod

@@ -156,7 +156,7 @@ class Problem:
             )
         for name, each in FIELDS.items():
             if each.choices:
-                choice(name, getattr(self, name), each.choices)
+                object.__setattr__(self, name, choice(name, getattr(self, name), each.choices))
         if self.pin_load == "body" and self.held:
             raise InputError(
                 "rotation",

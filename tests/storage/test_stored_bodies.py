@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.bodies.compliance import Compliance
 from fastpin.errors import InputError
 from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, Material
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import Interrupted
 from fastpin.storage.export import to_xarray
@@ -147,3 +148,19 @@ def test_damaged_bodies_are_described(bodies, change, words, tmp_path):
     with pytest.raises(InputError, match=words) as raised:
         load(path)
     assert "\n" not in str(raised.value)
+
+
+class Word(StrEnum):
+    BODY = "body"
+    RING = "held"
+    NAME = "bronze"
+
+
+@pytest.mark.parametrize("word", [np.str_, Word])
+def test_words_of_numpy_and_of_enumerations_become_plain_words(word, tmp_path):
+    """HDF5 knows no others."""
+    pair = MaterialPair(Material(2e11, 0.3, word("bronze")), PAIR.plate)
+    given = Problem(pair, 0.01, 2e-5, 0.4, word("body"), plate_body=Ring(0.02, word("held")))
+    assert type(given.pin_load) is type(given.plate_body.support) is type(given.pair.pin.name) is str
+    save(sample_result(problem=given), tmp_path / "a.h5")
+    assert load(tmp_path / "a.h5").problem == given
