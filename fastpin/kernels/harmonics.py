@@ -103,7 +103,7 @@ def uniform(other: float, kolosov: float, kind: str) -> float:
 
 
 def uniform_of_layer(outer: float, kolosov: float, compliance: float, far: float) -> float:
-    """The whole compliance under pressure of a layer that is bonded at `outer` to a body with the whole one `far`."""
+    """Radial compliance under pressure of a layer that is bonded at `outer` to a body of compliance `far`."""
     q, k = outer**-2.0, kolosov
     # s_rr = t - b + b/x^2 and 2G u/x = (k - 1)/2 (t - b) - b/x^2
     inner = 2.0 * far / compliance

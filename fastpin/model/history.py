@@ -418,7 +418,7 @@ class LoadHistory:
 
     @cached_property
     def largest(self) -> dict[str, float]:
-        """The largest value in size of every load that is given anywhere, with its sign, by name."""
+        """The extreme value of each given load, with its sign, by name."""
         low: np.ndarray = np.fmin.reduce([np.fmin.reduce(block.given, axis=0) for block in self._blocks])
         high: np.ndarray = np.fmax.reduce([np.fmax.reduce(block.given, axis=0) for block in self._blocks])
         largest = np.where(-low > high, low, high)

@@ -107,7 +107,7 @@ def inner(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def argument_types(values: tuple[Any, ...]) -> tuple[Any, ...]:
-    """The types of arguments: a key that is quickly made. :class:`KeyError` if a type is neither array nor number."""
+    """The dispatch key of the argument types. :class:`KeyError` if a type is neither array nor number."""
     found: list[Any] = []
     for value in values:
         kind = type(value)
