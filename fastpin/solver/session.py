@@ -6,10 +6,9 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, MutableSequence, Sequence
+from collections.abc import Callable, Iterator, MutableSequence, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import Any, Literal
@@ -27,7 +26,7 @@ from fastpin.model.loads import LOAD_KIND, LOADS, Corner, complete_load
 from fastpin.model.options import KeepRule, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads
-from fastpin.solver.arc import first_direction, narrow_grids
+from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.growth import carried, dividing_the_circle, most_nodes, wider_grid
 from fastpin.solver.interrupt import StopRequest, deferred_interrupts
@@ -482,7 +481,7 @@ class Session(InTurns):
         try:  # narrow contacts are let go
             return self._step_to(self._start(self._system_at(here), here.restart, strict=False), place, given)
         except ConvergenceError as error:
-            if self._has_given_nodes:
+            if self._grid is not None or self._options.arc is not None:
                 raise
             return self._on_new_nodes(place, error)
 
@@ -498,26 +497,16 @@ class Session(InTurns):
         return self._on_first_nodes(place.problem, self._expected or history, follow)
 
     def _on_first_nodes(self, problem: Problem, history: LoadHistory, work: Callable[[System, bool], Run]) -> Run:
-        """Do some work on the nodes for a history: first with nodes for its arc, then with nodes for narrow contacts.
-
-        At last narrow contacts are let go, as :class:`Task` does.
-        """
-        task = Task(problem, history, self._options, self._grid, self._check_request)
-        values = history.distinct()
-        first = next(task.grids(self._check_request))
+        """Do some work on the nodes for a history. Only one arc is tried: it grows with the contact."""
+        attempts = Task(problem, history, self._options, self._grid).attempts(self._check_request)
+        arc = next(attempts.arcs())
         if self._grid is None:
-            first = dividing_the_circle(first, first_direction(problem, values))
-        grids: Iterable[Grid] = [first]
-        if not self._has_given_nodes:
-            grids = itertools.chain(
-                grids, narrow_grids(problem, values, task.force, self._options, self._check_request)
-            )
-        for grid, strict in itertools.chain(((grid, True) for grid in grids), [(first, False)]):
-            try:
-                return work(build_system(problem, grid, task.force), strict)
-            except ConvergenceError as error:
-                failed = error
-        raise failed
+            arc = dividing_the_circle(arc, first_direction(problem, attempts.values))
+
+        def follow(grid: Grid, strict: bool) -> Run:
+            return work(build_system(problem, grid, attempts.force), strict)
+
+        return attempts.first_followed(follow, [arc])
 
     def _step_to(self, run: Run, place: Place, given: np.ndarray) -> Run:
         """Follow one step to the last load of a place, if need be on a wider arc. Returns the run that got there."""
@@ -566,10 +555,6 @@ class Session(InTurns):
         first = self._options.nodes if self._grid is None else self._grid.size
         grid = wider_grid(old.grid, run.now.closed, most_nodes(first), self._recorder.touched_outside)
         return None if grid is None else build_system(old.problem, grid, old.scales.force)
-
-    @property
-    def _has_given_nodes(self) -> bool:
-        return self._grid is not None or self._options.arc is not None
 
     def _on_new_nodes(self, place: Place, lost: SolveError) -> Run:
         """Choose new nodes for the whole history to a place, and follow it there. `lost` is the reason."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import logging
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
@@ -24,9 +24,9 @@ from fastpin.model.loads import REMOTE, Corner, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.solver.arc import candidate_grids, narrow_grids
+from fastpin.solver.attempts import Attempts, Unfit
 from fastpin.solver.driven import pushes
-from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, Interrupted, SolveError
+from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted
 from fastpin.solver.interrupt import StopRequest, deferred_interrupts
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Recorder, Run, RunProgress
@@ -78,11 +78,10 @@ class Task:
         check_arc(self.problem, self.options)
         check_keep(self.history, self.options)
 
-    def follow(self, recorder: Recorder, unfit: tuple[Grid, SolveError] | None = None) -> None:
+    def follow(self, recorder: Recorder, unfit: Unfit | None = None) -> None:
         """Follow the history from no load, on the first grid that is wide enough and fine enough.
 
-        `unfit` is a grid on which an earlier run ended, and its error. With it only the candidates after this grid are
-        tried.
+        With `unfit` the grid is chosen anew, and only the attempts after this one are made.
 
         Raises
         ------
@@ -93,85 +92,30 @@ class Task:
         """
         with deferred_interrupts() as request, one_blas_thread():
             progress = self._stoppable_progress(request)
-            given = None if unfit is not None else self.grid
-            task = replace(self, grid=given)
-            try:
-                task._follow_candidates(recorder, progress, unfit, strict=True)
-            except ConvergenceError as error:
-                if self.options.method != "path":
-                    raise
-                if task._follow_narrow(recorder, progress, unfit, error):
-                    return
-                released = task._follow_candidates(recorder, progress, None, strict=False).statistics["released"]
-                if released:
-                    log.warning(
-                        "%d times a narrow contact that carried less than 0.1 %% of the force was let go and lost its "
-                        "memory",
-                        released,
-                    )
 
-    def _follow_narrow(
-        self, recorder: Recorder, progress: RunProgress, unfit: tuple[Grid, SolveError] | None, error: ConvergenceError
-    ) -> bool:
-        """Follow the history on a graded grid, after an `error` on others. Returns whether its end was reached."""
-        if self.grid is not None or self.options.arc is not None:
-            return False
-        grids: Iterable[Grid] = narrow_grids(self.problem, self.history.distinct(), self.force, self.options, progress)
-        if unfit is not None:
-            grids = list(grids)
-            tried = [place for place, grid in enumerate(grids) if _is_same(grid, unfit[0])]
-            grids = grids[tried[0] + 1 if tried else 0 :]
-        for grid in grids:
-            log.info("%s: once more with %d nodes that are dense where the contact is narrow", error, grid.size)
-            try:
-                self._follow_on(grid, recorder, progress, strict=True)
-            except ConvergenceError as second:
-                error = second
-            else:
-                return True
-        log.info("%s", error)
-        return False
+            def follow(grid: Grid, strict: bool) -> Run:
+                return self._follow_on(grid, recorder, progress, None, strict)
 
-    def _follow_candidates(
-        self, recorder: Recorder, progress: RunProgress, unfit: tuple[Grid, SolveError] | None, strict: bool
-    ) -> Run:
-        """Follow the history on the candidates one after the other, until one is wide enough. Returns that run."""
-        if unfit is not None and not isinstance(unfit[1], ArcError):
-            raise unfit[1]
-        beyond = None if unfit is None else unfit[0]
-        for grid in self.grids(progress):
-            if beyond is not None:
-                if _is_same(grid, beyond):
-                    beyond = None
-                continue
-            log.info("%d nodes from %.5g to %.5g rad", grid.size, grid.theta[0], grid.theta[-1])
-            try:
-                return self._follow_on(grid, recorder, progress, strict=strict)
-            except ArcError:
-                if self.options.arc is not None or self.grid is not None:
-                    raise
-                log.info("the contact reaches an end of the arc: once more on a wider one")
-        raise ArcError(CUT_OFF)  # the grid of `unfit` is none of the present candidates
+            attempts = self.attempts(progress) if unfit is None else replace(self.attempts(progress), grid=None)
+            run = attempts.first_followed(follow, unfit=unfit)
+            if run.statistics["released"]:
+                log.warning(
+                    "%d times a narrow contact that carried less than 0.1 %% of the force was let go and lost its "
+                    "memory",
+                    run.statistics["released"],
+                )
 
-    def grids(self, progress: RunProgress | None = None) -> Iterator[Grid]:
-        """Yield the given grid, or candidates to try until the contact keeps clear of the ends of the arc."""
-        nodes, arc = self.options.nodes, self.options.arc
-        if self.grid is not None:
-            yield self.grid
-        elif arc is None:
-            yield from candidate_grids(self.problem, self.history.distinct(), self.force, nodes, progress)
-        elif self.options.is_full_turn:
-            yield Grid.circle(nodes, arc[0])
-        else:
-            yield Grid.arc(arc[0], arc[1], nodes)
+    def attempts(self, progress: RunProgress | None = None) -> Attempts:
+        """The attempts at this history. Coarse runs report their `progress`."""
+        return Attempts(self.problem, self.history.distinct(), self.force, self.options, self.grid, progress)
 
     @property
     def force(self) -> float:
         """The reference force of the history, N/m."""
         return reference_force(self.problem, self.history.distinct())
 
-    def continue_from(self, recorder: Recorder, start: Restart, grid: Grid, strict: bool = False) -> None:
-        """Continue the history from a corner that another run reached, on the grid of that run.
+    def continue_from(self, recorder: Recorder | None, start: Restart, grid: Grid, strict: bool = False) -> Run:
+        """Continue the history from a corner that another run reached, on the grid of that run, and return the run.
 
         With `strict`, a contact that gets too narrow for the nodes is an error, also where it carries next to nothing.
 
@@ -181,7 +125,13 @@ class Task:
             See :meth:`follow`.
         """
         with deferred_interrupts() as request, one_blas_thread():
-            self._continue(recorder, start, grid, self._stoppable_progress(request), strict)
+            progress = self._stoppable_progress(request)
+            try:
+                return self._follow_on(grid, recorder, progress, start, strict=True)
+            except ConvergenceError:
+                if strict:
+                    raise
+                return self._follow_on(grid, recorder, progress, start, strict=False)
 
     def branch(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
         """Follow the history from the end of another history, on the grid of that history.
@@ -199,32 +149,9 @@ class Task:
             )
             raise
 
-    def reach(self, start: Restart, grid: Grid) -> Restart:
-        """Follow the history from a corner to its end, keep no states, and return the restart at the end.
-
-        Raises
-        ------
-        SolveError, Interrupted
-            See :meth:`follow`.
-        """
-        with deferred_interrupts() as request, one_blas_thread():
-            return self._continue(None, start, grid, self._stoppable_progress(request)).restart()
-
-    def _continue(
-        self, recorder: Recorder | None, start: Restart, grid: Grid, progress: RunProgress, strict: bool = False
-    ) -> Run:
-        """Follow the history from a corner; not `strict`, once more with narrow contacts let go."""
-        try:
-            return self._follow_on(grid, recorder, progress, start)
-        except ConvergenceError:
-            if strict:
-                raise
-            return self._follow_on(grid, recorder, progress, start, strict=False)
-
     def _follow_on(
-        self, grid: Grid, recorder: Recorder | None, progress: RunProgress, start: Restart | None = None,
-        strict: bool = True,
-    ) -> Run:  # fmt: skip
+        self, grid: Grid, recorder: Recorder | None, progress: RunProgress, start: Restart | None, strict: bool
+    ) -> Run:
         """Follow the history on one grid, from `start` or from no load; see :class:`Run` for `strict`."""
         build = build_system if self.options.method == "path" else System.build
         system = build(self.problem, grid, self.force if start is None else start.force)
@@ -244,11 +171,6 @@ class Task:
                 self.progress(done, total)
 
         return progress
-
-
-def _is_same(one: Grid, two: Grid) -> bool:
-    """Whether two grids have the same nodes, up to rounding."""
-    return one.size == two.size and bool(np.allclose(one.theta, two.theta, rtol=0.0, atol=1e-9))
 
 
 def as_history(history: LoadHistory | Sequence[Corner], field: str = "history") -> LoadHistory:

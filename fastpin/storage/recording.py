@@ -27,6 +27,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import unknown_keyword
+from fastpin.solver.attempts import Unfit
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.result import Result
 from fastpin.solver.run import RunProgress
@@ -204,7 +205,7 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
         except (ArcError, ConvergenceError) as error:
             if not writer.chosen_arc:
                 raise
-            task.follow(writer, unfit=(task.grid, error))
+            task.follow(writer, unfit=Unfit(task.grid, error))
     if task.options.error_bars:
         _record_coarse(path, task)
     warn_of(_pressure_doubts(path, task), 2)

@@ -199,7 +199,8 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
         result, task = _read(file, path, states, after)
     restart = result.restart
     if task is not None and restart is not None and restart.corner < len(task.history):
-        result.restart = task.reach(restart, result.grid)  # The file is closed by now: this may take long.
+        # The file is closed by now: this may take long.
+        result.restart = task.continue_from(None, restart, result.grid).restart()
     return result
 
 

@@ -20,6 +20,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.synonyms import explains_keywords
 from fastpin.solver.arc import first_direction
+from fastpin.solver.attempts import first_wide_enough
 from fastpin.solver.errors import ArcError, SolveError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
@@ -327,17 +328,17 @@ class _Work:
         """Solve all grids on the first arc that is wide enough for all of them, then all increments."""
         common = math.gcd(*(count - 1 for count in self.counts))
         coarsest = common + 1 if common >= LEAST_NODES - 1 else self.counts[0]
-        for arc in replace(self.task, options=self.task.options.changed(nodes=coarsest)).grids():
-            try:
-                self.found, self.read, self.done = {}, {}, 0.0
-                for count in (*self.counts, *self._path_apart()):
-                    self.found[count] = self._solve_grid(arc, count, "path", 0)
-                break
-            except ArcError:
-                if self.task.options.arc is not None or arc.closed:
-                    raise
+        coarse = replace(self.task, options=self.task.options.changed(nodes=coarsest))
+        arc = first_wide_enough(coarse.attempts().arcs(), self._follow_grids)
         for count in self.increments:
             self.found_increments.append(self._solve_grid(arc, self.single, "increment", count))
+
+    def _follow_grids(self, arc: Grid) -> Grid:
+        """Solve all grids of the path solver on one arc, and return the arc."""
+        self.found, self.read, self.done = {}, {}, 0.0
+        for count in (*self.counts, *self._path_apart()):
+            self.found[count] = self._solve_grid(arc, count, "path", 0)
+        return arc
 
     def _solve_grid(self, arc: Grid, nodes: int, method: Method, increments: int) -> Result:
         """Follow the history on one grid."""
