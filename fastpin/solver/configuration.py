@@ -11,6 +11,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
 from fastpin.model.loads import P, Q
 from fastpin.reading.marks import Marks
+from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.solver.unknowns import DenseUnknowns
 
 MAX_RESIDUAL = 1e-9
@@ -52,10 +53,8 @@ class Configuration:
         Slip that the remote stress had caused when the pin came to rest. It is subtracted before users see the slip.
     dissipation, work : float
         Energy dissipated by friction, and work of the loads.
-    slip_tally : ndarray, shape (4, n)
-        Slip distance int |ds|, friction energy int -T ds, lowest and highest slip of each node while closed, counted as
-        ``dissipation``. The extremes are the slip that users see, and (inf, -inf) at a node that was never closed.
-        Empty if they are not counted.
+    slip_tally : SlipTally
+        What each node has slipped, counted as ``dissipation``.
     """
 
     pressure: np.ndarray
@@ -71,23 +70,21 @@ class Configuration:
     rest_slip: np.ndarray
     dissipation: float = 0.0
     work: float = 0.0
-    slip_tally: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    slip_tally: SlipTally = NOT_COUNTED
     marks: Marks = field(default_factory=Marks)
 
     def copy(self) -> Configuration:
         """A copy that shares no array with this one, except those of :data:`AT_REST`."""
         copied: dict[str, Any] = {
-            name: value.copy() if isinstance(value, np.ndarray) and name not in AT_REST else value
+            name: value.copy() if isinstance(value, (np.ndarray, SlipTally)) and name not in AT_REST else value
             for name, value in vars(self).items()
         }
         return Configuration(**copied)
 
     def part(self, nodes: np.ndarray) -> Configuration:
         """A copy with some `nodes` only, indices of shape (k,)."""
-        tally = self.slip_tally.take(nodes, axis=1) if self.slip_tally.size else self.slip_tally
-        return replace(
-            self.copy(), slip_tally=tally, marks=Marks(), **{name: getattr(self, name)[nodes] for name in NODAL}
-        )
+        nodal = {name: getattr(self, name)[nodes] for name in NODAL}
+        return replace(self.copy(), slip_tally=self.slip_tally.part(nodes), marks=Marks(), **nodal)
 
     @property
     def closed(self) -> np.ndarray:
@@ -196,38 +193,20 @@ def dissipation_between(system: System, before: Configuration, after: Configurat
     return -0.5 * float((system.weights * slid) @ (before.shear + after.shear))
 
 
-def empty_slip_tally(nodes: int) -> np.ndarray:
-    """The slip tally (4, n) of so many nodes that were never closed."""
-    return np.tile([[0.0], [0.0], [np.inf], [-np.inf]], nodes)
-
-
-def joined_slip_tallies(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """The slip tally (4, n) of two parts of a history together; empty if `second` is."""
-    if not second.size:
-        return second
-    lowest, highest = np.minimum(first[2], second[2]), np.maximum(first[3], second[3])
-    return np.array([*(first[:2] + second[:2]), lowest, highest])
-
-
-def slip_tally_with(configuration: Configuration) -> np.ndarray:
+def slip_tally_with(configuration: Configuration) -> SlipTally:
     """The slip tally of a configuration, its own slip included."""
-    tally, closed = configuration.slip_tally.copy(), configuration.closed
-    if tally.size:
-        slip = (configuration.slip - configuration.rest_slip)[closed]
-        tally[2, closed] = np.minimum(tally[2, closed], slip)
-        tally[3, closed] = np.maximum(tally[3, closed], slip)
-    return tally
+    return configuration.slip_tally.with_slip(configuration.slip - configuration.rest_slip, configuration.closed)
 
 
-def slip_tally_between(before: Configuration, after: Configuration) -> np.ndarray:
+def slip_tally_between(before: Configuration, after: Configuration) -> SlipTally:
     """The slip tally of `before`, and the slip from there to `after` at the nodes that are closed in the second.
 
     The mean shear gives the friction energy, as in :func:`dissipation_between`.
     """
     tally = slip_tally_with(replace(after, slip_tally=before.slip_tally))
-    if tally.size:
+    if tally.is_counted:
         slid = np.where(after.closed, after.slip - before.slip, 0.0)
-        tally[:2] += np.array([np.abs(slid), -0.5 * slid * (before.shear + after.shear)])
+        tally.sums[:2] += np.array([np.abs(slid), -0.5 * slid * (before.shear + after.shear)])
     return tally
 
 

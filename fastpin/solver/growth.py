@@ -15,9 +15,10 @@ from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid
-from fastpin.solver.configuration import NODAL, Configuration, empty_slip_tally
+from fastpin.solver.configuration import NODAL, Configuration
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart
+from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.solver.window import PENETRATION
 
 MOST_TIMES = 4
@@ -106,7 +107,7 @@ def carried(old: System, new: System, restart: Restart) -> Restart:
     """
     return replace(
         restart, configuration=_on_wider_grid(old, new, restart.configuration), repeats=Repeats(), marks={},
-        slip_tally=np.zeros((0, 0)),
+        slip_tally=NOT_COUNTED,
     )  # fmt: skip
 
 
@@ -134,10 +135,7 @@ def _on_wider_grid(old: System, new: System, now: Configuration) -> Configuratio
         "rest_slip": _rest_slip_at(old, now, new.loads[total + fresh]),
     }
     nodal: dict[str, Any] = {name: widened(getattr(now, name), outside[name]) for name in NODAL}
-    tally = now.slip_tally
-    if tally.size:
-        tally = empty_slip_tally(total)
-        tally[:, nodes] = now.slip_tally
+    tally = SlipTally.empty(total).with_part(nodes, now.slip_tally)
     return replace(now, slip_tally=tally, marks=now.marks.at(nodes), **nodal)
 
 

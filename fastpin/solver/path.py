@@ -118,7 +118,7 @@ class PathStep:
             np.zeros(n, dtype=bool),
             now.motion,
             now.rest_slip,
-            now.slip_tally,
+            now.slip_tally.sums,
         )
         self._load = load_terms(system, self.before, self.rate)
         self._queue = Queue(
@@ -404,8 +404,9 @@ class PathStep:
 
     def _take(self, better: Configuration) -> None:
         """Continue from better values of the present configuration."""
-        for name in ("pressure", "shear", "gap", "slip", "motion", "slip_tally"):
+        for name in ("pressure", "shear", "gap", "slip", "motion"):
             getattr(self.now, name)[:] = getattr(better, name)
+        self.now.slip_tally.sums[:] = better.slip_tally.sums
 
     def _correct(self) -> Solution | None:
         """Correct the present tractions and motion until statuses, held slip and load hold to rounding.

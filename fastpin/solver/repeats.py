@@ -20,6 +20,7 @@ from fastpin.elasticity.system import Scales
 from fastpin.model.history import CycleKey, LoadHistory, cycle_length, cycles_after, same_ahead
 from fastpin.model.options import KeepRule
 from fastpin.solver.configuration import Configuration
+from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.states.cycles import Cycle
 
 MOST_LOGGED = 1024
@@ -60,15 +61,15 @@ class CornerEntry:
         Dissipation and work at each kept state of that step, counted from the corner before.
     cycles : list of (CycleKey, Cycle)
         The cycles that end at the corner.
-    slip_tally : ndarray, shape (4, n)
-        Slip tally of the step (dimensionless). Empty if every corner is kept, or if they are not counted.
+    slip_tally : SlipTally
+        The slip tally of the step. No slip if every corner is kept.
     """
 
     dissipation: float = 0.0
     work: float = 0.0
     kept: list[tuple[float, float]] = field(default_factory=list)
     cycles: list[tuple[CycleKey, Cycle]] = field(default_factory=list)
-    slip_tally: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    slip_tally: SlipTally = NOT_COUNTED
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +127,7 @@ class CornerLog:
         """Open the entry of the next corner."""
         self.log.append(CornerEntry())
 
-    def close_step(self, dissipation: float, work: float, slip_tally: np.ndarray) -> None:
+    def close_step(self, dissipation: float, work: float, slip_tally: SlipTally) -> None:
         """Log the energies and the slip tally (dimensionless) of the step that has reached its corner."""
         self.log[-1].dissipation, self.log[-1].work, self.log[-1].slip_tally = dissipation, work, slip_tally
         for mark in self.marks.values():

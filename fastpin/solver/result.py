@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
@@ -19,6 +19,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
+from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.states.choice import StateChoice, span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
@@ -54,8 +55,8 @@ class Restart(ReadOnly):
         The latest end of each cycle.
     statistics : dict of str to float
         Statistics of the run up to the corner.
-    slip_tally : ndarray, shape (4, n)
-        Slip tally of each node from the latest kept state to the corner (dimensionless). Empty if they are not counted.
+    slip_tally : SlipTally
+        What each node has slipped from the latest kept state to the corner (dimensionless).
     """
 
     corner: int
@@ -67,16 +68,14 @@ class Restart(ReadOnly):
     repeats: Repeats
     marks: dict[CycleKey, CycleEnd]
     statistics: dict[str, float]
-    slip_tally: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    slip_tally: SlipTally = NOT_COUNTED
 
     def __repr__(self) -> str:
         return f"<Restart: corner {self.corner}>"
 
     def for_new_history(self) -> Restart:
         """The restart for another history that begins here."""
-        return replace(
-            self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={}, slip_tally=np.zeros((0, 0))
-        )
+        return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={}, slip_tally=NOT_COUNTED)
 
 
 @dataclass(eq=False, repr=False)

@@ -24,8 +24,6 @@ from fastpin.solver.configuration import (
     Configuration,
     contact_residuals,
     elastic_energy,
-    empty_slip_tally,
-    joined_slip_tallies,
     marks_left,
     slip_tally_with,
 )
@@ -37,6 +35,7 @@ from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import release
 from fastpin.solver.result import Restart
+from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
 from fastpin.solver.step import Piece, Position, Stepper, force_of, is_pushed, pieces
 from fastpin.solver.window import WindowStepper
 from fastpin.states.cycles import Cycle
@@ -120,8 +119,8 @@ class Run:
         The configuration at the last corner.
     dissipation, work : float
         Energies from the start to the last corner (dimensionless).
-    slip_tally : ndarray, shape (4, n)
-        Slip tally of each node from the latest kept state to the last corner (dimensionless). Empty if not counted.
+    slip_tally : RunningTally
+        The slip tally since the latest kept state.
     complete : bool
         Whether the whole history was followed.
     statistics : dict of str to float
@@ -151,7 +150,7 @@ class Run:
         start = _without_load(system) if start is None else start
         self.corner_log = CornerLog(history, start.marks)
         counts = options.slip_sums and recorder is not None
-        self._no_slip = empty_slip_tally(system.grid.size) if counts else np.zeros((0, 0))
+        self._no_slip = SlipTally.empty(system.grid.size) if counts else NOT_COUNTED
         self.statistics = dict.fromkeys(COUNTED, 0.0)
         self.stepper = _stepper(system, options, self.statistics, strict)
         self._begin_at(start)
@@ -161,8 +160,7 @@ class Run:
         self.load = self.target = start.load
         self.dissipation, self.work = start.dissipation, start.work
         self.repeats, self.corner = start.repeats, start.corner
-        self.slip_tally = start.slip_tally if start.slip_tally.shape == self._no_slip.shape else self._no_slip
-        self._counted = self._no_slip  # the slip tally of the present step up to the latest kept state
+        self.slip_tally = RunningTally(self._no_slip, self.keep, start.slip_tally)
         self.last_corner = self._at_corner(start.configuration)
         self.position = Position(self.last_corner, start.configuration.closed.copy())
         self.complete = False
@@ -228,7 +226,7 @@ class Run:
         """
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
-            Repeats(list(self.repeats)), {}, ReadOnlyDict(self.statistics), self.slip_tally,
+            Repeats(list(self.repeats)), {}, ReadOnlyDict(self.statistics), self.slip_tally.to_corner,
         )  # fmt: skip
 
     def restart(self) -> Restart:
@@ -236,7 +234,7 @@ class Run:
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
             self.repeats.copy(same_history=True), copied_ends(self.corner_log.marks), dict(self.statistics),
-            self.slip_tally,
+            self.slip_tally.to_corner,
         )  # fmt: skip
 
     def _step(self, load: np.ndarray, ends_cycle: bool, kept: bool) -> KnownConfiguration | None:
@@ -347,34 +345,17 @@ class Run:
         `kept` says whether the state at the corner was kept.
         """
         now = self.now
-        tally = self._no_slip if self._keeps_all else slip_tally_with(now)
-        self.corner_log.close_step(now.dissipation, now.work, tally)
+        self.corner_log.close_step(now.dissipation, now.work, self.slip_tally.close_step(slip_tally_with(now), kept))
         self.dissipation += now.dissipation
         self.work += now.work
-        self.slip_tally, self._counted = self._no_slip if kept else self._slip_since_kept(), self._no_slip
         self.position.now = self.last_corner = self._at_corner(now)
         self.load = load
 
     def _at_corner(self, configuration: Configuration) -> Configuration:
         """The configuration at a corner, with the sums and the slip tally of a step that begins there."""
         begun = replace(configuration, dissipation=0.0, work=0.0, slip_tally=self._no_slip)
-        if self._no_slip.size:
-            begun.slip_tally = slip_tally_with(begun)
+        begun.slip_tally = slip_tally_with(begun)
         return begun
-
-    @property
-    def _keeps_all(self) -> bool:
-        """Whether all slip tallies begin at a corner or later: every corner is kept, or nothing is counted."""
-        return self.keep.every_corner or not self._no_slip.size
-
-    def _slip_since_kept(self) -> np.ndarray:
-        """Slip tally (4, n) of each node since the latest kept state, dimensionless.
-
-        The extremes cover the time since the latest kept corner: they can't be subtracted.
-        """
-        since = slip_tally_with(self.now)
-        since[:2] -= self._counted[:2]
-        return joined_slip_tallies(self.slip_tally, since)
 
     def _show_corner(self) -> None:
         """Tell the recorder and the progress that the run has reached a corner."""
@@ -415,7 +396,8 @@ class Run:
 
     def _book_again(self, entries: list[CornerEntry], time: int) -> None:
         """Add the energies, states and cycles of the next corners, which are known: repetition `time` of a period."""
-        energy, rows, first = self.system.scales.energy, [], self._count_slip_again(entries, time)
+        energy, rows = self.system.scales.energy, []
+        first = self.slip_tally.repeat([(entry.slip_tally, bool(entry.kept)) for entry in entries], time)
         for step, entry in enumerate(entries, start=self.corner):
             for dissipation, work in entry.kept:
                 rows.append((step, (self.dissipation + dissipation) * energy, (self.work + work) * energy))
@@ -424,39 +406,8 @@ class Run:
             self._record_cycles(entry, solved=False)
         if self.recorder is not None and rows:
             steps, dissipations, works = zip(*rows, strict=True)
-            slip = SlipFields() if first is None else self._slip_fields(first)
+            slip = SlipFields() if first is None else first.fields(self.system.scales)
             self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works), slip)
-
-    def _count_slip_again(self, entries: list[CornerEntry], time: int) -> np.ndarray | None:
-        """Add the slip tallies of the next corners, which are known.
-
-        Returns the slip tally of their first kept state; None if they are the same as a period before.
-        """
-        if self._keeps_all or (time > 2 and any(entry.kept for entry in entries)):
-            return None  # the repetition before began with the same slip tally, and ended with it
-        first = None
-        for entry in entries:
-            self.slip_tally = joined_slip_tallies(self.slip_tally, entry.slip_tally)
-            if entry.kept:
-                first = self.slip_tally if first is None else first
-                self.slip_tally = self._no_slip
-        return first
-
-    def _slip_fields(self, slip_tally: np.ndarray) -> SlipFields:
-        """The fields of a state that its slip tally (4, n) gives, SI; none if it is not counted."""
-        if not slip_tally.size:
-            return {}
-        scales = self.system.scales
-        lowest, highest = np.where(slip_tally[2] <= slip_tally[3], slip_tally[2:], np.nan) * scales.displacement
-        fields: SlipFields = {
-            "slip_distance": slip_tally[0] * scales.displacement,
-            "friction_energy": slip_tally[1] * (scales.traction * scales.displacement),
-            "slip_lowest": lowest,
-            "slip_highest": highest,
-        }
-        for array in (fields["slip_distance"], fields["friction_energy"], lowest, highest):
-            array.setflags(write=False)
-        return fields
 
     def _record_cycles(self, entry: CornerEntry, solved: bool = True) -> None:
         if self.recorder is not None:
@@ -474,7 +425,7 @@ class Run:
         self.corner_log.latest.kept.append((self.now.dissipation, self.now.work))
         assert self.recorder is not None
         self.recorder.add(self._state(step, fraction, residuals))
-        self.slip_tally, self._counted = self._no_slip, self.now.slip_tally
+        self.slip_tally.keep(self.now.slip_tally)
 
     def _state(self, step: int, fraction: float, residuals: dict[str, float]) -> State:
         """The present configuration as a state, SI."""
@@ -514,7 +465,7 @@ class Run:
             problem=system.problem,
             grid=system.grid,
             marks=now.marks if fraction == 1.0 else marks_left(self.last_corner, now),  # corners are marked already
-            **self._slip_fields(self._slip_since_kept()),
+            **self.slip_tally.since_kept(slip_tally_with(now)).fields(scales),
         )
 
 

@@ -77,9 +77,7 @@ class Window:
         n = self._large.grid.size
         fields: dict[str, Any] = {name: np.zeros(n) for name in ("pressure", "shear")}
         fields["status"] = np.full(n, OPEN, dtype=np.int8)
-        tally = before.slip_tally.copy()
-        if tally.size:
-            tally[:, self.nodes] = inside.slip_tally
+        tally = before.slip_tally.with_part(self.nodes, inside.slip_tally)
         if not inside.closed.any():  # the pin was released: all nodes count from its new position
             last = before.copy()
             last.pressure[:], last.shear[:], last.status[:] = 0.0, 0.0, OPEN

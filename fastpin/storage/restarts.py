@@ -13,6 +13,7 @@ from fastpin.reading.marks import Marks
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
 from fastpin.solver.result import Restart
+from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
 from fastpin.storage.layout import BORDER_FIELDS, SMALL_NUMBERS, STATUS_LIMITS, all_loads, check_old_borders
 
@@ -42,8 +43,9 @@ def write_restart(group: h5py.Group, restart: Restart) -> None:
     group.attrs.update(corner=restart.corner, force=restart.force, dissipation=restart.dissipation, work=restart.work)
     group.attrs["configuration"] = index_of(restart.configuration)
     group["load"] = restart.load
-    if np.isfinite(restart.slip_tally).all(axis=0).any():  # a node was closed since the latest kept state
-        group["slip_tally"] = restart.slip_tally
+    sums = restart.slip_tally.sums
+    if np.isfinite(sums).all(axis=0).any():  # a node was closed since the latest kept state
+        group["slip_tally"] = sums
     group["met"] = np.array(
         [(index_of(item.configuration), item.ends_cycle, item.last, item.period, item.since) for item in known],
         dtype=np.int64,
@@ -110,16 +112,16 @@ def read_restart(group: h5py.Group, nodes: int) -> Restart:
     )
 
 
-def _read_slip_tally(group: h5py.Group, nodes: int) -> np.ndarray:
-    """Read the slip tally of a restart, shape (4, n). Without any it is empty."""
+def _read_slip_tally(group: h5py.Group, nodes: int) -> SlipTally:
+    """Read the slip tally of a restart on a grid of so many nodes."""
     if "slip_tally" not in group:
-        return np.zeros((0, 0))
+        return NOT_COUNTED
     tally: np.ndarray = dataset_of(group, "slip_tally", float, (nodes,))[()]
     if len(tally) != 4:
         raise ValueError(f"slip_tally has the shape {tally.shape}")
     check_finite("slip_tally", tally[:2])
     check_extremes("slip_tally", tally[2], tally[3], (tally[2] == np.inf) & (tally[3] == -np.inf))
-    return tally
+    return SlipTally(tally)
 
 
 def _read_configurations(group: h5py.Group, name: str, nodes: int) -> np.ndarray:

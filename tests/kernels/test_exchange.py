@@ -23,9 +23,10 @@ from fastpin.model.problem import Problem
 from fastpin.solver import path
 from fastpin.solver import unknowns as solver_unknowns
 from fastpin.solver.assembly import unloaded_configuration
-from fastpin.solver.configuration import empty_slip_tally, solve_statuses, worst_residual
+from fastpin.solver.configuration import solve_statuses, worst_residual
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
+from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
@@ -140,7 +141,7 @@ def at_rest_on(system, status):
     n = status.size
     zeros = [np.zeros(n) for _ in range(4)]
     tie, touched = np.zeros(n, dtype=np.int8), np.zeros(n, dtype=bool)
-    return Contact(*zeros, status.copy(), tie, touched, np.zeros(3), np.zeros(n), empty_slip_tally(n))
+    return Contact(*zeros, status.copy(), tie, touched, np.zeros(3), np.zeros(n), SlipTally.empty(n).sums)
 
 
 def whole(columns):
@@ -328,11 +329,12 @@ def naive_path(system, start, after):
         for name in ("pressure", "shear", "gap", "slip"):
             setattr(now, name, getattr(now, name) + step * getattr(r, name))
         slid = np.where(closed & ~stick, step * r.slip, 0.0)
-        distance, energy, lowest, highest = now.slip_tally
+        distance, energy, lowest, highest = now.slip_tally.sums
         ends = np.array([begin, now.slip]) - now.rest_slip
         lowest = np.where(closed, np.minimum(lowest, ends.min(axis=0)), lowest)
         highest = np.where(closed, np.maximum(highest, ends.max(axis=0)), highest)
-        now.slip_tally = np.array([distance + np.abs(slid), energy - 0.5 * (old + now.shear) * slid, lowest, highest])
+        energy = energy - 0.5 * (old + now.shear) * slid
+        now.slip_tally = SlipTally(np.array([distance + np.abs(slid), energy, lowest, highest]))
         now.work += step * power(r, now.shear - 0.5 * step * r.shear, time + 0.5 * step)
         now.gap[closed | (now.gap < 1e-15)] = 0.0
         now.pressure[~closed | (now.pressure < 1e-15)] = 0.0
@@ -345,7 +347,7 @@ def naive_path(system, start, after):
 
 def test_path_agrees_with_the_naive_solver(system):
     first, _ = first_contact(system, unloaded_configuration(system), loads(), loads(P=1.0))
-    fast = naive = replace(first, rest_slip=np.linspace(-0.1, 0.2, 41), slip_tally=empty_slip_tally(41))
+    fast = naive = replace(first, rest_slip=np.linspace(-0.1, 0.2, 41), slip_tally=SlipTally.empty(41))
     for target in (loads(P=1.0), loads(P=1.0, Q=0.35), loads(P=1.0, Q=-0.35)):
         step = PathStep(system, fast, target)
         naive, events = naive_path(system, naive, target)
@@ -356,13 +358,14 @@ def test_path_agrees_with_the_naive_solver(system):
         assert np.array_equal(fast.status, naive.status)
         for name in ("pressure", "shear", "gap", "slip"):
             assert np.abs(getattr(fast, name) - getattr(naive, name)).max() < 1e-9
-        assert np.abs(fast.slip_tally[:2] - naive.slip_tally[:2]).max() < 1e-9 * naive.slip_tally[:2].max()
-        met = np.isfinite(naive.slip_tally[2])
-        assert np.array_equal(np.isfinite(fast.slip_tally[2:]), [met, met])
-        assert np.abs(fast.slip_tally[2:, met] - naive.slip_tally[2:, met]).max() < 1e-9
-    assert np.all(naive.slip_tally[:2].max(axis=1) > 0.005)
-    assert np.ptp(naive.slip_tally[2:, met], axis=0).max() > 0.005
-    assert system.weights @ fast.slip_tally[1] == pytest.approx(fast.dissipation - first.dissipation, rel=1e-13)
+        sums, naive_sums = fast.slip_tally.sums, naive.slip_tally.sums
+        assert np.abs(sums[:2] - naive_sums[:2]).max() < 1e-9 * naive_sums[:2].max()
+        met = np.isfinite(naive_sums[2])
+        assert np.array_equal(np.isfinite(sums[2:]), [met, met])
+        assert np.abs(sums[2:, met] - naive_sums[2:, met]).max() < 1e-9
+    assert np.all(naive_sums[:2].max(axis=1) > 0.005)
+    assert np.ptp(naive_sums[2:, met], axis=0).max() > 0.005
+    assert system.weights @ sums[1] == pytest.approx(fast.dissipation - first.dissipation, rel=1e-13)
 
 
 PLAIN = """

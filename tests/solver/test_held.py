@@ -17,9 +17,9 @@ from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver import held, path
-from fastpin.solver.configuration import empty_slip_tally
 from fastpin.solver.errors import SolveError
 from fastpin.solver.held import HeldColumns, HeldContacts, held_table
+from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns
@@ -62,7 +62,7 @@ def contact_of(closed, slipping=()):
     zeros = [np.zeros(n) for _ in range(2)]
     return Contact(
         np.abs(rng.normal(size=n)) * closed, shear, *zeros, status, np.zeros(n, dtype=np.int8), np.zeros(n, dtype=bool),
-        np.zeros(3), np.zeros(n), empty_slip_tally(n),
+        np.zeros(3), np.zeros(n), SlipTally.empty(n).sums,
     )  # fmt: skip
 
 
