@@ -92,9 +92,9 @@ def columns_of(points: np.ndarray, cycles: Sequence[Cycle], most: int) -> tuple[
 def extents(states: Sequence[State], before: State | None) -> np.ndarray:
     """Return what each node does at some time between the state before and the last of the states, shape (n,).
 
-    A node slips where its slip changes between two states at which it is closed. With ``slip_sums`` slip forth and back
-    counts too. Statuses count for nodes that were open before: a node at |T| = mu N may have the status of slip and
-    rest.
+    A node slips where its slip changes between two states at which it is closed. If the states have slip distances,
+    slip forth and back counts too. Statuses count for nodes that were open before: a node at |T| = mu N may have the
+    status of slip and rest.
 
     Parameters
     ----------

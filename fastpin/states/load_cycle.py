@@ -81,7 +81,7 @@ class LoadCycle:
     """The part of a load history between two corners, and its quantities.
 
     Numbers are in SI units, or in the units of a dimensionless problem. Ranges and extremes of tractions are over the
-    states, so states inside steps (``between``) make them finer. With the option ``slip_sums`` slip ranges, slip
+    states, so states inside steps (``between``) make them finer. Where the states have slip sums, slip ranges, slip
     distances and friction energy are exact for any states.
 
     Attributes
@@ -226,7 +226,7 @@ class LoadCycle:
     def slip_distance(self) -> np.ndarray | None:
         """Distance int |ds| of the slip of each node while closed, m, shape (n,).
 
-        None without the option ``slip_sums``, or if states between were left out when the result was loaded.
+        None if the states have no slip sums, or if states between were left out when the result was loaded.
         """
         parts = [state.slip_distance for state in self.states[1:]]
         return _total(parts)

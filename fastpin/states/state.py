@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 class SlipFields(TypedDict, total=False):
-    """The fields of a :class:`State` that the option ``slip_sums`` gives; empty without it."""
+    """The fields of a :class:`State` with the slip since an earlier state. Empty where slip is not counted."""
 
     slip_distance: np.ndarray
     friction_energy: np.ndarray

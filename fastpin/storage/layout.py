@@ -43,6 +43,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import units_per_thickness
 from fastpin.reading.marks import Marks
 from fastpin.reading.old_borders import BITS
+from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.bodies import read_bodies, read_material, write_bodies, write_material
@@ -84,7 +85,7 @@ SLIP_FIELDS = {
     "friction_energy": "energy density",
     **dict.fromkeys(EXTREMES, "displacement"),
 }
-"""Kind of quantity of each field, shape (n,), that a state has with the option ``slip_sums`` only."""
+"""Kind of quantity of each field, shape (n,), that a state has where slip is counted."""
 
 BORDER_FIELDS = {"old_borders": "", "old_places": ""}
 """Kind of quantity of each field, shape (n,), with the old borders of a state. Files of earlier versions lack them."""
@@ -144,8 +145,16 @@ Rows = dict[str, np.ndarray]
 
 def node_fields(group: h5py.Group) -> dict[str, str]:
     """Return the kind of quantity of each field with node values that ``/states`` holds, ``group``."""
-    borders = BORDER_FIELDS if "old_borders" in group else {}
-    return NODE_FIELDS | borders | (SLIP_FIELDS if "slip_distance" in group else {})
+    return _node_fields("slip_distance" in group, "old_borders" in group)
+
+
+def node_fields_of(states: Sequence[State]) -> dict[str, str]:
+    """Return the kind of quantity of each field with node values that all states have. Old borders may be empty."""
+    return _node_fields(has_slip=len(states) > 0 and all(state.slip_distance is not None for state in states))
+
+
+def _node_fields(has_slip: bool, has_borders: bool = True) -> dict[str, str]:
+    return NODE_FIELDS | (BORDER_FIELDS if has_borders else {}) | (SLIP_FIELDS if has_slip else {})
 
 
 def state_rows(group: h5py.Group) -> tuple[str, ...]:
@@ -175,13 +184,24 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     solver = file.create_group("solver")
     solver.attrs.update({name: value for name, value in options.items() if value is not None})
     solver.create_group("statistics")
-    write_grid(file, problem, history, grid, bool(options.get("slip_sums")))
+    write_grid(file, problem, history, grid, _node_fields(has_slip=bool(options.get("slip_sums"))))
 
 
-def write_grid(file: h5py.Group, problem: Problem, history: LoadHistory, grid: Grid, slip_sums: bool) -> None:
-    """Write a grid, and the arrays of states and cycles on it, without rows, into a file or its group ``/coarse``."""
+def options_of(result: Result) -> dict[str, Any]:
+    """Return the options that a result shows, as attributes of ``/solver`` for :func:`write_head`."""
+    has_slip = "slip_distance" in node_fields_of(result.states)
+    return {"method": result.method, "slip_sums": has_slip or None, "error_bars": result.coarse is not None or None}
+
+
+def write_grid(
+    file: h5py.Group, problem: Problem, history: LoadHistory, grid: Grid, node_fields: Mapping[str, str]
+) -> None:
+    """Write a grid, and the arrays of states and cycles on it, without rows, into a file or its group ``/coarse``.
+
+    `node_fields` are the kinds of the fields with node values, as in :func:`node_fields_of`.
+    """
     file.create_group("grid").attrs["closed"] = grid.closed
-    _make_states(file, problem, grid, NODE_FIELDS | BORDER_FIELDS | (SLIP_FIELDS if slip_sums else {}))
+    _make_states(file, problem, grid, node_fields)
     cycles, unit = file.create_group("cycles"), units_per_thickness(problem)
     for name, kind in CYCLE_FIELDS.items() if history.longest_cycle else ():
         _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
@@ -357,14 +377,9 @@ def all_loads(vectors: np.ndarray, missing: float) -> np.ndarray:
     return np.pad(vectors, [(0, 0)] * (vectors.ndim - 1) + [(0, lacking)], constant_values=missing)
 
 
-def has_slip_sums(states: Sequence[State]) -> bool:
-    """Whether there are states, and all of them have slip sums."""
-    return len(states) > 0 and all(state.slip_distance is not None for state in states)
-
-
 def rows_of(states: Sequence[State]) -> Rows:
     """Return the rows of some states. The residuals or the old borders of a state may be missing."""
-    names = [*NODE_FIELDS, *(SLIP_FIELDS if has_slip_sums(states) else {}), *NUMBER_FIELDS]
+    names = [*(name for name in node_fields_of(states) if name not in BORDER_FIELDS), *NUMBER_FIELDS]
     rows: Rows = {name: np.array([getattr(state, name) for state in states], dtype=_dtype(name)) for name in names}
     marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
     for k, name in enumerate(BORDER_FIELDS):

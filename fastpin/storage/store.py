@@ -46,7 +46,8 @@ from fastpin.storage.layout import (
     check_format,
     count,
     cycle_rows,
-    has_slip_sums,
+    node_fields_of,
+    options_of,
     read_cycles,
     read_grid,
     read_history,
@@ -114,9 +115,7 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
 
 def _write(file: h5py.File | packed.PackedGroup, result: Result, error: str | None) -> None:
     """Write a result into an empty file, all but its restart."""
-    options = {"method": result.method, "slip_sums": has_slip_sums(result.states) or None}
-    options["error_bars"] = result.coarse is not None or None
-    write_head(file, result.problem, result.history, result.grid, options)
+    write_head(file, result.problem, result.history, result.grid, options_of(result))
     file.attrs["complete"] = result.complete
     if error is not None:
         file.attrs["error"] = error
@@ -125,7 +124,7 @@ def _write(file: h5py.File | packed.PackedGroup, result: Result, error: str | No
     append(file["cycles"], cycle_rows(result.cycles))
     if result.coarse is not None:
         coarse, group = result.coarse, file.create_group("coarse")
-        write_grid(group, coarse.problem, coarse.history, coarse.grid, has_slip_sums(coarse.states))
+        write_grid(group, coarse.problem, coarse.history, coarse.grid, node_fields_of(coarse.states))
         append(group["states"], rows_of(list(coarse)))
         append(group["cycles"], cycle_rows(coarse.cycles))
 

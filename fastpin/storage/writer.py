@@ -36,12 +36,12 @@ from fastpin.storage.layout import (
     check_growing,
     count,
     cycle_rows,
+    node_fields,
     option_attributes,
     read_about,
     read_cycles,
     read_grid,
     read_history,
-    read_options,
     read_problem,
     read_rows,
     read_statistics,
@@ -378,7 +378,7 @@ def add_coarse(path: Path, beside: Path) -> None:
         try:
             with open_result(beside) as stored:
                 group, grid, history = h5.create_group("coarse"), read_grid(stored), read_history(stored)
-                write_grid(group, read_problem(stored), history, grid, read_options(stored).slip_sums)
+                write_grid(group, read_problem(stored), history, grid, node_fields(stored["states"]))
                 states = stored["states"]
                 for first in range(0, count(states), PIECE):
                     append(group["states"], read_rows(states, state_rows(states), slice(first, first + PIECE)))
