@@ -17,7 +17,7 @@ from fastpin.cli.terminal import check_outputs, say, write_files
 from fastpin.errors import InputError
 from fastpin.kernels.status import Status
 from fastpin.report.curves import Curve, write_csv
-from fastpin.states.choice import NO_CYCLE, chosen_cycles
+from fastpin.states.choice import NO_CYCLE, chosen_cycles, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
 
@@ -204,15 +204,14 @@ def _with_cycles(path: Path) -> solver.Result:
     return result
 
 
-def _places_of(cycle: Cycle, path: Path) -> slice:
-    """The places in a file of the states of a cycle."""
-    return storage.places_between(path, cycle.corner + 1 - cycle.length, cycle.corner + 1)
+def _with_states(path: Path, cycle: Cycle) -> solver.Result:
+    """The stored result with the states of one of its cycles."""
+    return storage.load(path, states=storage.places_between(path, *span_of(cycle)))
 
 
 def _result(options: argparse.Namespace) -> solver.Result:
     """The stored result with the states of its last cycle."""
-    cycle = _with_cycles(options.result).cycles[-1]
-    return storage.load(options.result, states=_places_of(cycle, options.result))
+    return _with_states(options.result, _with_cycles(options.result).cycles[-1])
 
 
 def _cycles(options: argparse.Namespace, title: str) -> Made:
@@ -254,7 +253,7 @@ def _chosen_cycles(options: argparse.Namespace) -> dict[int, LoadCycle]:
         numbers = ", ".join(f"{places[k] + 1:,}" for k in shown)
         say(f"the figure shows {len(shown)} of {len(places):,} cycles: {numbers}")
     for place in (places[k] for k in shown):
-        part = storage.load(options.result, states=_places_of(result.cycles[place], options.result))
+        part = _with_states(options.result, result.cycles[place])
         try:
             found[place + 1] = part.cycle(place)
         except InputError as error:

@@ -34,8 +34,7 @@ from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
-from fastpin.states.choice import check_choice
-from fastpin.states.cycles import Cycle
+from fastpin.states.choice import check_choice, span_of
 from fastpin.states.extremes import KeptStates, marked_extremes, marked_places
 from fastpin.states.yield_doubts import yield_doubts_of
 
@@ -233,8 +232,10 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     peaks = marked_places(storage.marked_extremes(options.output))
     rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(options.output, places).states, peaks)
     places = {*rows.printed, *peaks}
-    if cycles and len(last := range(points.size)[_places(options, cycles[-1])]) <= report.cycle.MOST_STOPS:
-        places |= set(last)  # the fatigue over the last cycle is printed
+    if cycles:
+        last = range(points.size)[storage.places_between(options.output, *span_of(cycles[-1]))]
+        if len(last) <= report.cycle.MOST_STOPS:
+            places |= set(last)  # the fatigue over the last cycle is printed
     if options.record is not None:
         places |= set(live.recorded_places(points.size))
     part = ShownPart(rows, sorted(places), list(peaks))
@@ -357,14 +358,9 @@ def _last_cycle(options: argparse.Namespace, result: solver.Result | None, part:
     if result is None:
         raise InputError("cycle", "no state was reached")
     if part is not None and result.cycles:  # its states are in the file, but not in `result`
-        result = storage.load(options.output, states=_places(options, result.cycles[-1]))
+        places = storage.places_between(options.output, *span_of(result.cycles[-1]))
+        result = storage.load(options.output, states=places)
     return result.cycle()
-
-
-def _places(options: argparse.Namespace, cycle: Cycle) -> slice:
-    """Return the places of the states of a cycle in the stored result."""
-    end = cycle.corner + 1
-    return storage.places_between(options.output, end - cycle.length, end)
 
 
 def _known_cycle(

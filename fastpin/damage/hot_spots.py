@@ -24,7 +24,7 @@ from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
 from fastpin.reading.stress import check_body
 from fastpin.runtime.threads import in_threads
-from fastpin.states.choice import missing_corners, span_of, states_between
+from fastpin.states.choice import loaded_span_of, missing_corners, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 
@@ -227,13 +227,11 @@ def cycle_states(states: Sequence[State], cycle: Cycle) -> list[State]:
         If the states at some corners of the cycle were not kept, or if the cycle begins without load.
     """
     states = instances("states", states, State, "a sequence of fastpin.State")
-    first, last = span_of(instance("cycle", cycle, Cycle, "a cycle of a result"))
-    if first < 1:
-        raise InputError("cycle", f"the cycle to corner {last} begins without load: choose a later one")
-    found = states_between(states, first, last)
-    if missing_corners(found, first, last):
+    first, last = loaded_span_of(instance("cycle", cycle, Cycle, "a cycle of a result"))
+    within = states_between(states, first, last)
+    if missing_corners(within, first, last):
         raise InputError("states", f"must hold all corners of the cycle, {first} to {last}")
-    return found
+    return within
 
 
 def cycle_stops(states: Sequence[State]) -> list[State]:

@@ -23,7 +23,7 @@ from fastpin.report.case import edge_body
 from fastpin.report.cycle import MOST_STOPS, fatigue_bodies
 from fastpin.report.states import stored_rows
 from fastpin.solver.result import Result
-from fastpin.states.choice import even_choice
+from fastpin.states.choice import even_choice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places
 from fastpin.states.load_cycle import LoadCycle
@@ -228,7 +228,7 @@ class Source:
             first = self._closing_corner()
             if not first:
                 return "no cycle of the history has ended"
-        begin, end = (first, self.reached) if found is None else (found.corner + 1 - found.length, found.corner + 1)
+        begin, end = (first, self.reached) if found is None else span_of(found)
         places = np.flatnonzero((self.points >= begin) & (self.points <= end))
         part = replace(self.result, states=self.read(places.tolist()))
         try:

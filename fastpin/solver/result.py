@@ -20,7 +20,7 @@ from fastpin.model.read_only import ReadOnly
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
-from fastpin.states.choice import StateChoice, span_of, states_between
+from fastpin.states.choice import StateChoice, loaded_span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
@@ -141,9 +141,7 @@ class Result(Sequence[State]):
         if not self.cycles:
             raise InputError("cycle", "no cycle of the history has ended; give the corners first and last")
         cycle = self.cycles[whole_number("place", place, -len(self.cycles), len(self.cycles) - 1)]
-        begin, end = span_of(cycle)
-        if begin < 1:
-            raise InputError("cycle", f"the cycle to corner {end} begins without load: choose a later one")
+        begin, end = loaded_span_of(cycle)
         found = LoadCycle(self._between(begin, end))
         if not found.is_closed:
             raise InputError(

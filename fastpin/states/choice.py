@@ -47,6 +47,20 @@ def span_of(cycle: Cycle) -> tuple[int, int]:
     return cycle.corner + 1 - cycle.length, cycle.corner + 1
 
 
+def loaded_span_of(cycle: Cycle) -> tuple[int, int]:
+    """The corners, counted from 1, at which a cycle begins and ends, with a state at both.
+
+    Raises
+    ------
+    InputError
+        If the cycle begins without load.
+    """
+    first, last = span_of(cycle)
+    if first < 1:
+        raise InputError("cycle", f"the cycle to corner {last} begins without load: choose a later one")
+    return first, last
+
+
 def states_between(states: Sequence[State], first: float, last: float) -> list[State]:
     """The states from one load point to another, both included, in the order of the history."""
     return sorted((state for state in states if first <= load_point(state) <= last), key=load_point)
