@@ -72,7 +72,7 @@ def _add(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
         return
     one, plain = ctypes.byref(ctypes.c_double(1.0)), ctypes.c_char_p(b"N")
     sizes = [ctypes.byref(ctypes.c_int(size)) for size in (m, n, k)]
-    (a, lda), (b, ldb), (c, ldc) = (_place(array) for array in (left, right, out))
+    (a, lda), (b, ldb), (c, ldc) = _place(left), _place(right), _place(out)
     _dgemm(plain, plain, *sizes, one, a, lda, b, ldb, one, c, ldc)
 
 

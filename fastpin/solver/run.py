@@ -147,7 +147,10 @@ class Run:
         self.strict = strict
         self.keep = options.keep_rule
         self.fractions = options.fractions if self.keep.inside else options.fractions[-1:]
-        start = _without_load(system) if start is None else start
+        if start is None:  # from no load, where an interference fit is under its own pressure
+            first, load = unloaded_configuration(system), np.zeros(len(LOADS))
+            now = replace(first, dissipation=0.0, work=0.0)
+            start = Restart(0, load, system.scales.force, now, first.dissipation, first.work, Repeats(), {}, {})
         self.corner_log = CornerLog(history, start.marks)
         counts = options.slip_sums and recorder is not None
         self._no_slip = SlipTally.empty(system.grid.size) if counts else NOT_COUNTED
@@ -288,26 +291,24 @@ class Run:
 
     def _follow_piece(self, piece: Piece, step: int) -> None:
         """Follow one straight piece of a step, from stop to stop."""
+        position, problem = self.position, self.system.problem
         self.stepper.begin_piece()
         kept = {stop for stop in self.fractions.tolist() if piece.begin < stop <= piece.end}
         for stop in sorted({*kept, piece.end}):
-            self._advance(piece, stop, step)
+            load = piece.load_at(stop)
+            if problem.frictionless and problem.rotation == "free" and load[M] != 0.0:
+                raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
+            while not np.array_equal(self.now.load, load):
+                if self.now.closed.any():
+                    self.stepper.advance(position, piece, stop, lambda reached: self._report(step, reached))
+                else:
+                    self._touch_down(load, stop)
+            position.reached = stop
+            self._release_if_unloaded(piece, load)
             if stop in kept and stop < 1.0 and self.recorder is not None:
                 self._keep(step, stop)
             self._report(step, stop)
-        self.stepper.leave(self.position)
-
-    def _advance(self, piece: Piece, stop: float, step: int) -> None:
-        """Bring the contact to the load at the fraction `stop` of the step."""
-        load, position = piece.load_at(stop), self.position
-        self._check_moment(load)
-        while not np.array_equal(self.now.load, load):
-            if not self.now.closed.any():
-                self._touch_down(load, stop)
-            else:
-                self.stepper.advance(position, piece, stop, lambda reached: self._report(step, reached))
-        position.reached = stop
-        self._release_if_unloaded(piece, load)
+        self.stepper.leave(position)
 
     def _touch_down(self, load: np.ndarray, stop: float) -> None:
         """Bring the floating pin into contact on the way to `load`. It may also reach `load` without contact."""
@@ -333,11 +334,6 @@ class Run:
         if left <= UNLOADED_PRESSURE * before:
             self.stepper.leave(self.position)
             self.position.now = release(self.system, self.now, load)
-
-    def _check_moment(self, load: np.ndarray) -> None:
-        problem = self.system.problem
-        if problem.frictionless and problem.rotation == "free" and load[M] != 0.0:
-            raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
 
     def _close_step(self, load: np.ndarray, kept: bool) -> None:
         """Log the energies and the slip tally of the step that has reached its corner, under `load` (SI).
@@ -477,10 +473,3 @@ def _stepper(system: System, options: SolveOptions, statistics: dict[str, float]
     if isinstance(system, LargeSystem):
         return WindowStepper(system, statistics, strict)
     return PathStepper(system, statistics, strict)
-
-
-def _without_load(system: System) -> Restart:
-    """The start of a history: no load. An interference fit is under its own pressure."""
-    first, load = unloaded_configuration(system), np.zeros(len(LOADS))
-    now = replace(first, dissipation=0.0, work=0.0)
-    return Restart(0, load, system.scales.force, now, first.dissipation, first.work, Repeats(), {}, {})
