@@ -38,7 +38,10 @@ def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
     LoadHistory or None
         None if the history can't be used. The reason is reported.
     """
-    section, basis = source.section("history"), _basis(source)
+    section, contact = source.section("history"), source.root.value("contact")
+    basis: Basis = "per metre"
+    if isinstance(contact, dict) and ("load_parameter" in contact or "thickness" in contact):
+        basis = "dimensionless" if "load_parameter" in contact else "with thickness"
     if "load" in source.root and "csv" in section:
         source.report("[history]: give either csv or [[load]] blocks", "history", "csv")
         return None
@@ -203,14 +206,6 @@ def _numbers(block: Section, name: str) -> list[float] | float | None:
         except InputError as error:
             block.report(f"value {index} of {name}: {error.reason}", name)
     return numbers if numbers and len(numbers) == len(value) else None
-
-
-def _basis(source: CaseText) -> Basis:
-    """How the case gives its loads: per metre, for a thickness, or without dimensions."""
-    contact = source.root.value("contact")
-    if isinstance(contact, dict) and "load_parameter" in contact:
-        return "dimensionless"
-    return "with thickness" if isinstance(contact, dict) and "thickness" in contact else "per metre"
 
 
 def _from_csv(section: Section, folder: Path, basis: Basis) -> LoadHistory | None:

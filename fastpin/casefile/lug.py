@@ -120,13 +120,14 @@ def _check_keys(source: CaseText) -> None:
         if name == "title":
             continue
         shown = _in_brackets(name)
+        are_tables = isinstance(value, list) and all(isinstance(table, dict) for table in value)
         if name not in LUG_KEYS:
             hint = closest(name, tuple(LUG_KEYS)) or f"; the sections are {', '.join(map(_in_brackets, LUG_KEYS))}"
             kind = (
                 f"section {written(name, value)}" if written(name, value) else f'key "{name}" before the first section'
             )
             source.report(f"unknown {kind}{hint}", name)
-        elif not (isinstance(value, dict) or (name in BLOCKS and _are_tables(value))):
+        elif not (isinstance(value, dict) or (name in BLOCKS and are_tables)):
             source.report(f"{name}: must be a section {shown}, not {written(name, value) or as_toml(value)}", name)
         else:
             for block in source.blocks(name):
@@ -134,10 +135,6 @@ def _check_keys(source: CaseText) -> None:
                     if key not in LUG_KEYS[name]:
                         hint = closest(key, LUG_KEYS[name]) or f"; the keys are {', '.join(LUG_KEYS[name])}"
                         block.report(f'unknown key "{key}" in {shown}{hint}', key)
-
-
-def _are_tables(value: object) -> bool:
-    return isinstance(value, list) and all(isinstance(table, dict) for table in value)
 
 
 def _poisson_ratio(plate: Section) -> float | None:

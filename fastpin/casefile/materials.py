@@ -45,7 +45,9 @@ def read_material(
 
     None if it can't be used. The reason is reported.
     """
-    given: dict[str, Any] = {"fatigue": _fatigue(source, section), "yield_strength": _yield_strength(source, section)}
+    given: dict[str, Any] = {"fatigue": _fatigue(source, section)}
+    if "yield_strength" in section and _has_stresses(source, section, "yield_strength"):
+        given["yield_strength"] = section.checked("yield_strength", positive)
     material = _elastic(section, materials, may_be_rigid)
     if material is None:
         return None
@@ -67,13 +69,6 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
             inner.report(f'unknown key "{key}" in fatigue of [{section.name}]{hint}', key)
     given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
     return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
-
-
-def _yield_strength(source: CaseText, section: Section) -> float | None:
-    """The yield strength of a body, Pa; None if there is none, or it is wrong (reported)."""
-    if "yield_strength" not in section or not _has_stresses(source, section, "yield_strength"):
-        return None
-    return section.checked("yield_strength", positive)
 
 
 def _has_stresses(source: CaseText, section: Section, key: str) -> bool:

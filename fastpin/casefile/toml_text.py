@@ -147,7 +147,8 @@ class CaseText:
         if not isinstance(text, str):
             raise InputError("text", f"must be TOML text, not {as_toml(text)}")
         lines = text.replace("\r\n", "\n").split("\n")
-        if _has_long_key(text, lines):
+        most_points = max(line.count(".") for line in lines)  # a key stands on one line
+        if most_points >= MOST_PARTS and _LONG_KEY.search(_STRING_OR_COMMENT.sub('""', text)):
             self.readable = False
             self._lines = _Lines([])
             self._add(0, f"a key has more than {MOST_PARTS} parts, joined by points")
@@ -382,12 +383,6 @@ class _Lines:
         """The lines of all headers and keys, see :func:`_locate`."""
         with _uncollected():
             return _locate(self._all)
-
-
-def _has_long_key(text: str, lines: list[str]) -> bool:
-    """Whether a key has more than :data:`MOST_PARTS` parts. Such a key stands on one line."""
-    most_points = max(line.count(".") for line in lines)
-    return most_points >= MOST_PARTS and bool(_LONG_KEY.search(_STRING_OR_COMMENT.sub('""', text)))
 
 
 def _locate(lines: list[str]) -> tuple[dict[KeyPath, int], dict[int, KeyPath], dict[int, int]]:

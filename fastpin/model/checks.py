@@ -129,7 +129,7 @@ def string(field: str, value: object) -> str:
 def any_text(field: str, value: object) -> str:
     """Check a text of any lines that can be stored in any file: without NUL and lone surrogates."""
     found = instance(field, value, str, "text in quotes")
-    if "\0" in found or not _is_unicode(found):
+    if any(character == "\0" or "\ud800" <= character <= "\udfff" for character in found):
         raise InputError(field, f"must be text of Unicode characters without NUL, not {as_toml(found)}")
     return found
 
@@ -294,10 +294,6 @@ def _as_float(value: Any) -> float | None:
         return math.inf
     except Exception:  # Any object can be given, and its conversion may fail in any way.
         return None
-
-
-def _is_unicode(text: str) -> bool:
-    return not any("\ud800" <= character <= "\udfff" for character in text)
 
 
 def shortened(words: str) -> str:

@@ -270,19 +270,14 @@ def _of_material(name: str, material: Material, has_units: bool) -> Iterator[Inp
         return
     if MOST_NU < nu < 0.5 and material.E >= STIFF:
         yield InputWarning("nu", f"{nu:g} of the {name} is unusual for a stiff body; metals have 0.25 to 0.45")
-    for field, value in _strengths(material):
-        if value < LEAST_STRENGTH * material.E:
+    strengths = {} if material.fatigue is None else material.fatigue.given()
+    strengths |= {} if material.yield_strength is None else {"yield_strength": material.yield_strength}
+    for field in _STRENGTHS:
+        if field in strengths and (value := strengths[field]) < LEAST_STRENGTH * material.E:
             yield InputWarning(
                 field,
                 f"{_short(value)} Pa of the {name} is very small; stresses are in Pa; {_meant(value, 'MPa', 1e6)}",
             )
-
-
-def _strengths(material: Material) -> Iterator[tuple[str, float]]:
-    """The strengths of a material, Pa, by field. The yield strength stands first."""
-    given = {} if material.fatigue is None else material.fatigue.given()
-    given |= {} if material.yield_strength is None else {"yield_strength": material.yield_strength}
-    yield from ((name, given[name]) for name in _STRENGTHS if name in given)
 
 
 def _of_sizes(problem: Problem) -> Iterator[InputWarning]:

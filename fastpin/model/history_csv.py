@@ -140,7 +140,8 @@ class _Rows:
         """Read a corner."""
         # A line without quotes is split here: csv.reader takes longer. float() takes blanks around a number.
         cells = line.split(self._separator) if '"' not in line else self._cells(line)
-        if len(cells) != self._width and not self._has_blanks_behind(cells):
+        # Spreadsheets write separators behind the cells of the header.
+        if len(cells) != self._width and (len(cells) < self._width or any(map(str.strip, cells[self._width :]))):
             self.faults.append((line_number, self._wrong_number_of_cells(cells)))
             return
         numbers = self.numbers
@@ -188,10 +189,6 @@ class _Rows:
 
     def _cells(self, line: str) -> list[str]:
         return next(csv.reader([line], delimiter=self._separator, skipinitialspace=self._separator != "\t"))
-
-    def _has_blanks_behind(self, cells: list[str]) -> bool:
-        """Whether the line only has separators behind the cells of the header, as spreadsheets write them."""
-        return len(cells) > self._width and not any(cell.strip() for cell in cells[self._width :])
 
     def _wrong_number_of_cells(self, cells: list[str]) -> str:
         words = f"the line has {len(cells)} cell{'s' * (len(cells) != 1)}, the header has {self._width}"

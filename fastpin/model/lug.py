@@ -229,7 +229,8 @@ class Lug:
             raise InputError("supports", f"must map names to words, not {as_toml(self.supports)}")
         object.__setattr__(self, "supports", ReadOnlyDict(self.supports))
         _check_outline(self.outline, self.hole_radius)
-        if _area(self.outline) < 0.0:
+        points = _polygon(self.outline)
+        if np.sum((np.conj(points) * np.roll(points, -1)).imag) < 0.0:  # twice the area, negative clockwise
             object.__setattr__(self, "outline", tuple(part.reversed() for part in reversed(self.outline)))
         _check_holes(self)
         self._check_names()
@@ -385,11 +386,6 @@ def _polygon(outline: Sequence[Part]) -> np.ndarray:
         count = max(1, math.ceil(CHORDS * sweep / (2.0 * math.pi)))
         pieces.append(part.at(np.arange(count) / count))
     return np.concatenate(pieces)
-
-
-def _area(outline: Sequence[Part]) -> float:
-    points = _polygon(outline)
-    return 0.5 * float(np.sum((np.conj(points) * np.roll(points, -1)).imag))
 
 
 def _crossing(outline: Sequence[Part]) -> complex | None:

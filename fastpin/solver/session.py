@@ -210,7 +210,8 @@ class Session(InTurns):
         place = replace(here, loads=here.loads.with_load(given))
         with self._guarded(place):
             self._arrive(place, self._first_step(place, given) if here.grid is None else self._next_step(place, given))
-        return self._present_state()
+        assert self._here.state is not None
+        return self._here.state
 
     @in_turn
     def change(self, *, replay: Replay = "history", new_arc: bool = False, **changes: Any) -> State | None:
@@ -355,10 +356,6 @@ class Session(InTurns):
         nodes = "no nodes yet" if here.grid is None else f"{here.grid.size} nodes"
         load = "no load" if here.state is None else named_loads(here.problem, here.state.load)
         return f"<Session: {here.loads.count:,} loads, now {load}, {nodes}, {self.undos} undo, {self.redos} redo>"
-
-    def _present_state(self) -> State:
-        assert self._here.state is not None
-        return self._here.state
 
     def _checked(self, loads: Corner) -> np.ndarray:
         """The given loads, shape (loads,), SI; NaN where a load is left out. Loads seen before are checked quickly."""

@@ -184,7 +184,9 @@ def _floor(name: str, state: State) -> float:
         part = HOOP_FLOOR / closed if resolved else reading.hoop.UNRESOLVED
         return part * abs(QUANTITIES[name].of(state))
     if kind in ("angle", "width"):
-        ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))
+        zone, ends = name.removesuffix("_width"), 1
+        if kind == "width":  # without any zone there may be one between two nodes
+            ends = 2 * len(intervals(state, zone)) if getattr(state, zone) else 2
         floor = PEAK_PLACE_FLOOR if name in QUANTITIES and kind == "angle" else PLACE_FLOOR
         return floor * ends * spacing(state)
     return size_floor(name if name in FLOORS else kind, size(name, state), state)
@@ -212,14 +214,6 @@ def check_nodes(nodes: int) -> None:
 def _closed(state: State) -> int:
     """Number of nodes in contact, at least 1."""
     return max(1, int(np.count_nonzero(state.pressure)))
-
-
-def _ends(state: State, zone: str) -> int:
-    """The number of interval ends that the width of a zone depends on.
-
-    Without any zone it is 2: there may be a zone between two nodes.
-    """
-    return 2 * len(intervals(state, zone)) if getattr(state, zone) else 2
 
 
 def _as_high(state: State, traction: np.ndarray, bar: float) -> np.ndarray:

@@ -168,15 +168,12 @@ def yield_extremes(kept: Kept) -> Found:
     loads: then the stresses of all other states need not be computed.
     """
     owners = yielding_owners(kept.problem)
-    states = kept.read(_most_loaded(kept)) if owners else []
+    if not owners:
+        return {}
+    columns = [np.abs(np.c_[b.pressure.max(axis=1), np.abs(b.shear).max(axis=1), b.loads]) for b in kept.blocks()]
+    states = kept.read(sorted({int(np.argmax(column)) for column in np.concatenate(columns).T}))
     near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]
     return find_extremes(kept, [(PREFIX + owner, "largest") for owner in near])
-
-
-def _most_loaded(kept: Kept) -> list[int]:
-    """Return the places of the states with the largest pressure, shear or size of a load."""
-    columns = [np.abs(np.c_[b.pressure.max(axis=1), np.abs(b.shear).max(axis=1), b.loads]) for b in kept.blocks()]
-    return sorted({int(np.argmax(column)) for column in np.concatenate(columns).T})
 
 
 def _is_near_yield(state: State, owner: str) -> bool:

@@ -78,7 +78,11 @@ def _read_body(group: h5py.Group) -> BodyBase:
     kind = group.attrs.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"the kind {as_toml(kind)} of {group.name[1:]} is unknown")
-    given: dict[str, Any] = {name: _as_plain(value) for name, value in group.attrs.items() if name != "kind"}
+    given: dict[str, Any] = {
+        name: value.tolist() if isinstance(value, np.ndarray) else as_python(value)
+        for name, value in group.attrs.items()
+        if name != "kind"
+    }
     for name in KINDS[kind].arrays:
         given[name] = dataset_of(group, name, float)[()]
     for name in KINDS[kind].named_arrays:
@@ -88,8 +92,3 @@ def _read_body(group: h5py.Group) -> BodyBase:
     if "inside" in group:
         given["inside"] = _read_body(group["inside"])
     return KINDS[kind](**given)
-
-
-def _as_plain(value: Any) -> Any:
-    """Return the value of an attribute as a Python number, or as a list of numbers."""
-    return value.tolist() if isinstance(value, np.ndarray) else as_python(value)

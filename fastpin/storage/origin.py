@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -67,7 +66,9 @@ def largest_pressure(path: str | Path) -> float:
         See :func:`fastpin.load`.
     """
     with open_result(file_path("path", path)) as file:
-        return float(_largest_pressures(file).max(initial=0.0))
+        rows = file["states/pressure"]
+        parts = (rows[begin : begin + STATES_AT_ONCE] for begin in range(0, len(rows), STATES_AT_ONCE))
+        return max((float(part.max(initial=0.0)) for part in parts), default=0.0)
 
 
 def marked_extremes(path: str | Path) -> Found:
@@ -99,10 +100,3 @@ def stored_yield_doubts(path: str | Path, problem: Problem, history: LoadHistory
             return read_extremes(file, yield_extremes)
 
     return yield_doubts(problem, history, extremes, lambda places: load(path, list(places)).states)
-
-
-def _largest_pressures(file: Any) -> np.ndarray:
-    """The largest pressure at a node of each state of an open file, Pa, shape (states,)."""
-    rows = file["states/pressure"]
-    parts = (rows[begin : begin + STATES_AT_ONCE] for begin in range(0, len(rows), STATES_AT_ONCE))
-    return np.concatenate([np.zeros(0), *(part.max(axis=1, initial=0.0) for part in parts)])

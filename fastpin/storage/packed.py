@@ -151,7 +151,7 @@ class PackedGroup:
 def to_bytes(root: PackedGroup) -> bytes:
     """Pack a file: a group with everything below it."""
     blocks: list[bytes] = []
-    head = json.dumps(_described(root, blocks), default=_as_json, separators=(",", ":")).encode()
+    head = json.dumps(_described(root, blocks), default=lambda value: value.tolist(), separators=(",", ":")).encode()
     body = b"".join([head, *blocks])
     return _HEAD.pack(_SIGNATURE, zlib.crc32(body), len(head)) + body
 
@@ -235,8 +235,3 @@ def _described_array(name: str, kind: Any, shape: Any) -> tuple[np.dtype[Any], i
     if not isinstance(shape, list) or not all(type(size) is int and 0 <= size < 1 << 31 for size in shape):
         raise ValueError(f"{name} has the shape {shape}")
     return np.dtype(kind), math.prod(shape)
-
-
-def _as_json(value: Any) -> Any:
-    """Numbers and arrays of NumPy as those of Python."""
-    return value.tolist()

@@ -316,7 +316,11 @@ class FileRecorder:
         size = len(rows["step"])
         known = min(max(self._stored[0] - self._at[0], 0), size)
         if known:
-            self._compare(rows, known)
+            stored = self._h5["states/pressure"][self._at[0] : self._at[0] + known]
+            if not np.array_equal(stored, rows["pressure"][:known]):
+                log.warning(
+                    "%s: states found again differ from those in the file: another machine or version?", self.path
+                )
             rows = {name: array[known:] for name, array in rows.items()}
         self._at[0] += size
         if size > known:
@@ -327,11 +331,6 @@ class FileRecorder:
 
     def _put_again(self, rows: Rows, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
         self._put({**rows, "step": steps, "dissipation": dissipation, "work": work})
-
-    def _compare(self, rows: Rows, known: int) -> None:
-        stored = self._h5["states/pressure"][self._at[0] : self._at[0] + known]
-        if not np.array_equal(stored, rows["pressure"][:known]):
-            log.warning("%s: states found again differ from those in the file: another machine or version?", self.path)
 
     def _commit(self) -> None:
         """Write the waiting states and cycles, and end the transaction."""

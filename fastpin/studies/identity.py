@@ -43,6 +43,8 @@ def canonical(case: Case) -> dict[str, Any]:
     corners, the loads at its last corner and the SHA-256 of all its numbers. A load that is never given is left out.
     """
     problem, pair = case.problem, case.problem.pair
+    if case.history not in _KNOWN_LOADS:
+        _KNOWN_LOADS[case.history] = _digested(case.history)
     return {
         "pin": _material(pair.pin),
         "plate": _material(pair.plate),
@@ -52,7 +54,7 @@ def canonical(case: Case) -> dict[str, Any]:
         # state, and enters like fatigue constants: a result says whether the bush slips.
         **{name: _without_negative_zero(body.as_json(_material)) for name, body in problem.given_bodies.items()},
         "dimensionless": problem.dimensionless,
-        "loads": _loads(case.history),
+        "loads": _KNOWN_LOADS[case.history],
         "solve": _options(case.options),
     }
 
@@ -101,13 +103,6 @@ def _without_negative_zero(value: Any) -> Any:
     if isinstance(value, list):
         return [_without_negative_zero(item) for item in value]
     return _number(value) if isinstance(value, float) else value
-
-
-def _loads(history: LoadHistory) -> dict[str, Any]:
-    """Return the loads of a history. Neighbouring runs of a plan often share it."""
-    if history not in _KNOWN_LOADS:
-        _KNOWN_LOADS[history] = _digested(history)
-    return _KNOWN_LOADS[history]
 
 
 def _digested(history: LoadHistory) -> dict[str, Any]:

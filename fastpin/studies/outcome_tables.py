@@ -194,17 +194,14 @@ def _of_table(name: str, section: Section, folder: Path) -> Outcomes:
     allowed = KEYS[first[0]]
     for key in section.table:
         if key not in allowed:
-            hint = closest(str(key), allowed) or f"; beside {first[0]} there {_others(allowed)}"
+            others = f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
+            hint = closest(str(key), allowed) or f"; beside {first[0]} there {others}"
             section.report(f'{name}: unknown key "{key}"{hint}', str(key))
     if first[0] == "function":
         outcome = _of_function(name, section, folder)
     else:
         outcome = _of_cycle(name, section) if first[0] == "cycle" else _of_quantity(name, section)
     return {} if outcome is None else {name: outcome}
-
-
-def _others(allowed: tuple[str, ...]) -> str:
-    return f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
 
 
 def _choice(name: str, section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
@@ -315,12 +312,8 @@ def _of_callable(function: Callable[..., Any]) -> StudyOutcome:
     definition = json.dumps(
         {"function": getattr(function, "__qualname__", ""), "file": digest(f"{code!r}{content!r}{module}")}
     )
-    return StudyOutcome("", _unit(function), definition, function)
-
-
-def _unit(function: Callable[..., Any]) -> str:
-    """The attribute ``unit`` of a function; empty without one."""
-    return printable(string("the attribute unit", getattr(function, "unit", "")))
+    unit = printable(string("the attribute unit", getattr(function, "unit", "")))
+    return StudyOutcome("", unit, definition, function)
 
 
 def _functions(path: Path, text: str) -> dict[str, str]:

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from fastpin.model.angles import interval_from_bottom
-from fastpin.reading.zones import Interval
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees
 from fastpin.studies.outcomes import OutcomeValue, bar_of_taken
 
@@ -76,7 +75,8 @@ def key_figures(result: Result) -> dict[str, Any]:
     if not result.complete:
         return figures
     last = result[-1]
-    start, stop = _widest(last.contact)
+    widest = max(last.contact, key=lambda interval: interval[1] - interval[0], default=None)
+    start, stop = (None, None) if widest is None else interval_from_bottom(*widest)
     figures |= {
         **{name: in_degrees(name, QUANTITIES[name].of(last)) for name in (*_PEAKS, *_OTHERS)},
         "contact_start": start,
@@ -117,13 +117,6 @@ def _number(value: Any) -> int | float | None:
     if value is None or isinstance(value, int):
         return value
     return float(value) if math.isfinite(value) else None
-
-
-def _widest(intervals: list[Interval]) -> tuple[float | None, float | None]:
-    """Return the ends of the widest interval, in degrees from the bottom of the hole."""
-    if not intervals:
-        return None, None
-    return interval_from_bottom(*max(intervals, key=lambda interval: interval[1] - interval[0]))
 
 
 @dataclass(frozen=True)
