@@ -97,9 +97,11 @@ def parse_text(text: str, name: str, kind: str, read: Callable[[CaseText], T | N
         If an argument is of the wrong kind.
     """
     source, title = CaseText(text), instance("name", name, str, "text in quotes")
-    other = _other_kind(source.root.table, kind)
-    if other and source.readable:
-        raise CaseFileError(title, [(0, f"is a {other}, not a {kind}; see fastpin {KINDS[other][1]}")])
+    likely = [
+        name for name, (sections, _) in KINDS.items() if any(section in source.root.table for section in sections)
+    ]
+    if likely and kind not in likely and source.readable:
+        raise CaseFileError(title, [(0, f"is a {likely[0]}, not a {kind}; see fastpin {KINDS[likely[0]][1]}")])
     found = None
     if source.readable:
         with contextlib.suppress(TooManyFaultsError):
@@ -108,12 +110,6 @@ def parse_text(text: str, name: str, kind: str, read: Callable[[CaseText], T | N
         raise CaseFileError(title, source.faults)
     assert found is not None
     return found
-
-
-def _other_kind(tables: dict[str, Any], kind: str) -> str:
-    """The kind of file whose sections a text has; empty if it may be of the expected `kind`."""
-    found = [name for name, (sections, _) in KINDS.items() if any(section in tables for section in sections)]
-    return "" if kind in found or not found else found[0]
 
 
 class TooManyFaultsError(Exception):

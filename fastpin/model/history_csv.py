@@ -142,7 +142,10 @@ class _Rows:
         cells = line.split(self._separator) if '"' not in line else self._cells(line)
         # Spreadsheets write separators behind the cells of the header.
         if len(cells) != self._width and (len(cells) < self._width or any(map(str.strip, cells[self._width :]))):
-            self.faults.append((line_number, self._wrong_number_of_cells(cells)))
+            words = f"the line has {len(cells)} cell{'s' * (len(cells) != 1)}, the header has {self._width}"
+            if self._separator == "," and len(cells) == 2 * self._width:
+                words += "; with decimal commas the cells must be separated by semicolons or tabs"
+            self.faults.append((line_number, words))
             return
         numbers = self.numbers
         numbers.extend(self._empty_row)
@@ -189,12 +192,6 @@ class _Rows:
 
     def _cells(self, line: str) -> list[str]:
         return next(csv.reader([line], delimiter=self._separator, skipinitialspace=self._separator != "\t"))
-
-    def _wrong_number_of_cells(self, cells: list[str]) -> str:
-        words = f"the line has {len(cells)} cell{'s' * (len(cells) != 1)}, the header has {self._width}"
-        if self._separator == "," and len(cells) == 2 * self._width:
-            words += "; with decimal commas the cells must be separated by semicolons or tabs"
-        return words
 
     def _with_point(self, line_number: int, field: str, cell: str) -> str:
         """The text of a number with a decimal point. The cell may have a decimal comma, as all or none of the file."""
