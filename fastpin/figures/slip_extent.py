@@ -11,13 +11,11 @@ from fastpin.figures.states import Frame
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.states.choice import span_of
 from fastpin.states.cycles import Cycle, innermost_cycles
+from fastpin.states.load_cycle import NO_SLIP
 from fastpin.states.state import State
 
 BOTH_WAYS = 9
 """Extent of nodes that slip in both directions. The other extents are statuses."""
-
-NO_SLIP = 1e-9
-"""Slip that is rounding, in parts of R beta* times the largest pressure of a state."""
 
 GAP = 2.0
 """Distance of two load points, in usual distances, from which on nothing is drawn between them."""

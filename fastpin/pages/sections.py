@@ -23,7 +23,7 @@ from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
 from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
-from fastpin.report.case import case_rows, corner_columns, edge_body
+from fastpin.report.case import ROUNDING, case_rows, corner_columns, edge_body
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.cycle import cycle_line, hot_spot_line
 from fastpin.report.margins import HEADS, fatigue_margins, margin_rows, static_margins
@@ -48,9 +48,6 @@ RESIDUAL_WORDS = {
 
 STRAIGHT = 3
 """States of a cycle, with both ends, between which a loop is a line."""
-
-NEGLIGIBLE = 1e-9
-"""Slip that is rounding, in parts of the natural size of a displacement, as in the tables of states."""
 
 NO_SLIP = "from corner {0.first:,} to {0.last:,} nothing slips beyond rounding"
 """In place of the slip of a cycle."""
@@ -345,7 +342,7 @@ def hysteresis(page: PageParts) -> PageSection:
 def _slips(cycle: LoadCycle) -> bool:
     """Whether a node slips over a cycle, beyond rounding."""
     natural = max(size("dx", state) for state in cycle.states)
-    return cycle.largest_slip_range > NEGLIGIBLE * natural
+    return cycle.largest_slip_range > ROUNDING * natural
 
 
 def _drawn(draw: Callable[[], SectionPart]) -> list[SectionPart]:

@@ -13,13 +13,11 @@ from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, near_rim
 from fastpin.model.problem import Problem
+from fastpin.reading.peaks import TIE
 from fastpin.reading.stress import HoopPeak, open_hole_hoop
 
 AROUND = 180
 """Equally spaced angles round the hole that are tried, beside edges, borders, closed nodes and their middles."""
-
-TIE = 1e-9
-"""Relative difference below which two peaks are equal. Of equal peaks the one farthest to the right is taken."""
 
 TRIED = 4
 """Local maxima beside which the peak is looked for."""

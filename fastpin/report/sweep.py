@@ -18,6 +18,7 @@ from fastpin.model.checks import as_toml
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, Unit, scaled, units
+from fastpin.report.case import ROUNDING
 from fastpin.report.cells import csv_cell
 from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
@@ -38,9 +39,6 @@ MOST_CURVES = 20
 
 THICKNESS = "contact.thickness"
 """The field of the thickness."""
-
-ROUNDING = 1e-9
-"""Part of the largest value below which values are rounding. Figures show them as 0."""
 
 _ROUNDING = {"deg": 1e-7, "rad": 1e-12}
 """By unit: smaller values are rounding, and the text table shows them as 0. A node is above 1e-2 deg wide."""

@@ -20,10 +20,8 @@ from fastpin.runtime.threads import works_alone
 WORTHWHILE = 4_000_000
 """Least number of multiplications of a product in two threads."""
 
-_POINTER = ctypes.c_void_p
-
 # Called by its address, dgemm leaves the interpreter free, and works on parts of arrays in place.
-_dgemm = ctypes.CFUNCTYPE(None, *[_POINTER] * 13)(blas_address("dgemm"))
+_dgemm = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 13)(blas_address("dgemm"))
 _second: ThreadPoolExecutor | None = None
 
 

@@ -36,8 +36,6 @@ SAME_POINT = 1e-9
 WORDS = ("last", "cycle", "all")
 """Choices with a name."""
 
-_NUMBERS = (int, float, np.number)
-
 NO_CYCLE = "no cycle of the history has ended; add repeat = 2 to a [[load]] block"
 """Refusal of a cycle where there is none."""
 
@@ -150,7 +148,13 @@ def _places_of_last_cycle(points: np.ndarray, cycles: Sequence[Cycle]) -> list[i
 
 def _points_of(chosen: Any) -> list[Range]:
     """The load points, and ranges of them, that a choice names."""
-    parts = chosen.split(",") if isinstance(chosen, str) else [chosen] if isinstance(chosen, _NUMBERS) else chosen
+    parts = (
+        chosen.split(",")
+        if isinstance(chosen, str)
+        else [chosen]
+        if isinstance(chosen, (int, float, np.number))
+        else chosen
+    )
     try:
         listed = items("states", parts, "load points")
         if isinstance(chosen, str):

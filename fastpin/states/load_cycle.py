@@ -30,7 +30,7 @@ NEGLIGIBLE = 1e-12
 """Slip distance that is rounding, in parts of the largest."""
 
 NO_SLIP = 1e-9
-"""Slip that is rounding, in parts of R beta* times the largest pressure of the cycle."""
+"""Slip that is rounding, in parts of R beta* times the largest pressure of the states that are looked at."""
 
 
 class NodeBehaviour(IntEnum):

@@ -20,8 +20,9 @@ from fastpin.storage.layout import BORDER_FIELDS, SMALL_NUMBERS, STATUS_LIMITS, 
 LEAST_FORCE = 1e-145
 """Least reference force in a file, N/m; the largest is its inverse. The limits of units and loads imply it."""
 
-_SUMS = ("dissipation", "work", "slip_tally")  # they begin anew at a corner
-_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in (*_SUMS, "marks")]
+# Sums begin anew at a corner. Marks have arrays of another form.
+_NO_ARRAYS = ("dissipation", "work", "slip_tally", "marks")
+_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in _NO_ARRAYS]
 
 
 def write_restart(group: h5py.Group, restart: Restart) -> None:
