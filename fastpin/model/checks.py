@@ -119,19 +119,19 @@ def true_or_false(field: str, value: object) -> bool:
 
 def string(field: str, value: object) -> str:
     """Check a text on one line that can be printed anywhere, such as a name or a title: see :func:`printable`."""
-    found = instance(field, value, str, "text in quotes")
-    if printable(found) != found:
-        first = next(letter for letter in found if printable(letter) != letter)
+    text = instance(field, value, str, "text in quotes")
+    if printable(text) != text:
+        first = next(letter for letter in text if printable(letter) != letter)
         raise InputError(field, f"must be one line of printable characters, without {ascii(first)[1:-1]}")
-    return str.__str__(found)
+    return str.__str__(text)
 
 
 def any_text(field: str, value: object) -> str:
     """Check a text of any lines that can be stored in any file: without NUL and lone surrogates."""
-    found = instance(field, value, str, "text in quotes")
-    if any(character == "\0" or "\ud800" <= character <= "\udfff" for character in found):
-        raise InputError(field, f"must be text of Unicode characters without NUL, not {as_toml(found)}")
-    return found
+    text = instance(field, value, str, "text in quotes")
+    if any(character == "\0" or "\ud800" <= character <= "\udfff" for character in text):
+        raise InputError(field, f"must be text of Unicode characters without NUL, not {as_toml(text)}")
+    return text
 
 
 def file_path(field: str, value: object) -> Path:

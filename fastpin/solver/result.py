@@ -142,14 +142,14 @@ class Result(Sequence[State]):
             raise InputError("cycle", "no cycle of the history has ended; give the corners first and last")
         cycle = self.cycles[whole_number("place", place, -len(self.cycles), len(self.cycles) - 1)]
         begin, end = loaded_span_of(cycle)
-        found = LoadCycle(self._between(begin, end))
-        if not found.is_closed:
+        over_cycle = LoadCycle(self._between(begin, end))
+        if not over_cycle.is_closed:
             raise InputError(
                 "cycle",
-                f"the cycle to corner {end} is not closed: {found.differing_loads[0]} differs at its ends; "
+                f"the cycle to corner {end} is not closed: {over_cycle.differing_loads[0]} differs at its ends; "
                 f"first={begin}, last={end} gives this part of the history all the same",
             )
-        return found
+        return over_cycle
 
     def _between(self, first: int, last: int) -> tuple[State, ...]:
         """The kept states from one corner to another, which count from 1."""

@@ -372,10 +372,10 @@ class Session(InTurns):
         history = LoadHistory([loads])
         check_loads(self.problem, history)
         natural = self.problem.natural_loads()
-        found: np.ndarray = history.blocks[0].given[0]
-        for place in np.flatnonzero(np.nan_to_num(found)).tolist():
+        given = history.blocks[0].given[0]
+        for place in np.flatnonzero(np.nan_to_num(given)).tolist():
             limits[LOADS[place]] = place, MOST_LOAD * natural[LOAD_KIND[LOADS[place]]]
-        return found
+        return given
 
     @contextmanager
     def _guarded(self, place: Place) -> Iterator[None]:

@@ -64,8 +64,8 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
     """
     free = ~system.motion_rows.any(axis=1)  # directions in which nothing holds the pin
     first = stiffness = float(system.weights.mean() / np.median(np.abs(system.operator.diagonal())))
-    last, found, steps = now, _step(system, now, load), 0
-    while found is None:
+    last, beyond, steps = now, _step(system, now, load), 0
+    while beyond is None:
         if not free.any() or steps == MOST_STEPS or stiffness > STIFFEST * first:
             return None
         steps += 1
@@ -76,11 +76,11 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
         if _spins(last, crept):
             raise NoEquilibriumError(UNHELD)
         last, stiffness = crept, stiffness * SOFTER
-        found = _step(system, last, load)
-        if found is None and worst_residual(system, last) <= MAX_RESIDUAL:
-            found = last
-    found.work = now.work + work_between(system, now, found)
-    return found
+        beyond = _step(system, last, load)
+        if beyond is None and worst_residual(system, last) <= MAX_RESIDUAL:
+            beyond = last
+    beyond.work = now.work + work_between(system, now, beyond)
+    return beyond
 
 
 def _spins(before: Configuration, after: Configuration) -> bool:
@@ -93,13 +93,13 @@ def _spins(before: Configuration, after: Configuration) -> bool:
 def _step(system: System, start: Configuration, load: np.ndarray) -> Configuration | None:
     """A finite step to `load`, with its dissipation: an increment, or by Lemke's method where that fails."""
     for by_lemke in (False, True):
-        found = FiniteStep(system, start).to(load) if by_lemke else implicit_step(system, start, load, patient=False)
-        if found is not None and worst_residual(system, found) <= MAX_RESIDUAL:
-            if reaches_end(system, found):
+        after = FiniteStep(system, start).to(load) if by_lemke else implicit_step(system, start, load, patient=False)
+        if after is not None and worst_residual(system, after) <= MAX_RESIDUAL:
+            if reaches_end(system, after):
                 raise ArcError(CUT_OFF)
-            found.dissipation = start.dissipation + dissipation_between(system, start, found)
-            found.slip_tally = slip_tally_between(start, found)
-            return found
+            after.dissipation = start.dissipation + dissipation_between(system, start, after)
+            after.slip_tally = slip_tally_between(start, after)
+            return after
     return None
 
 
@@ -121,8 +121,8 @@ def _step_on_springs(
         rest_slip=start.rest_slip - moved[n:],
     )
     held = replace(system, motion_rows=system.motion_rows + np.diag(stiffness))
-    found = _step(held, shifted, load)
-    if found is None:
+    after = _step(held, shifted, load)
+    if after is None:
         return None
-    found = replace(found, rest_gap=start.rest_gap, rest_slip=start.rest_slip)
-    return replace(found, motion=found.motion + before, slip=found.slip + moved[n:])
+    after = replace(after, rest_gap=start.rest_gap, rest_slip=start.rest_slip)
+    return replace(after, motion=after.motion + before, slip=after.slip + moved[n:])

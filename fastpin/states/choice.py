@@ -102,8 +102,8 @@ def chosen_places(points: np.ndarray, cycles: Sequence[Cycle], chosen: StateChoi
     if word == "cycle":
         return _places_of_last_cycle(points, cycles)
     wanted = _points_of(chosen)
-    found = {ends: _places(points, ends) for ends in dict.fromkeys(wanted)}
-    return [place for ends in wanted for place in found[ends]]
+    by_range = {ends: _places(points, ends) for ends in dict.fromkeys(wanted)}
+    return [place for ends in wanted for place in by_range[ends]]
 
 
 def even_choice(places: Sequence[int], most: int, kept: Collection[int] = ()) -> list[int]:
@@ -173,10 +173,10 @@ def _points_of(chosen: Any) -> list[Range]:
 
 def _places(points: np.ndarray, ends: Range) -> list[int]:
     """The places of the states in a range of load points, at least one."""
-    found = np.flatnonzero((points > ends.first - SAME_POINT) & (points < ends.last + SAME_POINT))
-    if not found.size:
+    within = np.flatnonzero((points > ends.first - SAME_POINT) & (points < ends.last + SAME_POINT))
+    if not within.size:
         raise _no_state(ends, points[-1])
-    return found[:1].tolist() if ends.is_single else found.tolist()
+    return within[:1].tolist() if ends.is_single else within.tolist()
 
 
 def _no_state(ends: Range, last: float) -> InputError:
@@ -213,10 +213,10 @@ def chosen_cycles(cycles: Sequence[Cycle], chosen: str) -> list[int]:
     except ValueError:
         allowed = "last, blocks, all, or cycles such as 3, 1,5 or 10-"
         raise InputError("cycle", f"must be {allowed}, not {chosen!r}") from None
-    found: set[int] = set()
+    in_ranges: set[int] = set()
     for ends in wanted:
         places = [place for place in range(len(cycles)) if ends.first <= place + 1 <= ends.last]
         if not places:
             raise InputError("cycle", f"there is no cycle {ends}; the history has {len(cycles):,}, counted from 1")
-        found.update(places)
-    return sorted(found)
+        in_ranges.update(places)
+    return sorted(in_ranges)

@@ -126,15 +126,11 @@ class Bounds:
         if self._stresses.names:
             self._waiting.append((pressure, shear, status, block.loads[rows][:, list(REMOTE)]))
             self._count += len(rows)
-            if self._count > MAPPED:
-                self._bound_stresses()
-
-    def _bound_stresses(self) -> None:
-        """Compute the bounds of the stresses of the waiting states."""
-        for values in self._waiting:
-            for name, pair in self._stresses.of(*values).items():
-                self._found[name].append(pair)
-        self._waiting = []
+            if self._count > MAPPED:  # the matrices are worth while: compute the bounds of all waiting states
+                for values in self._waiting:
+                    for name, pair in self._stresses.of(*values).items():
+                        self._found[name].append(pair)
+                self._waiting = []
 
     def found(self) -> dict[str, Pair]:
         """Return the bounds of all states by quantity."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from fastpin.model.checks import (
 from fastpin.model.doubts import doubts, pressure_doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
-from fastpin.model.options import OptionValues, SolveOptions
+from fastpin.model.options import OPTIONS, OptionValues, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import unknown_keyword
 from fastpin.solver.attempts import Unfit
@@ -258,9 +258,8 @@ def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:
     return found + stored_yield_doubts(path, task.problem, task.history)
 
 
-def _check_names(options: Mapping[str, Any]) -> None:
+def _check_names(options: Mapping[str, object]) -> None:
     """Raise :class:`TypeError`, as Python does, if an option of :func:`record` is unknown."""
-    known = [field.name for field in fields(SolveOptions)]
     for name in options:
-        if name not in known:
-            raise unknown_keyword("record", name, known)
+        if name not in OPTIONS:
+            raise unknown_keyword("record", name, OPTIONS)

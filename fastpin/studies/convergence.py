@@ -298,8 +298,8 @@ class _Work:
         self.done = 0.0
         self.total = sum(_cost("path", count, 0) for count in (*counts, *self._path_apart()))
         self.total += sum(_cost("increment", self.single, count) for count in increments)
-        self.found: dict[int, Result] = {}  # results of the path solver, by number of nodes
-        self.found_increments: list[Result] = []
+        self.results: dict[int, Result] = {}  # results of the path solver, by number of nodes
+        self.increment_results: list[Result] = []
 
     def study(self) -> Convergence:
         """Solve all runs and return the study. See :func:`converge` for the errors."""
@@ -317,7 +317,7 @@ class _Work:
 
     def _finished_study(self) -> Convergence | None:
         """Return the study of the finished grids, or None for fewer than three."""
-        enough = sum(count in self.found for count in self.counts) >= LEAST_GRIDS
+        enough = sum(count in self.results for count in self.counts) >= LEAST_GRIDS
         return self._convergence(complete=False) if enough else None
 
     def _path_apart(self) -> list[int]:
@@ -331,13 +331,13 @@ class _Work:
         coarse = replace(self.task, options=self.task.options.changed(nodes=coarsest))
         arc = first_wide_enough(coarse.attempts().arcs(), self._follow_grids)
         for count in self.increments:
-            self.found_increments.append(self._solve_grid(arc, self.single, "increment", count))
+            self.increment_results.append(self._solve_grid(arc, self.single, "increment", count))
 
     def _follow_grids(self, arc: Grid) -> Grid:
         """Solve all grids of the path solver on one arc, and return the arc."""
-        self.found, self.read, self.done = {}, {}, 0.0
+        self.results, self.read, self.done = {}, {}, 0.0
         for count in (*self.counts, *self._path_apart()):
-            self.found[count] = self._solve_grid(arc, count, "path", 0)
+            self.results[count] = self._solve_grid(arc, count, "path", 0)
         return arc
 
     def _solve_grid(self, arc: Grid, nodes: int, method: Method, increments: int) -> Result:
@@ -390,16 +390,16 @@ class _Work:
         return result.states if self.every else result.states[-1:]
 
     def _convergence(self, complete: bool) -> Convergence:
-        counts = tuple(count for count in self.counts if count in self.found)
-        results = [self.found[count] for count in counts]
+        counts = tuple(count for count in self.counts if count in self.results)
+        results = [self.results[count] for count in counts]
         finest = results[-1]
         intervals = [grid.size - (not grid.closed) for grid in (result.grid for result in results)]
         series = self._series([1.0 / number for number in intervals], results, None)
         studies = [Study("path", counts, counts[-1], tuple(series))]
-        steps = self.increments[: len(self.found_increments)]
+        steps = self.increments[: len(self.increment_results)]
         if len(steps) >= LEAST_GRIDS:
-            spacings, path = [1.0 / step for step in steps], self.found[self.single]
-            series = self._series(spacings, self.found_increments, path)
+            spacings, path = [1.0 / step for step in steps], self.results[self.single]
+            series = self._series(spacings, self.increment_results, path)
             studies.append(Study("increment", steps, self.single, tuple(series)))
         loads = {corner: state.load for corner, state in zip(self.corners, self._states(finest), strict=False)}
         return Convergence(self.task.problem, finest.grid, loads, tuple(studies), complete, self._unread())
@@ -440,8 +440,8 @@ class _Work:
         """Yield the series of all outcomes. A value that a result does not have is NaN."""
         last = results[-1][-1]
         for name, outcome in self.outcomes.items():
-            found = [self.read[result][name].value for result in (*results, *([path] if path else []))]
-            every = [math.nan if value is None else value for value in found]
+            read = [self.read[result][name].value for result in (*results, *([path] if path else []))]
+            every = [math.nan if value is None else value for value in read]
             if outcome.kind == "angle":  # next to the last one, also across the top
                 latest = every[len(results) - 1]
                 every = [latest + math.remainder(value - latest, 2.0 * math.pi) for value in every]

@@ -84,13 +84,13 @@ class CycleQuantity(NamedTuple):
 
 def _hot_spot_quantities(criterion: str, body: Body) -> dict[str, CycleQuantity]:
     """Parameter, angle and, if the criterion has one, life at the hot spot of a body, by the end of their names."""
-    found = {
+    quantities = {
         "": CycleQuantity(CRITERIA_KINDS[criterion], lambda result: _hot_spot(result, criterion, body).parameter),
         "_angle": CycleQuantity("angle", lambda result: _hot_spot(result, criterion, body).theta),
     }
     if criterion in WITH_LIFE:
-        found["_life"] = CycleQuantity("life", lambda result: _life(result, criterion, body))
-    return {ending if body == "plate" else f"{ending}_{body}": quantity for ending, quantity in found.items()}
+        quantities["_life"] = CycleQuantity("life", lambda result: _life(result, criterion, body))
+    return {ending if body == "plate" else f"{ending}_{body}": quantity for ending, quantity in quantities.items()}
 
 
 CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
@@ -453,11 +453,11 @@ def _friction_energy(result: Result) -> tuple[float, float]:
 
 def _hot_spot(result: Result, criterion: str, body: Body) -> HotSpot:
     """The hot spot on the edge of a body. It is kept while the result lives: several outcomes read it."""
-    found = _HOT_SPOTS.setdefault(result, {})
-    if (criterion, body) not in found:
+    spots = _HOT_SPOTS.setdefault(result, {})
+    if (criterion, body) not in spots:
         _states_of_cycle(result)
-        found[criterion, body] = result.fatigue(criterion, body).hot_spot
-    return found[criterion, body]
+        spots[criterion, body] = result.fatigue(criterion, body).hot_spot
+    return spots[criterion, body]
 
 
 def _life(result: Result, criterion: str, body: Body) -> float:
