@@ -5,7 +5,6 @@ A :class:`SlipTally` belongs to a part of a history. A :class:`RunningTally` say
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,12 +80,7 @@ class SlipTally:
         energy = self.sums[1] * (scales.traction * scales.displacement)
         for array in (distance, energy, lowest, highest):
             array.setflags(write=False)
-        return {
-            "slip_distance": distance,
-            "friction_energy": energy,
-            "slip_lowest": lowest,
-            "slip_highest": highest,
-        }
+        return {"slip_distance": distance, "friction_energy": energy, "slip_lowest": lowest, "slip_highest": highest}
 
 
 NOT_COUNTED = SlipTally(np.zeros((4, 0)))
@@ -141,13 +135,12 @@ class RunningTally:
         self.to_corner, self._until_kept = self.new if is_kept else self.since_kept(step), self.new
         return self.new if self._restarts_each_corner else step
 
-    def repeat(self, steps: Iterable[tuple[SlipTally, bool]], time: int) -> SlipTally | None:
+    def repeat(self, steps: list[tuple[SlipTally, bool]], time: int) -> SlipTally | None:
         """Add steps that are not solved again: for each its tally, and whether it has kept states.
 
         `time` counts the repetitions of the steps. Returns the tally of the first kept state. None if it equals the
         tally of a period before.
         """
-        steps = list(steps)
         if self._restarts_each_corner or (time > 2 and any(has_kept for _, has_kept in steps)):
             return None  # the repetition before began with the same slip tally, and ended with it
         first = None

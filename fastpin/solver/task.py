@@ -92,12 +92,8 @@ class Task:
         """
         with deferred_interrupts() as request, one_blas_thread():
             progress = self._stoppable_progress(request)
-
-            def follow(grid: Grid, strict: bool) -> Run:
-                return self._follow_on(grid, recorder, progress, None, strict)
-
             attempts = self.attempts(progress) if unfit is None else replace(self.attempts(progress), grid=None)
-            run = attempts.first_followed(follow, unfit=unfit)
+            run = attempts.first_followed(functools.partial(self._follow_on, recorder, progress, None), unfit=unfit)
             if run.statistics["released"]:
                 log.warning(
                     "%d times a narrow contact that carried less than 0.1 %% of the force was let go and lost its "
@@ -127,11 +123,11 @@ class Task:
         with deferred_interrupts() as request, one_blas_thread():
             progress = self._stoppable_progress(request)
             try:
-                return self._follow_on(grid, recorder, progress, start, strict=True)
+                return self._follow_on(recorder, progress, start, grid, strict=True)
             except ConvergenceError:
                 if strict:
                     raise
-                return self._follow_on(grid, recorder, progress, start, strict=False)
+                return self._follow_on(recorder, progress, start, grid, strict=False)
 
     def branch(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
         """Follow the history from the end of another history, on the grid of that history.
@@ -150,7 +146,7 @@ class Task:
             raise
 
     def _follow_on(
-        self, grid: Grid, recorder: Recorder | None, progress: RunProgress, start: Restart | None, strict: bool
+        self, recorder: Recorder | None, progress: RunProgress, start: Restart | None, grid: Grid, strict: bool
     ) -> Run:
         """Follow the history on one grid, from `start` or from no load; see :class:`Run` for `strict`."""
         build = build_system if self.options.method == "path" else System.build

@@ -193,15 +193,13 @@ def options_of(result: Result) -> dict[str, Any]:
     return {"method": result.method, "slip_sums": has_slip or None, "error_bars": result.coarse is not None or None}
 
 
-def write_grid(
-    file: h5py.Group, problem: Problem, history: LoadHistory, grid: Grid, node_fields: Mapping[str, str]
-) -> None:
+def write_grid(file: h5py.Group, problem: Problem, history: LoadHistory, grid: Grid, fields: Mapping[str, str]) -> None:
     """Write a grid, and the arrays of states and cycles on it, without rows, into a file or its group ``/coarse``.
 
-    `node_fields` are the kinds of the fields with node values, as in :func:`node_fields_of`.
+    `fields` are the kinds of the fields with node values, as in :func:`node_fields_of`.
     """
     file.create_group("grid").attrs["closed"] = grid.closed
-    _make_states(file, problem, grid, node_fields)
+    _make_states(file, problem, grid, fields)
     cycles, unit = file.create_group("cycles"), units_per_thickness(problem)
     for name, kind in CYCLE_FIELDS.items() if history.longest_cycle else ():
         _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))

@@ -139,11 +139,11 @@ def test_a_contact_lost_on_the_first_graded_grid_is_followed_on_a_second(monkeyp
     sizes = []
     follow = Task._follow_on
 
-    def watched(task, grid, *arguments, **keywords):
+    def watched(task, recorder, progress, start, grid, strict):
         sizes.append(grid.size)
         if not grid.uniform and len(sizes) == 2:
             raise ResolutionError("lost")
-        return follow(task, grid, *arguments, **keywords)
+        return follow(task, recorder, progress, start, grid, strict)
 
     monkeypatch.setattr(Task, "_follow_on", watched)
     result = solve(problem(200.0), SMALL_FIRST, nodes=61)
