@@ -31,10 +31,10 @@ from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, state_columns
 from fastpin.report.table import MAX_ROWS, Column
 from fastpin.solver.configuration import MAX_RESIDUAL
+from fastpin.states.extremes import yield_doubts
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import QUANTITIES, load_point, size
 from fastpin.states.state import State
-from fastpin.states.yield_doubts import yield_doubts
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical, run_id
 

@@ -27,8 +27,8 @@ from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.cycles import Cycle
 from fastpin.states.error_bars import check_nodes
+from fastpin.states.extremes import yield_doubts_of
 from fastpin.states.state import SlipFields, State, state_again
-from fastpin.states.yield_doubts import yield_doubts_of
 
 DEFAULTS = SolveOptions()
 """The default options of :func:`solve`."""
@@ -123,7 +123,7 @@ def solve(
         check_halves(task, start)
     warn_of(doubts(problem, task.history, options), USER)
     result = _follow_task(task, start)
-    warn_of(pressure_doubts(problem, task.history, (state.pressure for state in result)), USER)
+    warn_of(pressure_doubts(problem, task.history, (state.pressure for state in result.states)), USER)
     warn_of(yield_doubts_of(problem, task.history, result.states), USER)
     return _with_coarse(task, start, result) if error_bars else result
 

@@ -3,25 +3,30 @@
 A reading of a state may take milliseconds. So the nodal values of all states give bounds of the readings first, see
 :mod:`fastpin.states.reading_bounds`. Then the states are read in the order of their bounds, until no other state can
 have a more extreme value. So an extreme is the reading of its state, to the last bit. Equal states are read once.
+
+:func:`yield_doubts` warns of von Mises stresses above the yield strengths of the bodies.
 """
 
 from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 
+from fastpin.errors import InputWarning
+from fastpin.model.doubts import are_given, are_loads_plausible, yield_doubt
 from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
 from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.reading.marks import Marks
 from fastpin.states.quantities import QUANTITIES, Quantity, load_point, of_bush
 from fastpin.states.reading_bounds import NUMBERS, Bounds, StateBlock
 from fastpin.states.state import State
-from fastpin.states.yielding import OWNERS, PREFIX, strength_of, von_mises_peak, yielding_owners
+from fastpin.states.yielding import OWNERS, PREFIX, place_words, strength_of, von_mises_peak, yielding_owners
 
 Side = Literal["smallest", "largest", "largest magnitude"]
 """Which extreme of a quantity, as the ``take`` of an outcome."""
@@ -181,6 +186,48 @@ def _is_near_yield(state: State, owner: str) -> bool:
     peak = von_mises_peak(state, owner)
     strength = strength_of(state.problem, peak.circle)
     return strength is not None and FAR * peak.value > strength
+
+
+def yield_doubts(
+    problem: Problem,
+    history: LoadHistory,
+    extremes: Callable[[], Found],
+    read: Callable[[Sequence[int]], list[State]],
+) -> list[InputWarning]:
+    """Return a warning for each body whose largest von Mises stress exceeds its yield strength.
+
+    A warning names the largest stress of all states, with its place. A body without a known yield strength has none.
+
+    Parameters
+    ----------
+    problem : Problem
+    history : LoadHistory
+        If its loads are in doubt, the stresses are not.
+    extremes : callable
+        ``extremes()`` gives extremes of all states, among them those of :func:`yield_extremes`.
+        It is called only if a strength is known.
+    read : callable
+        ``read(places)`` gives the states at these places.
+    """
+    owners = yielding_owners(problem)
+    if not owners or are_given() or not are_loads_plausible(problem, history):
+        return []
+    found, doubts = extremes(), []
+    for owner in owners:
+        extreme = found.get((PREFIX + owner, "largest"))
+        if extreme is not None:
+            peak = von_mises_peak(read([extreme.place])[0], owner)
+            where = f"{place_words(problem, peak)}, load point {extreme.load_point:.5g}"
+            doubts.append(yield_doubt(problem, peak.circle.edge, peak.value, where))
+    return [doubt for doubt in doubts if doubt is not None]
+
+
+def yield_doubts_of(problem: Problem, history: LoadHistory, states: Sequence[State]) -> list[InputWarning]:
+    """Return the warnings of :func:`yield_doubts` for states in memory."""
+    if not states:
+        return []
+    kept = KeptStates(states)
+    return yield_doubts(problem, history, lambda: yield_extremes(kept), kept.read)
 
 
 def find_extremes(kept: Kept, wanted: Iterable[tuple[str, Side]]) -> Found:

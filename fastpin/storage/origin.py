@@ -10,8 +10,7 @@ from fastpin.errors import InputWarning
 from fastpin.model.checks import file_path, instance
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
-from fastpin.states.extremes import Found, yield_extremes
-from fastpin.states.yield_doubts import yield_doubts
+from fastpin.states.extremes import Found, yield_doubts, yield_extremes
 from fastpin.storage.damage import text_of
 from fastpin.storage.extremes import read_extremes
 from fastpin.storage.layout import RESIDUALS
@@ -84,7 +83,7 @@ def marked_extremes(path: str | Path) -> Found:
 
 
 def stored_yield_doubts(path: str | Path, problem: Problem, history: LoadHistory) -> list[InputWarning]:
-    """Return the warnings of :func:`fastpin.states.yield_doubts.yield_doubts` for all states of the file of a run.
+    """Return the warnings of :func:`fastpin.states.extremes.yield_doubts` for all states of the file of a run.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from fastpin.bodies import Bushing, Compliance, Disk, Plate, Ring, Tube
 from fastpin.errors import InputWarning
 from fastpin.model.doubts import EDGES, doubts, doubts_given
 from fastpin.states import extremes
-from fastpin.states.yield_doubts import yield_doubts_of
+from fastpin.states.extremes import yield_doubts_of
 from fastpin.states.yielding import circles, von_mises_peak
 
 R, SEAT = 10e-3, 12.5e-3
