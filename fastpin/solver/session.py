@@ -29,14 +29,21 @@ from fastpin.model.units import named_loads
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.growth import carried, dividing_the_circle, most_nodes, wider_grid
-from fastpin.solver.interrupt import StopRequest, deferred_interrupts
 from fastpin.solver.latest import LatestState, touches_outside
 from fastpin.solver.place import IN_PLACE, Loads, Place, changed_problem, changed_system
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Run
 from fastpin.solver.solving import DEFAULTS, solve
-from fastpin.solver.task import Task, as_history, check_options, one_blas_thread, reference_force
+from fastpin.solver.task import (
+    StopRequest,
+    Task,
+    as_history,
+    check_options,
+    deferred_interrupts,
+    one_blas_thread,
+    reference_force,
+)
 from fastpin.solver.turns import InTurns, in_turn
 from fastpin.states.state import State
 

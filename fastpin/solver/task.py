@@ -1,13 +1,19 @@
-"""A task is one history to follow: from no load, from a corner, or from the end of another history."""
+"""A task is one history to follow: from no load, from a corner, or from the end of another history.
+
+It is followed with Ctrl-C held back, and with one thread of BLAS: :func:`deferred_interrupts`, :func:`one_blas_thread`.
+"""
 
 from __future__ import annotations
 
 import functools
 import logging
 import math
-from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager
+import signal
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, fields, replace
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -27,11 +33,13 @@ from fastpin.model.units import units
 from fastpin.solver.attempts import Attempts, Unfit
 from fastpin.solver.driven import pushes
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted
-from fastpin.solver.interrupt import StopRequest, deferred_interrupts
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Recorder, Run, RunProgress
 
 log = logging.getLogger(__name__)
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+"""Signals that are held back until a run can stop at a place from which it can continue."""
 
 LEAST_LOAD = 1e-50
 """Least force, or remote stress times R, that is the largest of a history, in parts of R/beta*."""
@@ -232,6 +240,39 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
         least = f"{LEAST_LOAD:g} times R/beta* = {printed.factor * unit:g} {printed.name}"
         raise InputError("history", f"the largest load must be at least {least}, or all zero")
     return unit * 2.0 ** math.ceil(math.log2(largest / unit))
+
+
+class StopRequest:
+    """A request to stop. ``stop`` becomes True at the first Ctrl-C."""
+
+    def __init__(self) -> None:
+        self.stop = False
+
+
+@contextmanager
+def deferred_interrupts() -> Iterator[StopRequest]:
+    """Note a first Ctrl-C in the request instead of raising. A second Ctrl-C raises KeyboardInterrupt as usual.
+
+    Outside the main thread, and where the program has its own handlers, the first Ctrl-C is not held back. SIGTERM is
+    treated like Ctrl-C if the program has given it Python's handler of SIGINT.
+    """
+    request = StopRequest()
+
+    def note(number: int, frame: FrameType | None) -> None:
+        if request.stop:
+            signal.default_int_handler(number, frame)
+        request.stop = True
+
+    held = []
+    if threading.current_thread() is threading.main_thread():
+        held = [number for number in SIGNALS if signal.getsignal(number) is signal.default_int_handler]
+    for number in held:
+        signal.signal(number, note)
+    try:
+        yield request
+    finally:
+        for number in held:
+            signal.signal(number, signal.default_int_handler)
 
 
 def one_blas_thread() -> AbstractContextManager[Any]:

@@ -17,10 +17,9 @@ import numpy as np
 from fastpin.errors import InputError, OutputError
 from fastpin.model.case import About
 from fastpin.solver.errors import Interrupted, SolveError
-from fastpin.solver.interrupt import deferred_interrupts
 from fastpin.solver.result import Restart
 from fastpin.solver.run import Run, RunProgress
-from fastpin.solver.task import Task
+from fastpin.solver.task import Task, deferred_interrupts
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 from fastpin.storage import hdf5

@@ -19,11 +19,11 @@ ROOT = Path(__file__).resolve().parents[2]
 BREAKS = {
     "a folder without a rank": ("known_folders", "more/a.py", '"""More."""\n'),
     "a folder inside a folder": ("known_folders", "model/inner/a.py", '"""More."""\n'),
-    "an import from a higher rank": ("one_direction", "model/grid.py", "import fastpin.solver.interrupt\n"),
+    "an import from a higher rank": ("one_direction", "model/grid.py", "import fastpin.solver.turns\n"),
     "an import under TYPE_CHECKING": (
         "one_direction",
         "model/angles.py",
-        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from fastpin.solver.interrupt import SIGNALS\n",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from fastpin.solver.turns import InTurns\n",
     ),
     "an import from the upper floor of the model": (
         "one_direction",
