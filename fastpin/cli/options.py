@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from fastpin.errors import printable
+from fastpin.figures.kinds import KIND_OPTIONS, KINDS, STATES_HELP
 from fastpin.model.synonyms import closest, meant
 from fastpin.version import __version__
 
@@ -25,31 +26,11 @@ EXIT_CODES = (
 DEFAULT_KEY_FIGURE = "peak_pressure"
 """The key figure in the figure of a sweep without outcomes, unless another one is chosen."""
 
-
-STATES_HELP = "last, cycle (the last one), all, load points such as 2,3.5, or ranges such as 1-9,20-"
-"""Help on the choice of states."""
-
 SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""
 
 SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance")
 """Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
-
-PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
-    "tractions": ("states", "csv", "sketch", "bars"),
-    "polar": ("states", "csv"),
-    "stick-slip": ("states", "csv"),
-    "sketch": ("states",),
-    "animation": ("states", "rate"),
-    "hoop": ("states", "csv", "body"),
-    "profile": ("states", "csv", "body", "angle", "depth"),
-    "map": ("states", "csv", "body", "component", "extent"),
-    "cycles": ("csv",),
-    "slip": ("csv",),
-    "loops": ("csv", "cycle", "abscissa"),
-    "fatigue": ("csv", "body", "criterion", "depth"),
-}
-"""Kinds of figures of a stored result, and their options."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -204,15 +185,8 @@ def add_plot(commands: Any) -> None:
     plot.add_argument(
         "result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE); for a sketch also a case file (TOML)"
     )
-    plot.add_argument(
-        "kind",
-        choices=tuple(PLOT_OPTIONS),
-        help="tractions; polar: tractions over the circle of the hole; stick-slip: map of stick and slip over load "
-        "points; sketch: pin, plate and loads; animation: the states of the last cycle, one after the other; hoop: "
-        "hoop stress round hole and pin; profile: stresses below the edge; map: one component of the stress in both "
-        "bodies; cycles: changes in each cycle; slip: slip and friction energy in the last cycle; loops: hysteresis "
-        "loops of the last cycle, or of several; fatigue: a criterion along the edge over the last cycle",
-    )
+    words = "; ".join(f"{name}: {kind.words}" if kind.words else name for name, kind in KINDS.items())
+    plot.add_argument("kind", choices=tuple(KINDS), help=words)
     plot.add_argument(
         "-o",
         "--output",
@@ -221,31 +195,12 @@ def add_plot(commands: Any) -> None:
         help="the figure (png, pdf or svg; default KIND.png), or the animation (gif, or mp4 by ffmpeg)",
     )
     plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
-    plot.add_argument("--states", metavar="WHICH", help=STATES_HELP)
-    plot.add_argument(
-        "--cycle",
-        metavar="N",
-        help="loops: last (default), blocks (the last cycle of each block), all, or cycles such as 3, 1,5 or 10-, "
-        "counted from 1",
-    )
-    plot.add_argument(
-        "--abscissa",
-        metavar="WHICH",
-        help="loops: prescribed (default where a displacement is prescribed) or pin (its displacement)",
-    )
-    plot.add_argument("--sketch", action="store_const", const=True, help="tractions: add a small sketch of the joint")
-    plot.add_argument(
-        "--bars", action="store_const", const=True, help="tractions: draw the error bars as bands (run --error-bars)"
-    )
-    plot.add_argument("--rate", metavar="N", type=literal, help="animation: states a second (default 4)")
-    plot.add_argument("--body", help="plate, pin, seat (the plate round a bush), or (hoop and map) both")
-    plot.add_argument("--component", help="map: von_mises (default), largest, hoop, radial, shear, sxx, ...")
-    plot.add_argument("--extent", metavar="RADII", type=literal, help="map: outer radius (default 2)")
-    plot.add_argument("--angle", metavar="DEG", type=literal, help="profile: place (default: the largest hoop stress)")
-    plot.add_argument(
-        "--depth", metavar="D", type=literal, help="profile: largest depth, in radii; fatigue: depth of the points, m"
-    )
-    plot.add_argument("--criterion", help="fatigue: smith-watson-topper (default), fatemi-socie, findley, ...")
+    for name, option in KIND_OPTIONS.items():
+        if option.type == "flag":
+            plot.add_argument(f"--{name}", action="store_const", const=True, help=option.words)
+        else:
+            read = literal if option.type == "number" else str
+            plot.add_argument(f"--{name}", metavar=option.metavar, type=read, help=option.words)
 
 
 _ABOUT = {

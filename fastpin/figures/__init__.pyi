@@ -2,11 +2,13 @@ from . import animation as animation
 from . import load_cycle as load_cycle
 from . import polar as polar
 from . import sheet as sheet
+from . import sketch as sketch
 from . import slip_extent as slip_extent
 from . import states as states
 from . import stick_slip as stick_slip
 from . import stress as stress
 from . import style as style
+from . import subjects as subjects
 from . import tractions as tractions
 from .animation import animate as animate
 from .convergence import plot_convergence as plot_convergence

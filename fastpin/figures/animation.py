@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -19,16 +18,16 @@ from matplotlib.colors import to_rgba
 from matplotlib.lines import Line2D
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import HEADING, Look
+from fastpin.figures.sheet import HEADING, Look, Plot
 from fastpin.figures.sketch import draw_sketch, load_ranges
-from fastpin.figures.states import DrawnStates, Frame, drawn_states
+from fastpin.figures.states import DrawnStates, Frame
 from fastpin.figures.stick_slip import LOOKS, zone_look, zone_patch
-from fastpin.figures.style import COLOURS, STYLE, line, new_figure
+from fastpin.figures.style import COLOURS, house_style, line, new_figure
+from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.words import ANGLE, CAPTION_SIZE, caption, load_text, point_text, quantity, wrapped_parts
 from fastpin.kernels.status import STICK
 from fastpin.model.checks import check_callable, file_path, number
 from fastpin.model.units import acting_loads, units
-from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
 from fastpin.storage.files import check_writable, replacing
@@ -44,6 +43,9 @@ RATE = 4.0
 
 SLOWEST, FASTEST = 0.1, 50.0
 """Limits of the states a second. GIF has steps of a hundredth of a second."""
+
+DPI = 100.0
+"""Dots per inch of a picture, unless others are given."""
 
 SIZE = (8.0, 4.3)
 """Width and height of a picture, inches."""
@@ -73,7 +75,7 @@ def animate(
     result: Sequence[State],
     path: str | Path | None = None,
     title: str = "",
-    dpi: float = 100.0,
+    dpi: float = DPI,
     *,
     states: StateChoice = None,
     rate: float = RATE,
@@ -115,17 +117,37 @@ def animate(
         check_animation("path", file_path("path", path))
     look = Look(title=title, dpi=dpi)
     check_callable("progress", progress)
-    drawn = drawn_states(result, _usual(result, states), MOST_FRAMES, in_a_row=True)
-    check_motion(drawn, rate)
-    with mpl.rc_context(STYLE):
-        if path is None:
-            with tempfile.TemporaryDirectory() as folder:
-                shown = Path(folder) / "animation.gif"
-                _write(drawn, shown, look, float(rate), progress)
-                return Animation(shown.read_bytes())
-        check_writable(Path(path))
-        _write(drawn, Path(path), look, float(rate), progress)
-    return None
+    film = animation_plot(InMemory(result), states, rate)
+    with tempfile.TemporaryDirectory() as folder:
+        shown = Path(folder) / "animation.gif" if path is None else Path(path)
+        check_writable(shown)
+        film.write(shown, look, progress)
+        return Animation(shown.read_bytes()) if path is None else None
+
+
+class Film(Plot):
+    """An animation that is not drawn yet. Its ``draw(look)`` returns a scene."""
+
+    def save(self, path: Path, title: str = "", progress: Callable[[float, float], None] | None = None) -> None:
+        """Draw the pictures and write them to a file."""
+        check_animation("path", path)
+        check_writable(path)
+        self.write(path, Look(title=title, dpi=DPI), progress)
+
+    def write(self, path: Path, look: Look, progress: Callable[[float, float], None] | None) -> None:
+        """Draw the pictures in the house style, and write them."""
+        with house_style():
+            self.draw(look).write(path, progress)
+
+
+def animation_plot(subject: Subject, states: StateChoice = None, rate: float = RATE) -> Film:
+    """Return the animation of states, see :func:`animate`."""
+    usual = "cycle" if states is None and subject.cycles else states
+    drawn = subject.states(usual, most=MOST_FRAMES, in_a_row=True)
+    number("rate", rate, SLOWEST, FASTEST)
+    if len(drawn) < 2:
+        raise InputError("states", "an animation needs two states or more")
+    return Film(lambda look: _Scene(drawn, look, float(rate)), notes=drawn.notes, frames=len(drawn))
 
 
 def check_animation(field: str, path: Path) -> None:
@@ -136,40 +158,12 @@ def check_animation(field: str, path: Path) -> None:
         raise InputError(field, "a film (.mp4) needs the program ffmpeg, which is not on the PATH; .gif needs none")
 
 
-def check_motion(states: Sequence[State], rate: float) -> None:
-    """Raise :class:`InputError` if there are less than two states, or the states a second are out of range."""
-    number("rate", rate, SLOWEST, FASTEST)
-    if len(states) < 2:
-        raise InputError("states", "an animation needs two states or more")
-
-
-def _usual(result: Sequence[State], states: StateChoice) -> StateChoice:
-    """The choice of states: the last cycle unless one is given."""
-    return "cycle" if states is None and isinstance(result, Result) and result.cycles else states
-
-
-def _write(
-    states: DrawnStates, path: Path, look: Look, rate: float, progress: Callable[[float, float], None] | None
-) -> None:
-    made_by: Any = PillowWriter if path.suffix.lower() == ".gif" else FFMpegWriter
-    writer: AbstractMovieWriter = made_by(fps=rate)
-    scene = _Scene(states, look)
-    try:
-        with replacing(path) as temporary, writer.saving(scene.figure, str(temporary), look.dpi):
-            for k, state in enumerate(states):
-                scene.show(k, state)
-                writer.grab_frame()
-                if progress is not None:
-                    progress(k + 1, len(states))
-    except subprocess.CalledProcessError as error:
-        raise InputError("path", f"ffmpeg could not write the film: it ended with code {error.returncode}") from None
-
-
 class _Scene:
     """The picture of an animation. Its axes keep their limits from state to state."""
 
-    def __init__(self, states: DrawnStates, look: Look) -> None:
+    def __init__(self, states: DrawnStates, look: Look, rate: float = RATE) -> None:
         self.states, self.frame = states, Frame(states)
+        self.rate, self.dpi = rate, look.dpi
         self.figure = new_figure(*SIZE)
         self.figure.set_layout_engine("none")  # the panels must not move
         grid: dict[str, Any] = {"left": 0.42, "right": 0.98, "top": 0.82, "bottom": 0.13, "hspace": 0.12}
@@ -193,6 +187,21 @@ class _Scene:
             patches.append(Line2D([], [], color=COLOURS[0], linewidth=0.5, label="thin: bounds ±μN of T"))
         self.figure.legend(handles=patches, loc="lower left", bbox_to_anchor=(0.0, 0.0), fontsize=CAPTION_SIZE, ncols=1)
         self.labels = [quantity(each, unit) for each in words[:rows]]
+
+    def write(self, path: Path, progress: Callable[[float, float], None] | None) -> None:
+        """Write the pictures of all states to a file."""
+        made_by: Any = PillowWriter if path.suffix.lower() == ".gif" else FFMpegWriter
+        writer: AbstractMovieWriter = made_by(fps=self.rate)
+        try:
+            with replacing(path) as temporary, writer.saving(self.figure, str(temporary), self.dpi):
+                for k, state in enumerate(self.states):
+                    self.show(k, state)
+                    writer.grab_frame()
+                    if progress is not None:
+                        progress(k + 1, len(self.states))
+        except subprocess.CalledProcessError as error:
+            reason = f"ffmpeg could not write the film: it ended with code {error.returncode}"
+            raise InputError("path", reason) from None
 
     def show(self, place: int, state: State) -> None:
         """Draw one state in place of the one before."""

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import Line, line
 from fastpin.figures.words import caption, loads_text
 from fastpin.model.checks import as_toml, instance, whole_number
@@ -28,6 +28,9 @@ MOST_PANELS = 9
 
 COLUMNS = 3
 """Panels side by side."""
+
+WIDTH = 7.6
+"""Width of a figure, inches."""
 
 HEIGHT = 1.95
 """Height of a panel, inches."""
@@ -62,7 +65,7 @@ def plot_convergence(
     title: str = "",
     dpi: float = 300.0,
     *,
-    width: float = 7.6,
+    width: float = WIDTH,
     ax: Axes | None = None,
 ) -> Figure:
     """Draw the convergence at one corner, with up to nine panels, one for each outcome or quantity.
@@ -73,36 +76,28 @@ def plot_convergence(
     and the distance is measured from the last value. A dash at the last count is the error bar. Guides have the orders
     1 and 2. Quantities that are exact to rounding, or can't be compared, have no panel.
 
-    Parameters
-    ----------
-    convergence : Convergence
-    path : path, optional
-        Also save the figure; the suffix chooses the format.
-    corner : int, optional
-        From 1; the last corner of the study unless given.
-    title, dpi, width, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Returns
-    -------
-    Figure
-        The new figure, or the figure of `ax`.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, the figure's format is unknown, or the file can't be written.
+    The `corner` counts from 1; the last one of the study unless given. The other arguments are those of
+    :func:`fastpin.plot_tractions`.
     """
+    return Look(path, title, width, dpi, ax).drawn(convergence_of(convergence, corner))
+
+
+def convergence_of(convergence: Convergence, corner: int | None = None) -> Plot:
+    """Return the convergence at one corner, see :func:`plot_convergence`."""
     instance("convergence", convergence, Convergence, "a Convergence")
-    look = Look(path, title, width, dpi, ax)
     chosen = max(convergence.loads) if corner is None else whole_number("corner", corner, 1)
     if chosen not in convergence.loads:
         studied = ", ".join(map(str, convergence.loads))
         raise InputError("corner", f"must be a studied corner: {studied}, not {as_toml(chosen)}")
-    return look.drawn(lambda: _draw(convergence, chosen, look))
+    return Plot(
+        lambda look: _draw(look, convergence, chosen),
+        instead="Charts of the distance of each quantity to its limit, against the number of nodes or increments.",
+        caption="Distance to the limit at the last corner. A dash at the last count is the error bar.",
+        width=WIDTH,
+    )
 
 
-def _draw(convergence: Convergence, corner: int, look: Look) -> Sheet:
+def _draw(look: Look, convergence: Convergence, corner: int) -> Sheet:
     found: dict[str, dict[str, Sequence]] = {}
     for study in convergence.studies:
         for row in reported_series(study, convergence.problem, corner):

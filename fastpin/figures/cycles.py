@@ -16,12 +16,15 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterSciNotation, LogLocator, MaxNLocator, NullLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, line
+from fastpin.figures.subjects import Subject, with_cycles
 from fastpin.figures.words import ROUNDING, caption, quantity, without_rounding
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import units
+from fastpin.report.curves import write_csv
+from fastpin.report.cycle import cycles_curve
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 
@@ -75,30 +78,30 @@ def plot_cycles(
     far the cycles so far have turned the pin (ratcheting), counter-clockwise positive. Cycles that contain others have
     a sum of their own. A panel whose values are all 0 to rounding is left out.
 
-    Parameters
-    ----------
-    result : Result
-        Result of a history with repeated blocks.
-    path, title, width, dpi, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Returns
-    -------
-    Figure
-
-    Raises
-    ------
-    InputError
-        If there are no cycles, an argument is out of range, or the figure's format is unknown.
+    The other arguments are those of :func:`fastpin.plot_tractions`. Without cycles this raises :class:`InputError`.
     """
-    look = Look(path, title, width, dpi, ax)
+    return Look(path, title, width, dpi, ax).drawn(cycles_of(result))
+
+
+def cycles_plot(subject: Subject) -> Plot:
+    """Return the changes of all cycles of a result."""
+    return cycles_of(with_cycles(subject))
+
+
+def cycles_of(result: Result) -> Plot:
+    """Return the changes of all cycles, see :func:`plot_cycles`."""
     instance("result", result, Result, "a Result")
     if not result.cycles:
         raise InputError("cycles", "the history has no repeated blocks")
-    return look.drawn(lambda: _draw_cycles(result, look))
+    return Plot(
+        lambda look: _draw(look, result),
+        lambda path: write_csv([cycles_curve(result.problem, result.cycles)], path),
+        f"Line charts of the changes that each of {len(result.cycles):,} cycles makes.",
+        "Changes of the tractions over each cycle, its dissipation, and the rotation of the pin in all.",
+    )
 
 
-def _draw_cycles(result: Result, look: Look) -> Sheet:
+def _draw(look: Look, result: Result) -> Sheet:
     kind, cycles = units(result.problem), result.cycles
     lengths = sorted({cycle.length for cycle in cycles})[:MAX_NAMED]
     energy, unit = units(result.problem)["energy"].scale([cycle.dissipation for cycle in cycles])

@@ -11,15 +11,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.damage import NO_CRACK, Fatigue
+from fastpin.damage import NO_CRACK, Fatigue, cycle_states, fatigue
+from fastpin.damage.hot_spots import Criterion
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import COLOURS, angle_axis, line
+from fastpin.figures.subjects import Subject, with_cycles
 from fastpin.figures.words import ANGLE, caption, quantity, short
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instance, instances
+from fastpin.model.points import Body
 from fastpin.model.units import scaled, units
 from fastpin.report.case import edge_body
+from fastpin.report.curves import write_csv
+from fastpin.report.cycle import fatigue_bodies
+from fastpin.report.fatigue import fatigue_curve
 
 PLANES = 40
 """Planes that are drawn as short lines, spread over the edge."""
@@ -42,20 +48,27 @@ def plot_fatigue(
     Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
     is a crack that goes straight into the body.
 
-    Parameters
-    ----------
-    found : Fatigue or sequence of Fatigue
-        Of points at one depth, such as from :meth:`fastpin.Result.fatigue`. Several bodies, such as a bush and the
-        plate round it, share the panels.
-    path, title, width, dpi, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Raises
-    ------
-    InputError
-        If `found` is no fatigue of points at one depth, or of several problems or criteria. Also see
-        :func:`fastpin.plot_tractions`.
+    The points lie at one depth. Several bodies, such as a bush and the plate round it, share the panels. The other
+    arguments are those of :func:`fastpin.plot_tractions`.
     """
+    return Look(path, title, width, dpi, ax).drawn(fatigue_of(found))
+
+
+def fatigue_plot(
+    subject: Subject,
+    criterion: Criterion = "smith-watson-topper",
+    body: Body | None = None,
+    depth: float | None = None,
+) -> Plot:
+    """Return the fatigue of the last cycle: of one body, or of all edges of holes with constants."""
+    result = subject.part(with_cycles(subject).cycles[-1])
+    cycle = cycle_states(result, result.cycles[-1])
+    bodies = fatigue_bodies(cycle[0].problem, criterion) if body is None else [body]
+    return fatigue_of([fatigue(cycle, criterion, one, depth=depth) for one in bodies])
+
+
+def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
+    """Return the fatigue of one body or of several, see :func:`plot_fatigue`."""
     wanted = "a fatigue result, such as result.fatigue(...)"
     each = [instance("found", found, Fatigue, wanted)] if not isinstance(found, (list, tuple)) else list(found)
     each = instances("found", each, Fatigue, wanted)
@@ -65,11 +78,18 @@ def plot_fatigue(
         raise InputError("found", "must be of one problem and one criterion")
     if any(np.ptp(one.depth) > 0.0 for one in each):
         raise InputError("found", "must be of points at one depth")
-    look = Look(path, title, width, dpi, ax)
-    return look.drawn(lambda: _draw(each, look))
+    edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in each)
+    life = " and the life" if any(one.life is not None for one in each) else ""
+    return Plot(
+        lambda look: _draw(look, each),
+        lambda path: write_csv([fatigue_curve(one) for one in each], path),
+        f"Line chart of the {each[0].criterion} parameter along the edge of the {edges}.",
+        f"Parameter {each[0].criterion} along the edge of the {edges}, with its hot spot{life}. Short lines are the "
+        "worst planes.",
+    )
 
 
-def _draw(found: Sequence[Fatigue], look: Look) -> Sheet:
+def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
     lives = [one for one in found if one.life is not None and np.isfinite(one.life).any()]
     sheet = look.sheet([2.2] * (2 if lives else 1), extra=1.2)
     axes = sheet.axes

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line
 from fastpin.figures.words import caption, quantity
 from fastpin.model.checks import instance, number_array
@@ -50,37 +50,32 @@ def plot_history(
     A repeated block is drawn once, shaded, with the number of times. The loads are those of the first time through. The
     history starts at corner 0, without load unless `initial` is given. The loads are linear between the corners.
 
-    Parameters
-    ----------
-    problem : Problem
-        It tells the units.
-    history : LoadHistory
-    path, title, width, dpi, ax
-        See :func:`fastpin.plot_tractions`.
-    initial : array_like, shape (loads,), optional
-        The load at corner 0, of a history that continues another one.
-
-    Raises
-    ------
-    InputError
-        If an argument is of another class or out of range, the figure's format is unknown, or the file can't be
-        written.
+    The `initial` load, shape (loads,), is that at corner 0, of a history that continues another one. The other
+    arguments are those of :func:`fastpin.plot_tractions`.
     """
+    return Look(path, title, width, dpi, ax).drawn(history_of(problem, history, initial))
+
+
+def history_of(problem: Problem, history: LoadHistory, initial: Sequence[float] | np.ndarray | None = None) -> Plot:
+    """Return the loads of a history, see :func:`plot_history`."""
     instance("problem", problem, Problem, "a Problem")
     instance("history", history, LoadHistory, "a LoadHistory")
-    look = Look(path, title, width, dpi, ax)
     first = np.zeros(len(LOADS)) if initial is None else number_array("initial", initial)
     if first.shape != (len(LOADS),):
         raise InputError("initial", f"must have the shape ({len(LOADS)},), not {first.shape}")
     folded = _folded(history, first)
-    return look.drawn(lambda: _draw(problem, folded, look))
+    return Plot(
+        lambda look: _draw(look, problem, folded),
+        instead=f"Line chart of the loads over the {len(history):,} corners of the history.",
+        caption="Load history. A shaded block is run through as many times as stands above it.",
+    )
 
 
 Folded = tuple[np.ndarray, list[int], list[tuple[int, int, int]]]
 """Loads of corners, the numbers of these corners, and the repeated blocks, see :func:`_folded`."""
 
 
-def _draw(problem: Problem, folded: Folded, look: Look) -> Sheet:
+def _draw(look: Look, problem: Problem, folded: Folded) -> Sheet:
     loads, numbers, repeated = folded
     acting = [name for k, name in enumerate(LOADS) if loads[:, k].any()] or [LOADS[0]]
     kinds = list(dict.fromkeys(LOAD_KIND[name] for name in acting))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,9 +18,10 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.states import Frame
-from fastpin.figures.style import MAX_NAMED, line
+from fastpin.figures.style import MAX_NAMED, line, spread
+from fastpin.figures.subjects import Subject, with_cycles
 from fastpin.figures.words import (
     ANGLE,
     ROUNDING,
@@ -34,8 +37,11 @@ from fastpin.model.checks import choice, instance, items, string
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
-from fastpin.report.cycle import CONJUGATES, natural_sizes
+from fastpin.report.curves import Curve, write_csv
+from fastpin.report.cycle import CONJUGATES, loop_curve, natural_sizes
+from fastpin.report.cycle import write_csv as write_cycle
 from fastpin.solver.result import Result
+from fastpin.states.choice import chosen_cycles
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 
 SHADES = {NodeBehaviour.SLIPS: ("0.80", "slips at some time"), NodeBehaviour.OPENS: ("0.92", "opens at some time")}
@@ -85,20 +91,24 @@ def plot_slip(
     The upper panel shows the slip range, and the slip distance if it is known. The lower panel shows the friction
     energy, or if that is not known the range of the shear traction. Nodes that slip or open at some time are shaded.
 
-    Parameters
-    ----------
-    cycle : LoadCycle or Result
-        From :meth:`fastpin.Result.cycle`; of a result the last cycle.
-    path, title, width, dpi, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Raises
-    ------
-    InputError
-        If `cycle` is no load cycle, or a result without one. Also see :func:`fastpin.plot_tractions`.
+    Of a result it is the last cycle. The other arguments are those of :func:`fastpin.plot_tractions`.
     """
-    look, found = Look(path, title, width, dpi, ax), _cycle_of(cycle)
-    return look.drawn(lambda: _draw_slip(found, look))
+    return Look(path, title, width, dpi, ax).drawn(slip_of(_cycle_of(cycle)))
+
+
+def slip_plot(subject: Subject) -> Plot:
+    """Return slip and friction energy of the last cycle."""
+    return slip_of(subject.part(with_cycles(subject).cycles[-1]).cycle())
+
+
+def slip_of(cycle: LoadCycle) -> Plot:
+    """Return slip and friction energy of a cycle, see :func:`plot_slip`."""
+    return Plot(
+        lambda look: _draw_slip(look, cycle),
+        partial(write_cycle, cycle),
+        f"Line charts of slip and friction energy round the hole, corners {cycle.first:,} to {cycle.last:,}.",
+        "Slip of each place over the cycle, and its friction energy or the range of its shear traction.",
+    )
 
 
 def _cycle_of(cycle: LoadCycle | Result) -> LoadCycle:
@@ -108,7 +118,7 @@ def _cycle_of(cycle: LoadCycle | Result) -> LoadCycle:
     return instance("cycle", cycle, LoadCycle, "a result, or a load cycle such as result.cycle()")
 
 
-def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
+def _draw_slip(look: Look, cycle: LoadCycle) -> Sheet:
     known = cycle.friction_energy is not None
     sheet = look.sheet([2.0, 2.0])
     axes = sheet.axes
@@ -201,14 +211,14 @@ def plot_loops(
     cycle : LoadCycle, Result or sequence of LoadCycle
         From :meth:`fastpin.Result.cycle`; of a result the last cycle. At most
         :data:`~fastpin.figures.style.MAX_NAMED` cycles of one problem.
-    path, title, width, dpi, ax
-        See :func:`fastpin.plot_tractions`.
     abscissa : {"prescribed", "pin"}, optional
         Displacement of a reaction P or Q: "prescribed" is ux or -uy, which holds the elastic deformation of pin and
         plate between the two places too. "pin" is the displacement of the pin over the hole. Both loops of a settled
         contact have the same area. Unless given, it is "prescribed" where a displacement is prescribed.
     names : sequence of str
         Names of several cycles in the legend, before their corners.
+    path, title, width, dpi, ax
+        See :func:`fastpin.plot_tractions`.
 
     Raises
     ------
@@ -219,10 +229,49 @@ def plot_loops(
     look = Look(path, title, width, dpi, ax)
     several = isinstance(cycle, Sequence) and not isinstance(cycle, Result)
     each: Sequence[Any] = cycle if several else [cycle]  # type: ignore[assignment]
-    cycles = [_cycle_of(one) for one in each]
+    return look.drawn(loops_of([_cycle_of(one) for one in each], abscissa, names))
+
+
+def loops_plot(subject: Subject, cycle: str = "last", abscissa: Abscissa | None = None) -> Plot:
+    """Return the hysteresis loops of chosen cycles, at most as many as a figure can show. Cycles count from 1.
+
+    Cycles without a loop are left out, and the notes say so.
+    """
+    result = with_cycles(subject)
+    places, refusal = chosen_cycles(result.cycles, cycle), None
+    shown = [places[k] for k in spread(len(places), MAX_NAMED)]
+    found: dict[int, LoadCycle] = {}
+    notes, doubts = [], []
+    if len(shown) < len(places):
+        numbers = ", ".join(f"{place + 1:,}" for place in shown)
+        notes.append(f"the figure shows {len(shown)} of {len(places):,} cycles: {numbers}")
+    for place in shown:
+        part = subject.part(result.cycles[place])
+        try:
+            found[place + 1] = part.cycle(place)
+        except InputError as error:
+            refusal = error
+            if len(places) > 1:
+                doubts.append(f"cycle {place + 1:,} is left out: {error.reason}")
+    if refusal is not None and not found:
+        raise refusal
+    loops = [Curve({"cycle": number}, loop_curve(one).columns) for number, one in found.items()]
+    plot = loops_of(list(found.values()), abscissa, [f"cycle {number:,}" for number in found])
+    notes += [f"cycle {number:,}: {dissipated_words(one)}" for number, one in found.items()]
+    doubts += [doubt for one in found.values() if (doubt := area_doubt(one))]
+    return replace(plot, write_numbers=partial(write_csv, loops), notes=notes, doubts=doubts)
+
+
+def loops_of(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None, names: Sequence[str] = ()) -> Plot:
+    """Return the hysteresis loops of cycles, see :func:`plot_loops`."""
     check_loops(cycles, abscissa)
     named = [string("names", name) for name in items("names", names, "a list of names")]
-    return look.drawn(lambda: _draw_loops(cycles, look, abscissa, named))
+    return Plot(
+        lambda look: _draw_loops(look, cycles, abscissa, named),
+        instead=f"Loops of each load against the displacement on which it does work, corners {cycles[0].first:,} to "
+        f"{cycles[0].last:,}.",
+        caption="Hysteresis loops. The area of a loop is the work of its load.",
+    )
 
 
 def check_loops(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None) -> None:
@@ -257,7 +306,7 @@ def _changing(cycle: LoadCycle) -> list[str]:
     ]
 
 
-def _draw_loops(cycles: Sequence[LoadCycle], look: Look, abscissa: Abscissa | None, names: Sequence[str]) -> Sheet:
+def _draw_loops(look: Look, cycles: Sequence[LoadCycle], abscissa: Abscissa | None, names: Sequence[str]) -> Sheet:
     loads = list(dict.fromkeys(name for cycle in cycles for name in _changing(cycle)))
     across = min(len(loads), 3)
     sheet = look.sheet([2.6] * -(-len(loads) // across), columns=across, extra=0.9 + 0.17 * len(cycles))

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import COLOURS, line
 from fastpin.figures.words import quantity
 from fastpin.model.checks import instance
@@ -40,30 +40,13 @@ def plot_lug(
 ) -> Figure:
     """Draw the outline with names of its parts, all holes, supports and loads. Lengths are in millimetres.
 
-    Parameters
-    ----------
-    lug : Lug
-    path : path, optional
-        File of the figure; the suffix chooses the format.
-    title : str
-    width : float
-        Width of the figure, inches.
-    dpi : float
-        Dots per inch of a bitmap.
-    ax : matplotlib axes, optional
-        Axes to draw in, instead of a new figure.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, or the file can't be written.
+    The other arguments are those of :func:`fastpin.plot_tractions`.
     """
     instance("lug", lug, Lug, "fastpin.model.Lug")
-    look = Look(path, title, width, dpi, ax)
-    return look.drawn(lambda: _draw(lug, look))
+    return Look(path, title, width, dpi, ax).drawn(Plot(lambda look: _draw(look, lug)))
 
 
-def _draw(lug: Lug, look: Look) -> Sheet:
+def _draw(look: Look, lug: Lug) -> Sheet:
     sheet = look.sheet([1.1 * look.width], extra=0.0)
     panel = sheet.axes[0, 0]
     kinds = {}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
-from fastpin.figures.sheet import Look, Sheet
-from fastpin.figures.states import DrawnStates, Frame, drawn_states, name_states, state_lines
+from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.states import DrawnStates, name_states, state_lines
+from fastpin.figures.subjects import InMemory, Subject
+from fastpin.figures.tractions import traction_curves
 from fastpin.figures.words import quantity, shown_unit
 from fastpin.model.units import units
+from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
 
@@ -50,34 +54,27 @@ def plot_polar(
 
     The left panel shows the pressure, outwards from the hole. The right panel shows the shear traction on the pin:
     outwards where it acts counter-clockwise, inwards where it acts clockwise. Without friction there is only the
-    pressure.
-
-    Parameters
-    ----------
-    result : State, Result or sequence of State
-        Of one problem and on one grid.
-    path, title, width, dpi, states, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.plot_tractions`.
+    pressure. The arguments are those of :func:`fastpin.plot_tractions`.
     """
-    look, drawn = Look(path, title, width, dpi, ax), drawn_states(result, states)
-    return look.drawn(lambda: draw_polar(drawn, look))
+    return Look(path, title, width, dpi, ax).drawn(polar_plot(InMemory(result), states))
 
 
-def draw_polar(states: DrawnStates, look: Look) -> Sheet:
-    """Draw the tractions of these states over the circle, on a new sheet."""
-    problem, frame = states[0].problem, Frame(states)
+def polar_plot(subject: Subject, states: StateChoice = None) -> Plot:
+    """Return the tractions of states over the circle of the hole, see :func:`plot_polar`."""
+    drawn = subject.states(states)
+    curves = traction_curves(drawn)
+    return Plot(lambda look: _draw(look, drawn, curves), partial(write_csv, curves), notes=drawn.notes)
+
+
+def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
+    problem = states[0].problem
     columns = 1 if problem.frictionless else 2
     sheet = look.sheet([0.5 * look.width], columns=columns, extra=1.3)
     unit = units(problem)["traction"]
-    curves = [frame.curves(state) for state in states]
+    angle, *tractions = curves[0].columns
     words = ("pressure N", "shear traction T on the pin")
     for kind, panel in enumerate(sheet.axes[0]):
-        values = [curve[1 + kind] for curve in curves]
+        values = [curve[tractions[kind]] for curve in curves]
         largest = max(float(np.nanmax(np.abs(each), initial=0.0)) for each in values)
         factor, label = unit.scale([largest])
         height = HEIGHT / (factor * largest) if largest > 0.0 else 0.0
@@ -85,7 +82,7 @@ def draw_polar(states: DrawnStates, look: Look) -> Sheet:
             height *= 0.6  # the shear needs room inwards too
         _draw_circle(panel, factor * largest, height, label, both=kind == 1)
         for curve, each, style in zip(curves, values, state_lines(states), strict=True):
-            x, y = _over_circle(curve[0], height * factor * each)
+            x, y = _over_circle(curve[angle], height * factor * each)
             panel.plot(x, y, **style)
         panel.set_xlabel(quantity(words[kind], label))
     styles: list[Artist] = [Line2D([], [], color="0.2", linewidth=1.0, label="edge of the hole")]

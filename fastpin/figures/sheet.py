@@ -18,13 +18,17 @@ from fastpin.errors import InputError
 from fastpin.figures.style import (
     check_figure_text,
     check_format,
-    draw_and_save,
     fitted_legend,
+    house_style,
     new_figure,
     number_of_dots,
+    save_figure,
 )
 from fastpin.figures.words import CAPTION_SIZE, wrapped, wrapped_parts
 from fastpin.model.checks import file_path, instance
+
+WIDTH = 6.7
+"""Width of most figures, inches."""
 
 HEADING = 9.5
 """Size of a title, points."""
@@ -72,7 +76,7 @@ class Look:
 
     path: str | Path | None = None
     title: str = ""
-    width: float = 6.7
+    width: float = WIDTH
     dpi: float = 300.0
     ax: Axes | None = None
 
@@ -84,14 +88,14 @@ class Look:
         if self.ax is not None:
             instance("ax", self.ax, Axes, "axes of Matplotlib")
 
-    def drawn(self, draw: Callable[[], Sheet]) -> Figure:
-        """Draw a sheet in the house style, save its figure if there is a path, and return the figure."""
-
-        def figure() -> Figure:
+    def drawn(self, plot: Plot) -> Figure:
+        """Draw a plot in the house style, save its figure if there is a path, and return the figure."""
+        with house_style():
             with mpl.rc_context(None if self.ax is None else SMALL):
-                return draw().figure
-
-        return draw_and_save(figure, self.path, self.dpi)
+                sheet: Sheet = plot.draw(self)
+            if self.path is not None:
+                save_figure(sheet.figure, Path(self.path), self.dpi)
+        return sheet.figure
 
     def sheet(self, heights: Sequence[float], columns: int = 1, extra: float = 1.35, **options: Any) -> Sheet:
         """Return a sheet with a row of panels for each of `heights`, inches.
@@ -108,6 +112,45 @@ class Look:
         if len(heights) * columns == 1 and not options.get("subplot_kw"):
             return Sheet(host, np.array([[self.ax]]), self.ax)
         return Sheet(host, _insets(self.ax, heights, columns, options), self.ax)
+
+
+@dataclass(frozen=True, eq=False)
+class Plot:
+    """A figure that is not drawn yet, with its numbers and its words.
+
+    Attributes
+    ----------
+    draw : callable
+        ``draw(look)`` draws a :class:`Sheet`, or the scene of an animation.
+    write_numbers : callable or None
+        ``write_numbers(path)`` writes the numbers of the figure as CSV.
+    instead : str
+        The text in place of the figure, for readers who can't see it.
+    caption : str
+        The text below the figure on a page.
+    notes, doubts : sequence of str
+        Sentences for the terminal: on the choice of what is drawn, and on what may mislead.
+    width : float
+        Width of a new figure, inches.
+    bitmap : bool
+        Whether the figure is too large for a page as SVG.
+    frames : int
+        Number of pictures of an animation; 0 for a figure.
+    """
+
+    draw: Callable[[Look], Any]
+    write_numbers: Callable[[Path], object] | None = None
+    instead: str = ""
+    caption: str = ""
+    notes: Sequence[str] = ()
+    doubts: Sequence[str] = ()
+    width: float = WIDTH
+    bitmap: bool = False
+    frames: int = 0
+
+    def save(self, path: Path, title: str = "", progress: Callable[[float, float], None] | None = None) -> None:
+        """Draw the figure and write it to a file. `progress` follows the pictures of an animation."""
+        Look(path, title, self.width).drawn(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,8 +15,9 @@ from matplotlib.patches import Circle, FancyArrowPatch, Rectangle, Wedge
 
 from fastpin.bodies.body import Shape
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.stick_slip import zone_look, zone_patch
+from fastpin.figures.subjects import Subject
 from fastpin.figures.words import ROUNDING, caption, point_text, short_load, shown_unit
 from fastpin.kernels.status import STICK
 from fastpin.model.case import Case
@@ -24,11 +26,16 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
+from fastpin.report.case import edge_body
 from fastpin.solver.result import Result
+from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
 
 LoadRange = tuple[float, float]
 """Smallest and largest value of a load."""
+
+WIDTH = 4.2
+"""Width of a sketch, inches."""
 
 GAP = 0.07
 """Drawn clearance, in radii of the hole. The true one could not be seen."""
@@ -86,7 +93,7 @@ def plot_sketch(
     joint: Problem | Case | Result | State,
     path: str | Path | None = None,
     title: str = "",
-    width: float = 4.2,
+    width: float = WIDTH,
     dpi: float = 300.0,
     *,
     history: LoadHistory | None = None,
@@ -98,33 +105,37 @@ def plot_sketch(
     has an arrow for each load of the history, with the range of its values; the arrow has two heads if the load changes
     its sign.
 
-    Parameters
-    ----------
-    joint : Problem, Case, Result or State
-    path, title, width, dpi, ax
-        See :func:`fastpin.plot_tractions`.
-    history : LoadHistory, optional
-        The loads of a problem.
-
-    Raises
-    ------
-    InputError
-        If `joint` is something else, or a `history` is given with another joint than a problem. Also see
-        :func:`fastpin.plot_tractions`.
+    The `history` gives a problem its loads. The other arguments are those of :func:`fastpin.plot_tractions`.
     """
-    look = Look(path, title, width, dpi, ax)
+    return Look(path, title, width, dpi, ax).drawn(sketch_of(joint, history))
+
+
+def sketch_plot(subject: Subject, states: StateChoice = None) -> Plot:
+    """Return the sketch of the last one of some states; of the history's loads without a choice."""
+    if states is None:
+        return sketch_of(subject.result())
+    drawn = subject.states(states)
+    return replace(sketch_of(drawn[-1]), notes=drawn.notes)
+
+
+def sketch_of(joint: Problem | Case | Result | State, history: LoadHistory | None = None) -> Plot:
+    """Return the sketch of a joint, see :func:`plot_sketch`."""
     if history is not None:
         instance("history", history, LoadHistory, "a LoadHistory")
         if not isinstance(joint, Problem):
             raise InputError("history", "is for a Problem; a case, a result and a state have loads of their own")
-    if isinstance(joint, State):
-        return look.drawn(lambda: draw_sketch(joint.problem, load_ranges([joint]), look, joint))
-    if isinstance(joint, Problem):
-        ranges = {} if history is None else load_ranges(history)
-        return look.drawn(lambda: draw_sketch(joint, ranges, look))
-    if isinstance(joint, (Case, Result)):
-        return look.drawn(lambda: draw_sketch(joint.problem, load_ranges(joint.history), look))
-    raise InputError("joint", f"must be a Problem, Case, Result or State, not {as_toml(joint)}")
+    if not isinstance(joint, (Problem, Case, Result, State)):
+        raise InputError("joint", f"must be a Problem, Case, Result or State, not {as_toml(joint)}")
+    problem = joint if isinstance(joint, Problem) else joint.problem
+    state = joint if isinstance(joint, State) else None
+    loads = [joint] if isinstance(joint, State) else history if isinstance(joint, Problem) else joint.history
+    ranges = {} if loads is None else load_ranges(loads)
+    return Plot(
+        lambda look: draw_sketch(problem, ranges, look, state),
+        instead=f"Sketch of pin and {edge_body(problem, 'plate')} with arrows for the loads.",
+        caption="The joint to scale, with an exaggerated clearance, and its loads with their ranges over the history.",
+        width=WIDTH,
+    )
 
 
 def load_ranges(loads: LoadHistory | Sequence[State]) -> dict[str, LoadRange]:

@@ -98,6 +98,11 @@ class DrawnStates(list[State]):
         return f"{len(self)} of {self.total:,} states: load point{'s' if len(self) > 1 else ''} {named}"
 
     @property
+    def notes(self) -> list[str]:
+        """A sentence for the command line on which states are drawn of how many; none if all are."""
+        return [f"the figure shows {self.note}{self.remedy}"] if self.note else []
+
+    @property
     def remedy(self) -> str:
         """How to draw the other states that were chosen, as text for the command line; empty if all are drawn."""
         if self.chosen <= len(self):

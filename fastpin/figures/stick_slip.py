@@ -14,13 +14,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.slip_extent import BOTH_WAYS, ExtentBox, MapColumn, columns_of, extent_boxes, load_ranges
-from fastpin.figures.states import DrawnStates, Frame, drawn_states
+from fastpin.figures.states import DrawnStates, Frame
 from fastpin.figures.style import line
+from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.words import LOAD_POINT, caption, load_text, loads_by_change, short_load
-from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK
+from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Status
 from fastpin.model.problem import Problem
+from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
@@ -96,23 +98,52 @@ def plot_stick_slip(
 
     Colours show where the contact sticks and in which direction the pin slips; white is open. A triangle marks a slip
     zone that is too narrow to be seen. Without friction all contact slips. The upper panel shows the loads that change.
-
-    Parameters
-    ----------
-    result : State, Result or sequence of State
-        Of one problem and on one grid. Of more than :data:`MOST_COLUMNS` states, a column joins the states of one cycle
-        or of several. It shows which nodes slip, and in which direction, at some time in it.
-    path, title, width, dpi, states, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.plot_tractions`.
+    Of more than :data:`MOST_COLUMNS` states, a column joins the states of one cycle or of several. It shows which nodes
+    slip, and in which direction, at some time in it. The arguments are those of :func:`fastpin.plot_tractions`.
     """
-    look = Look(path, title, width, dpi, ax)
-    drawn = drawn_states(result, states, MOST_COLUMNS, whole=True)
-    return look.drawn(lambda: draw_stick_slip(drawn, look))
+    return Look(path, title, width, dpi, ax).drawn(stick_slip_plot(InMemory(result), states))
+
+
+def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
+    """Return the map of stick and slip, see :func:`plot_stick_slip`. The caption says if states are left out."""
+    drawn = subject.states(states, most=MOST_COLUMNS, whole=True)
+    first, last = load_point(drawn[0]), load_point(drawn[-1])
+    part = (
+        f"Only {len(drawn):,} of {drawn.total:,} states, load points {first:.5g} to {last:.5g}: stick"
+        if len(drawn) < drawn.total
+        else "Stick"
+    )
+    notes = drawn.notes
+    if len(drawn) > MOST_COLUMNS:
+        columns, words = long_columns(drawn)
+        notes.append(f"the figure shows {len(drawn):,} states in {len(columns)} columns: {words}")
+    return Plot(
+        lambda look: _draw(look, drawn) if len(drawn) <= MOST_COLUMNS else _draw_long(look, drawn),
+        lambda path: write_csv([Curve({}, _zone_columns(drawn))], path),
+        f"Map of the zones that stick and slip, over angle and load point, from load point {first:.5g} to {last:.5g}.",
+        f"{part} and slip over the angle round the hole and the load point. White is open.",
+        notes,
+    )
+
+
+def _zone_columns(states: DrawnStates) -> dict[str, Any]:
+    """Return the zones of a map, column by column of a CSV file."""
+    if len(states) <= MOST_COLUMNS:
+        boxes = list(zone_boxes(states))
+        return {
+            "load point": np.array([box.point for box in boxes]),
+            "start [deg]": np.array([box.start for box in boxes]),
+            "stop [deg]": np.array([box.stop for box in boxes]),
+            "status": np.array([Status(box.status).name.lower().replace("_", " ") for box in boxes]),
+        }
+    joined = list(extent_boxes(states, long_columns(states)[0], Frame(states)))
+    return {
+        "load points after": np.array([box.left for box in joined]),
+        "to": np.array([box.right for box in joined]),
+        "start [deg]": np.array([box.start for box in joined]),
+        "stop [deg]": np.array([box.stop for box in joined]),
+        "slip": np.array([extent_look(states[0].problem, box.extent)[2] for box in joined]),
+    }
 
 
 def zone_boxes(states: Sequence[State], frame: Frame | None = None) -> Iterator[ZoneBox]:
@@ -140,10 +171,7 @@ def column_ends(points: np.ndarray) -> np.ndarray:
     return np.r_[2.0 * points[0] - middles[0], middles, 2.0 * points[-1] - middles[-1]]
 
 
-def draw_stick_slip(states: DrawnStates, look: Look) -> Sheet:
-    """Draw the map of these states on a new sheet. Many states are joined in columns, see :func:`columns_of`."""
-    if len(states) > MOST_COLUMNS:
-        return _draw_long(states, look)
+def _draw(look: Look, states: DrawnStates) -> Sheet:
     problem, frame = states[0].problem, Frame(states)
     boxes = list(zone_boxes(states, frame))
     present = [status for status in LOOKS if any(box.status == status for box in boxes)]
@@ -166,8 +194,8 @@ def draw_stick_slip(states: DrawnStates, look: Look) -> Sheet:
     return sheet
 
 
-def _draw_long(states: DrawnStates, look: Look) -> Sheet:
-    """Draw the map of more states than columns can be seen."""
+def _draw_long(look: Look, states: DrawnStates) -> Sheet:
+    """Draw the map of more states than columns can be seen. They are joined in columns, see :func:`columns_of`."""
     problem, frame = states[0].problem, Frame(states)
     columns, words = long_columns(states)
     boxes = list(extent_boxes(states, columns, frame))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +16,20 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import Normal, Stroke
 
-from fastpin.figures.sheet import Look, Sheet
-from fastpin.figures.states import HOOP, DrawnStates, drawn_states, name_states, state_lines
+from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.states import HOOP, DrawnStates, name_states, state_lines
 from fastpin.figures.style import angle_axis, draw_zero, line
-from fastpin.figures.words import ANGLE, caption, loads_text, point_text, quantity
+from fastpin.figures.subjects import InMemory, Subject
+from fastpin.figures.words import ANGLE, caption, loads_text, point_text, points_text, quantity
 from fastpin.model.checks import choice, instance
-from fastpin.model.points import BODIES, Body
-from fastpin.model.units import units
+from fastpin.model.points import BODIES, Body, bodies_of
+from fastpin.model.units import named_loads, units
 from fastpin.report.case import edge_body
-from fastpin.report.curves import Curve
+from fastpin.report.curves import Curve, write_csv
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
+from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
 FIELD_WIDTH = 5.2
@@ -56,30 +59,28 @@ def plot_hoop_stress(
     """Draw the hoop stress round the hole, of the plate at the seat of a bush, and round the pin, a panel each.
 
     A dot marks the largest hoop stress of each state; an open dot if the nodes do not resolve the peak. Angles are in
-    degrees from the bottom of the hole, counter-clockwise positive. Tension is positive.
-
-    Parameters
-    ----------
-    result : State, Result or sequence of State
-        Of one problem and on one grid.
-    body : {"both", "plate", "seat", "pin"}
-        "both" draws all that the problem has, without rigid bodies.
-    path, title, width, dpi, states, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
+    degrees from the bottom of the hole, counter-clockwise positive. Tension is positive. The `body` is "plate", "seat",
+    "pin", or "both" for all that the problem has, without rigid bodies. A rigid one raises :class:`InputError`. The
+    other arguments are those of :func:`fastpin.plot_tractions`.
     """
-    look, shown = Look(path, title, width, dpi, ax), HOOP[choice("body", body, tuple(HOOP))]
-    drawn = drawn_states(result, states, extremes=shown)
+    return Look(path, title, width, dpi, ax).drawn(hoop_plot(InMemory(result), states, body))
+
+
+def hoop_plot(subject: Subject, states: StateChoice = None, body: str = "both") -> Plot:
+    """Return the hoop stress of states, see :func:`plot_hoop_stress`."""
+    drawn = subject.states(states, extremes=HOOP[choice("body", body, tuple(HOOP))])
     curves = hoop_curves(drawn, body)
-    return look.drawn(lambda: draw_hoop(drawn, curves, look))
+    seat = ", the seat of the bush" if "seat" in bodies_of(drawn[0].problem) else ""
+    return Plot(
+        lambda look: _draw_hoop(look, drawn, curves),
+        partial(write_csv, curves),
+        f"Line charts of the hoop stress over the angle round the hole, at load points {points_text(drawn)}.",
+        f"Hoop stress round the hole{seat} and the pin. Dots mark the largest value of each state.",
+        drawn.notes,
+    )
 
 
-def draw_hoop(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
-    """Draw the curves of :func:`fastpin.report.stress.hoop_curves` of these states."""
+def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
     bodies = list(dict.fromkeys(curve.parameters["body"] for curve in curves))
     sheet = look.sheet([2.1] * len(bodies), extra=1.5)
     axes = sheet.axes
@@ -127,33 +128,25 @@ def plot_stress_profile(
     states: StateChoice = None,
     ax: Axes | None = None,
 ) -> Figure:
-    """Draw radial, hoop, shear and von Mises stress below a place of the edge.
+    """Draw radial, hoop, shear and von Mises stress below a place of the edge of a body.
 
-    Parameters
-    ----------
-    result : State, Result or sequence of State
-        Of one problem and on one grid.
-    body : {"plate", "pin", "seat"}
-    angle : float, optional
-        The place in degrees from the bottom; that of each state's largest hoop stress unless given.
-    depth : float
-        Largest depth, in units of the hole's radius.
-    path, title, width, states, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range or the body is rigid. Also see :func:`fastpin.plot_tractions`.
+    The place is an `angle` in degrees from the bottom; that of each state's largest hoop stress unless given. The
+    largest `depth` is in units of the hole's radius. A rigid `body` raises :class:`InputError`. The other arguments are
+    those of :func:`fastpin.plot_tractions`.
     """
-    look, shown = Look(path, title, width, ax=ax), HOOP[choice("body", body, BODIES)]
-    drawn = drawn_states(result, states, extremes=shown)
+    return Look(path, title, width, ax=ax).drawn(profile_plot(InMemory(result), states, body, angle, depth))
+
+
+def profile_plot(
+    subject: Subject, states: StateChoice = None, body: Body = "plate", angle: float | None = None, depth: float = 1.0
+) -> Plot:
+    """Return stresses below the edge, see :func:`plot_stress_profile`."""
+    drawn = subject.states(states, extremes=HOOP[choice("body", body, BODIES)])
     curves = depth_curves(drawn, body, angle, depth)
-    return look.drawn(lambda: draw_profile(drawn, curves, look))
+    return Plot(lambda look: _draw_profile(look, drawn, curves), partial(write_csv, curves), notes=drawn.notes)
 
 
-def draw_profile(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
-    """Draw the curves of :func:`fastpin.report.stress.depth_curves` of these states."""
+def _draw_profile(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
     sheet = look.sheet([2.0, 2.0], columns=2, extra=1.5)
     axes = sheet.axes
     sheet.grid()
@@ -191,7 +184,8 @@ def plot_stress_field(
     """Draw a map of one component of the stress in pin and plate.
 
     The hole's edge is a thin line, and the contact a thick one. The clearance is too narrow to be seen. Under a point
-    force at the pin's centre the stress is infinite; the values near the force do not set the colours.
+    force at the pin's centre the stress is infinite; the values near the force do not set the colours. Other arguments
+    are those of :func:`fastpin.plot_tractions`.
 
     Parameters
     ----------
@@ -203,22 +197,37 @@ def plot_stress_field(
         "both" leaves out a rigid body.
     extent : float
         Outer radius of the map, in units of the hole's radius.
-    path, title, width, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
     look = Look(path, title, width, ax=ax)
-    chosen = drawn_states(state, "last")[0] if isinstance(state, Result) else instance("state", state, State, "a State")
-    curves = field_curves(chosen, component, body, extent)
-    return look.drawn(lambda: draw_field(chosen, curves, component, look))
+    chosen = state if isinstance(state, Result) else instance("state", state, State, "a State")
+    return look.drawn(map_plot(InMemory(chosen), "last", component, body, extent))
 
 
-def draw_field(state: State, curves: list[Curve], component: str, look: Look) -> Sheet:
-    """Draw the curves of :func:`fastpin.report.stress.field_curves` of this state."""
+def map_plot(
+    subject: Subject,
+    states: StateChoice = None,
+    component: str = "von_mises",
+    body: str = "both",
+    extent: float = 2.0,
+) -> Plot:
+    """Return a map of one component of the stress in the last one of some states, see :func:`plot_stress_field`."""
+    drawn = subject.states("last" if states is None else states)
+    state = drawn[-1]
+    curves = field_curves(state, component, body, extent)
+    words = COMPONENTS[component]
+    point = f"load point {load_point(state):.4g}: {named_loads(state.problem, state.load)}"
+    return Plot(
+        lambda look: _draw_field(look, state, curves, component),
+        partial(write_csv, curves),
+        f"Map of the {words} in pin and plate at {point}.",
+        f"{words[0].upper()}{words[1:]} at {point}. The thick line is the contact, white where it slips.",
+        drawn.notes,
+        width=FIELD_WIDTH,
+        bitmap=True,
+    )
+
+
+def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: str) -> Sheet:
     sheet = look.sheet([0.9 * look.width], extra=0.0)
     panel = sheet.axes[0, 0]
     unit, radius = units(state.problem)["traction"], state.problem.hole_radius

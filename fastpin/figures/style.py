@@ -5,9 +5,10 @@ Matplotlib is used without global state and needs no display.
 
 from __future__ import annotations
 
+import contextlib
 import io
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -79,33 +80,25 @@ STYLE: Any = {
 """Settings of Matplotlib (``rcParams``)."""
 
 
-def draw_and_save(draw: Callable[[], Figure], path: str | Path | None, dpi: float) -> Figure:
-    """Draw a figure in the house style, save it if a path is given, and return it.
+@contextlib.contextmanager
+def house_style() -> Iterator[None]:
+    """Draw and save figures in the house style inside a ``with`` block."""
+    with mpl.rc_context(STYLE), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing")  # A title may have letters that no font has.
+        yield
 
-    Parameters
-    ----------
-    draw : callable
-        ``draw()`` returns the figure.
-    path : path or None
-        The suffix chooses the format.
-    dpi : float
-        Dots per inch of a bitmap.
+
+def save_figure(figure: Figure, path: Path, dpi: float) -> None:
+    """Write a figure, whole or not at all. Equal figures are equal files: no file has a date.
 
     Raises
     ------
     InputError
-        If `dpi` is out of range, the format is unknown, or the file can't be written. It comes before the figure is
-        drawn where possible.
+        If the file can't be written.
     """
-    resolution = number_of_dots(dpi)
-    if path is not None:
-        check_format(file_path("path", path))
-    with mpl.rc_context(STYLE), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph .* missing")  # A title may have letters that no font has.
-        figure = draw()
-        if path is not None:
-            _save(figure, Path(path), resolution)
-    return figure
+    dated = {"svg": "Date", "pdf": "CreationDate"}.get(path.suffix[1:].lower())
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=dpi, metadata={dated: None} if dated else None)
 
 
 def number_of_dots(dpi: float) -> float:
@@ -179,8 +172,18 @@ def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
 
 
 def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
-    """Draw the figure of ``draw(curves)`` in the house style and save it, see :func:`draw_and_save`."""
-    draw_and_save(lambda: draw(curves), path, dpi)
+    """Draw the figure of ``draw(curves)`` in the house style, and save it.
+
+    Raises
+    ------
+    InputError
+        If `dpi` is out of range, the format is unknown, or the file can't be written. It comes before the figure is
+        drawn where possible.
+    """
+    resolution, target = number_of_dots(dpi), file_path("path", path)
+    check_format(target)
+    with house_style():
+        save_figure(draw(curves), target, resolution)
 
 
 def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:
@@ -217,12 +220,6 @@ def check_format(path: Path) -> None:
     if path.suffix[1:].lower() not in FigureCanvasAgg.get_supported_filetypes():
         raise no_figure("path", path)
     check_writable(path)
-
-
-def _save(figure: Figure, path: Path, dpi: float) -> None:
-    dated = {"svg": "Date", "pdf": "CreationDate"}.get(path.suffix[1:].lower())
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=dpi, metadata={dated: None} if dated else None)
 
 
 def fitted_legend(figure: Figure, handles: list[Artist], columns: int, title: str = "") -> None:

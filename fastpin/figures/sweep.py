@@ -22,7 +22,7 @@ from matplotlib.transforms import Bbox
 
 from fastpin.errors import InputError
 from fastpin.figures.class_map import class_patches, draw_classes
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
 from fastpin.figures.words import caption, shown_unit
 from fastpin.model.checks import instance
@@ -94,39 +94,28 @@ def plot_sweep(
     above the maps names the largest bar. Positive values that differ by a factor of 30 or more have a logarithmic
     scale. Of more than :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
 
-    Parameters
-    ----------
-    chart : Chart
-        From :func:`fastpin.report.sweep.chart`.
-    path : path, optional
-        Also save the figure; the suffix chooses the format.
-    title : str, optional
-        The chart's own unless given.
-    width : float, optional
-        Width in inches; 5.4 to 7.6 unless given.
-    dpi : float
-        Dots per inch of a saved bitmap.
-    ax : matplotlib axes, optional
-        Axes to draw curves or a single map in, instead of a new figure.
-
-    Returns
-    -------
-    Figure
-        The new figure, or the figure of `ax`.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, the figure's format is unknown, the file can't be written, or `ax` is given for
-        several maps.
+    The chart is made by :func:`fastpin.report.sweep.chart`. It gives the title and the width unless these are given.
+    Only curves or a single map go into `ax`. The other arguments are those of :func:`fastpin.plot_tractions`.
     """
-    instance("chart", chart, Chart, "a Chart")
+    plot = sweep_of(chart)
     maps = 0 if chart.y is None else len(chart.parts)
     if ax is not None and maps > 1:
         raise InputError("ax", f"holds one map, but the chart has {maps}")
-    natural = {0: 5.8, 1: 5.4}.get(maps, 7.6)
-    look = Look(path, chart.title if title is None else title, natural if width is None else width, dpi, ax)
-    return look.drawn(lambda: _draw_curves(chart, look) if chart.y is None else _draw_maps(chart, look))
+    look = Look(path, chart.title if title is None else title, plot.width if width is None else width, dpi, ax)
+    return look.drawn(plot)
+
+
+def sweep_of(chart: Chart) -> Plot:
+    """Return maps or curves of a sweep, see :func:`plot_sweep`."""
+    instance("chart", chart, Chart, "a Chart")
+    over = chart.x.label if chart.y is None else f"{chart.x.label} and {chart.y.label}"
+    missing = f" {chart.missing:,} points have no value." if chart.missing else ""
+    return Plot(
+        lambda look: _draw_curves(look, chart) if chart.y is None else _draw_maps(look, chart),
+        instead=f"{'Curves' if chart.y is None else 'Map'} of {chart.label} over {over}.",
+        caption=f"{chart.label[0].upper()}{chart.label[1:]} over {over}.{missing}",
+        width=5.8 if chart.y is None else 5.4 if len(chart.parts) == 1 else 7.6,
+    )
 
 
 def cell_edges(axis: Axis) -> np.ndarray:
@@ -141,7 +130,7 @@ def cell_edges(axis: Axis) -> np.ndarray:
     return np.exp(edges) if axis.log else edges
 
 
-def _draw_maps(chart: Chart, look: Look) -> Sheet:
+def _draw_maps(look: Look, chart: Chart) -> Sheet:
     assert chart.y is not None
     columns = min(len(chart.parts), MOST_COLUMNS)
     rows = math.ceil(len(chart.parts) / columns)
@@ -315,7 +304,7 @@ def _explain(sheet: Sheet, chart: Chart) -> None:
     sheet.legend(_by_rows(handles, MOST_ENTRIES), MOST_ENTRIES)
 
 
-def _draw_curves(chart: Chart, look: Look) -> Sheet:
+def _draw_curves(look: Look, chart: Chart) -> Sheet:
     shown = spread(len(chart.parts), MAX_NAMED)
     names = [_shown(chart.parts[k][0].replace("\n", ", ")) for k in shown]
     across = max(1, min(3, 78 // (max(map(len, names)) + 8)))  # entries of the legend side by side

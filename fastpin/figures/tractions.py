@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,15 +15,16 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.sketch import draw_sketch, load_ranges
-from fastpin.figures.states import DrawnStates, Frame, drawn_states, name_states, state_lines
+from fastpin.figures.states import DrawnStates, Frame, name_states, state_lines
 from fastpin.figures.style import Line
-from fastpin.figures.words import ANGLE, point_text, quantity
+from fastpin.figures.subjects import InMemory, Subject
+from fastpin.figures.words import ANGLE, point_text, points_text, quantity
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.checks import true_or_false
 from fastpin.model.units import units
-from fastpin.report.curves import Curve
+from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
@@ -66,12 +68,8 @@ def plot_tractions(
 
     The upper panel shows the pressure N. The middle panel shows the shear traction T on the pin, counter-clockwise
     positive, and its bounds +-mu N as thin lines. The lower panel shows where each state slips (light) or sticks
-    (solid). Arrows show how the pin slips. An arrow above a row marks a slip zone that is too narrow to be seen. A
-    single state has no lower panel; its slip zones are shaded in the panels above. Without friction there is only the
-    upper panel. Angles are in degrees from the bottom of the hole, counter-clockwise positive.
-
-    The curves follow the power laws at contact edges and stick-slip borders, see :mod:`fastpin.reading.refined`. At
-    most :data:`~fastpin.figures.style.MAX_NAMED` states are drawn.
+    (solid). Arrows show how the pin slips. A single state has no lower panel; its slip zones are shaded. Angles are in
+    degrees from the bottom of the hole, counter-clockwise positive. At most eight states are drawn.
 
     Parameters
     ----------
@@ -93,12 +91,7 @@ def plot_tractions(
     bars : bool
         Whether a light band shows the error bars of each curve; see :mod:`fastpin.states.traction_bars`.
     ax : matplotlib axes, optional
-        Axes to draw in, instead of a new figure. Several panels divide them.
-
-    Returns
-    -------
-    Figure
-        The new figure, or the figure of `ax`.
+        Axes to draw in, instead of a new figure. Several panels divide them. The figure of `ax` is returned then.
 
     Raises
     ------
@@ -106,15 +99,25 @@ def plot_tractions(
         If there is no such state, an argument is out of range, `bars` are asked for but the states have none, the
         figure's format is unknown, or the file can't be written.
     """
-    look = Look(path, title, width, dpi, ax)
-    drawn, beside = drawn_states(result, states), true_or_false("sketch", sketch)
-    banded = true_or_false("bars", bars)
-    return look.drawn(lambda: draw_tractions(drawn, look, beside, banded))
+    return Look(path, title, width, dpi, ax).drawn(tractions_plot(InMemory(result), states, sketch, bars))
 
 
-def draw_tractions(states: DrawnStates, look: Look, sketch: bool = False, bars: bool = False) -> Sheet:
-    """Draw the tractions of these states on a new sheet, with or without a sketch beside the pressure, and bands."""
-    curves = traction_curves(states, bars)
+def tractions_plot(subject: Subject, states: StateChoice = None, sketch: bool = False, bars: bool = False) -> Plot:
+    """Return pressure and shear traction of states, see :func:`plot_tractions`."""
+    drawn = subject.states(states)
+    true_or_false("sketch", sketch)
+    curves = traction_curves(drawn, true_or_false("bars", bars))
+    return Plot(
+        lambda look: _draw(look, drawn, curves, sketch, bars),
+        partial(write_csv, curves),
+        f"Line charts of contact pressure and shear traction over the angle round the hole, at load points "
+        f"{points_text(drawn)}. Bars below show where each state sticks and slips.",
+        "Pressure N and shear traction T on the pin, counter-clockwise positive; below, stick and slip of each state.",
+        drawn.notes,
+    )
+
+
+def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve], sketch: bool, bars: bool) -> Sheet:
     frictionless = states[0].problem.frictionless
     lines = state_lines(states)
     zones = not frictionless and len(states) > 1

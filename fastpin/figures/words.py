@@ -57,6 +57,11 @@ def point_text(state: State) -> str:
     return f"{load_point(state):,.3f}".rstrip("0").rstrip(".")
 
 
+def points_text(states: Sequence[State]) -> str:
+    """The load points of states as text, for readers who can't see their curves."""
+    return ", ".join(f"{load_point(state):.4g}" for state in states)
+
+
 def load_text(states: Sequence[State], index: int, name: str) -> str:
     """A load of one of the states with its unit as text. All loads of one kind have the same unit."""
     same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]

@@ -11,6 +11,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from fastpin.errors import OutputError
+from fastpin.figures.sheet import Plot
 from fastpin.pages.content import Picture
 
 MOST_SVG = 250_000
@@ -38,6 +39,10 @@ class Album:
 
     def __init__(self) -> None:
         self._count = 0
+
+    def figure(self, plot: Plot) -> Picture:
+        """Return a figure as a part of a page, with its caption."""
+        return self.picture(plot.save, plot.instead, plot.caption, plot.bitmap)
 
     def picture(self, draw: Callable[[Path], object], words: str, caption: str, bitmap: bool = False) -> Picture:
         """Return a figure as a part of a page.

@@ -9,6 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.figures.convergence import convergence_of
+from fastpin.figures.cycles import cycles_of
+from fastpin.figures.fatigue import fatigue_of
+from fastpin.figures.history import history_of
+from fastpin.figures.load_cycle import loops_of, slip_of
+from fastpin.figures.sketch import sketch_of
+from fastpin.figures.stick_slip import stick_slip_plot
+from fastpin.figures.stress import hoop_plot, map_plot
+from fastpin.figures.subjects import InMemory
+from fastpin.figures.tractions import tractions_plot
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.checks import as_toml
@@ -18,7 +28,6 @@ from fastpin.model.materials import Material
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
-from fastpin.pages import drawings
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
 from fastpin.pages.source import Source
@@ -164,7 +173,7 @@ def case(page: PageParts) -> PageSection:
         "case",
         "Case",
         [
-            *_drawn(lambda: drawings.sketch(page.album, found)),
+            *_drawn(lambda: page.album.figure(sketch_of(found))),
             Facts("The problem", rows, ("subject", "in words")),
             Facts("Options of the solver", solver, ("option", "value", "meaning")),
         ],
@@ -230,7 +239,10 @@ def loads(page: PageParts) -> PageSection:
         columns = [(name, unit, cells[:half] + cells[-half:]) for name, unit, cells in columns]
         gaps = {half: f"{hidden + count - MAX_ROWS:,} corners not shown here"}
     remarks = [Text("L_p is the load parameter (R - R_D)/(F beta*) of the force F on the pin.")]
-    parts: list[SectionPart] = [Facts("Loads", rows, ("load", "meaning")), drawings.history(page.album, found, initial)]
+    parts: list[SectionPart] = [
+        Facts("Loads", rows, ("load", "meaning")),
+        page.album.figure(history_of(found.problem, history, initial)),
+    ]
     if initial.any():
         kept = named_loads(found.problem, named_load(initial))
         remarks.append(Text(f"The run continues another result. It begins with its loads: {kept}.", "note"))
@@ -276,7 +288,7 @@ def tractions(page: PageParts) -> PageSection:
         return PageSection(
             "tractions", "Tractions", [Text("Pin and hole do not touch in the drawn states.", "missing")]
         )
-    return PageSection("tractions", "Tractions", [drawings.tractions(page.album, page.source.drawn)])
+    return PageSection("tractions", "Tractions", [page.album.figure(tractions_plot(InMemory(page.source.drawn)))])
 
 
 def zones(page: PageParts) -> PageSection:
@@ -290,7 +302,7 @@ def zones(page: PageParts) -> PageSection:
     columns = [(heads[k], units_[k], [row[k] for row in rows]) for k in range(len(heads))]
     parts: list[SectionPart] = [Table("Zones of contact, stick and slip", columns)]
     if len(page.source.mapped) > 1:
-        parts = [*_drawn(lambda: drawings.stick_slip(page.album, page.source.mapped)), *parts]
+        parts = [*_drawn(lambda: page.album.figure(stick_slip_plot(InMemory(page.source.mapped)))), *parts]
     return PageSection("zones", "Stick and slip", parts)
 
 
@@ -324,15 +336,15 @@ def hysteresis(page: PageParts) -> PageSection:
         if source.last_cycle is None:
             words = "The history has no repeated block; its last part begins and ends with the same loads"
             parts.append(Text(f"{words}: corners {cycle.first:,} to {cycle.last:,}."))
-        parts += _drawn(lambda: drawings.loops(page.album, cycle))
+        parts += _drawn(lambda: page.album.figure(loops_of([cycle])))
         if len(cycle.states) <= STRAIGHT:
             parts.append(Text("Loops need states between the corners, such as between = 20 in [solve].", "missing"))
         if _slips(cycle):
-            parts += _drawn(lambda: drawings.slip(page.album, cycle))
+            parts += _drawn(lambda: page.album.figure(slip_of(cycle)))
         else:
             parts.append(Text(_sentence(NO_SLIP.format(cycle))))
     if source.result.cycles:
-        parts += _drawn(lambda: drawings.cycles(page.album, source.result))
+        parts += _drawn(lambda: page.album.figure(cycles_of(source.result)))
         lines = cycle_lines(source.case.problem, source.result.cycles, source.peaks)
         if len(lines) > MOST_BLOCKS:
             parts.append(Items([_sentence(line) for line in lines]))
@@ -358,7 +370,7 @@ def stresses(page: PageParts) -> PageSection:
     drawn, problem = page.source.drawn, page.source.case.problem
     if not drawn:
         return PageSection("stresses", "Stresses", [Text(NO_STATE, "missing")])
-    parts = _drawn(lambda: drawings.hoop(page.album, drawn))
+    parts = _drawn(lambda: page.album.figure(hoop_plot(InMemory(drawn))))
     peaks = page.source.peaks
     lines = [hoop_line(problem, peaks, body) for body in EDGES]
     parts += [Text(_sentence(line)) for line in lines if line]
@@ -366,7 +378,7 @@ def stresses(page: PageParts) -> PageSection:
         largest = max(peaks, key=lambda state: state.peak_pressure)
     else:
         largest = max(peaks, key=lambda state: state.peak_hoop_stress().value)
-    parts += _drawn(lambda: drawings.stress_map(page.album, largest))
+    parts += _drawn(lambda: page.album.figure(map_plot(InMemory(largest))))
     return PageSection("stresses", "Stresses", parts)
 
 
@@ -375,7 +387,7 @@ def fatigue(page: PageParts) -> PageSection:
     found = page.source.fatigue
     if isinstance(found, str):
         return PageSection("fatigue", "Fatigue", [Text(found, "missing")])
-    parts: list[SectionPart] = [drawings.fatigue(page.album, found)]
+    parts: list[SectionPart] = [page.album.figure(fatigue_of(found))]
     for one in found:
         parts.append(Text(_sentence(hot_spot_line(one, page.source.peaks))))
         if one.life is None:
@@ -398,7 +410,7 @@ def convergence(page: PageParts) -> PageSection:
             rows = reported_series(one, study.problem, corner)
             words = f"Corner {corner:,}, {heading(one, study).removesuffix(':')}"
             parts.append(Table(words, series_columns(one, rows)))
-    parts.append(drawings.convergence(page.album, study))
+    parts.append(page.album.figure(convergence_of(study)))
     return PageSection("convergence", "Convergence", parts)
 
 

@@ -10,9 +10,9 @@ from typing import Any
 
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, read_text
 from fastpin.errors import CaseFileError, InputError
+from fastpin.figures.sweep import sweep_of
 from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance
-from fastpin.pages import drawings
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Listing, Page, PageSection, SectionPart, Table, Text
 from fastpin.pages.result import merged
@@ -172,7 +172,7 @@ def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSec
         if found.missing == len(runs):
             parts.append(Text(f"There is no figure of {name}: no run has a value.", "missing"))
         else:
-            parts.append(drawings.sweep(album, found))
+            parts.append(album.figure(sweep_of(found)))
     if len(names) > MOST_CHARTS:
         others = ", ".join(names[MOST_CHARTS:])
         parts.append(Text(f"Not drawn here: {others}. fastpin sweep --plot FILE --value NAME draws one.", "missing"))

@@ -2,14 +2,15 @@
 
 import csv
 import functools
+import importlib
+import inspect
 
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, load, record, report, storage
+from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, load, record, storage
 from fastpin.cli.main import main
-from fastpin.cli.options import PLOT_OPTIONS
-from fastpin.cli.plot import KINDS
+from fastpin.figures.kinds import KIND_OPTIONS, KINDS
 
 
 @pytest.fixture(scope="module")
@@ -35,15 +36,21 @@ def _extremes_are_found_once(monkeypatch):
 @pytest.fixture
 def coarse(monkeypatch):
     """Maps of few points: those of a usual one take seconds to draw and to write."""
-    monkeypatch.setattr(report.stress, "field_curves", functools.partial(report.stress.field_curves, fineness=40))
+    monkeypatch.setattr(figures.stress, "field_curves", functools.partial(figures.stress.field_curves, fineness=40))
 
 
 def read_rows(path):
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-def test_every_kind_has_its_options():
-    assert list(KINDS) == list(PLOT_OPTIONS)
+def test_the_function_of_each_kind_has_its_options():
+    used = set()
+    for name, kind in KINDS.items():
+        make = getattr(importlib.import_module(f"fastpin.figures.{kind.file}"), f"{name.replace('-', '_')}_plot")
+        _, *options = inspect.signature(make).parameters
+        assert sorted(options) == sorted({*kind.options} - {"csv"}), name
+        used |= {*options}
+    assert used == set(KIND_OPTIONS)
 
 
 BARE = ("load point", "cycle", "corner", "length", "number", "pressure_change", "shear_change")
@@ -51,7 +58,7 @@ BARE = ("load point", "cycle", "corner", "length", "number", "pressure_change", 
 
 
 @pytest.mark.usefixtures("coarse")
-@pytest.mark.parametrize("kind", [kind for kind, names in PLOT_OPTIONS.items() if "csv" in names])
+@pytest.mark.parametrize("kind", [name for name, kind in KINDS.items() if "csv" in kind.options])
 def test_a_figure_and_its_numbers_with_units(stored, kind, tmp_path, capsys):
     figure, numbers = tmp_path / f"{kind}.svg", tmp_path / f"{kind}.csv"
     assert main(["plot", str(stored), kind, "-o", str(figure), "--csv", str(numbers)]) == 0

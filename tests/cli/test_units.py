@@ -23,6 +23,7 @@ from matplotlib.text import Text
 from fastpin import casefile
 from fastpin.cli import options
 from fastpin.cli.main import main
+from fastpin.figures.kinds import KINDS
 from fastpin.live.contact import LiveContact
 from fastpin.live.protocol import Message
 from fastpin.report.summary import json_ready
@@ -140,8 +141,8 @@ def walk(found: Walk, monkeypatch: pytest.MonkeyPatch) -> None:
     command("run", "case.toml", "--nodes", "101", "--error-bars", "--json", "run.json", "--cycle-csv", "run.csv")
     command("run", "case.toml", "-o", "a.h5", "--plot", "b.svg", "--record", "record.html", "--cycles", "a.svg")
     command("show", "a.h5", "--json", "show.json")
-    for kind, allowed in options.PLOT_OPTIONS.items():
-        name = f"{kind}.{'gif' if kind == 'animation' else 'svg'}"
+    for kind, (_, _, allowed, ending) in KINDS.items():
+        name = f"{kind}.{'gif' if ending == 'gif' else 'svg'}"
         states = ["--states", "2,3"] if "states" in allowed and kind != "sketch" else []
         command("plot", "a.h5", kind, "-o", name, *states, *(["--csv", f"{kind}.csv"] if "csv" in allowed else []))
     command("report", "a.h5", "-o", "report.html")

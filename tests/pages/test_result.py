@@ -15,10 +15,12 @@ import pytest
 import fastpin
 from fastpin.bodies import Bushing
 from fastpin.errors import InputError, OutputError
+from fastpin.figures.stick_slip import stick_slip_plot
+from fastpin.figures.subjects import InMemory
 from fastpin.model import Material, MaterialPair
 from fastpin.model.loads import LOAD, LOADS
 from fastpin.model.options import OPTIONS, SolveOptions
-from fastpin.pages import album, drawings, write_report
+from fastpin.pages import album, write_report
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Text
 from fastpin.pages.sections import (
@@ -181,7 +183,7 @@ def test_a_gap_may_be_the_last_row(tmp_path: Path) -> None:
 def test_a_map_holds_all_states_or_says_that_it_does_not(joined: int, words: str, undrawn: None, monkeypatch) -> None:
     monkeypatch.setattr("fastpin.pages.source.MOST_JOINED", joined)
     source = Source.of_result(sample_result([{"P": 1e6 + 100.0 * k} for k in range(70)], nodes=21))
-    picture = drawings.stick_slip(Album(), source.mapped)
+    picture = Album().figure(stick_slip_plot(InMemory(source.mapped)))
     assert picture.caption.startswith(f"{words} and slip over the angle")
 
 

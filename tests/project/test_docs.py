@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from fastpin.cli.main import main
-from fastpin.cli.options import PLOT_OPTIONS
+from fastpin.figures.kinds import KINDS
 from fastpin.paper import catalog
 from fastpin.studies import sweep
 from fastpin.studies.outcome_tables import KEYS
@@ -131,7 +131,7 @@ def test_the_example_of_figures_draws_them(tmp_path: Path, monkeypatch: pytest.M
     exec(compile(code, "figures.md", "exec"), names)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["cycle.gif", "loops.pdf", "map.svg", "tractions.pdf"]
     assert names["axes"].texts
-    for kind in PLOT_OPTIONS:
+    for kind in KINDS:
         assert f"`{kind}`" in text, kind
 
 

@@ -1,0 +1,93 @@
+"""The kinds of figures of a result, with their options. Nothing heavy is imported here: help is answered at once.
+
+A line of :data:`KINDS` is a kind for ``fastpin plot``.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class KindOption(NamedTuple):
+    """An option of some kinds of figures.
+
+    Attributes
+    ----------
+    words : str
+        Its help on the command line.
+    metavar : str or None
+        The name of its value there.
+    type : str
+        "text", "number" or "flag" (without a value).
+    """
+
+    words: str
+    metavar: str | None = None
+    type: str = "text"
+
+
+STATES_HELP = "last, cycle (the last one), all, load points such as 2,3.5, or ranges such as 1-9,20-"
+"""Help on the choice of states."""
+
+KIND_OPTIONS = {
+    "states": KindOption(STATES_HELP, "WHICH"),
+    "cycle": KindOption(
+        "loops: last (default), blocks (the last cycle of each block), all, or cycles such as 3, 1,5 or 10-, "
+        "counted from 1",
+        "N",
+    ),
+    "abscissa": KindOption(
+        "loops: prescribed (default where a displacement is prescribed) or pin (its displacement)", "WHICH"
+    ),
+    "sketch": KindOption("tractions: add a small sketch of the joint", type="flag"),
+    "bars": KindOption("tractions: draw the error bars as bands (run --error-bars)", type="flag"),
+    "rate": KindOption("animation: states a second (default 4)", "N", "number"),
+    "body": KindOption("plate, pin, seat (the plate round a bush), or (hoop and map) both"),
+    "component": KindOption("map: von_mises (default), largest, hoop, radial, shear, sxx, ..."),
+    "extent": KindOption("map: outer radius (default 2)", "RADII", "number"),
+    "angle": KindOption("profile: place (default: the largest hoop stress)", "DEG", "number"),
+    "depth": KindOption("profile: largest depth, in radii; fatigue: depth of the points, m", "D", "number"),
+    "criterion": KindOption("fatigue: smith-watson-topper (default), fatemi-socie, findley, ..."),
+}
+"""Options of figures, in the order of the help. Each is a keyword of the functions of the kinds that have it."""
+
+
+class Kind(NamedTuple):
+    """A kind of figure of a result.
+
+    Attributes
+    ----------
+    file : str
+        The file of this folder that makes the figure. Its function ``KIND_plot(subject, **options)`` returns a
+        :class:`fastpin.figures.sheet.Plot` of a :class:`fastpin.figures.states.Subject`.
+    words : str
+        Its help on the command line; empty if the name says it.
+    options : tuple of str
+        Names of :data:`KIND_OPTIONS`, and "csv" if the figure has numbers.
+    ending : str
+        The ending of the file, unless the user names one.
+    """
+
+    file: str
+    words: str
+    options: tuple[str, ...]
+    ending: str = "png"
+
+
+KINDS = {
+    "tractions": Kind("tractions", "", ("states", "csv", "sketch", "bars")),
+    "polar": Kind("polar", "tractions over the circle of the hole", ("states", "csv")),
+    "stick-slip": Kind("stick_slip", "map of stick and slip over load points", ("states", "csv")),
+    "sketch": Kind("sketch", "pin, plate and loads", ("states",)),
+    "animation": Kind("animation", "the states of the last cycle, one after the other", ("states", "rate"), "gif"),
+    "hoop": Kind("stress", "hoop stress round hole and pin", ("states", "csv", "body")),
+    "profile": Kind("stress", "stresses below the edge", ("states", "csv", "body", "angle", "depth")),
+    "map": Kind(
+        "stress", "one component of the stress in both bodies", ("states", "csv", "body", "component", "extent")
+    ),
+    "cycles": Kind("cycles", "changes in each cycle", ("csv",)),
+    "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv",)),
+    "loops": Kind("load_cycle", "hysteresis loops of the last cycle, or of several", ("csv", "cycle", "abscissa")),
+    "fatigue": Kind("fatigue", "a criterion along the edge over the last cycle", ("csv", "body", "criterion", "depth")),
+}
+"""The kinds of figures by their names on the command line."""

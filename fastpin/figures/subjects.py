@@ -1,0 +1,89 @@
+"""The subjects of figures: results in memory and in files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+from fastpin.errors import InputError
+from fastpin.figures.states import DrawnStates, drawn_states, stored_states
+from fastpin.model.checks import instance
+from fastpin.solver.result import Result
+from fastpin.states.choice import NO_CYCLE, StateChoice
+from fastpin.states.cycles import Cycle
+from fastpin.states.state import State
+from fastpin.storage.store import load, places_between
+
+
+class Subject(Protocol):
+    """A result, or states, of which figures are made. States alone have no cycles."""
+
+    @property
+    def cycles(self) -> Sequence[Cycle]:
+        """The cycles of the history."""
+
+    def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
+        """Return the states of a figure, see :func:`fastpin.figures.states.drawn_states`."""
+
+    def result(self) -> Result:
+        """Return the result, perhaps without its states."""
+
+    def part(self, cycle: Cycle) -> Result:
+        """Return the result with the states of one cycle, perhaps without the others."""
+
+
+class InMemory:
+    """A result, a sequence of states of one problem and on one grid, or one state."""
+
+    def __init__(self, result: Sequence[State] | State) -> None:
+        self._result = result
+
+    @property
+    def cycles(self) -> Sequence[Cycle]:
+        """The cycles of the history."""
+        return self._result.cycles if isinstance(self._result, Result) else ()
+
+    def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
+        """Return the states of a figure."""
+        return drawn_states(self._result, states, **how)
+
+    def result(self) -> Result:
+        """Return the result."""
+        return instance("result", self._result, Result, "a Result")
+
+    def part(self, cycle: Cycle) -> Result:
+        """Return the result."""
+        return self.result()
+
+
+class InFile:
+    """A stored result. Only the states that a figure shows are read."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    @property
+    def cycles(self) -> Sequence[Cycle]:
+        """The cycles of the history."""
+        return self.result().cycles
+
+    def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
+        """Return the states of a figure."""
+        return stored_states(self._path, states, **how)
+
+    def result(self) -> Result:
+        """Return the result without its states."""
+        return load(self._path, states=[])
+
+    def part(self, cycle: Cycle) -> Result:
+        """Return the result with the states of one cycle only."""
+        return load(self._path, states=places_between(self._path, cycle.corner + 1 - cycle.length, cycle.corner + 1))
+
+
+def with_cycles(subject: Subject) -> Result:
+    """Return the result of a subject, perhaps without its states. Without a cycle raise :class:`InputError`."""
+    result = subject.result()
+    if not result.cycles:
+        raise InputError("result", NO_CYCLE)
+    return result
