@@ -12,14 +12,17 @@ Van, Sci. Tech. Armement 47 (1973); Papadopoulos et al., Int. J. Fatigue 19 (199
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fastpin.damage import lives
 from fastpin.errors import InputError
 from fastpin.kernels import planes, spheres
 from fastpin.model.checks import number, numbers, positive
+from fastpin.model.materials import Material
 from fastpin.runtime.threads import in_chunks
 
 COMPONENTS = ("sxx", "syy", "szz", "sxy")
@@ -27,6 +30,11 @@ COMPONENTS = ("sxx", "syy", "szz", "sxy")
 
 CHUNK = 64
 """Points that one thread searches at a time."""
+
+ROUNDING = 1e-9
+"""A parameter below this part of its natural size is rounding: its angle and plane have no meaning."""
+
+Criterion = Literal["smith-watson-topper", "fatemi-socie", "findley", "crossland", "dang-van"]
 
 
 class Planes(NamedTuple):
@@ -262,3 +270,101 @@ def _worst(swung: np.ndarray, push: np.ndarray, form: int) -> Planes:
     out = np.empty((paths.shape[0], 2))
     in_chunks(paths.shape[0], CHUNK, lambda part: planes.worst_planes(paths[part], form, out[part]))
     return Planes(out[:, 0], out[:, 1])
+
+
+class CriterionValues(NamedTuple):
+    """The values of a criterion at points of one material.
+
+    Attributes
+    ----------
+    parameter : ndarray, shape (points,)
+    plane : ndarray, shape (points,), or None
+        See :class:`Planes`. None for a criterion without planes.
+    limit : float or None
+        Parameter at the fatigue limit; None for a criterion without a limit.
+    life : ndarray, shape (points,), or None
+        Cycles; None until the constants of the life are known.
+    """
+
+    parameter: np.ndarray
+    plane: np.ndarray | None
+    limit: float | None
+    life: np.ndarray | None = None
+
+
+class FatigueCriterion(NamedTuple):
+    """A criterion of fatigue. Its constants are fields of :class:`fastpin.model.FatigueConstants`.
+
+    Attributes
+    ----------
+    kind : str
+        The kind of its parameter, a key of :func:`fastpin.model.units.units`.
+    needs : tuple of str
+        The constants of the parameter.
+    values : callable
+        ``values(history, material, *constants)`` returns its :class:`CriterionValues`.
+    life_needs : tuple of str
+        The constants of the life.
+    life : callable or None
+        ``life(parameter, material, *constants)`` returns the lives, cycles; None for a criterion without lives.
+    """
+
+    kind: str
+    needs: tuple[str, ...]
+    values: Callable[..., CriterionValues]
+    life_needs: tuple[str, ...] = ()
+    life: Callable[..., np.ndarray] | None = None
+
+
+def _smith_watson_topper(history: np.ndarray, material: Material) -> CriterionValues:
+    found = smith_watson_topper(history, material.E, material.nu)
+    return _without_rounding(found, float(np.abs(history).max(initial=0.0)) ** 2 / material.E)
+
+
+def _fatemi_socie(history: np.ndarray, material: Material, k: float, yield_strength: float) -> CriterionValues:
+    found = fatemi_socie(history, material.shear_modulus, k, yield_strength)
+    return _without_rounding(found, float(np.abs(history).max(initial=0.0)) / material.shear_modulus)
+
+
+def _without_rounding(found: Planes, natural: float) -> CriterionValues:
+    """Planes with the parameter 0, and no angle, where the parameter is rounding beside its `natural` size."""
+    noise = found.parameter <= ROUNDING * natural
+    return CriterionValues(np.where(noise, 0.0, found.parameter), np.where(noise, np.nan, found.angle), None)
+
+
+def _by_limits(
+    criterion: Callable[[np.ndarray, float], Planes | np.ndarray], weight_and_limit: Callable[..., tuple[float, float]]
+) -> Callable[..., CriterionValues]:
+    """Return the values of a criterion whose weight and limit follow from the fatigue limits."""
+
+    def values(history: np.ndarray, material: Material, *limits: float) -> CriterionValues:
+        weight, limit = weight_and_limit(*limits)
+        found = criterion(history, weight)
+        parameter, plane = found if isinstance(found, Planes) else (found, None)
+        return CriterionValues(parameter, plane, limit)
+
+    return values
+
+
+_LIMITS = ("bending_limit", "torsion_limit")
+
+FATIGUE_CRITERIA: dict[str, FatigueCriterion] = {
+    "smith-watson-topper": FatigueCriterion(
+        "stress times strain",
+        (),
+        _smith_watson_topper,
+        ("fatigue_strength", "strength_exponent", "fatigue_ductility", "ductility_exponent"),
+        lambda parameter, material, *constants: lives.smith_watson_topper_life(parameter, material.E, *constants),
+    ),
+    "fatemi-socie": FatigueCriterion(
+        "rotation",
+        ("normal_stress_factor", "yield_strength"),
+        _fatemi_socie,
+        ("shear_fatigue_strength", "shear_strength_exponent", "shear_fatigue_ductility", "shear_ductility_exponent"),
+        lambda parameter, material, *constants: lives.fatemi_socie_life(parameter, material.shear_modulus, *constants),
+    ),
+    "findley": FatigueCriterion("traction", _LIMITS, _by_limits(findley, findley_limit)),
+    "crossland": FatigueCriterion("traction", _LIMITS, _by_limits(crossland, crossland_limit)),
+    "dang-van": FatigueCriterion("traction", _LIMITS, _by_limits(dang_van, dang_van_limit)),
+}
+"""The criteria by name."""

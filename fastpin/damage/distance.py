@@ -14,7 +14,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.damage.hot_spots import NO_CRACK, Criterion, Fatigue, cycle_stops, evaluated, fatigue, stress_history
+from fastpin.damage.criteria import Criterion
+from fastpin.damage.hot_spots import NO_CRACK, Fatigue, cycle_stops, evaluated, fatigue, stress_history
 from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, numbers, positive

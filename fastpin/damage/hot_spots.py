@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.damage import criteria, lives
-from fastpin.damage.criteria import Planes
+from fastpin.damage import lives
+from fastpin.damage.criteria import FATIGUE_CRITERIA, Criterion, CriterionValues
 from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.model.angles import near_bottom
@@ -28,19 +28,11 @@ from fastpin.states.choice import loaded_span_of, missing_corners, states_betwee
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 
-Criterion = Literal["smith-watson-topper", "fatemi-socie", "findley", "crossland", "dang-van"]
-
-CRITERIA = ("smith-watson-topper", "fatemi-socie", "findley", "crossland", "dang-van")
+CRITERIA = tuple(FATIGUE_CRITERIA)
 """The criteria; :mod:`fastpin.damage.criteria` has their formulas and sources."""
 
 NO_CRACK = "the parameter is 0 everywhere: no crack is expected"
 """Words in place of a hot spot."""
-
-WITH_LIFE = ("smith-watson-topper", "fatemi-socie")
-"""The criteria that give a life."""
-
-ROUNDING = 1e-9
-"""A parameter below this part of its natural size is rounding: its place and plane have no meaning."""
 
 EVERYWHERE = 360
 """Angles round the whole edge, besides the nodes and the ends of zones."""
@@ -115,8 +107,8 @@ class Fatigue(ReadOnly):
 
     @property
     def unit(self) -> str:
-        """Unit of the parameter: "rad", "Pa", or "F/R" in a dimensionless problem."""
-        return "rad" if self.criterion == "fatemi-socie" else units_per_thickness(self.problem)["traction"]
+        """Unit of the parameter: "rad" or "Pa", or that of a dimensionless problem, such as "F/R"."""
+        return units_per_thickness(self.problem)[FATIGUE_CRITERIA[self.criterion].kind]
 
     @property
     def margin(self) -> np.ndarray | None:
@@ -317,12 +309,11 @@ def evaluated(
     depth = np.broadcast_to(place[1], place[0].shape).ravel() / problem.hole_radius
     beyond = is_beyond_bush(problem, depth) if body == "plate" else np.zeros(depth.shape, dtype=bool)
     where: list[tuple[np.ndarray, Body]] = [(~beyond, body), (beyond, "seat")]
-    parts: list[tuple[np.ndarray, _Found]] = []
+    parts: list[tuple[np.ndarray, CriterionValues]] = []
     for chosen, part in [one for one in where if one[0].any()] or where[:1]:
         material = material_of(problem, part)
         given = (material.fatigue if constants is None else constants) or FatigueConstants()
-        values = _with_life if criterion in WITH_LIFE else _with_limit
-        parts.append((chosen, values(history[:, chosen], criterion, material, given, owner_of(problem, part))))
+        parts.append((chosen, _values(history[:, chosen], criterion, material, given, owner_of(problem, part))))
     shape, limit = place[0].shape, parts[0][1].limit
     parameter = _together([(chosen, one.parameter) for chosen, one in parts], shape)
     plane = _together([(chosen, one.plane) for chosen, one in parts], shape)
@@ -330,15 +321,6 @@ def evaluated(
     limits = None if len(parts) == 1 else _together([(chosen, one.limit) for chosen, one in parts], shape)
     assert parameter is not None
     return Fatigue(problem, criterion, body, *place, parameter, plane, life, limit if limits is None else limits)
-
-
-class _Found(NamedTuple):
-    """What a criterion finds at points of one material; see :class:`Fatigue`."""
-
-    parameter: np.ndarray
-    plane: np.ndarray | None
-    life: np.ndarray | None
-    limit: float | None
 
 
 def _together(
@@ -354,46 +336,11 @@ def _together(
     return found.reshape(shape)
 
 
-def _with_life(
-    history: np.ndarray, criterion: Criterion, material: Material, given: FatigueConstants, body: str
-) -> _Found:
-    """Parameter, plane and life; the life is None if the constants do not give one."""
-    largest = float(np.abs(history).max(initial=0.0))
-    if criterion == "smith-watson-topper":
-        found = criteria.smith_watson_topper(history, material.E, material.nu)
-        axial = ("fatigue_strength", "strength_exponent", "fatigue_ductility", "ductility_exponent")
-        found = _without_rounding(found, largest**2 / material.E)
-        known = [getattr(given, name) for name in axial]
-        life = None if None in known else lives.smith_watson_topper_life(found.parameter, material.E, *known)
-    else:
-        k, strength = given.required(("normal_stress_factor", "yield_strength"), criterion, body)
-        found = criteria.fatemi_socie(history, material.shear_modulus, k, strength)
-        torsional = (
-            "shear_fatigue_strength", "shear_strength_exponent", "shear_fatigue_ductility", "shear_ductility_exponent"
-        )  # fmt: skip
-        found = _without_rounding(found, largest / material.shear_modulus)
-        known = [getattr(given, name) for name in torsional]
-        life = None if None in known else lives.fatemi_socie_life(found.parameter, material.shear_modulus, *known)
-    return _Found(found.parameter, found.angle, life, None)
-
-
-def _without_rounding(found: Planes, natural: float) -> Planes:
-    """Planes with the parameter 0, and no angle, where the parameter is rounding beside its `natural` size."""
-    noise = found.parameter <= ROUNDING * natural
-    return Planes(np.where(noise, 0.0, found.parameter), np.where(noise, np.nan, found.angle))
-
-
-def _with_limit(
-    history: np.ndarray, criterion: Criterion, material: Material, given: FatigueConstants, body: str
-) -> _Found:
-    """Parameter, plane and limit, from the fatigue limits under bending and torsion."""
-    limits = given.required(("bending_limit", "torsion_limit"), criterion, body)
-    if criterion == "findley":
-        k, limit = criteria.findley_limit(*limits)
-        found = criteria.findley(history, k)
-        return _Found(found.parameter, found.angle, None, limit)
-    if criterion == "crossland":
-        alpha, limit = criteria.crossland_limit(*limits)
-        return _Found(criteria.crossland(history, alpha), None, None, limit)
-    a, limit = criteria.dang_van_limit(*limits)
-    return _Found(criteria.dang_van(history, a), None, None, limit)
+def _values(history: np.ndarray, name: str, material: Material, given: FatigueConstants, body: str) -> CriterionValues:
+    """Return the values of a criterion at points of one material, with the life if the constants give one."""
+    criterion = FATIGUE_CRITERIA[name]
+    found = criterion.values(history, material, *given.required(criterion.needs, name, body))
+    constants = [getattr(given, constant) for constant in criterion.life_needs]
+    if criterion.life is None or None in constants:
+        return found
+    return found._replace(life=criterion.life(found.parameter, material, *constants))

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.damage import NO_CRACK, Fatigue, cycle_states, fatigue
-from fastpin.damage.hot_spots import Criterion
+from fastpin.damage.criteria import Criterion
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import COLOURS, angle_axis, line

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.damage import Fatigue, cycle_states, fatigue
-from fastpin.damage.hot_spots import Criterion
+from fastpin.damage.criteria import Criterion
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.loads import LOAD_KIND

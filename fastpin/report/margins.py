@@ -13,7 +13,7 @@ import numpy as np
 
 from fastpin.damage import Fatigue
 from fastpin.damage import fatigue as fatigue_of
-from fastpin.damage.hot_spots import Criterion
+from fastpin.damage.criteria import Criterion
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import bodies_of, elastic_bodies, owner_of

@@ -21,6 +21,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
@@ -46,18 +47,6 @@ SPANS = ("history", "cycle")
 ROUNDING = 1e-9
 """Largest slip range without slip, in parts of the natural size of displacements."""
 
-CRITERIA_KINDS = {
-    "smith-watson-topper": "stress times strain",
-    "fatemi-socie": "rotation",
-    "findley": "traction",
-    "crossland": "traction",
-    "dang-van": "traction",
-}
-"""The kinds of the parameters of fatigue, see :class:`CycleQuantity`, by criterion."""
-
-WITH_LIFE = ("smith-watson-topper", "fatemi-socie")
-"""The criteria of fatigue that have a life."""
-
 _PACKAGE = Path(__file__).parents[1]
 
 _HOT_SPOTS: WeakKeyDictionary[Result, dict[tuple[str, Body], HotSpot]] = WeakKeyDictionary()
@@ -82,14 +71,15 @@ class CycleQuantity(NamedTuple):
     classes: Mapping[int, str] = MappingProxyType({})
 
 
-def _hot_spot_quantities(criterion: str, body: Body) -> dict[str, CycleQuantity]:
+def _hot_spot_quantities(name: str, body: Body) -> dict[str, CycleQuantity]:
     """Parameter, angle and, if the criterion has one, life at the hot spot of a body, by the end of their names."""
+    criterion = FATIGUE_CRITERIA[name]
     quantities = {
-        "": CycleQuantity(CRITERIA_KINDS[criterion], lambda result: _hot_spot(result, criterion, body).parameter),
-        "_angle": CycleQuantity("angle", lambda result: _hot_spot(result, criterion, body).theta),
+        "": CycleQuantity(criterion.kind, lambda result: _hot_spot(result, name, body).parameter),
+        "_angle": CycleQuantity("angle", lambda result: _hot_spot(result, name, body).theta),
     }
-    if criterion in WITH_LIFE:
-        quantities["_life"] = CycleQuantity("life", lambda result: _life(result, criterion, body))
+    if criterion.life is not None:
+        quantities["_life"] = CycleQuantity("life", lambda result: _life(result, name, body))
     return {ending if body == "plate" else f"{ending}_{body}": quantity for ending, quantity in quantities.items()}
 
 
@@ -105,7 +95,7 @@ CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
     **{
         f"{criterion.replace('-', '_')}{ending}": quantity
         for body in ("plate", "seat")
-        for criterion in CRITERIA_KINDS
+        for criterion in FATIGUE_CRITERIA
         for ending, quantity in _hot_spot_quantities(criterion, body).items()
     },
     "regime": CycleQuantity("class", lambda result: _regime(result), REGIMES),

@@ -86,6 +86,18 @@ def test_every_criterion(fretting, cycle, criterion):
     np.testing.assert_allclose(mixed.parameter, found.parameter, rtol=1e-12)
 
 
+def test_the_unit_is_that_of_the_parameter(fretting):
+    pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
+    plain = fastpin.Problem.from_load_parameter(pair, 0.3, 0.4)
+    for criterion, units in {
+        "smith-watson-topper": ("Pa", "F^2 beta*/R^2"),
+        "fatemi-socie": ("rad", "F beta*/R"),
+        "findley": ("Pa", "F/R"),
+    }.items():
+        found = fretting.fatigue(criterion)
+        assert (found.unit, dataclasses.replace(found, problem=plain).unit) == units
+
+
 def test_edge_angles_hold_nodes_and_ends(cycle):
     angles = edge_angles(cycle)
     assert np.all(np.diff(angles) > 0.0)
