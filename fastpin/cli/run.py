@@ -7,7 +7,8 @@ import contextlib
 import dataclasses
 import json
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -27,7 +28,7 @@ from fastpin.cli.terminal import (
     write_files,
     write_text,
 )
-from fastpin.errors import InputError, InputWarning
+from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.model.options import OPTIONS
@@ -35,6 +36,7 @@ from fastpin.model.points import EDGES
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
 from fastpin.states.choice import check_choice, span_of
+from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import KeptStates, marked_extremes, marked_places, yield_doubts_of
 
 if TYPE_CHECKING:  # it imports compiled code
@@ -69,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
             ended = _ending(lambda: storage.record(case.problem, case.history, options.output, **keywords))
     if options.output is not None:
         return _write_stored(case, options, ended)
-    return _write_result(case, options, solved[0] if ended is None else ended.result, ended)
+    return RunReport(case, None, solved[0] if ended is None else ended.result, ended).write(options)
 
 
 def note_run(case: Case) -> None:
@@ -80,10 +82,7 @@ def note_run(case: Case) -> None:
 
 def resume(options: argparse.Namespace) -> int:
     """Continue a run that ended early, and write its states."""
-    case = storage.stored_case(options.output)
-    _check_outputs(options)
-    _check_cycles(case, options)
-    _check_states(case, options)
+    case = _stored_case(options)
     with Bar(len(case.history), LOAD_POINTS) as progress_bar:
         ended = _ending(lambda: storage.resume(options.output, progress_to(progress_bar)))
     return _write_stored(case, options, ended)
@@ -91,14 +90,19 @@ def resume(options: argparse.Namespace) -> int:
 
 def show(options: argparse.Namespace) -> int:
     """Print and draw a stored result."""
-    case = storage.stored_case(options.output)
-    _check_outputs(options)
-    _check_cycles(case, options)
-    _check_states(case, options)
+    case = _stored_case(options)
     code = _write_stored(case, options, None)
     if options.json != "-":
         _note_unfinished(case, options.output)
     return code
+
+
+def _stored_case(options: argparse.Namespace) -> Case:
+    """Return the case of a stored result, after a check of the options."""
+    case = storage.stored_case(options.output)
+    _check_outputs(options)
+    _check_shown(case, options)
+    return case
 
 
 def _note_unfinished(case: Case, path: Path) -> None:
@@ -161,17 +165,14 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
     for name in ("nodes", "arc"):
         if options.start is not None and getattr(options, name) is not None:
             raise InputError(f"--{name}", "is fixed by the result to continue from (--start)")
-    _check_cycles(case, options)
-    _check_states(case, options)
+    _check_shown(case, options)
 
 
-def _check_cycles(case: Case, options: argparse.Namespace) -> None:
+def _check_shown(case: Case, options: argparse.Namespace) -> None:
+    """Refuse figures and files of cycles that the history lacks, and a wrong choice of states."""
     for name in ("cycles", "cycle_csv"):
         if getattr(options, name) is not None and not case.history.longest_cycle:
             raise InputError(flag(name), "the history has no cycles: none of its blocks is repeated")
-
-
-def _check_states(case: Case, options: argparse.Namespace) -> None:
     if options.states is None:
         return
     if options.plot is None:
@@ -221,26 +222,6 @@ def _check_outputs(options: argparse.Namespace) -> None:
     check_outputs({flag(name): getattr(options, name) for name in names}, result="--output")
 
 
-def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
-    """Write the states of a stored run. Of many states, only those in the table and the figure are read."""
-    if ended is not None and ended.result is None:  # a file with this name, if any, belongs to another run
-        return _write_result(case, options, None, ended)
-    if options.json is not None:
-        return _write_result(case, options, storage.load(options.output), ended)
-    points, cycles = storage.load_points(options.output), storage.load(options.output, states=[]).cycles
-    peaks = marked_places(storage.marked_extremes(options.output))
-    rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(options.output, places).states, peaks)
-    places = {*rows.printed, *peaks}
-    if cycles:
-        last = range(points.size)[storage.places_between(options.output, *span_of(cycles[-1]))]
-        if len(last) <= report.cycle.MOST_STOPS:
-            places |= set(last)  # the fatigue over the last cycle is printed
-    if options.record is not None:
-        places |= set(live.recorded_places(points.size))
-    part = ShownPart(rows, sorted(places), list(peaks))
-    return _write_result(case, options, storage.load(options.output, states=sorted(places)), ended, part)
-
-
 class ShownPart(NamedTuple):
     """The part of a stored result that was read.
 
@@ -259,148 +240,157 @@ class ShownPart(NamedTuple):
     peaks: list[int]
 
 
-def _write_result(
-    case: Case,
-    options: argparse.Namespace,
-    result: solver.Result | None,
-    ended: solver.SolveError | solver.Interrupted | None,
-    part: ShownPart | None = None,
-) -> int:
-    """Write the files, then print the states, and return the exit code.
-
-    `ended` is the error that ended the run early. `part` tells which states of a file `result` has.
-    """
-    code, error = _report_end(case, options, result, ended)
-    warn_of(pressure_doubts(case.problem, case.history, _pressures(options, result)), 2)
-    warn_of(_yield_doubts(case, options, result), 2)
-    cycle = _known_cycle(case, options, result, part)
-    writers: list[tuple[Any, Callable[[Path], object]]] = []
+def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
+    """Write the states of a stored run. Of many states, only those in the table and the figure are read."""
+    path: Path = options.output
+    if ended is not None and ended.result is None:  # a file with this name, if any, belongs to another run
+        return RunReport(case, path, None, ended).write(options)
     if options.json is not None:
-        text = json.dumps(report.summary.document(case, result, error, cycle), indent=2, allow_nan=False) + "\n"
+        return RunReport(case, path, storage.load(path), ended).write(options)
+    points, cycles = storage.load_points(path), storage.load(path, states=[]).cycles
+    peaks = marked_places(storage.marked_extremes(path))
+    rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(path, places).states, peaks)
+    places = {*rows.printed, *peaks}
+    if cycles:
+        last = range(points.size)[storage.places_between(path, *span_of(cycles[-1]))]
+        if len(last) <= report.cycle.MOST_STOPS:
+            places |= set(last)  # the fatigue over the last cycle is printed
+    if options.record is not None:
+        places |= set(live.recorded_places(points.size))
+    part = ShownPart(rows, sorted(places), list(peaks))
+    return RunReport(case, path, storage.load(path, states=sorted(places)), ended, part).write(options)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class RunReport:
+    """The report of a run: why it ended early, its files, and its table.
+
+    Attributes
+    ----------
+    case : Case
+    path : Path or None
+        The file of the result.
+    result : Result or None
+        None if no state was reached.
+    ended : SolveError, Interrupted or None
+        The error that ended the run early.
+    part : ShownPart or None
+        The states of the file that `result` has; None if it has all.
+    """
+
+    case: Case
+    path: Path | None
+    result: solver.Result | None
+    ended: solver.SolveError | solver.Interrupted | None
+    part: ShownPart | None = None
+
+    def write(self, options: argparse.Namespace) -> int:
+        """Write the files, then print the states, and return the exit code."""
+        case, result = self.case, self.result
+        code, error = self._report_end()
+        self._warn()
+        cycle = None
+        with contextlib.suppress(InputError):
+            cycle = self._last_cycle() if case.options.slip_sums else None
+        document = report.summary.document(case, result, error, cycle) if options.json is not None else None
+        text = json.dumps(document, indent=2, allow_nan=False) + "\n"
+        writers: list[tuple[Any, Callable[[Path], object]]] = []
         if options.json != "-":
             writers.append((options.json, lambda path: write_text(path, text)))
-    if result is not None and len(result):
-        states = result
-        writers.append((options.plot, lambda path: _plot(case, options, states, part, path)))
-        writers.append((options.record, lambda path: write_text(path, live.record_page(case, states, error or ""))))
-    if result is not None and result.cycles:
-        with_cycles = result
-        writers.append((options.cycles, lambda path: figures.plot_cycles(with_cycles, path, title=case.title)))
-    elif options.cycles is not None:
-        code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
-    writers.append((options.cycle_csv, lambda path: report.cycle.write_csv(_last_cycle(options, result, part), path)))
-    code = write_files(writers) or code
-    if options.json == "-":  # last: the reader of the output may close it early
-        sys.stdout.write(text)
-    else:
-        _print_states(case, result, cycle, part)
-    return code
-
-
-def _pressures(options: argparse.Namespace, result: solver.Result | None) -> Iterable[np.ndarray]:
-    """Return the pressures of all states, or the largest one of a stored result."""
-    if result is None or options.output is None:
-        return (state.pressure for state in result or ())
-    return [np.array([storage.largest_pressure(options.output)])]
-
-
-def _yield_doubts(case: Case, options: argparse.Namespace, result: solver.Result | None) -> list[InputWarning]:
-    """Return the warnings about the largest von Mises stresses of all states."""
-    if result is None or options.output is None:
-        return yield_doubts_of(case.problem, case.history, () if result is None else result.states)
-    return storage.stored_yield_doubts(options.output, case.problem, case.history)
-
-
-def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: ShownPart | None, path: Path) -> None:
-    """Draw the tractions. States that were left out of `result` are read from its file."""
-    try:
-        if part is not None:
-            drawn = figures.states.stored_states(options.output, options.states)
+        if result is not None and len(result):
+            writers.append((options.plot, lambda path: self._plot(options, path)))
+            writers.append((options.record, partial(_write_record, case, result, error)))
+        if result is not None and result.cycles:
+            writers.append((options.cycles, partial(figures.plot_cycles, result, title=case.title)))
+        elif options.cycles is not None:
+            code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
+        writers.append((options.cycle_csv, lambda path: report.cycle.write_csv(self._last_cycle(), path)))
+        code = write_files(writers) or code
+        if options.json == "-":  # last: the reader of the output may close it early
+            sys.stdout.write(text)
         else:
-            drawn = figures.states.drawn_states(result, options.states)
-    except InputError as error:
-        raise InputError("--states" if error.field == "states" else error.field, error.reason) from None
-    figures.plot_tractions(drawn, path, title=case.title)
-    if drawn.note:
-        say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)
+            self._print_states(cycle)
+        return code
+
+    def _report_end(self) -> tuple[int, str | None]:
+        """Print why the run ended early, and return the exit code and the reason."""
+        if self.ended is None:
+            return EXIT_OK, None
+        if isinstance(self.ended, solver.SolveError):
+            return fail(str(self.ended), EXIT_FAILED), str(self.ended)
+        if self.result is None:
+            return fail("interrupted before the first corner", EXIT_INTERRUPTED), "interrupted"
+        where = f"after {_reached(self.result)} of {len(self.case.history):,} corners"
+        more = "" if self.path is None else f"; continue with: fastpin resume {self.path}"
+        return fail(f"interrupted {where}{more}", EXIT_INTERRUPTED), "interrupted"
+
+    def _warn(self) -> None:
+        """Warn of doubtful pressures and von Mises stresses in all states."""
+        problem, history = self.case.problem, self.case.history
+        states = [] if self.result is None else self.result.states
+        if self.result is None or self.path is None:
+            warn_of(pressure_doubts(problem, history, (state.pressure for state in states)), 2)
+            warn_of(yield_doubts_of(problem, history, states), 2)
+        else:
+            largest = np.array([storage.largest_pressure(self.path)])
+            warn_of(pressure_doubts(problem, history, [largest]), 2)
+            warn_of(storage.stored_yield_doubts(self.path, problem, history), 2)
+
+    def _last_cycle(self) -> LoadCycle:
+        """Return the last cycle. :class:`InputError` says why there is none."""
+        if self.result is None:
+            raise InputError("cycle", "no state was reached")
+        if self.part is None or self.path is None or not self.result.cycles:
+            return self.result.cycle()
+        places = storage.places_between(self.path, *span_of(self.result.cycles[-1]))
+        return storage.load(self.path, states=places).cycle()
+
+    def _plot(self, options: argparse.Namespace, path: Path) -> None:
+        """Draw the tractions. States that were not read before are read from the file."""
+        try:
+            if self.part is None:
+                drawn = figures.states.drawn_states(self.result or (), options.states)
+            else:
+                drawn = figures.states.stored_states(options.output, options.states)
+        except InputError as error:
+            raise InputError("--states" if error.field == "states" else error.field, error.reason) from None
+        figures.plot_tractions(drawn, path, title=self.case.title)
+        if drawn.note:
+            say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)
+
+    def _print_states(self, cycle: LoadCycle | None) -> None:
+        case, result = self.case, self.result
+        if case.title:
+            say(case.title)
+        if result is None or not len(result):
+            reached = result is not None and _reached(result)
+            say("none of the states was to be kept" if reached else "no state was reached")
+            return
+        if self.part is None:
+            found = dict(enumerate(result.states))
+            places = list(marked_places(marked_extremes(KeptStates(result.states))))
+            rows = table_rows(case.problem, result.states, wanted=places)
+        else:
+            found = dict(zip(self.part.places, result.states, strict=True))
+            rows, _, places = self.part
+        say(*state_table(case.problem, [found[place] for place in rows.printed], rows).split("\n"))
+        peaks = [found[place] for place in places]
+        lines = [hoop_line(case.problem, peaks, body) for body in EDGES]
+        say(*(line for line in (*lines, *bush_line(case.problem, peaks).splitlines()) if line))
+        say(*cycle_lines(case.problem, result.cycles, peaks))
+        if cycle is not None:
+            say(report.cycle.cycle_line(cycle))
+        if result.cycles:
+            states = result.states if cycle is None else cycle.states
+            say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
+        say(*(f"note: {note}" for note in note_lines(case, result)))
+        say(solver_line(result))
 
 
-def _report_end(
-    case: Case,
-    options: argparse.Namespace,
-    result: solver.Result | None,
-    ended: solver.SolveError | solver.Interrupted | None,
-) -> tuple[int, str | None]:
-    """Print why a run ended early, and return the exit code and the reason."""
-    code, error = EXIT_OK, None
-    if isinstance(ended, solver.SolveError):
-        error = str(ended)
-        code = fail(error, EXIT_FAILED)
-    elif ended is not None:
-        error = "interrupted"
-        where = (
-            "before the first corner"
-            if result is None
-            else f"after {_reached(result)} of {len(case.history):,} corners"
-        )
-        more = (
-            f"; continue with: fastpin resume {options.output}"
-            if options.output is not None and result is not None
-            else ""
-        )
-        code = fail(f"interrupted {where}{more}", EXIT_INTERRUPTED)
-    return code, error
-
-
-def _last_cycle(options: argparse.Namespace, result: solver.Result | None, part: ShownPart | None) -> LoadCycle:
-    """Return the last cycle of a result. :class:`InputError` says why there is none."""
-    if result is None:
-        raise InputError("cycle", "no state was reached")
-    if part is not None and result.cycles:  # its states are in the file, but not in `result`
-        places = storage.places_between(options.output, *span_of(result.cycles[-1]))
-        result = storage.load(options.output, states=places)
-    return result.cycle()
-
-
-def _known_cycle(
-    case: Case, options: argparse.Namespace, result: solver.Result | None, part: ShownPart | None
-) -> LoadCycle | None:
-    """Return the last cycle if its slip sums are counted, for the summary; None if there is none."""
-    with contextlib.suppress(InputError):
-        return _last_cycle(options, result, part) if case.options.slip_sums else None
-    return None
+def _write_record(case: Case, result: solver.Result, error: str | None, path: Path) -> None:
+    write_text(path, live.record_page(case, result, error or ""))
 
 
 def _reached(result: solver.Result) -> int:
     """Return the number of corners that were solved, whether their states were kept or not."""
     return 0 if result.restart is None else result.restart.corner
-
-
-def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | None, part: ShownPart | None) -> None:
-    if case.title:
-        say(case.title)
-    if result is None or not len(result):
-        say("no state was reached" if result is None or not _reached(result) else "none of the states was to be kept")
-        return
-    if part is None:
-        found = dict(enumerate(result.states))
-        places = list(marked_places(marked_extremes(KeptStates(result.states))))
-        rows = table_rows(case.problem, result.states, wanted=places)
-    else:
-        rows, found, places = part.rows, dict(zip(part.places, result.states, strict=True)), part.peaks
-    say(*state_table(case.problem, [found[place] for place in rows.printed], rows).split("\n"))
-    peaks = [found[place] for place in places]
-    lines = [hoop_line(case.problem, peaks, body) for body in EDGES]
-    for line in (*lines, *bush_line(case.problem, peaks).splitlines()):
-        if line:
-            say(line)
-    for line in cycle_lines(case.problem, result.cycles, peaks):
-        say(line)
-    if cycle is not None:
-        say(report.cycle.cycle_line(cycle))
-    states = result.states if cycle is None else cycle.states
-    for line in report.cycle.fatigue_lines(states, result.cycles[-1]) if result.cycles else ():
-        say(line)
-    for note in note_lines(case, result):
-        say(f"note: {note}")
-    say(solver_line(result))
