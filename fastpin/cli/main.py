@@ -38,7 +38,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         130: interrupted. 141: the reader of the output has closed it.
     """
     gc.set_threshold(COLLECT_AFTER)
-    _escape_what_a_stream_cannot_carry()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # the encoding of a terminal or pipe may lack characters
     try:
         options = read_options(sys.argv[1:] if arguments is None else list(arguments))
         _log(getattr(options, "verbose", 0))
@@ -65,13 +67,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_PIPE
     except OSError as error:
         return fail(str(error), EXIT_FAILED)
-
-
-def _escape_what_a_stream_cannot_carry() -> None:
-    """Let characters that the encoding of a terminal or pipe lacks become escapes."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
 
 
 @contextlib.contextmanager

@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import dataclasses
 from pathlib import Path
+from typing import Any
 
 from fastpin import casefile, pages, solver, studies
 from fastpin.cli.progress import LOAD_POINTS, READ_POINTS, Bar, progress_to
@@ -33,7 +34,7 @@ ABOUT = tuple(field.name for field in dataclasses.fields(About))
 
 def run(options: argparse.Namespace) -> int:
     """Write the page."""
-    kind = _kind(options.source)
+    kind = "sweep" if options.source.is_dir() else "case" if options.source.suffix == ".toml" else "result"
     for name, kinds in APPLIES.items():
         if getattr(options, name) is not None and kind not in kinds:
             allowed = " or ".join(KINDS[each] for each in kinds)
@@ -41,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     page = Path(f"{options.source.resolve().stem}.html") if options.output is None else options.output
     check_page("--output", page)
     try:
-        code = _WRITERS[kind](options, page)
+        code = _of_case(options, page) if kind == "case" else _of_stored(options, page)
     except InputError as error:
         named = error.field in ("title", "case", "plan", "error_bars", *ABOUT)
         raise InputError(flag(error.field), error.reason) if named else error from None
@@ -49,30 +50,19 @@ def run(options: argparse.Namespace) -> int:
     return code
 
 
-def _kind(source: Path) -> str:
-    """Return the kind of a source by its name."""
-    if source.is_dir():
-        return "sweep"
-    return "case" if source.suffix == ".toml" else "result"
-
-
 def _about(options: argparse.Namespace) -> About:
     """Return project, author, revision and date as far as options give them."""
     return About(**{name: getattr(options, name) or "" for name in ABOUT})
 
 
-def _of_result(options: argparse.Namespace, page: Path) -> int:
+def _of_stored(options: argparse.Namespace, page: Path) -> int:
+    """Write the page of a stored result, or of a sweep."""
     with Bar(1, SECTIONS) as bar:
-        given = {"title": options.title or "", "case": options.case, "progress": progress_to(bar)}
-        pages.write_report(options.source, page, about=_about(options), **given)
-    return EXIT_OK
-
-
-def _of_sweep(options: argparse.Namespace, page: Path) -> int:
-    with Bar(1, SECTIONS) as bar:
-        pages.write_sweep_report(
-            options.source, page, plan=options.plan, about=_about(options), progress=progress_to(bar)
-        )
+        shared: dict[str, Any] = {"about": _about(options), "progress": progress_to(bar)}
+        if options.source.is_dir():
+            pages.write_sweep_report(options.source, page, plan=options.plan, **shared)
+        else:
+            pages.write_report(options.source, page, title=options.title or "", case=options.case, **shared)
     return EXIT_OK
 
 
@@ -108,6 +98,3 @@ def _of_case(options: argparse.Namespace, page: Path) -> int:
     with Bar(1, SECTIONS) as bar:
         write_source(source, page, progress=progress_to(bar))
     return code
-
-
-_WRITERS = {"result": _of_result, "sweep": _of_sweep, "case": _of_case}

@@ -90,7 +90,7 @@ def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
 
 
 def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
-    lives = [one for one in found if one.life is not None and np.isfinite(one.life).any()]
+    lives = {k: one.life.ravel() for k, one in enumerate(found) if one.life is not None and np.isfinite(one.life).any()}
     sheet = look.sheet([2.2] * (2 if lives else 1), extra=1.2)
     axes = sheet.axes
     sheet.grid()
@@ -106,10 +106,11 @@ def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
     else:
         top.set_yticks([0.0])  # no other value has a meaning
     top.set_ylabel(quantity(f"parameter of\n{found[0].criterion}", unit))
-    for one in lives:
-        _draw_life(axes[1, 0], one, found.index(one))
+    for k, life in lives.items():
+        angle, order = _by_angle(found[k])
+        axes[1, 0].semilogy(angle, np.where(np.isfinite(life), life, np.nan)[order], **line(2 * k))
     if lives:
-        shortest = min(float(np.nanmin(one.life)) for one in lives if one.life is not None)
+        shortest = min(float(np.nanmin(life)) for life in lives.values())
         axes[1, 0].set_ylabel("life (cycles)")
         axes[1, 0].set_ylim(0.5 * shortest, 1e4 * shortest)
     for panel in axes[:, 0]:
@@ -156,13 +157,6 @@ def _draw_parameter(panel: Axes, found: Fatigue, factor: float, place: int, name
         panel.axhline(factor * limit, **line(2 * place + 2, 1))
         handles.append(Line2D([], [], label=f"{before}fatigue limit", **line(2 * place + 2, 1)))
     return handles
-
-
-def _draw_life(panel: Axes, found: Fatigue, place: int) -> None:
-    assert found.life is not None
-    angle, order = _by_angle(found)
-    life = found.life.ravel()[order]
-    panel.semilogy(angle, np.where(np.isfinite(life), life, np.nan), **line(2 * place))
 
 
 def _draw_planes(panel: Axes, angle: np.ndarray, parameter: np.ndarray, turned: np.ndarray) -> None:

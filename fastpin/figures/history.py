@@ -96,8 +96,10 @@ def _draw(look: Look, problem: Problem, folded: Folded) -> Sheet:
         panel.set_ylabel(quantity(f"{WORDS[kind]} {', '.join(names)}", label))
         panel.set_xlim(0.0, len(loads) - 1.0)
         _shade(panel, repeated, panel is axes[0, 0])
+    locator = MaxNLocator(nbins=9, integer=True, min_n_ticks=1)
+    ticks = [int(tick) for tick in locator.tick_values(0, len(numbers) - 1) if 0 <= tick < len(numbers)]
     for panel in axes[:, 0]:
-        _number_corners(panel, numbers)
+        panel.set_xticks(ticks, [f"{numbers[tick]:,}" for tick in ticks])
         panel.tick_params(labelbottom=panel is axes[-1, 0])
     axes[-1, 0].set_xlabel("corner of the load history")
     sheet.figure.align_ylabels(axes)
@@ -134,10 +136,3 @@ def _shade(panel: Axes, repeated: list[tuple[int, int, int]], named: bool) -> No
                 0.5 * (first + last), 1.02, f"× {count:,}", transform=panel.get_xaxis_transform(), ha="center",
                 va="bottom", fontsize=8.0,
             )  # fmt: skip
-
-
-def _number_corners(panel: Axes, numbers: list[int]) -> None:
-    """Label the axis with the numbers of the corners."""
-    locator = MaxNLocator(nbins=9, integer=True, min_n_ticks=1)
-    ticks = [int(tick) for tick in locator.tick_values(0, len(numbers) - 1) if 0 <= tick < len(numbers)]
-    panel.set_xticks(ticks, [f"{numbers[tick]:,}" for tick in ticks])

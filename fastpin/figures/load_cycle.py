@@ -349,7 +349,10 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
     panel.set_xlabel(f"{words}\n({shown_unit(moved_unit)})" if across > 2 else quantity(words, moved_unit))
     panel.set_ylabel(quantity(name, load_unit))
     if len(cycles) == 1:
-        area = _area(cycles[0], name, float(loops[0].work)) if len(loops[0].load) > STRAIGHT else NO_AREA
+        (loop,), area = loops, NO_AREA
+        if len(loop.load) > STRAIGHT:
+            is_rounding = abs(loop.work) <= ROUNDING * float(np.abs(loop.load).max() * np.abs(loop.displacement).max())
+            area = f"area {'0' if is_rounding else short(float(loop.work), unit['energy'])}"
         panel.text(0.0, 1.02, area, fontsize=8.0, ha="left", va="bottom", transform=panel.transAxes)
     panel.xaxis.set_major_locator(MaxNLocator(TICKS[across], steps=[1, 2, 5, 10]))
 
@@ -413,11 +416,3 @@ def _displacement_scale(values: np.ndarray, unit: Unit) -> tuple[float, str]:
         return factor, label
     power = math.floor(math.log10(largest))
     return factor / 10.0**power, f"10{str(power).translate(SUPERSCRIPTS)} {label}"
-
-
-def _area(cycle: LoadCycle, name: str, work: float) -> str:
-    """The area of a loop as text: 0 where it is rounding beside load times displacement."""
-    loop = cycle.loops[name]
-    size = float(np.abs(loop.load).max() * np.abs(loop.displacement).max())
-    unit = units(cycle.states[0].problem)["energy"]
-    return f"area {short(work, unit)}" if abs(work) > ROUNDING * size else "area 0"

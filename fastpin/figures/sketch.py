@@ -174,7 +174,9 @@ def draw_sketch(
     _draw_pin(panel, problem, ranges)
     if state is not None:
         _draw_contact(panel, state)
-    _draw_loads(panel, problem, ranges, _scale(ranges, outside, largest))
+    force = largest or max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
+    beside = -1.0 if ranges.get("P", (0.0, 0.0))[0] < 0.0 else 1.0
+    _draw_loads(panel, problem, ranges, Scale(outside, "sxy" in ranges, force, beside))
     room = MARGIN if any(LOAD_KIND[name] not in ("force", "moment") for name in ranges) else 0.15
     panel.set_xlim(-outside - room, outside + room)
     panel.set_ylim(-outside - room, outside + room)
@@ -237,11 +239,6 @@ def _draw_contact(panel: Axes, state: State) -> None:
             Wedge((0.0, 0.0), 1.0 + THICK, first, last, width=2.0 * THICK, facecolor=colour, hatch=hatch,
                   edgecolor="0.25", linewidth=0.0, zorder=5)
         )  # fmt: skip
-
-
-def _scale(ranges: Mapping[str, LoadRange], outside: float, largest: float) -> Scale:
-    found = max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
-    return Scale(outside, "sxy" in ranges, largest or found, -1.0 if ranges.get("P", (0.0, 0.0))[0] < 0.0 else 1.0)
 
 
 def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange], scale: Scale) -> None:

@@ -353,17 +353,13 @@ def name_states(sheet: Sheet, states: DrawnStates, heading: Sequence[str], style
         points = ", ".join(point_text(state) for state, twin in zip(states, twins, strict=True) if twin == first)
         parts = ",  ".join(load_text(states, first, name) for name in differing)
         marks = ", ".join(mark for mark, twin in zip(states.marks, twins, strict=True) if mark and twin == first)
-        words = ", ".join(_first_and_rest(marks.split(", ")))
+        each = marks.split(", ")  # a long entry would make the letters of the legend small
+        words = marks if len(each) <= 3 else f"{each[0]}, {each[1]}, and {len(each) - 2} more"
         parts = f"{parts}  ({words})".strip() if words else parts
         handles.append(Line2D([], [], label=f"{points}:  {parts}" if parts else points, **lines[first]))
     handles, columns = _in_columns(handles if len(states) > 1 else [], styles)
     title = ("load point:  loads there" if differing else "load point") if len(states) > 1 else ""
     sheet.legend(handles, columns, title)
-
-
-def _first_and_rest(marks: list[str]) -> list[str]:
-    """Return the first of many marks and their number. A long entry would make the letters of a legend small."""
-    return marks if len(marks) <= 3 else [*marks[:2], f"and {len(marks) - 2} more"]
 
 
 def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist], int]:

@@ -237,7 +237,9 @@ def _sheet(look: Look, differing: Sequence[str]) -> Sheet:
 def _fill(panel: Axes, boxes: Sequence[ZoneBox | ExtentBox], look: ZoneLook) -> None:
     """Fill rectangles with a colour and a hatch."""
     colour, hatch, _ = look
-    corners = [_corners(box) for box in boxes]
+    corners = [
+        [(box.left, box.start), (box.right, box.start), (box.right, box.stop), (box.left, box.stop)] for box in boxes
+    ]
     panel.add_collection(PolyCollection(corners, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False))
     if hatch:
         panel.add_collection(PolyCollection(corners, facecolor="none", edgecolor="0.25", linewidth=0.0, hatch=hatch))
@@ -261,10 +263,6 @@ def _add_words(sheet: Sheet, states: DrawnStates, frame: Frame, title: str, note
 
 def _open_patch(words: str) -> Patch:
     return Patch(facecolor="white", edgecolor="0.5", linewidth=0.6, label=words)
-
-
-def _corners(box: ZoneBox | ExtentBox) -> list[tuple[float, float]]:
-    return [(box.left, box.start), (box.right, box.start), (box.right, box.stop), (box.left, box.stop)]
 
 
 def zone_patch(look: ZoneLook) -> Patch:

@@ -94,7 +94,9 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
     parts.append(f"friction coefficient {problem.friction:.{DIGITS}g}")
     if not problem.dimensionless:
         parts.append(f"hole radius {short(problem.hole_radius, unit['length'])}")
-        parts.append(_clearance(problem))
+        word = "clearance" if problem.clearance > 0.0 else "interference"
+        size = short(abs(problem.clearance), unit["length"])
+        parts.append(f"{word} {size}" if problem.clearance else "neat fit")
     if problem.thickness is not None:
         parts.append(f"thickness {short(problem.thickness, unit['length'])}")
     forces = [float(np.hypot(state.load["P"], state.load["Q"])) for state in states]
@@ -139,13 +141,6 @@ def short(value: float, unit: Unit, digits: int = DIGITS) -> str:
     """A value with its unit as a caption shows it, rounded to so many significant digits."""
     number, _, label = unit.text(value, digits).partition(" ")
     return f"{number.replace('-', '−')}\N{NO-BREAK SPACE}{shown_unit(label)}".strip()
-
-
-def _clearance(problem: Problem) -> str:
-    unit, clearance = units(problem)["length"], problem.clearance
-    if clearance == 0.0:
-        return "neat fit"
-    return f"{'clearance' if clearance > 0.0 else 'interference'} {short(abs(clearance), unit)}"
 
 
 def _material(material: Material, problem: Problem) -> str:

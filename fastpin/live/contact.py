@@ -159,15 +159,12 @@ class LiveContact:
             self._return_to(before)
             raise
         finally:
-            self._collect(before.session)
+            # Sessions that are left are collected now and then. Python itself would wait for long.
+            LiveContact._left += before.session is not self.session
+            if LiveContact._left >= MOST_LEFT:
+                LiveContact._left = 0
+                gc.collect()
         return [self._changes(message.id)]
-
-    def _collect(self, before: Session) -> None:
-        """Count the sessions that are left, and collect them now and then. Python itself would wait for long."""
-        LiveContact._left += before is not self.session
-        if LiveContact._left >= MOST_LEFT:
-            LiveContact._left = 0
-            gc.collect()
 
     def stop(self) -> None:
         """End a long history that is being followed. The message that it belongs to is refused."""
@@ -343,17 +340,15 @@ class LiveContact:
             "undos": len(self._past), "redos": len(self._future), "sentence": self.sentence,
         }  # fmt: skip
         self.sentence = ""
-        for name, value in self._news():
+        # What the page knows besides pictures, and the objects that it depends on.
+        depends: dict[str, tuple[object, ...]] = {
+            "case": (self.session.problem, self._nodes), "reference": (self._reference,), "grids": (len(self._grids),)
+        }  # fmt: skip
+        for name, value in depends.items():
             if any(one is not other for one, other in zip(value, self._known.get(name, UNKNOWN), strict=False)):
                 self._known[name] = value
                 answer[name] = getattr(self, f"{name}_document")()
         return answer
-
-    def _news(self) -> Iterator[tuple[str, tuple[object, ...]]]:
-        """The names of what the page knows besides pictures, and the objects that it depends on."""
-        yield "case", (self.session.problem, self._nodes)
-        yield "reference", (self._reference,)
-        yield "grids", (len(self._grids),)
 
     def reference_document(self) -> Answer | None:
         """The picture of the reference; None if there is none."""

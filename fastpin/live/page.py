@@ -54,7 +54,8 @@ def live_page() -> tuple[str, str]:
         '<script type="module" src="main.js"></script>',
     ]
     styles = [f'<link rel="stylesheet" href="{name}">' for name in STYLES]
-    return _filled(styles, scripts), _digest(imports)
+    digest = base64.b64encode(hashlib.sha256(imports.encode()).digest()).decode()
+    return _filled(styles, scripts), f"'sha256-{digest}'"
 
 
 def recorded_page(recording: dict[str, Any]) -> str:
@@ -83,10 +84,6 @@ def recorded_page(recording: dict[str, Any]) -> str:
 
 def _import_map(places: dict[str, str]) -> str:
     return json.dumps({"imports": {f"live/{name}": place for name, place in places.items()}})
-
-
-def _digest(text: str) -> str:
-    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
 def _filled(head: list[str], scripts: list[str]) -> str:

@@ -41,13 +41,10 @@ def hoop_degrees(state: State) -> np.ndarray:
     borders = [degrees_from_bottom(angle) for ends in (*state.contact, *state.stick) for angle in ends]
     beside = np.add.outer(borders, BESIDE).ravel()
     regular = np.linspace(-180.0, 180.0, round(360.0 / EVERY) + 1)
-    inside = [np.degrees(np.linspace(*ends, LEAST_IN_CONTACT)) + 90.0 for ends in state.contact if _is_narrow(*ends)]
+    narrow = [ends for ends in state.contact if math.degrees(ends[1] - ends[0]) < EVERY * LEAST_IN_CONTACT]
+    inside = [np.degrees(np.linspace(*ends, LEAST_IN_CONTACT)) + 90.0 for ends in narrow]
     further = np.remainder(np.concatenate([beside, *inside]) + 180.0, 360.0) - 180.0
     return np.unique(np.concatenate([regular, further]).astype(np.float32))
-
-
-def _is_narrow(start: float, stop: float) -> bool:
-    return math.degrees(stop - start) < EVERY * LEAST_IN_CONTACT
 
 
 def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHistory) -> dict[str, Any]:
@@ -74,7 +71,12 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         kind of quantity: smaller ones are shown as 0, as in tables. The entry "curves" has the tractions as figures
         draw them, with NaN between two contact zones; "pressure" and "shear" are those of the nodes.
     """
-    rigid = state.problem.surfaces.plate.is_rigid
+    curves = one_turn([thinned(points, CURVE_ERROR * state.peak_pressure) for points in traction_patches(state)]).T
+    hoop = None
+    if not state.problem.surfaces.plate.is_rigid:
+        degrees = hoop_degrees(state)
+        stress = state.hoop_stress("plate", np.radians(degrees.astype(float)) + BOTTOM)
+        hoop = {"degrees": packed(degrees), "stress": packed(stress)}
     return {
         "serial": serial,
         "gesture": gesture,
@@ -86,8 +88,8 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         "shear": packed(state.shear),
         "gap": packed(state.gap),
         "status": packed(state.status, "i1"),
-        "curves": _curves(state),
-        "hoop": None if rigid else _hoop(state),
+        "curves": dict(zip(("degrees", "pressure", "shear"), map(packed, curves), strict=True)),
+        "hoop": hoop,
     }
 
 
@@ -110,18 +112,6 @@ def _numbers(state: State) -> dict[str, Any]:
         "residual": max(state.residuals.values()),
         "loops": {name: (float(loop.load[0]), float(loop.displacement[0])) for name, loop in loops.items()},
     }
-
-
-def _curves(state: State) -> dict[str, str]:
-    error = CURVE_ERROR * state.peak_pressure
-    columns = one_turn([thinned(points, error) for points in traction_patches(state)]).T
-    return {name: packed(column) for name, column in zip(("degrees", "pressure", "shear"), columns, strict=True)}
-
-
-def _hoop(state: State) -> dict[str, str]:
-    degrees = hoop_degrees(state)
-    stress = state.hoop_stress("plate", np.radians(degrees.astype(float)) + BOTTOM)
-    return {"degrees": packed(degrees), "stress": packed(stress)}
 
 
 def _degrees(angle: float) -> float:

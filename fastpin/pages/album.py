@@ -81,7 +81,10 @@ class Album:
                 text = path.read_text(encoding="utf-8")
                 if len(text) <= MOST_SVG:
                     markup = _svg(text, words, f"f{self._count + 1}-")
-                    return markup, _file_of(markup)
+                    # As a file the element needs the names, the size and the style that it lacks.
+                    width, height = re.findall(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', markup)[0]
+                    size = f'width="{width}pt" height="{height}pt" stroke-linejoin="round" stroke-linecap="butt"'
+                    return markup, markup.replace("<svg ", f'<svg xmlns="http://www.w3.org/2000/svg" {size} ', 1)
             path = path.with_suffix(".png")
             draw(path)
             return _png(path.read_bytes(), words)
@@ -98,13 +101,6 @@ def _png(content: bytes, words: str) -> tuple[str, str]:
         f'<image href="{data}" width="{width}" height="{height}"/></svg>'
     )
     return f'<img alt="{html.escape(words)}" src="{data}">', svg
-
-
-def _file_of(markup: str) -> str:
-    """Return an element ``svg`` of :func:`_svg` as a file: with the names, the size and the style that it lacks."""
-    width, height = re.findall(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', markup)[0]
-    size = f'width="{width}pt" height="{height}pt" stroke-linejoin="round" stroke-linecap="butt"'
-    return markup.replace("<svg ", f'<svg xmlns="http://www.w3.org/2000/svg" {size} ', 1)
 
 
 def _svg(text: str, words: str, prefix: str) -> str:

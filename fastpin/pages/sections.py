@@ -126,13 +126,9 @@ def _status(source: Source) -> Text:
         which, were = ("the only corner", "was") if corners == 1 else (f"all {corners:,} corners", "were")
         return Text(f"Complete: {which} of the load history {were} followed; {_count(source)}.")
     why = f" The reason: {source.error}." if source.error else ""
-    how = way_on(source.path, source.error)
-    return Text(f"Unfinished: corner {source.reached:,} of {corners:,}; {_count(source)}.{why}{_said(how)}", "note")
-
-
-def _said(line: str) -> str:
-    """Return a line of a report as a sentence behind others; empty if the line is."""
-    return f" {_sentence(line)}" if line else ""
+    line = way_on(source.path, source.error)
+    how = f" {_sentence(line)}" if line else ""
+    return Text(f"Unfinished: corner {source.reached:,} of {corners:,}; {_count(source)}.{why}{how}", "note")
 
 
 def _count(source: Source) -> str:
@@ -200,7 +196,8 @@ def materials(page: PageParts) -> PageSection:
         names = list(dict.fromkeys(name for given in fatigue.values() for name in given))
         columns = [("constant", "", [name.replace("_", " ") for name in names])]
         for body, given in fatigue.items():
-            columns.append((body, "", [_cell(given.get(name, "-")) for name in names]))
+            values = [given.get(name, "-") for name in names]
+            columns.append((body, "", [f"{value:.6g}" if isinstance(value, float) else value for value in values]))
         parts.append(Table("Fatigue constants, in SI units", columns))
         parts += [Text(f"Source of the constants of the {body}: {text}.") for body, text in sources.items() if text]
     else:
@@ -218,10 +215,6 @@ def _constants(material: Material, unit: Unit) -> list[str]:
     strength = material.known_yield_strength
     yields = "not known" if strength is None else PASCAL.text(strength, 5)
     return [material.name or "no name", moduli[0], f"{material.nu:.5g}", moduli[1], yields]
-
-
-def _cell(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def loads(page: PageParts) -> PageSection:

@@ -138,11 +138,9 @@ def text(convergence: Convergence) -> str:
     for corner, load in convergence.loads.items():
         parts.append(f"corner {corner}: {named_loads(convergence.problem, load)}")
         for study in convergence.studies:
-            parts += [
-                heading(study, convergence),
-                _table(study, reported_series(study, convergence.problem, corner)),
-                "",
-            ]
+            rows = reported_series(study, convergence.problem, corner)
+            head, _, *lines = table(series_columns(study, rows)).splitlines()  # units have a column, not a line
+            parts += [heading(study, convergence), "\n".join([head, *lines]), ""]
     legend = "bar: error bar of the last value; scatter: range of the last three values, relative to the value"
     legend += "\n(of places: to the width of the contact)"
     if len(convergence.studies) > 1:
@@ -164,11 +162,6 @@ def series_columns(study: Study, rows: Sequence[ReportedSeries]) -> list[Column]
     cells = [_cells(row, study.method == "increment") for row in rows]
     names = ["quantity", "unit", *map(str, study.counts), "verdict", "limit", "bar", "path", "within"]
     return [(name, "", [row[k] for row in cells]) for k, name in enumerate(names[: len(cells[0])])]
-
-
-def _table(study: Study, rows: Sequence[ReportedSeries]) -> str:
-    lines = table(series_columns(study, rows)).splitlines()
-    return "\n".join([lines[0], *lines[2:]])  # without the line of units: they have a column
 
 
 def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
@@ -223,13 +216,10 @@ def write_csv(convergence: Convergence, path: Path) -> None:
                 for row in reported_series(study, convergence.problem, corner):
                     for count, value in zip(study.counts, row.values, strict=True):
                         grid = (count, "") if study.method == "path" else (study.nodes, count)
-                        known = [value, row.verdict, row.order, row.limit, row.bar, row.scatter, row.path]
+                        known: list[Any] = [value, row.verdict, row.order, row.limit, row.bar, row.scatter, row.path]
                         head = [corner, study.method, *grid, csv_cell(row.name), csv_cell(row.unit)]
-                        writer.writerow([*head, *("" if _missing(each) else each for each in known)])
-
-
-def _missing(value: object) -> bool:
-    return isinstance(value, float) and math.isnan(value)
+                        known = ["" if isinstance(each, float) and math.isnan(each) else each for each in known]
+                        writer.writerow([*head, *known])
 
 
 def document(convergence: Convergence, title: str = "") -> dict[str, Any]:

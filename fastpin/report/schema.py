@@ -52,6 +52,11 @@ def json_schema(command: str) -> Schema:
 
 
 def _summary() -> Schema:
+    extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
+    sides = _object({"smallest": extreme, "largest": extreme})
+    texts, numbers = ("subject", "unit", "remark"), ("value", "allowable", "margin", "load_point")
+    of_cycle = dict.fromkeys(Cycle._fields, _UNKNOWN)
+    of_cycle |= {"corner": _WHOLE, "length": _WHOLE, "number": _WHOLE, "solved": _TRUTH}
     return _object(
         {
             "fastpin": _TEXT,
@@ -69,9 +74,9 @@ def _summary() -> Schema:
             "solver": _object({each.name: {} for each in fields(SolveOptions)}),
             "statistics": _map_of(_NUMBER, "counters of the solver, and its time, s"),
             "states": _list_of(_state()),
-            "extremes": _extremes(),
-            "margins": _list_of(_margin()),
-            "cycles": _list_of(_object({name: _of_cycle(name) for name in Cycle._fields})),
+            "extremes": _object(dict.fromkeys(READINGS, sides), required=()),
+            "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN))),
+            "cycles": _list_of(_object(of_cycle)),
             "cycle": _or_null(_last_cycle()),
         }
     )
@@ -130,22 +135,6 @@ def _state() -> Schema:
             "error_bars": _or_null(_map_of(_UNKNOWN, "largest likely errors")),
         }
     )
-
-
-def _extremes() -> Schema:
-    extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
-    sides = {"smallest": extreme, "largest": extreme}
-    return _object(dict.fromkeys(READINGS, _object(sides)), required=())
-
-
-def _margin() -> Schema:
-    texts, numbers = ("subject", "unit", "remark"), ("value", "allowable", "margin", "load_point")
-    return _object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN))
-
-
-def _of_cycle(name: str) -> Schema:
-    known = {"corner": _WHOLE, "length": _WHOLE, "number": _WHOLE, "solved": _TRUTH}
-    return known.get(name, _UNKNOWN)
 
 
 def _last_cycle() -> Schema:

@@ -21,7 +21,6 @@ from fastpin.report import cycle as cycle_report
 from fastpin.report.margins import document as margins_document
 from fastpin.report.margins import static_margins
 from fastpin.solver.result import Result
-from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS, Found
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
@@ -49,6 +48,7 @@ def document(
     """
     problem, pair = case.problem, case.problem.pair
     alpha, beta = problem.surfaces.dundurs()
+    energy = units(problem)["energy"]
     found = {
         "fastpin": __version__,
         "title": case.title,
@@ -74,7 +74,10 @@ def document(
         "states": [] if result is None else [_state_summary(state) for state in result],
         "extremes": {} if result is None else _extremes_summary(result),
         "margins": [] if result is None else _margins_summary(result),
-        "cycles": [] if result is None else [_cycle_summary(problem, row) for row in result.cycles],
+        "cycles": [
+            row._asdict() | {"dissipation": energy.factor * row.dissipation}
+            for row in (() if result is None else result.cycles)
+        ],
         "cycle": None if cycle is None else cycle_report.document(cycle),
     }
     return json_ready(found)
@@ -103,10 +106,6 @@ def _block_summary(problem: Problem, block: Block) -> dict[str, Any]:
     unit = units(problem)
     factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
     return {"repeat": block.count, "corners": (factors * block.given).tolist()}
-
-
-def _cycle_summary(problem: Problem, row: Cycle) -> dict[str, Any]:
-    return row._asdict() | {"dissipation": units(problem)["energy"].factor * row.dissipation}
 
 
 def _material_summary(material: Material) -> dict[str, Any]:

@@ -350,7 +350,9 @@ def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRo
     names = {kind: unit.name for kind, unit in units(problem).items()} | {"angle": DEGREE.name}
     if problem.thickness is None:  # then no run has one: the plan has seen to that
         return rows, names
-    usual = _usual_thickness(plan)
+    # The thickness of the points that do not vary it; None if all do. Points of equal states share a case.
+    fixed = (plan.case(point).problem.thickness for point in plan.points if THICKNESS not in point.values)
+    usual = next(fixed, None)
     thicknesses = [usual if row.get(THICKNESS) is None else row[THICKNESS] for row in rows]
     of_thickness = {each: units(replace(problem, thickness=each)) for each in {*thicknesses}}
     found = []
@@ -362,12 +364,6 @@ def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRo
         known = {name: factor * row[name] for name, factor in factors.items() if row.get(name) is not None}
         found.append({**row, **known})
     return found, names
-
-
-def _usual_thickness(plan: Plan) -> float | None:
-    """Return the thickness of the points that do not vary it; None if all do. Points of equal states share a case."""
-    usual = (plan.case(point).problem.thickness for point in plan.points if THICKNESS not in point.values)
-    return next(usual, None)
 
 
 def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:

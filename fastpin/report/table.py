@@ -82,11 +82,8 @@ def folded_lines(rows: np.ndarray) -> list[TableLine]:
     if len(lines) <= MAX_ROWS:
         return [*lines]
     first, last = lines[: MAX_ROWS // 2], lines[-MAX_ROWS // 2 :]
-    return [*first, LeftOut(_begin(last[0]) - _end(first[-1])), *last]
-
-
-def _begin(line: int | Repeat) -> int:
-    return line.first if isinstance(line, Repeat) else line
+    begin = last[0].first if isinstance(last[0], Repeat) else last[0]
+    return [*first, LeftOut(begin - _end(first[-1])), *last]
 
 
 def _end(line: int | Repeat) -> int:
