@@ -60,7 +60,12 @@ def run(options: argparse.Namespace) -> int:
     for name, reason in study.unread.items():
         code = code or EXIT_FAILED
         fail(f"outcome {name} can't be read with {reason}", code)
-    return fail(f"{trouble}; {_describe_kept(study)}", written or code) if trouble else written or code
+    if not trouble:
+        return written or code
+    counts = [", ".join(map(str, each.counts)) for each in study.studies]
+    more = f" and {counts[1]} increments" if len(counts) > 1 else ""
+    kept = f"kept: corner {', '.join(map(str, study.loads))} with {counts[0]} nodes{more}"
+    return fail(f"{trouble}; {kept}", written or code)
 
 
 def _expected_seconds(case: model.Case, nodes: list[int], increments: list[int], increment_nodes: int | None) -> float:
@@ -72,13 +77,6 @@ def _expected_seconds(case: model.Case, nodes: list[int], increments: list[int],
     except InputError:
         return 0.0
     return sum(solver.expected_seconds(case.problem, case.history, each) for each in settings)
-
-
-def _describe_kept(study: studies.convergence.Convergence) -> str:
-    corners = ", ".join(map(str, study.loads))
-    return f"kept: corner {corners} with {', '.join(map(str, study.studies[0].counts))} nodes" + (
-        "" if len(study.studies) == 1 else f" and {', '.join(map(str, study.studies[1].counts))} increments"
-    )
 
 
 def _numbers(option: str, text: str) -> list[int]:

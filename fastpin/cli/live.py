@@ -16,9 +16,6 @@ from fastpin.model.checks import whole_number
 from fastpin.model.doubts import doubts_given
 from fastpin.model.grid import LEAST_NODES
 
-MOST_PORT = 65_535
-"""Largest port."""
-
 PACKAGES = "aiohttp", "segno"
 """What the extra "live" installs."""
 
@@ -34,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
     usual, limits = (NODES, ALONE) if options.host is None else (NODES_OF_CLASS, CLASS)
     given = usual if options.nodes is None else literal(options.nodes)
     nodes = whole_number("--nodes", given, LEAST_NODES, limits.nodes)
-    port = whole_number("--port", literal(options.port), 0, MOST_PORT)
+    port = whole_number("--port", literal(options.port), 0, 65_535)
     try:
         serve, host = live.serve, "" if options.host is None else live.address_of_machine(options.host)
     except ImportError as error:

@@ -10,9 +10,6 @@ from numpy.typing import ArrayLike
 from fastpin.errors import InputError
 from fastpin.model.checks import negative, number_array, numbers, positive
 
-STEPS = 100
-"""Most steps of Newton's method for a life."""
-
 
 def smith_watson_topper_life(
     parameter: ArrayLike,
@@ -129,7 +126,7 @@ def _cycles(parameter: ArrayLike, coefficients: tuple[float, float], exponents: 
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         target = np.log(values)
         x = np.max((target[..., None] - logs) / slopes, axis=-1)
-        for _ in range(STEPS):
+        for _ in range(100):
             powers = logs + x[..., None] * slopes
             total = np.logaddexp(powers[..., 0], powers[..., 1])
             slope = np.sum(slopes * np.exp(powers - total[..., None]), axis=-1)

@@ -32,9 +32,6 @@ COLUMNS = 3
 WIDTH = 7.6
 """Width of a figure, inches."""
 
-HEIGHT = 1.95
-"""Height of a panel, inches."""
-
 LETTERS = 9.5
 """Size of the words of a panel, points. They can be read at half size."""
 
@@ -54,8 +51,6 @@ _STYLES: dict[str, Line] = {"path": {**line(0), "marker": "o"}, "increment": {**
 _MARKS = {"path": "\N{BLACK CIRCLE}", "increment": "\N{BLACK SQUARE}"}
 _BAR: Line = {"marker": "_", "markersize": 11.0, "markeredgewidth": 2.0}
 _NAMES = {"path": "path solver, against nodes", "increment": "increment solver, {} nodes, against increments a step"}
-TITLE_WIDTH = 90
-"""Characters in a line of the title."""
 
 
 def plot_convergence(
@@ -107,7 +102,7 @@ def _draw(look: Look, convergence: Convergence, corner: int) -> Sheet:
     names = [name for name in (*chosen, *ORDER_OF_PANELS, *QUANTITIES, *found) if name in found]
     names = list(dict.fromkeys(names))[:MOST_PANELS]
     rows = max(1, math.ceil(len(names) / COLUMNS))
-    sheet = look.sheet([HEIGHT] * rows, columns=COLUMNS)
+    sheet = look.sheet([1.95] * rows, columns=COLUMNS)
     axes = sheet.axes
     sheet.grid()
     for name, panel in zip(names, axes.flat, strict=False):
@@ -122,7 +117,7 @@ def _draw(look: Look, convergence: Convergence, corner: int) -> Sheet:
         panel.set_ylabel("relative distance")
     _add_legend(sheet, convergence, {method for each in found.values() for method in each})
     heading = f"corner {corner}: {loads_text(convergence.problem, convergence.loads[corner])}"
-    sheet.head(*textwrap.wrap(look.title, TITLE_WIDTH), heading, caption=caption(convergence.problem))
+    sheet.head(*textwrap.wrap(look.title, 90), heading, caption=caption(convergence.problem))
     return sheet
 
 

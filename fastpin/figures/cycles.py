@@ -19,10 +19,11 @@ from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, line
 from fastpin.figures.subjects import Subject, with_cycles
-from fastpin.figures.words import ROUNDING, caption, quantity, without_rounding
+from fastpin.figures.words import caption, quantity, without_rounding
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import units
+from fastpin.report.case import ROUNDING
 from fastpin.report.curves import write_csv
 from fastpin.report.cycle import cycles_curve
 from fastpin.solver.result import Result

@@ -119,12 +119,12 @@ def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
     axes[-1, 0].set_xlabel(ANGLE)
     sheet.figure.align_ylabels(axes)
     sheet.legend(handles, min(len(handles), 3))
-    heading = "; ".join(f"{name}, {_place(one)}" for name, one in zip(names, found, strict=True))
+    heading = "; ".join(f"{name}, {_depth_words(one)}" for name, one in zip(names, found, strict=True))
     sheet.head(look.title, heading, caption=caption(found[0].problem))
     return sheet
 
 
-def _place(found: Fatigue) -> str:
+def _depth_words(found: Fatigue) -> str:
     depth = float(found.depth.ravel()[0])
     return "on the edge" if depth == 0.0 else f"{short(depth, units(found.problem)['length'])} below the edge"
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -24,7 +24,6 @@ from fastpin.figures.style import MAX_NAMED, line, spread
 from fastpin.figures.subjects import Subject, with_cycles
 from fastpin.figures.words import (
     ANGLE,
-    ROUNDING,
     caption,
     load_text,
     loads_by_change,
@@ -37,6 +36,7 @@ from fastpin.model.checks import choice, instance, items, string
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
+from fastpin.report.case import ROUNDING
 from fastpin.report.curves import Curve, write_csv
 from fastpin.report.cycle import CONJUGATES, loop_curve, natural_sizes
 from fastpin.report.cycle import write_csv as write_cycle
@@ -67,14 +67,8 @@ AREA_ERROR = 0.01
 Abscissa = Literal["prescribed", "pin"]
 """The displacement over which a reaction is drawn."""
 
-ABSCISSAS = ("prescribed", "pin")
-"""The values of :data:`Abscissa`."""
-
 PRESCRIBED = {"Q": "ux", "P": "−uy"}
 """Names of prescribed displacements along the reactions."""
-
-NO_AREA = "area unknown: no states between the corners"
-"""Title of a loop that is a line."""
 
 
 def plot_slip(
@@ -277,7 +271,7 @@ def loops_of(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None, name
 def check_loops(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None) -> None:
     """Raise :class:`InputError` if no cycle has a hysteresis loop, there are too many, or the abscissa is unknown."""
     if abscissa is not None:
-        choice("abscissa", abscissa, ABSCISSAS)
+        choice("abscissa", abscissa, get_args(Abscissa))
     if not 1 <= len(cycles) <= MAX_NAMED:
         raise InputError("cycle", f"must be 1 to {MAX_NAMED} cycles, not {len(cycles)}")
     if any(cycle.states[0].problem != cycles[0].states[0].problem for cycle in cycles):
@@ -349,7 +343,7 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
     panel.set_xlabel(f"{words}\n({shown_unit(moved_unit)})" if across > 2 else quantity(words, moved_unit))
     panel.set_ylabel(quantity(name, load_unit))
     if len(cycles) == 1:
-        (loop,), area = loops, NO_AREA
+        (loop,), area = loops, "area unknown: no states between the corners"
         if len(loop.load) > STRAIGHT:
             is_rounding = abs(loop.work) <= ROUNDING * float(np.abs(loop.load).max() * np.abs(loop.displacement).max())
             area = f"area {'0' if is_rounding else short(float(loop.work), unit['energy'])}"

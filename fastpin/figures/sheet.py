@@ -18,6 +18,7 @@ from fastpin.errors import InputError
 from fastpin.figures.style import (
     check_figure_text,
     check_format,
+    draw_grid,
     fitted_legend,
     house_style,
     new_figure,
@@ -32,9 +33,6 @@ WIDTH = 6.7
 
 HEADING = 9.5
 """Size of a title, points."""
-
-CAPTION: dict[str, Any] = {"fontsize": CAPTION_SIZE, "color": "0.25", "parse_math": False}
-"""Text of a caption."""
 
 USUAL_ROWS, ROW = 4, 0.16
 """Rows of a legend for which figures have room, and the height of a further row, inches."""
@@ -185,7 +183,7 @@ class Sheet:
             return
         if self.axes.shape[1] == 1:
             if small:
-                self.axes[0, 0].set_title(small, pad=lift, **CAPTION)
+                self.axes[0, 0].set_title(small, pad=lift, fontsize=CAPTION_SIZE, color="0.25", parse_math=False)
         else:
             text = "\n".join(filter(None, [text, small]))
         if text:
@@ -212,8 +210,7 @@ class Sheet:
     def grid(self, axis: Any = "both") -> None:
         """Draw light lines behind the curves of all panels."""
         for panel in self.axes.flat:
-            panel.grid(True, axis=axis, color="0.92", linewidth=0.6)
-            panel.set_axisbelow(True)
+            draw_grid(panel, axis)
 
 
 def _insets(host: Axes, heights: Sequence[float], columns: int, options: dict[str, Any]) -> np.ndarray:

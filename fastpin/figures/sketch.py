@@ -18,7 +18,7 @@ from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.stick_slip import zone_look, zone_patch
 from fastpin.figures.subjects import Subject
-from fastpin.figures.words import ROUNDING, caption, point_text, short_load, shown_unit
+from fastpin.figures.words import caption, point_text, short_load, shown_unit
 from fastpin.kernels.status import STICK
 from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, instance
@@ -26,7 +26,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.report.case import edge_body
+from fastpin.report.case import ROUNDING, edge_body
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State

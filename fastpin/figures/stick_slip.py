@@ -54,9 +54,6 @@ EXTENTS = {
 BOTH_WAYS_LOOK = ("#6FB58F", "xxxx", "")
 """The look of nodes that slip both ways in a column."""
 
-OPEN_WORDS = "open all the time"
-"""Words of nodes that are closed at no state of a column."""
-
 MARKS = {SLIP_POSITIVE: "^", SLIP_NEGATIVE: "v"}
 """Marks of slip zones that are too narrow to be seen; they point along the slip of the pin."""
 
@@ -211,7 +208,7 @@ def _draw_long(look: Look, states: DrawnStates) -> Sheet:
     some = f" of {states.total:,}" if len(states) < states.total else ""
     _add_words(sheet, states, frame, look.title, f"; {len(states):,}{some} states; {words}")
     handles = [zone_patch(extent_look(problem, extent)) for extent in present]
-    sheet.legend([*handles, _open_patch(OPEN_WORDS)], 3)
+    sheet.legend([*handles, _open_patch("open all the time")], 3)
     return sheet
 
 

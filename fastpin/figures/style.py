@@ -166,6 +166,12 @@ def draw_zero(panel: Axes) -> None:
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
 
 
+def draw_grid(panel: Axes, axis: Any = "both") -> None:
+    """Draw light lines behind the curves of a panel."""
+    panel.grid(True, axis=axis, color="0.92", linewidth=0.6)
+    panel.set_axisbelow(True)
+
+
 def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
     """Return the keywords of a line. `colour` and `dashes` are below :data:`MAX_NAMED`; dashes 0 are solid."""
     return {"color": COLOURS[colour], "linestyle": DASHES[dashes], "linewidth": width}
@@ -191,8 +197,7 @@ def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> 
     figure = new_figure(width, rows * height + 0.6)
     axes = figure.subplots(rows, columns, squeeze=False)
     for panel in axes.flat:
-        panel.grid(True, color="0.92", linewidth=0.6)
-        panel.set_axisbelow(True)
+        draw_grid(panel)
     return figure, axes
 
 

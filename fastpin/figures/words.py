@@ -13,6 +13,7 @@ from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.units import PASCAL, Unit, acting_loads, units
+from fastpin.report.case import ROUNDING
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
@@ -21,9 +22,6 @@ ANGLE = "angle from the bottom of the hole, counter-clockwise (deg)"
 
 LOAD_POINT = "load point (1: first corner of the history)"
 """Words of the axis of load points."""
-
-ROUNDING = 1e-9
-"""Values below this part of the largest are rounding, as in tables. They are drawn and written as 0."""
 
 DIGITS, LOAD_DIGITS = 3, 5
 """Significant digits of a parameter in a caption, and of a load in a heading."""

@@ -143,15 +143,15 @@ def _follow(name: str, value: object) -> str:
     return choice(name, value, FOLLOW)
 
 
-def _nodes(name: str, value: object) -> int:
-    return whole_number(name, value, LEAST_NODES, MOST_LIVE_NODES)
-
-
 FIELDS: dict[str, dict[str, Any]] = {
     "hello": {"session": string},
     "load": {"loads": _loads, "gesture": _whole, "drag": true_or_false},
     "change": {"changes": _table, "follow": _follow, "gesture": _whole},
-    "nodes": {"nodes": _nodes, "follow": _follow, "gesture": _whole},
+    "nodes": {
+        "nodes": lambda name, value: whole_number(name, value, LEAST_NODES, MOST_LIVE_NODES),
+        "follow": _follow,
+        "gesture": _whole,
+    },
     "undo": {},
     "redo": {},
     "reset": {},

@@ -39,9 +39,6 @@ from fastpin.version import __version__
 ADDRESS = "127.0.0.1"
 """The address on which the server listens unless another one is given: that of this machine, for this machine."""
 
-PLAIN_PORT = 80
-"""The port that browsers leave out of the Host."""
-
 ELSEWHERE = "192.0.2.1", 9
 """An address that belongs to nobody, for a question to the routing table. Nothing is sent there."""
 
@@ -259,7 +256,8 @@ class Server:
             names = [f"[{self._host}]" if ":" in self._host else self._host]
             if self._host == ADDRESS:
                 names.append("localhost")
-            self._hosts = tuple(name if port == PLAIN_PORT else f"{name}:{port}" for name in names)
+            # Browsers leave port 80 out of the Host.
+            self._hosts = tuple(name if port == 80 else f"{name}:{port}" for name in names)
             self.address = f"http://{self._hosts[0]}/{self.token}/"
             await web.SockSite(runner, listening).start()
             yield self

@@ -13,7 +13,7 @@ from fastpin.figures.convergence import convergence_of
 from fastpin.figures.cycles import cycles_of
 from fastpin.figures.fatigue import fatigue_of
 from fastpin.figures.history import history_of
-from fastpin.figures.load_cycle import loops_of, slip_of
+from fastpin.figures.load_cycle import STRAIGHT, loops_of, slip_of
 from fastpin.figures.sketch import sketch_of
 from fastpin.figures.stick_slip import stick_slip_plot
 from fastpin.figures.stress import hoop_plot, map_plot
@@ -54,9 +54,6 @@ RESIDUAL_WORDS = {
     "equilibrium": "equilibrium of the pin, in parts of the resultants of the absolute tractions",
 }
 """Words for the residuals of a :class:`fastpin.State`."""
-
-STRAIGHT = 3
-"""States of a cycle, with both ends, between which a loop is a line."""
 
 NO_SLIP = "from corner {0.first:,} to {0.last:,} nothing slips beyond rounding"
 """In place of the slip of a cycle."""
@@ -163,7 +160,8 @@ def case(page: PageParts) -> PageSection:
             (f"clearance{assembled} / radius", f"{problem.assembled_clearance / problem.hole_radius:.4g}"),
         ]
     known = page.source.knows_options
-    options = {name: value for name, value in found.options.keywords().items() if known or name in _IN_RESULTS}
+    told = ("nodes", "method", "error_bars")  # by a result without its run
+    options = {name: value for name, value in found.options.keywords().items() if known or name in told}
     solver = [(name, as_toml(value), OPTIONS[name]["words"]) for name, value in options.items() if value is not None]
     return PageSection(
         "case",
@@ -176,16 +174,13 @@ def case(page: PageParts) -> PageSection:
     )
 
 
-_IN_RESULTS = ("nodes", "method", "error_bars")
-"""Options that a result tells without its run."""
-
-
 def materials(page: PageParts) -> PageSection:
     """Return the constants of all materials."""
     problem = page.source.case.problem
     found = problem.joint.materials
     modulus = Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL
-    columns: list[Column] = [("constant", "", _CONSTANTS)]
+    names = ["material", "Young's modulus E", "Poisson's ratio nu", "shear modulus G", "yield strength"]
+    columns: list[Column] = [("constant", "", names)]
     columns += [(name, "", _constants(material, modulus)) for name, material in found.items()]
     parts: list[SectionPart] = [Table("Elastic constants and yield strength", columns)]
     fatigue = {
@@ -203,9 +198,6 @@ def materials(page: PageParts) -> PageSection:
     else:
         parts.append(Text("No material has fatigue constants: see the key fatigue of a case file.", "missing"))
     return PageSection("materials", "Materials", parts)
-
-
-_CONSTANTS = ["material", "Young's modulus E", "Poisson's ratio nu", "shear modulus G", "yield strength"]
 
 
 def _constants(material: Material, unit: Unit) -> list[str]:

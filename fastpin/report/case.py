@@ -18,7 +18,7 @@ from fastpin.model.units import PASCAL, acting_loads, units
 from fastpin.report.table import Column, table, visible_rows
 
 ROUNDING = 1e-9
-"""Values below this part of the largest of their kind are rounding, and printed as 0."""
+"""Values below this part of the largest of their kind are rounding. They are printed, written and drawn as 0."""
 
 
 def describe(case: Case) -> str:

@@ -23,8 +23,6 @@ from fastpin.version import __version__
 
 Schema = dict[str, Any]
 
-DRAFT = "https://json-schema.org/draft/2020-12/schema"
-
 _NUMBER: Schema = {"type": "number"}
 _WHOLE: Schema = {"type": "integer"}
 _TEXT: Schema = {"type": "string"}
@@ -48,7 +46,11 @@ def json_schema(command: str) -> Schema:
         If there is no such document.
     """
     document = _DOCUMENTS[choice("command", command, COMMANDS)]()
-    return {"$schema": DRAFT, "title": f"JSON of fastpin {command}, version {__version__}", **document}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": f"JSON of fastpin {command}, version {__version__}",
+        **document,
+    }
 
 
 def _summary() -> Schema:

@@ -12,7 +12,6 @@ from fastpin.bodies.body import BodyBase
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
-from fastpin.model.history import Block
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
@@ -48,7 +47,8 @@ def document(
     """
     problem, pair = case.problem, case.problem.pair
     alpha, beta = problem.surfaces.dundurs()
-    energy = units(problem)["energy"]
+    unit = units(problem)
+    factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
     found = {
         "fastpin": __version__,
         "title": case.title,
@@ -68,14 +68,19 @@ def document(
             "press_fit_pressure": problem.press_fit_pressure,
             "dimensionless": problem.dimensionless,
         },
-        "history": {"loads": list(LOADS), "blocks": [_block_summary(problem, block) for block in case.history.blocks]},
+        "history": {
+            "loads": list(LOADS),  # a load that a corner does not give becomes null
+            "blocks": [
+                {"repeat": each.count, "corners": (factors * each.given).tolist()} for each in case.history.blocks
+            ],
+        },
         "solver": case.options.keywords(),
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
         "extremes": {} if result is None else _extremes_summary(result),
         "margins": [] if result is None else _margins_summary(result),
         "cycles": [
-            row._asdict() | {"dissipation": energy.factor * row.dissipation}
+            row._asdict() | {"dissipation": unit["energy"].factor * row.dissipation}
             for row in (() if result is None else result.cycles)
         ],
         "cycle": None if cycle is None else cycle_report.document(cycle),
@@ -99,13 +104,6 @@ def printed_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, floa
     """Return loads, by name, in printed units."""
     unit = units(problem)
     return {name: unit[LOAD_KIND[name]].factor * value for name, value in load.items()}
-
-
-def _block_summary(problem: Problem, block: Block) -> dict[str, Any]:
-    """Return a block of the history. Loads that a corner does not give become None."""
-    unit = units(problem)
-    factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
-    return {"repeat": block.count, "corners": (factors * block.given).tolist()}
 
 
 def _material_summary(material: Material) -> dict[str, Any]:
