@@ -26,7 +26,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _all_actions(command: argparse.ArgumentParser) -> list[argparse.Action]:
-    """The options and arguments of a parser, and those of its commands. argparse has no public list of them."""
+    """Return the options and arguments of a parser and of its commands. argparse has no public list of them."""
     found = list(command._actions)
     for action in command._actions:
         if isinstance(action.choices, dict):

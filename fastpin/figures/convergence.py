@@ -71,8 +71,9 @@ def plot_convergence(
     and the distance is measured from the last value. A dash at the last count is the error bar. Guides have the orders
     1 and 2. Quantities that are exact to rounding, or can't be compared, have no panel.
 
-    The `corner` counts from 1; the last one of the study unless given. The other arguments are those of
-    :func:`fastpin.plot_tractions`.
+    The `corner` counts from 1; the last one of the study unless given.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
     """
     return Look(path, title, width, dpi, ax).drawn(convergence_of(convergence, corner))
 

@@ -79,7 +79,9 @@ def plot_cycles(
     far the cycles so far have turned the pin (ratcheting), counter-clockwise positive. Cycles that contain others have
     a sum of their own. A panel whose values are all 0 to rounding is left out.
 
-    The other arguments are those of :func:`fastpin.plot_tractions`. Without cycles this raises :class:`InputError`.
+    Without cycles this raises :class:`InputError`.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
     """
     return Look(path, title, width, dpi, ax).drawn(cycles_of(result))
 
@@ -146,7 +148,7 @@ def _draw(look: Look, result: Result) -> Sheet:
 
 
 def _panels_with_values(result: Result, turns: dict[tuple[int, int], np.ndarray]) -> list[str]:
-    """The panels whose values are not all 0 to rounding; the first one if all are."""
+    """Return the panels with values beyond rounding; the first panel without any."""
     cycles, surfaces, radius = result.cycles, result.problem.surfaces, result.problem.hole_radius
     largest_loads = dict(zip(LOADS, np.abs(result.history.distinct()).max(axis=0).tolist(), strict=True))
     strains = {"force": surfaces.beta_star / radius, "traction": surfaces.beta_star, "displacement": 1.0 / radius}
@@ -162,7 +164,7 @@ def _panels_with_values(result: Result, turns: dict[tuple[int, int], np.ndarray]
 
 
 def _turned(cycles: Sequence[Cycle]) -> dict[tuple[int, int], np.ndarray]:
-    """How far all cycles so far have turned the pin, rad, for each part of :func:`_parts`.
+    """Return the rotation of the pin by all cycles so far, rad, for each part of :func:`_parts`.
 
     The keys are length and last corner of the part's first cycle. A part goes on from the last part that ended before
     it began, of any length. Sums below rounding are 0.
@@ -183,7 +185,7 @@ def _turned(cycles: Sequence[Cycle]) -> dict[tuple[int, int], np.ndarray]:
 
 
 def _parts(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
-    """Runs of cycles of one length in which each begins where the one before ends, in any block."""
+    """Return runs of cycles of one length. Each cycle of a run begins where the cycle before it ends."""
     parts: list[list[Cycle]] = []
     for cycle in cycles:
         if parts and parts[-1][-1].corner + cycle.length == cycle.corner:
@@ -194,7 +196,7 @@ def _parts(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
 
 
 def _style(kind: int, dashes: int, count: int) -> dict[str, Any]:
-    """A line with marks, also of a shape of its own for each length of cycles. Marks of shear are open."""
+    """Return a line with marks. Each length of cycles has a mark of its own. Marks of shear are open."""
     marks: dict[str, Any] = {"marker": MARKERS[kind], "markersize": 3.8, "clip_on": False, "zorder": 3}
     if count > FEW:
         marks["markevery"] = SPARSE
@@ -204,14 +206,14 @@ def _style(kind: int, dashes: int, count: int) -> dict[str, Any]:
 
 
 def _floor(values: np.ndarray) -> float:
-    """The place of 0 on a logarithmic axis: a power of ten below the smallest value that is no rounding."""
+    """Return the power of ten below the smallest significant value. It stands for 0 on a logarithmic axis."""
     known = values[np.isfinite(values)]
     positive = known[known > ROUNDING * np.max(known, initial=0.0)]
     return 10.0 ** (math.floor(math.log10(positive.min())) - 1) if positive.size else 0.1
 
 
 def _above(values: np.ndarray, floor: float) -> np.ndarray:
-    """Values as they are drawn over a floor that stands for 0; NaN stays."""
+    """Return values of at least `floor`, which stands for 0. NaN stays."""
     return np.where(np.isnan(values), np.nan, np.maximum(values, floor))
 
 
@@ -257,7 +259,7 @@ def _cycle_axis(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
 
 
 def _counts(cycles: Sequence[Cycle]) -> str:
-    """How many cycles there are, and from which on they are periodic."""
+    """Return the number of cycles, and the first periodic one, as text."""
     steady = periodic_from(consecutive_cycles(cycles)[-1])
     words = f"periodic from cycle {steady.number:,} of the last block on" if steady else "not yet periodic"
     return f"{len(cycles):,} cycle{'s' if len(cycles) > 1 else ''}, {words}"

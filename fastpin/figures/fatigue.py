@@ -48,8 +48,9 @@ def plot_fatigue(
     Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
     is a crack that goes straight into the body.
 
-    The points lie at one depth. Several bodies, such as a bush and the plate round it, share the panels. The other
-    arguments are those of :func:`fastpin.plot_tractions`.
+    The points lie at one depth. Several bodies, such as a bush and the plate round it, share the panels.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
     """
     return Look(path, title, width, dpi, ax).drawn(fatigue_of(found))
 

@@ -47,11 +47,12 @@ def plot_history(
 ) -> Figure:
     """Draw the loads of a history over its corners, with a panel for each kind of load.
 
-    A repeated block is drawn once, shaded, with the number of times. The loads are those of the first time through. The
+    A repeated block is drawn once, shaded, with the number of times, and with the loads of the first time through. The
     history starts at corner 0, without load unless `initial` is given. The loads are linear between the corners.
 
-    The `initial` load, shape (loads,), is that at corner 0, of a history that continues another one. The other
-    arguments are those of :func:`fastpin.plot_tractions`.
+    The `initial` load, shape (loads,), acts at corner 0 of a history that continues another one.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
     """
     return Look(path, title, width, dpi, ax).drawn(history_of(problem, history, initial))
 

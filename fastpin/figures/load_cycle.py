@@ -85,7 +85,9 @@ def plot_slip(
     The upper panel shows the slip range, and the slip distance if it is known. The lower panel shows the friction
     energy, or if that is not known the range of the shear traction. Nodes that slip or open at some time are shaded.
 
-    Of a result it is the last cycle. The other arguments are those of :func:`fastpin.plot_tractions`.
+    Of a result it is the last cycle.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
     """
     return Look(path, title, width, dpi, ax).drawn(slip_of(_cycle_of(cycle)))
 

@@ -40,7 +40,7 @@ def plot_lug(
 ) -> Figure:
     """Draw the outline with names of its parts, all holes, supports and loads. Lengths are in millimetres.
 
-    The other arguments are those of :func:`fastpin.plot_tractions`.
+    See :func:`fastpin.plot_tractions` for the other arguments.
     """
     instance("lug", lug, Lug, "fastpin.model.Lug")
     return Look(path, title, width, dpi, ax).drawn(Plot(lambda look: _draw(look, lug)))

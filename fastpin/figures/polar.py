@@ -54,7 +54,9 @@ def plot_polar(
 
     The left panel shows the pressure, outwards from the hole. The right panel shows the shear traction on the pin:
     outwards where it acts counter-clockwise, inwards where it acts clockwise. Without friction there is only the
-    pressure. The arguments are those of :func:`fastpin.plot_tractions`.
+    pressure.
+
+    See :func:`fastpin.plot_tractions` for the arguments.
     """
     return Look(path, title, width, dpi, ax).drawn(polar_plot(InMemory(result), states))
 

@@ -127,7 +127,7 @@ class Plot:
     caption : str
         The text below the figure on a page.
     notes, doubts : sequence of str
-        Sentences for the terminal: on the choice of what is drawn, and on what may mislead.
+        Sentences for the terminal: on the drawn part of the result, and on doubts.
     width : float
         Width of a new figure, inches.
     bitmap : bool

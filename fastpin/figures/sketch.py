@@ -105,7 +105,9 @@ def plot_sketch(
     has an arrow for each load of the history, with the range of its values; the arrow has two heads if the load changes
     its sign.
 
-    The `history` gives a problem its loads. The other arguments are those of :func:`fastpin.plot_tractions`.
+    The `history` gives a problem its loads.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
     """
     return Look(path, title, width, dpi, ax).drawn(sketch_of(joint, history))
 

@@ -378,7 +378,7 @@ def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist
 
 
 def state_lines(states: Sequence[State]) -> list[Line]:
-    """Return the style of each state's line: colour and dashes of its own, or those of an equal state before it."""
+    """Return the style of each state's line. Equal states share colour and dashes."""
     return [line(twin, twin, 1.3) for twin in first_twins(states)]
 
 

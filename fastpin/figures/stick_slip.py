@@ -49,7 +49,7 @@ EXTENTS = {
     SLIP_NEGATIVE: "pin slips clockwise at some time",
     BOTH_WAYS: "pin slips both ways",
 }
-"""Words of what a node does in a column that joins several states."""
+"""Words for the behaviour of a node in a column that joins several states."""
 
 BOTH_WAYS_LOOK = ("#6FB58F", "xxxx", "")
 """The look of nodes that slip both ways in a column."""
@@ -96,7 +96,9 @@ def plot_stick_slip(
     Colours show where the contact sticks and in which direction the pin slips; white is open. A triangle marks a slip
     zone that is too narrow to be seen. Without friction all contact slips. The upper panel shows the loads that change.
     Of more than :data:`MOST_COLUMNS` states, a column joins the states of one cycle or of several. It shows which nodes
-    slip, and in which direction, at some time in it. The arguments are those of :func:`fastpin.plot_tractions`.
+    slip, and in which direction, at some time in it.
+
+    See :func:`fastpin.plot_tractions` for the arguments.
     """
     return Look(path, title, width, dpi, ax).drawn(stick_slip_plot(InMemory(result), states))
 
@@ -213,7 +215,7 @@ def _draw_long(look: Look, states: DrawnStates) -> Sheet:
 
 
 def long_columns(states: DrawnStates) -> tuple[list[MapColumn], str]:
-    """Return the columns in which many states are drawn, and words on what a column joins."""
+    """Return the columns of a map of many states, and words on the states that a column joins."""
     points = np.array([load_point(state) for state in states])
     return columns_of(points, states.cycles, MOST_COLUMNS)
 

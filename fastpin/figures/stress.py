@@ -130,9 +130,10 @@ def plot_stress_profile(
 ) -> Figure:
     """Draw radial, hoop, shear and von Mises stress below a place of the edge of a body.
 
-    The place is an `angle` in degrees from the bottom; that of each state's largest hoop stress unless given. The
-    largest `depth` is in units of the hole's radius. A rigid `body` raises :class:`InputError`. The other arguments are
-    those of :func:`fastpin.plot_tractions`.
+    The `angle` is in degrees from the bottom. Unless given, it is the angle of each state's largest hoop stress. The
+    largest `depth` is in units of the hole's radius. A rigid `body` raises :class:`InputError`.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
     """
     return Look(path, title, width, ax=ax).drawn(profile_plot(InMemory(result), states, body, angle, depth))
 
@@ -184,8 +185,9 @@ def plot_stress_field(
     """Draw a map of one component of the stress in pin and plate.
 
     The hole's edge is a thin line, and the contact a thick one. The clearance is too narrow to be seen. Under a point
-    force at the pin's centre the stress is infinite; the values near the force do not set the colours. Other arguments
-    are those of :func:`fastpin.plot_tractions`.
+    force at the pin's centre the stress is infinite; the values near the force do not set the colours.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
 
     Parameters
     ----------

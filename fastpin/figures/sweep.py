@@ -95,7 +95,9 @@ def plot_sweep(
     scale. Of more than :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
 
     The chart is made by :func:`fastpin.report.sweep.chart`. It gives the title and the width unless these are given.
-    Only curves or a single map go into `ax`. The other arguments are those of :func:`fastpin.plot_tractions`.
+    Only curves or a single map go into `ax`.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
     """
     plot = sweep_of(chart)
     maps = 0 if chart.y is None else len(chart.parts)
@@ -366,7 +368,7 @@ def _by_rows(handles: Sequence[Any], columns: int) -> list[Any]:
 
 
 def _mark_failed(panel: Axes, x: np.ndarray, index: int) -> None:
-    """Mark the failed runs of a curve at the lower edge of the panel, above those of the curves before it."""
+    """Mark the failed runs of a curve at the lower edge of the panel. Each curve has a row of marks."""
     panel.plot(
         x,
         np.full(len(x), 0.02 + 0.03 * index),

@@ -72,7 +72,7 @@ def load_text(states: Sequence[State], index: int, name: str) -> str:
 
 
 def loads_by_change(states: Sequence[State]) -> tuple[list[str], list[str]]:
-    """The names of acting loads that are equal in all states, and of those that differ beyond rounding."""
+    """Return the names of the acting loads that are equal in all states, and that differ beyond rounding."""
     acting = acting_loads([state.load for state in states])
     values = {name: np.array([state.load[name] for state in states]) for name in acting}
     differing = [name for name in acting if np.ptp(values[name]) > ROUNDING * np.abs(values[name]).max()]

@@ -54,10 +54,10 @@ MOST_LEFT = 4
 tables."""
 
 NO_GESTURE = -1
-"""The gesture of what stands alone. Those of a page are not negative."""
+"""Number for changes without a gesture. The gestures of a page are not negative."""
 
 UNKNOWN = (object(), object())
-"""What a page knows before it knows anything."""
+"""Initial entry of what a page knows. It equals nothing."""
 
 Answer = dict[str, Any]
 

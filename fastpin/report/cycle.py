@@ -188,7 +188,7 @@ def cycles_curve(problem: Problem, cycles: Sequence[Cycle]) -> Curve:
 
 
 def _largest(cycle: LoadCycle, name: str) -> tuple[float | None, float | None]:
-    """Return the largest value of a node and its angle; None for what is not known."""
+    """Return the largest value of a node and its angle; None if unknown."""
     values: np.ndarray | None = getattr(cycle, name)
     if values is None:
         return None, None
