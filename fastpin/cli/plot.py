@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import importlib
 import sys
 from pathlib import Path
 
@@ -11,7 +10,7 @@ from fastpin import casefile, figures, storage
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_files
 from fastpin.errors import InputError
-from fastpin.figures.kinds import KINDS
+from fastpin.figures.kinds import KINDS, kinds_with
 
 
 def run(options: argparse.Namespace) -> int:
@@ -32,11 +31,8 @@ def run(options: argparse.Namespace) -> int:
         plot = _plot(options)
 
     def draw(path: Path) -> None:
-        if plot.frames:
-            with Bar(plot.frames, "state {n:.0f} of {total:.0f}") as progress_bar:
-                plot.save(path, title, progress_to(progress_bar))
-        else:
-            plot.save(path, title)
+        with Bar(plot.frames, "state {n:.0f} of {total:.0f}") as progress_bar:  # it moves for an animation only
+            plot.save(path, title, progress_to(progress_bar))
 
     code = write_files([(figure, draw), *([(options.csv, plot.write_numbers)] if plot.write_numbers else [])])
     if code == 0:
@@ -55,17 +51,18 @@ def _check(options: argparse.Namespace, is_case: bool) -> None:
     known = KINDS[options.kind].options
     for name in sorted({name for kind in KINDS.values() for name in kind.options}):
         if getattr(options, name) is not None and name not in known:
-            kinds = ", ".join(other for other, kind in KINDS.items() if name in kind.options)
-            raise InputError(flag(name), f"has no effect on {options.kind}; it is for {kinds}")
+            raise InputError(flag(name), f"has no effect on {options.kind}; it is for {kinds_with(name)}")
 
 
 def _plot(options: argparse.Namespace) -> figures.sheet.Plot:
     """Return the figure of a stored result, and say which part of the result it shows."""
-    kind = KINDS[options.kind]
-    given = {name: value for name in kind.options if (value := getattr(options, name)) is not None and name != "csv"}
-    make = getattr(importlib.import_module(f"fastpin.figures.{kind.file}"), f"{options.kind.replace('-', '_')}_plot")
+    given = {
+        name: value
+        for name in KINDS[options.kind].options
+        if (value := getattr(options, name)) is not None and name != "csv"
+    }
     try:
-        plot: figures.sheet.Plot = make(figures.subjects.InFile(options.result), **given)
+        plot = figures.plotting.plot_of(options.kind, figures.subjects.InFile(options.result), **given)
     except InputError as error:
         raise InputError(flag(error.field) if error.field in given else error.field, error.reason) from None
     say(*plot.notes)

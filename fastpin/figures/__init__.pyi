@@ -1,5 +1,6 @@
 from . import animation as animation
 from . import load_cycle as load_cycle
+from . import plotting as plotting
 from . import polar as polar
 from . import sheet as sheet
 from . import sketch as sketch

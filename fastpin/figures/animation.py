@@ -130,8 +130,6 @@ class Film(Plot):
 
     def save(self, path: Path, title: str = "", progress: Callable[[float, float], None] | None = None) -> None:
         """Draw the pictures and write them to a file."""
-        check_animation("path", path)
-        check_writable(path)
         self.write(path, Look(title=title, dpi=DPI), progress)
 
     def write(self, path: Path, look: Look, progress: Callable[[float, float], None] | None) -> None:

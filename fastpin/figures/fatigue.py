@@ -56,10 +56,7 @@ def plot_fatigue(
 
 
 def fatigue_plot(
-    subject: Subject,
-    criterion: Criterion = "smith-watson-topper",
-    body: Body | None = None,
-    depth: float | None = None,
+    subject: Subject, criterion: Criterion = "smith-watson-topper", body: Body | None = None, depth: float | None = None
 ) -> Plot:
     """Return the fatigue of the last cycle: of one body, or of all edges of holes with constants."""
     result = subject.part(with_cycles(subject).cycles[-1])

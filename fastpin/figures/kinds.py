@@ -59,7 +59,7 @@ class Kind(NamedTuple):
     ----------
     file : str
         The file of this folder that makes the figure. Its function ``KIND_plot(subject, **options)`` returns a
-        :class:`fastpin.figures.sheet.Plot` of a :class:`fastpin.figures.states.Subject`.
+        :class:`fastpin.figures.sheet.Plot` of a :class:`fastpin.figures.subjects.Subject`.
     words : str
         Its help on the command line; empty if the name says it.
     options : tuple of str
@@ -91,3 +91,8 @@ KINDS = {
     "fatigue": Kind("fatigue", "a criterion along the edge over the last cycle", ("csv", "body", "criterion", "depth")),
 }
 """The kinds of figures by their names on the command line."""
+
+
+def kinds_with(option: str) -> str:
+    """Return the kinds with an option, as text; empty if there is none."""
+    return ", ".join(name for name, kind in KINDS.items() if option in kind.options)

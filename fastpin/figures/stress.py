@@ -206,11 +206,7 @@ def plot_stress_field(
 
 
 def map_plot(
-    subject: Subject,
-    states: StateChoice = None,
-    component: str = "von_mises",
-    body: str = "both",
-    extent: float = 2.0,
+    subject: Subject, states: StateChoice = None, component: str = "von_mises", body: str = "both", extent: float = 2.0
 ) -> Plot:
     """Return a map of one component of the stress in the last one of some states, see :func:`plot_stress_field`."""
     drawn = subject.states("last" if states is None else states)

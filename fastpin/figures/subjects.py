@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from fastpin.errors import InputError
 from fastpin.figures.states import DrawnStates, drawn_states, stored_states
@@ -14,23 +14,6 @@ from fastpin.states.choice import NO_CYCLE, StateChoice
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.store import load, places_between
-
-
-class Subject(Protocol):
-    """A result, or states, of which figures are made. States alone have no cycles."""
-
-    @property
-    def cycles(self) -> Sequence[Cycle]:
-        """The cycles of the history."""
-
-    def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
-        """Return the states of a figure, see :func:`fastpin.figures.states.drawn_states`."""
-
-    def result(self) -> Result:
-        """Return the result, perhaps without its states."""
-
-    def part(self, cycle: Cycle) -> Result:
-        """Return the result with the states of one cycle, perhaps without the others."""
 
 
 class InMemory:
@@ -45,7 +28,7 @@ class InMemory:
         return self._result.cycles if isinstance(self._result, Result) else ()
 
     def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
-        """Return the states of a figure."""
+        """Return the states of a figure, see :func:`fastpin.figures.states.drawn_states`."""
         return drawn_states(self._result, states, **how)
 
     def result(self) -> Result:
@@ -69,7 +52,7 @@ class InFile:
         return self.result().cycles
 
     def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
-        """Return the states of a figure."""
+        """Return the states of a figure, see :func:`fastpin.figures.states.stored_states`."""
         return stored_states(self._path, states, **how)
 
     def result(self) -> Result:
@@ -79,6 +62,10 @@ class InFile:
     def part(self, cycle: Cycle) -> Result:
         """Return the result with the states of one cycle only."""
         return load(self._path, states=places_between(self._path, cycle.corner + 1 - cycle.length, cycle.corner + 1))
+
+
+Subject = InMemory | InFile
+"""A result, or states, of which figures are made. States alone have no result."""
 
 
 def with_cycles(subject: Subject) -> Result:

@@ -187,12 +187,13 @@ class Result(Sequence[State]):
         return states.extremes.all_extremes(states.extremes.KeptStates(self.states)) if self.states else {}
 
     def plot(self, path: str | Path | None = None, states: StateChoice = None, **options: Any) -> Any:
-        """Draw the tractions, and return the matplotlib figure.
+        """Draw the tractions, or another kind of figure, and return the matplotlib figure.
 
         Parameters
         ----------
         path, **options
-            See :func:`fastpin.plot_tractions`.
+            See :func:`fastpin.plot_tractions`. With ``kind="loops"``, or another kind of ``fastpin plot``, the options
+            of this kind, such as ``cycle="all"``.
         states : str, number, sequence of numbers or slice, optional
             "last", "cycle" (the last one), "all", or load points, which count from 1 as in tables: 2, [2, 3.5] or
             "2,3.5". A slice chooses places in the result. Unless given, all states of a short history, or the last
@@ -205,7 +206,9 @@ class Result(Sequence[State]):
         """
         import fastpin
 
-        return fastpin.plot_tractions(self, path, states=states, **options)
+        if states is not None:
+            options["states"] = states
+        return fastpin.figures.plotting.plot_result(self, options.pop("kind", "tractions"), path, **options)
 
     def fatigue(self, criterion: Any, body: Body = "plate", **options: Any) -> Any:
         """Fatigue of plate or pin over the last cycle of the history, or over all states if it has no cycles.

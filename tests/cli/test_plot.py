@@ -5,10 +5,11 @@ import functools
 import importlib
 import inspect
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, load, record, storage
+from fastpin import MATERIALS, InputError, LoadHistory, MaterialPair, Problem, figures, load, record, storage
 from fastpin.cli.main import main
 from fastpin.figures.kinds import KIND_OPTIONS, KINDS
 
@@ -70,6 +71,24 @@ def test_a_figure_and_its_numbers_with_units(stored, kind, tmp_path, capsys):
         for name, cell in row.items():
             is_text = not cell or cell[0].isalpha()
             assert is_text or name in BARE or (name.endswith("]") and " [" in name), (name, cell)
+
+
+@pytest.mark.usefixtures("coarse")
+def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, tmp_path):
+    result = load(stored)
+    with mpl.rc_context({"svg.hashsalt": "fastpin"}):
+        for name in [name for name, kind in KINDS.items() if kind.ending == "png"]:
+            result.plot(tmp_path / "memory.svg", kind=name)
+            assert main(["plot", str(stored), name, "-o", str(tmp_path / "file.svg")]) == 0
+            assert (tmp_path / "memory.svg").read_bytes() == (tmp_path / "file.svg").read_bytes(), name
+
+
+def test_kinds_and_options_of_a_result_in_memory_are_checked(stored):
+    result = load(stored)
+    with pytest.raises(InputError, match=r'^kind: must be "tractions", "polar", .* not "animation"$'):
+        result.plot(kind="animation")
+    with pytest.raises(InputError, match=r"^body: has no effect on loops; it is for hoop, profile, map, fatigue$"):
+        result.plot(kind="loops", body="pin")
 
 
 def test_the_terminal_says_which_states_are_drawn(stored, tmp_path, capsys):
