@@ -36,7 +36,6 @@ from fastpin.model.points import EDGES
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
 from fastpin.states.choice import check_choice, span_of
-from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import KeptStates, marked_extremes, marked_places, yield_doubts_of
 
 if TYPE_CHECKING:  # it imports compiled code

@@ -10,7 +10,7 @@ from fastpin.errors import InputError
 from fastpin.figures.states import DrawnStates, drawn_states, stored_states
 from fastpin.model.checks import instance
 from fastpin.solver.result import Result
-from fastpin.states.choice import NO_CYCLE, StateChoice
+from fastpin.states.choice import NO_CYCLE, StateChoice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.store import load, places_between
@@ -61,7 +61,7 @@ class InFile:
 
     def part(self, cycle: Cycle) -> Result:
         """Return the result with the states of one cycle only."""
-        return load(self._path, states=places_between(self._path, cycle.corner + 1 - cycle.length, cycle.corner + 1))
+        return load(self._path, states=places_between(self._path, *span_of(cycle)))
 
 
 Subject = InMemory | InFile
