@@ -1,4 +1,4 @@
-"""Prescribed displacements of the pin in place of forces, in dimensionless form.
+"""The drive of the pin: along each axis a force or a prescribed displacement, in dimensionless form.
 
 Along a driven axis the displacement of the hub relative to the gauge circle is prescribed, (T29): D = c + g F - k J.
 c is the displacement of the pin's rim relative to the hole, F the reaction, J an integral of the tractions. The
@@ -13,7 +13,7 @@ matrix, nor symmetric. The place of F in the load vector stays 0, for F is no lo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,7 +25,7 @@ DISPLACEMENTS = (UX, UY)
 """Places of the prescribed displacements in a load vector, along x and y."""
 
 FORCES = (Q, P)
-"""Places of the forces that they replace."""
+"""Places of the forces that they replace, along x and y."""
 
 SIGNS = (1.0, -1.0)
 """Sense of these forces: Q acts along +x, P along -y."""
@@ -33,18 +33,20 @@ SIGNS = (1.0, -1.0)
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """The axes along which the displacement of the pin is prescribed. All quantities are dimensionless.
+    """What moves the pin along x and y: a force, or along the driven axes a displacement. All is dimensionless.
+
+    Under forces no axis is driven. Each answer is then about the forces alone.
 
     Attributes
     ----------
     axes : ndarray of bool, shape (2,)
-        Whether the displacement along x, and along y, is prescribed.
+        Whether each axis is driven: its displacement is prescribed.
     compliance : float
         The compliance g.
     coupling : ndarray, shape (2, 2n)
         Maps (N, T) to k J, along x and y. It is 0 for an axis that is not driven.
     translation : ndarray, shape (2n, 2)
-        Maps the displacement c to (h, s).
+        Maps the displacement c of the pin to (h, s).
     offsets : ndarray, shape (2n, 2)
         Maps the reactions to (h, s) where c is 0: the w terms. It is 0 for an axis that is not driven.
     columns : ndarray, shape (2n, loads)
@@ -57,6 +59,26 @@ class Drive:
     translation: np.ndarray
     offsets: np.ndarray
     columns: np.ndarray
+
+    @property
+    def has_displacements(self) -> bool:
+        """Whether the displacement along an axis is prescribed. Then it puts the pin in place, in contact or not."""
+        return bool(self.axes.any())
+
+    @property
+    def factors(self) -> tuple[np.ndarray, np.ndarray]:
+        """Factors (2n, r) and (r, 2n) of the matrix that the operator gains. Under forces its rank r is 0."""
+        rank = 2 if self.has_displacements else 0
+        return self.translation[:, :rank], self.coupling[:rank]
+
+    def part(self, rows: np.ndarray) -> Drive:
+        """The drive with some `rows` (k,) only, indices of tractions."""
+        nodal = {name: getattr(self, name)[rows] for name in ("translation", "offsets", "columns")}
+        return replace(self, coupling=self.coupling[:, rows], **nodal)
+
+    def prescribed(self, load: np.ndarray) -> np.ndarray:
+        """The prescribed displacements of a load (loads,), shape (2,); 0 along an axis that is not driven."""
+        return np.where(self.axes, load[list(DISPLACEMENTS)], 0.0)
 
     def force(self, motion: np.ndarray, load: np.ndarray) -> np.ndarray:
         """Force on the pin along x and y, shape (2,): reactions from the unknown `motion` (3,), others from `load`."""
@@ -91,7 +113,7 @@ class Drive:
         return columns
 
     def work(self, columns: np.ndarray, motion: np.ndarray, change: np.ndarray, load_change: np.ndarray) -> float:
-        """Work of the reactions over a change.
+        """Work of the reactions over a change; 0 under forces, whose work needs no reactions.
 
         `columns` (2,) is the product of :meth:`work_columns` and the change of the tractions. `motion` (3,) is the mean
         of the unknown motion, `change` (3,) its change, `load_change` (loads,) the change of the load.
@@ -106,7 +128,9 @@ def displacement_coupling(problem: Problem, grid: Grid) -> np.ndarray:
     return problem.drive_compliances[1] * np.array([np.r_[cos, -sin], np.r_[sin, cos]])
 
 
-def replace_forces(problem: Problem, grid: Grid, motion: np.ndarray, loads: np.ndarray, rows: np.ndarray) -> Drive:
+def make_drive(
+    problem: Problem, grid: Grid, motion: np.ndarray, loads: np.ndarray, rows: np.ndarray, forces: np.ndarray
+) -> Drive:
     """Replace the forces of the driven axes in the matrices of a system by displacements, and return the drive.
 
     Parameters
@@ -116,10 +140,15 @@ def replace_forces(problem: Problem, grid: Grid, motion: np.ndarray, loads: np.n
     motion : ndarray, shape (2n, 3)
     loads : ndarray, shape (2n, loads)
     rows : ndarray, shape (3, 3)
+    forces : ndarray, shape (3, loads)
         The matrices of :class:`fastpin.elasticity.system.System` for a pin under forces; `rows` are the motion rows.
         They are changed.
     """
-    axes, compliance = np.array(problem.driven), problem.drive_compliances[0]
+    axes = np.array(problem.driven)
+    if not axes.any():
+        nothing = np.zeros((2, 2 * grid.size))
+        return Drive(axes, 0.0, nothing, motion[:, :2], nothing.T, loads)
+    compliance = problem.drive_compliances[0]
     coupling = displacement_coupling(problem, grid) * axes[:, None]
     translation = motion[:, :2].copy()
     offsets = loads[:, list(FORCES)] * SIGNS * axes
@@ -130,4 +159,5 @@ def replace_forces(problem: Problem, grid: Grid, motion: np.ndarray, loads: np.n
         loads[:, DISPLACEMENTS[axis]] = translation[:, axis]
         motion[:, axis] = offsets[:, axis] - compliance * translation[:, axis]
         rows[axis, axis] = -1.0
+        forces[axis] *= 0.0
     return Drive(axes, compliance, coupling, translation, offsets, columns)

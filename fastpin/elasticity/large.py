@@ -31,7 +31,7 @@ SYSTEMS_KEPT = 2
 class ColumnsOperator(Operator):
     """An operator without stored entries. A product computes the columns of the nodes that carry tractions."""
 
-    def __init__(self, problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> None:
+    def __init__(self, problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> None:
         super().__init__(2 * grid.size)
         self._problem, self._grid, self._bodies, self._drive = problem, grid, bodies, drive
 
@@ -59,7 +59,8 @@ class ColumnsOperator(Operator):
             found += fourier.product(grid.theta, grid.theta, h_left, h_right, self._bodies.coefficients, given).ravel()
             if self._bodies.matrix.size:
                 found += self._bodies.matrix_product(grid, tractions)
-        return found if self._drive is None else found + self._drive.translation @ (self._drive.coupling @ tractions)
+        moved, coupling = self._drive.factors
+        return found + moved @ (coupling @ tractions) if coupling.size else found
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +72,7 @@ class LargeSystem(System):
         return System.build(self.problem, arc_of(self.grid, nodes), self.scales.force)
 
     @staticmethod
-    def _operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> Operator:
+    def _operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> Operator:
         return ColumnsOperator(problem, grid, bodies, drive)
 
 

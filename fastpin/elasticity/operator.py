@@ -173,10 +173,10 @@ class ToeplitzOperator(Operator):
         return found + np.einsum("ij,ji->i", self._left, self._right) if self._right.size else found
 
 
-def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> Operator:
+def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> Operator:
     """The operator of `problem` on `grid`, dimensionless.
 
-    `bodies` are the smooth terms of pin and plate. A `drive` adds its coupling.
+    `bodies` are the smooth terms of pin and plate. The `drive` adds its coupling.
     """
     n, pair = grid.size, problem.surfaces
     left, right = grid.knots()
@@ -188,21 +188,18 @@ def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive:
     influence.fill_operator(*hats, matrix, smooth)
     if bodies is not None:
         bodies.add_matrix(grid, matrix)
-    if drive is not None:
-        matrix += drive.translation @ drive.coupling
+    moved, coupling = drive.factors
+    if coupling.size:
+        matrix += moved @ coupling
     return DenseOperator(matrix)
 
 
-def _added(grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> tuple[np.ndarray, np.ndarray]:
+def _added(grid: Grid, bodies: BodyTerms | None, drive: Drive) -> tuple[np.ndarray, np.ndarray]:
     """Factors (2n, r) and (r, 2n) of the part of the operator that is no Toeplitz matrix."""
-    left, right = [np.zeros((2 * grid.size, 0))], [np.zeros((0, 2 * grid.size))]
+    factors = [drive.factors]
     if bodies is not None and bodies.matrix.size:
-        waves, integrals = bodies.factors(grid)
-        left.append(waves)
-        right.append(integrals)
-    if drive is not None:
-        left.append(drive.translation)
-        right.append(drive.coupling)
+        factors.insert(0, bodies.factors(grid))
+    left, right = zip(*factors, strict=True)
     return np.hstack(left), np.vstack(right)
 
 

@@ -19,7 +19,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fastpin.elasticity.drive import DISPLACEMENTS, Drive, replace_forces
+from fastpin.elasticity.drive import DISPLACEMENTS, Drive, make_drive
 from fastpin.elasticity.operator import DenseOperator, Operator, make_operator, uniform_part
 from fastpin.elasticity.terms import BodyTerms, body_terms
 from fastpin.model.grid import Grid, arc_of
@@ -89,11 +89,11 @@ class System:
         Integrals of the hat functions of the nodes, rad.
     plate : float
         Size R kappa'/(2 G) of the displacement of the hole in an infinite plate per remote stress, Eq. (42).
+    drive : Drive
+        The forces or prescribed displacements of the pin. The reactions of the driven axes take their places in the
+        motion; see :mod:`fastpin.elasticity.drive`.
     bodies : BodyTerms or None
         The smooth terms of hollow pins and finite plates. None for a solid pin in an infinite plate.
-    drive : Drive or None
-        The prescribed displacements. Then the first two components of the motion are the reactions of the driven axes;
-        see :mod:`fastpin.elasticity.drive`. None if forces push the pin.
     """
 
     problem: Problem
@@ -109,8 +109,8 @@ class System:
     forces: np.ndarray
     weights: np.ndarray
     plate: float
+    drive: Drive
     bodies: BodyTerms | None = None
-    drive: Drive | None = None
 
     @classmethod
     def build(cls, problem: Problem, grid: Grid, force: float) -> System:
@@ -138,24 +138,22 @@ class System:
             motion_rows[2, 2] = unit
             equilibrium[2, n:] = -unit * problem.hub_compliance * weights
             forces[2, ROTATION] = unit
-        drive = None
-        if problem.drive != "force":
-            drive = replace_forces(problem, grid, motion, loads, motion_rows)
-            forces[:2] *= ~drive.axes[:, None]
+        drive = make_drive(problem, grid, motion, loads, motion_rows, forces)
         scales, operator = Scales.of(problem, force), cls._operator(problem, grid, bodies, drive)
         return cls(
             problem, grid, scales, problem.assembled_clearance / scales.displacement, problem.friction,
-            operator, motion, loads, equilibrium, motion_rows, forces, weights, plate, bodies, drive,
+            operator, motion, loads, equilibrium, motion_rows, forces, weights, plate, drive, bodies,
         )  # fmt: skip
 
     @staticmethod
-    def _operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> Operator:
+    def _operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> Operator:
         return make_operator(problem, grid, bodies, drive)
 
     @property
     def is_toeplitz(self) -> bool:
         """Whether entries of the operator depend on the distance of two nodes only, up to the half hats of an arc."""
-        return self.grid.uniform and self.drive is None and (self.bodies is None or not self.bodies.matrix.size)
+        has_matrix = self.drive.has_displacements or (self.bodies is not None and bool(self.bodies.matrix.size))
+        return self.grid.uniform and not has_matrix
 
     @cached_property
     def typical_compliance(self) -> float:
@@ -167,16 +165,15 @@ class System:
         return self.operator @ tractions
 
     def part(self, nodes: np.ndarray) -> System:
-        """The system of neighbouring `nodes`, shape (k,), in their order round the hole; only under forces.
+        """The system of neighbouring `nodes`, shape (k,), in their order round the hole.
 
         The other nodes are left out, so they must stay open.
         """
-        assert self.drive is None
         rows = np.r_[nodes, self.grid.size + nodes]
         return replace(
             self, grid=arc_of(self.grid, nodes), operator=DenseOperator(self.operator.entries(rows, rows)),
             motion=self.motion[rows], loads=self.loads[rows], equilibrium=self.equilibrium[:, rows],
-            weights=self.weights[nodes],
+            weights=self.weights[nodes], drive=self.drive.part(rows),
         )  # fmt: skip
 
     def without_friction(self) -> System:
@@ -193,7 +190,8 @@ class System:
 
     def held_displacement(self, load: np.ndarray) -> np.ndarray:
         """Gap and slip, shape (2n,), of a load (loads,) or its rate, without the prescribed displacements."""
-        return self.load_displacement(load) if self.drive is None else self.drive.columns @ load
+        acting = self._acting
+        return self.drive.columns[:, :acting] @ load[:acting]
 
     def load_forces(self, load: np.ndarray) -> np.ndarray:
         """Right sides of the conditions of equilibrium, shape (3,), of a load (loads,) or its rate."""
@@ -203,12 +201,7 @@ class System:
     @property
     def _acting(self) -> int:
         """Number of loads in products."""
-        return _ACTING_FORCES if self.drive is None else len(LOADS)
-
-    @property
-    def translation(self) -> np.ndarray:
-        """Gap and slip per displacement of the pin along x and y, shape (2n, 2)."""
-        return self.motion[:, :2] if self.drive is None else self.drive.translation
+        return len(LOADS) if self.drive.has_displacements else _ACTING_FORCES
 
     def displacement(
         self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float

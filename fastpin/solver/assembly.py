@@ -41,13 +41,11 @@ def unloaded_configuration(system: System) -> Configuration:
         status=np.full(n, OPEN, dtype=np.int8),
         motion=np.zeros(3),
         load=np.zeros(len(LOADS)),
-        origin=np.full(2, np.nan),
+        origin=np.zeros(2) if system.drive.has_displacements else np.full(2, np.nan),
         rest=np.zeros(2),
         rest_gap=np.full(n, system.rest_clearance),
         rest_slip=zeros.copy(),
     )
-    if system.drive is not None:
-        configuration.origin = np.zeros(2)
     if system.rest_clearance >= 0.0:
         return configuration
     configuration.status[:] = resting_status(system)

@@ -181,10 +181,8 @@ def work_between(system: System, before: Configuration, after: Configuration) ->
     column = system.held_displacement(load)
     internal = float((system.weights * column[:n]) @ change[:n] + (system.weights * column[n:]) @ change[n:])
     work = float(load[Q] * moved[0] - load[P] * moved[1] + moment * moved[2]) + internal
-    if system.drive is not None:
-        columns = system.drive.work_columns(np.r_[system.weights, system.weights]) @ change
-        work += system.drive.work(columns, 0.5 * (before.motion + after.motion), moved, after.load - before.load)
-    return work
+    columns = system.drive.work_columns(np.r_[system.weights, system.weights]) @ change
+    return work + system.drive.work(columns, 0.5 * (before.motion + after.motion), moved, after.load - before.load)
 
 
 def dissipation_between(system: System, before: Configuration, after: Configuration) -> float:
@@ -216,7 +214,7 @@ def elastic_energy(system: System, configuration: Configuration) -> float:
     elastic = 0.5 * system.elastic(tractions) + system.held_displacement(configuration.load)
     weights = np.concatenate([system.weights, system.weights])
     energy = float(np.sum(weights * tractions * elastic))
-    return energy if system.drive is None else energy + system.drive.energy(weights, tractions, configuration.motion)
+    return energy + system.drive.energy(weights, tractions, configuration.motion)
 
 
 def marks_left(before: Configuration, now: Configuration) -> Marks:

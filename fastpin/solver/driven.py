@@ -20,7 +20,7 @@ from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.rest import hole_gap
-from fastpin.solver.step import force_of, is_pushed
+from fastpin.solver.step import is_pushed
 
 FINE = 1440
 """Angles at which the narrowest gap is looked for before it is refined."""
@@ -33,9 +33,8 @@ def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerm
     """The terms of the work of the loads along a straight piece, from its first load and its rate, shape (loads,)."""
     weights = np.concatenate([system.weights, system.weights])
     drive, reactions = system.drive, np.zeros((2, weights.size + 3))
-    if drive is not None:
-        reactions[:, :-3] = drive.work_columns(weights)
-        reactions[:, -3], reactions[:, -2], reactions[:, -1] = rate[list(DISPLACEMENTS)], drive.compliance, drive.axes
+    reactions[:, :-3] = drive.work_columns(weights)
+    reactions[:, -3], reactions[:, -2], reactions[:, -1] = rate[list(DISPLACEMENTS)], drive.compliance, drive.axes
     return LoadTerms(
         column=weights * (system.held_displacement(before)),
         column_rate=weights * (system.held_displacement(rate)),
@@ -48,8 +47,6 @@ def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerm
 
 def force_on_pin(system: System, configuration: Configuration) -> float:
     """Size of the force on the pin, reactions included (dimensionless)."""
-    if system.drive is None:
-        return force_of(configuration.load)
     return float(np.hypot(*system.drive.force(configuration.motion, configuration.load)))
 
 
@@ -57,7 +54,7 @@ def can_float(system: System, load: np.ndarray) -> bool:
     """Whether the pin can be without contact under a load: nothing pushes it, and it has room where it is."""
     if is_pushed(load) or load[M] != 0.0:
         return False
-    return system.drive is None or _room(system, load)[0] >= 0.0
+    return not system.drive.has_displacements or _room(system, load)[0] >= 0.0
 
 
 def rest_on_hole(
@@ -68,7 +65,7 @@ def rest_on_hole(
     Parameters
     ----------
     system : System
-        With a drive.
+        With a prescribed displacement.
     before, after : ndarray, shape (loads,)
         Dimensionless loads at the start and the end of the step.
 
@@ -85,7 +82,6 @@ def rest_on_hole(
         If the pin has no room in the hole, or a moment acts on a pin that nothing holds.
     """
     drive = system.drive
-    assert drive is not None
     free = np.flatnonzero(~drive.axes)
     begins = 0.0
     if free.size and (side := after[FORCES[free[0]]] * SIGNS[free[0]]) != 0.0:
@@ -103,7 +99,7 @@ def rest_on_hole(
         position = _room(system, before + begins * (after - before))[1]
     angle = _narrowest(system, before + begins * (after - before), position)[1]
     if system.rest_clearance == 0.0 and not position.any():  # a neat fit touches where the loads push it
-        push = drive.force(np.zeros(3), after) + np.where(drive.axes, after[list(DISPLACEMENTS)], 0.0)
+        push = drive.force(np.zeros(3), after) + drive.prescribed(after)
         angle = math.atan2(push[1], push[0])
     shift = position - system.rest_clearance * np.array([math.cos(angle), math.sin(angle)])
     n, half = system.grid.size, 0.5 * (system.grid.theta - angle)
@@ -130,10 +126,8 @@ def _room(system: System, load: np.ndarray) -> tuple[float, np.ndarray]:
 
     Along an axis without a drive the pin moves to the place with the widest gap.
     """
-    drive = system.drive
-    assert drive is not None
-    position = np.where(drive.axes, load[list(DISPLACEMENTS)], 0.0)
-    free = np.flatnonzero(~drive.axes)
+    position = system.drive.prescribed(load)
+    free = np.flatnonzero(~system.drive.axes)
     if free.size and hole_gap(system, load, 0.0)[1:].any() | hole_gap(system, load, 0.5)[1:].any():
         position[free[0]] = _widest_place(system, load, position, int(free[0]))
     return _narrowest(system, load, position)[0], position

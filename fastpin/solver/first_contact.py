@@ -33,6 +33,7 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import hole_gap, put_at_rest, release
 from fastpin.solver.settling import FiniteStep
+from fastpin.solver.step import is_pushed
 from fastpin.solver.window import Window
 
 FIRST_NODES = (2, 4)
@@ -103,7 +104,7 @@ def at_rest(
     force = np.array([after[Q], -after[P]])
     size = float(np.hypot(*force))
     lowest: np.ndarray | None = None
-    if system.drive is not None:
+    if system.drive.has_displacements:
         driven = rest_on_hole(system, before, after)
         if driven is None:
             return None
@@ -115,7 +116,7 @@ def at_rest(
         if gripped is None:
             return None
         begins, rest, lowest = gripped
-        rest_gap = system.rest_clearance + system.translation[: system.grid.size] @ rest
+        rest_gap = system.rest_clearance + system.drive.translation[: system.grid.size] @ rest
     else:
         tangential = -after[M] / size if system.problem.rotation == "free" else 0.0
         limit = system.friction / math.hypot(1.0, system.friction)
@@ -252,14 +253,14 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
     if np.all(values + curvature >= 0.0):  # the pin touches at one point, with its normal at `angle`
         widened = gap - system.rest_clearance
         shift = np.array([widened * cos - slope * sin, widened * sin + slope * cos])
-        half = 0.5 * (system.grid.theta - angle)
-        rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + system.translation[: system.grid.size] @ shift
+        half, moved = 0.5 * (system.grid.theta - angle), system.drive.translation[: system.grid.size] @ shift
+        rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + moved
         return system.rest_clearance * np.array([cos, sin]) + shift, rest_gap
     # The oval hole is tighter than the pin: the pin touches at two points.
     optimum = optimize.linprog([-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None))
     if not optimum.success:
         raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
-    return optimum.x, system.rest_clearance + system.translation[: system.grid.size] @ optimum.x
+    return optimum.x, system.rest_clearance + system.drive.translation[: system.grid.size] @ optimum.x
 
 
 def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float, np.ndarray, np.ndarray] | None:
@@ -326,18 +327,18 @@ def _first_patch(
     part = 1.0 if self_similar else CONFORMING_PART if conforming else _hertz_part(system, resting, left)
     most_part = 1.0 if self_similar or conforming else most_part
     part = min(part, most_part)
-    best: tuple[int, Configuration, float] | None = None
+    driven, best = system.drive.has_displacements, None
     for _ in range(60):
         fraction = begins + part * (1.0 - begins)
         load = before + fraction * (after - before)
-        pinched = system.drive is None and not load[[P, Q]].any()
+        pinched = not driven and not is_pushed(load)
         rough = self_similar or pinched or (system.problem.rotation == "free" and load[M] != 0.0)
         found = _one_step(system, resting, load, self_similar) if rough else _shearless_step(system, resting, load)
         if found is None or worst_residual(system, found) > MAX_RESIDUAL:
             part *= 0.7
             continue
         count = int(found.closed.sum())
-        if system.drive is not None and count == 0 and part < most_part:  # the overlap lies between two nodes
+        if driven and count == 0 and part < most_part:  # the overlap lies between two nodes
             part = min(4.0 * part, most_part)
             continue
         if best is None or abs(count - wanted) < abs(best[0] - wanted):
@@ -345,7 +346,7 @@ def _first_patch(
         if self_similar or least <= count <= most or (count < least and part == most_part):
             break
         part = min(max(part * min(max((wanted / max(count, 1)) ** 2, 0.05), 10.0), LEAST_PART), most_part)
-    if best is None or (system.drive is not None and best[0] == 0):
+    if best is None or (driven and best[0] == 0):
         raise ResolutionError(NARROW)
     count, found, fraction = best
     if count < least and most_part < 1.0:
@@ -413,7 +414,7 @@ def _young_nodes(system: System, patch: Configuration) -> np.ndarray | None:
     n, first = system.grid.size, int(np.argmax(patch.pressure))
     nodes = first + np.arange(-GROWN_NODES, GROWN_NODES + 1)
     nodes = nodes % n if system.grid.closed else nodes[(nodes >= 0) & (nodes < n)]
-    whole = system.drive is not None or n <= 3 * GROWN_NODES
+    whole = system.drive.has_displacements or n <= 3 * GROWN_NODES
     return None if whole or patch.closed[nodes].sum() != patch.closed.sum() else nodes
 
 

@@ -148,7 +148,7 @@ def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.nda
     ends = system.grid.theta[[0, -1]]
     nearest = np.argmin(np.abs(theta[:, None] - ends), axis=1)
     end = ends[nearest]
-    x, y = now.rest if system.drive is None else np.where(system.drive.axes, 0.0, now.rest)
+    x, y = np.where(system.drive.axes, 0.0, now.rest)
     middle, half = 0.5 * (theta + end), 0.5 * (theta - end)
     change: np.ndarray = 2.0 * np.sin(half) * (x * np.sin(middle) - y * np.cos(middle))
     return now.rest_gap[[0, -1]][nearest] + change

@@ -171,17 +171,20 @@ class IncrementStepper:
         ArcError
             If the contact reaches an end of the arc.
         """
-        system, load = self._system, piece.load_at(stop)
-        before, begin = position.now.load, position.reached
+        load, before, begin = piece.load_at(stop), position.now.load, position.reached
         for part in self._parts(position, stop):
             target = load if part == 1.0 else before + part * (load - before)
             self._increment(position, position.now, target, MOST_HALVINGS)
-            if system.drive is not None and not position.now.closed.any():  # the pin floats: it may touch again
+            if self._may_touch_again(position):
                 done = np.linalg.norm(position.now.load - before) / np.linalg.norm(load - before)
                 position.reached = begin + float(done) * (stop - begin)
                 return
             position.reached = begin + float(part) * (stop - begin)
             report(position.reached)
+
+    def _may_touch_again(self, position: Position) -> bool:
+        """Whether the pin floats, and a prescribed displacement may bring it into contact before the next stop."""
+        return self._system.drive.has_displacements and not position.now.closed.any()
 
     def _parts(self, position: Position, stop: float) -> np.ndarray:
         """Ends of the increments on the way to the fraction `stop` of the step, in parts of this way."""
@@ -211,7 +214,7 @@ class IncrementStepper:
                     "increments are too large"
                 )
             self._increment(position, start, 0.5 * (start.load + load), halvings - 1)
-            if system.drive is None or position.now.closed.any():
+            if not self._may_touch_again(position):
                 self._increment(position, position.now, load, halvings - 1)
             return
         if reaches_end(system, found):

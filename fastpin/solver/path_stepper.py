@@ -143,7 +143,7 @@ class PathStepper:
         if now.load[M] != 0.0 or int(now.closed.sum()) > FEW_CLOSED or self._releases == MOST_RELEASES:
             return False
         self._releases += 1
-        driven = self._system.drive is not None  # then a contact is lost as well where the pin is moved away
+        driven = self._system.drive.has_displacements  # then a contact is lost as well where the pin is moved away
         if unloading or (self._strict and not driven):
             return unloading
         largest = max(force_of(piece.before), force_of(piece.after), 1.0 if driven else 0.0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.elasticity.drive import DISPLACEMENTS
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import ROTATION, SXX, SXY, SYY
@@ -29,17 +28,15 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
     new.work -= elastic_energy(system, last)  # the elastic energy that is left goes back to the loads
     new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
     new.load = load.copy()
-    position, given = new.rest + new.motion[:2], np.zeros(2)
-    if system.drive is not None:  # the prescribed displacements stay as they are
-        given = np.where(system.drive.axes, load[list(DISPLACEMENTS)], 0.0)
-        position = np.where(system.drive.axes, 0.0, position)
-    width = np.maximum(hole_gap(system, load, system.grid.theta)[0] + system.translation[:n] @ given, 0.0)
-    approach = -system.translation[:n] @ position
+    translation, given = system.drive.translation[:n], system.drive.prescribed(load)  # it stays as it is
+    position = np.where(system.drive.axes, 0.0, new.rest + new.motion[:2])
+    width = np.maximum(hole_gap(system, load, system.grid.theta)[0] + translation @ given, 0.0)
+    approach = -translation @ position
     deep = approach > width
     if deep.any():
         position *= float(np.min(width[deep] / approach[deep]))
     position += given
-    put_at_rest(system, new, load, position, system.rest_clearance + system.translation[:n] @ position)
+    put_at_rest(system, new, load, position, system.rest_clearance + translation @ position)
     return new
 
 
@@ -51,8 +48,7 @@ def put_at_rest(
     `rest` (2,) is the position of the pin's centre, and `rest_gap` (n,) the gap there. `configuration` is changed.
     """
     n = system.grid.size
-    if system.drive is not None:  # the prescribed displacements are loads
-        rest_gap = rest_gap - (system.loads - system.drive.columns)[:n] @ load
+    rest_gap = rest_gap - (system.loads - system.drive.columns)[:n] @ load  # prescribed displacements are loads
     configuration.rest, configuration.rest_gap = rest, rest_gap
     held = system.problem.held
     configuration.motion = np.array([0.0, 0.0, load[ROTATION] if held else configuration.motion[2]])

@@ -329,7 +329,7 @@ class Run:
         if is_pushed(load) or not self.now.closed.any():
             return
         left, before = float(self.now.pressure.max()), force_of(piece.before)
-        if self.system.drive is not None:  # the forces of the nodes hold the rounding of a large displacement
+        if self.system.drive.has_displacements:  # the forces of the nodes hold the rounding of a large displacement
             left, before = float(self.system.weights @ self.now.pressure), 1.0
         if left <= UNLOADED_PRESSURE * before:
             self.stepper.leave(self.position)
@@ -426,11 +426,10 @@ class Run:
     def _state(self, step: int, fraction: float, residuals: dict[str, float]) -> State:
         """The present configuration as a state, SI."""
         system, now, scales = self.system, self.now, self.system.scales
-        way, load = now.rest - now.origin, now.load
-        moved = np.where(np.isnan(way), 0.0, way) + now.motion[:2]
-        if system.drive is not None:
-            moved = system.drive.position(np.r_[now.pressure, now.shear], now.motion, load, now.rest)
-            load = system.drive.with_reactions(now.motion, load)
+        drive, way = system.drive, now.rest - now.origin
+        way, tractions = np.where(np.isnan(way), 0.0, way), np.r_[now.pressure, now.shear]
+        moved = drive.position(tractions, now.motion, now.load, way)
+        load = drive.with_reactions(now.motion, now.load)
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
         is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
         status = now.status.copy()

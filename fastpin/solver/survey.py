@@ -257,7 +257,7 @@ def _carry(old: System, now: Configuration, system: System) -> Configuration | N
     if closed.any():
         nearest = np.argmin(np.abs(angle_between(theta[closed, None], before[contact])), axis=1)
         status[closed] = now.status[contact[nearest]]
-    rest = now.rest if system.drive is None else np.where(system.drive.axes, 0.0, now.rest)  # without the prescribed
+    rest = np.where(system.drive.axes, 0.0, now.rest)  # without the prescribed
     away = theta - math.atan2(rest[1], rest[0])
     length = math.hypot(*rest)
     new = replace(

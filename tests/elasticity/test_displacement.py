@@ -118,8 +118,7 @@ def test_a_driven_system_is_the_same_system(titanium_in_aluminium, pin_load, dri
     pushed = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, pin_load)
     grid = Grid.arc(BOTTOM - 1.5, BOTTOM + 1.2, 41)
     one, two = System.build(pushed, grid, 1.0), System.build(driven, grid, 1.0)
-    assert one.drive is None
-    assert two.drive is not None
+    assert (one.drive.has_displacements, two.drive.has_displacements) == (False, True)
     rng = np.random.default_rng(1)
     tractions, motion = rng.normal(size=82), rng.normal(size=3)
     load = np.zeros(len(LOADS))
@@ -137,6 +136,33 @@ def test_a_driven_system_is_the_same_system(titanium_in_aluminium, pin_load, dri
     assert balance == pytest.approx(two.load_forces(given), abs=1e-12)
     assert two.drive.position(tractions, slots, given, np.zeros(2)) == pytest.approx(motion[:2], abs=1e-12)
     assert two.drive.with_reactions(slots, given)[[P, Q]] == pytest.approx(load[[P, Q]], abs=1e-12)
+    nodes = np.arange(5, 30)
+    rows = np.r_[nodes, 41 + nodes]
+    alone = np.zeros(82)
+    alone[rows] = tractions[rows]
+    for system, now, acting in ((one, motion, load), (two, slots, given)):
+        whole, part = system.displacement(alone, now, acting, 0.1), system.part(nodes)
+        assert part.displacement(alone[rows], now, acting, 0.1) == pytest.approx(whole[rows], abs=1e-12)
+        assert part.drive.translation == pytest.approx(system.drive.translation[rows])
+        held = system.held_displacement(acting)[rows]
+        assert part.held_displacement(acting) == pytest.approx(held, abs=1e-12)
+
+
+def test_forces_need_no_reactions(titanium_in_aluminium):
+    """Under forces a drive adds nothing to operator, energy and work, and its forces are the loads."""
+    pushed = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, "body")
+    system = System.build(pushed, Grid.arc(BOTTOM - 1.5, BOTTOM + 1.2, 41), 1.0)
+    rng = np.random.default_rng(2)
+    drive, tractions, motion, load = system.drive, rng.normal(size=82), rng.normal(size=3), rng.normal(size=len(LOADS))
+    assert [factor.size for factor in drive.factors] == [0, 0]
+    assert drive.energy(np.ones(82), tractions, motion) == 0.0
+    assert not drive.work_columns(np.ones(82)).any()
+    assert drive.work(np.zeros(2), motion, motion, load) == 0.0
+    assert drive.force(motion, load).tolist() == [load[Q], -load[P]]
+    assert drive.with_reactions(motion, load).tolist() == load.tolist()
+    assert drive.prescribed(load).tolist() == [0.0, 0.0]
+    place = drive.position(tractions, motion, load, np.array([0.1, 0.2]))
+    assert place == pytest.approx([motion[0] + 0.1, motion[1] + 0.2])
 
 
 def test_the_compliance_of_the_rim_is_negative_and_that_of_the_hub_is_not():
