@@ -71,8 +71,8 @@ class System:
         The units.
     rest_clearance : float
         The clearance.
-    friction : float
-        Coefficient of friction.
+    friction : ndarray, shape (n,)
+        Coefficient of friction at each node.
     operator : Operator
         Matrix with 2n rows, stored or not. Maps (N, T) to (h, s).
     motion : ndarray, shape (2n, 3)
@@ -100,7 +100,7 @@ class System:
     grid: Grid
     scales: Scales
     rest_clearance: float
-    friction: float
+    friction: np.ndarray
     operator: Operator
     motion: np.ndarray
     loads: np.ndarray
@@ -141,7 +141,7 @@ class System:
         drive = make_drive(problem, grid, motion, loads, motion_rows, forces)
         scales, operator = Scales.of(problem, force), cls._operator(problem, grid, bodies, drive)
         return cls(
-            problem, grid, scales, problem.assembled_clearance / scales.displacement, problem.friction,
+            problem, grid, scales, problem.assembled_clearance / scales.displacement, np.full(n, problem.friction),
             operator, motion, loads, equilibrium, motion_rows, forces, weights, plate, drive, bodies,
         )  # fmt: skip
 
@@ -154,6 +154,11 @@ class System:
         """Whether entries of the operator depend on the distance of two nodes only, up to the half hats of an arc."""
         has_matrix = self.drive.has_displacements or (self.bodies is not None and bool(self.bodies.matrix.size))
         return self.grid.uniform and not has_matrix
+
+    @cached_property
+    def has_friction(self) -> bool:
+        """Whether there is friction at a node."""
+        return bool(self.friction.any())
 
     @cached_property
     def typical_compliance(self) -> float:
@@ -173,7 +178,7 @@ class System:
         return replace(
             self, grid=arc_of(self.grid, nodes), operator=DenseOperator(self.operator.entries(rows, rows)),
             motion=self.motion[rows], loads=self.loads[rows], equilibrium=self.equilibrium[:, rows],
-            weights=self.weights[nodes], drive=self.drive.part(rows),
+            weights=self.weights[nodes], friction=self.friction[nodes], drive=self.drive.part(rows),
         )  # fmt: skip
 
     def without_friction(self) -> System:
@@ -181,7 +186,8 @@ class System:
         equilibrium, motion_rows, forces = self.equilibrium.copy(), self.motion_rows.copy(), self.forces.copy()
         equilibrium[2], motion_rows[2], forces[2] = 0.0, 0.0, 0.0
         motion_rows[2, 2] = forces[2, ROTATION] = 1.0
-        return replace(self, friction=0.0, equilibrium=equilibrium, motion_rows=motion_rows, forces=forces)
+        friction = np.zeros_like(self.friction)
+        return replace(self, friction=friction, equilibrium=equilibrium, motion_rows=motion_rows, forces=forces)
 
     def load_displacement(self, load: np.ndarray, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Gap and slip, shape (2n,) or only some `rows`, of a load (loads,) or its rate."""

@@ -163,7 +163,7 @@ def _change_status(tableau, updates, contact, friction, typical, node, new):
     pair = tangential if old == STICK or new == STICK else node
     _column(tableau, updates, pair, column)
     if old == STICK:  # the stiffness is the change with s of T, not of tau
-        stiffness = abs(column[tangential] - tie * friction * column[node]) * typical
+        stiffness = abs(column[tangential] - tie * friction[node] * column[node]) * typical
     elif new == OPEN:
         stiffness = abs(column[node]) * typical
     else:
@@ -171,7 +171,7 @@ def _change_status(tableau, updates, contact, friction, typical, node, new):
     if stiffness < SMALL_PIVOT:
         return updates, 0.0
     if old == STICK or old == OPEN:
-        factor = (new - tie) * friction
+        factor = (new - tie) * friction[node]
         if factor != 0.0:
             if old == STICK:
                 _add_row(tableau, updates, tangential, node, factor)
@@ -192,7 +192,7 @@ def _change_status(tableau, updates, contact, friction, typical, node, new):
 @inner
 def _shear_rate(rates, contact, friction, i):
     """Rate of T at a sticking node."""
-    return rates[contact.status.size + i] - contact.tie[i] * friction * rates[i]
+    return rates[contact.status.size + i] - contact.tie[i] * friction[i] * rates[i]
 
 
 @inner
@@ -216,22 +216,21 @@ def _rate_scales(rates, contact, friction):
 def _friction_violators(contact, rates, friction, traction_tol, length_tol, queue):
     """Queue the nodes whose friction status contradicts the rates. Returns their number.
 
-    Nodes that are to stick come first, then nodes that are to slip.
+    Nodes that are to stick come first, then nodes that are to slip. A node without friction slips either way.
     """
     status, n = contact.status, contact.status.size
     queued = 0
-    if friction == 0.0:
-        return queued
     for i in range(n):
-        if (status[i] == NEGATIVE or status[i] == POSITIVE) and status[i] * rates[n + i] < -length_tol:
+        slipping = status[i] == NEGATIVE or status[i] == POSITIVE
+        if slipping and friction[i] > 0.0 and status[i] * rates[n + i] < -length_tol:
             queue.node[queued], queue.status[queued] = i, STICK
             queued += 1
     for i in range(n):
         if status[i] == STICK:
-            bound = friction * contact.pressure[i]
-            growth = friction * rates[i]
+            bound = friction[i] * contact.pressure[i]
+            growth = friction[i] * rates[i]
             shear, shear_rate = contact.shear[i], _shear_rate(rates, contact, friction, i)
-            if contact.pressure[i] == 0.0:
+            if bound == 0.0:
                 direction = 1.0 if shear_rate > 0.0 else -1.0
             elif abs(shear) >= bound:
                 direction = 1.0 if shear > 0.0 else -1.0
@@ -262,15 +261,16 @@ def _contact_violators(contact, rates, traction_tol, length_tol, queue):
 
 
 @inner
-def _relief(free_motion, status, rates, node, direction):
+def _relief(free_motion, status, friction, rates, node, direction):
     """The slipping node that sticks first when `node`, the last node that holds the pin, lets go in `direction`.
 
-    `free_motion` (2n+3,) is the motion that becomes free. Returns -1 if no node would stop this motion.
+    `free_motion` (2n+3,) is the motion that becomes free. A node without friction holds nothing. Returns -1 if no node
+    would stop this motion.
     """
     n = status.size
     best, chosen = np.inf, -1
     for i in range(n):
-        if (status[i] == NEGATIVE or status[i] == POSITIVE) and i != node:
+        if friction[i] > 0.0 and (status[i] == NEGATIVE or status[i] == POSITIVE) and i != node:
             drift = direction * free_motion[n + i]
             if status[i] * drift < 0.0:
                 ratio = abs(rates[n + i]) / abs(drift)
@@ -293,7 +293,7 @@ def _next_event(contact, rates, friction, traction_tol, length_tol, limit):
             if rate < -traction_tol:
                 first = min(first, contact.pressure[i] / -rate)
             if status[i] == STICK:
-                bound, growth = friction * contact.pressure[i], friction * rate
+                bound, growth = friction[i] * contact.pressure[i], friction[i] * rate
                 shear_rate = _shear_rate(rates, contact, friction, i)
                 for direction in (-1.0, 1.0):
                     room = bound - direction * contact.shear[i]
@@ -326,11 +326,11 @@ def _advance(contact, rates, friction, weights, step):
             else:
                 slid = step * rates[n + i]
                 slip[i] += slid
-                shear[i] = -status[i] * friction * pressure[i]
-                dissipated += weights[i] * friction * 0.5 * (old + pressure[i]) * abs(slid)
+                shear[i] = -status[i] * friction[i] * pressure[i]
+                dissipated += weights[i] * friction[i] * 0.5 * (old + pressure[i]) * abs(slid)
                 if counts:
                     tally[0, i] += abs(slid)
-                    tally[1, i] += friction * 0.5 * (old + pressure[i]) * abs(slid)
+                    tally[1, i] += friction[i] * 0.5 * (old + pressure[i]) * abs(slid)
             if counts:
                 begin, end = begin - rest_slip[i], slip[i] - rest_slip[i]
                 tally[2, i] = min(tally[2, i], begin, end)
@@ -344,8 +344,8 @@ def _advance(contact, rates, friction, weights, step):
         elif pressure[i] <= PRESSURE_TOLERANCE * most_pressure:
             pressure[i], shear[i] = 0.0, 0.0
         elif status[i] == STICK:
-            bound = friction * pressure[i]
-            if abs(shear[i]) >= bound - VALUE_TOLERANCE * most_pressure * friction:
+            bound = friction[i] * pressure[i]
+            if abs(shear[i]) >= bound - VALUE_TOLERANCE * most_pressure * friction[i]:
                 shear[i] = bound if shear[i] > 0.0 else -bound
     return dissipated
 
@@ -358,7 +358,7 @@ def _reaction_work(contact, rates, friction, load, axis, step):
     moved = terms[2 * n] - terms[2 * n + 1] * rates[2 * n + axis]
     for i in range(n):
         if status[i] != OPEN:
-            shear_rate = -status[i] * friction * rates[i]
+            shear_rate = -status[i] * friction[i] * rates[i]
             if status[i] == STICK:
                 shear_rate = _shear_rate(rates, contact, friction, i)
             moved += terms[i] * rates[i] + terms[n + i] * shear_rate
@@ -376,7 +376,7 @@ def _work(contact, rates, friction, load, time, step):
             if status[i] == STICK:
                 shear_rate = _shear_rate(rates, contact, friction, i)
             else:
-                shear_rate = -status[i] * friction * rates[i]
+                shear_rate = -status[i] * friction[i] * rates[i]
             moment -= load.weights[i] * contact.shear[i]
             moment_rate -= load.weights[i] * shear_rate
             work += (load.column[i] + middle * load.column_rate[i]) * rates[i]
@@ -415,7 +415,7 @@ def _apply_queue(tableau, contact, queue, friction, typical, closed_grid):
             if old != STICK:
                 return NO_SUPPORT
             # This is the last node that holds the pin: another node must take over first.
-            other = _relief(tableau.left[:, updates], contact.status, tableau.rates, node, new)
+            other = _relief(tableau.left[:, updates], contact.status, friction, tableau.rates, node, new)
             if other < 0:
                 return NO_SUPPORT
             slipping, stick = np.int64(contact.status[other]), np.int64(STICK)
@@ -463,8 +463,8 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
     ----------
     tableau, contact, load, queue : Tableau, Contact, LoadTerms, Queue
         All but `load` are changed in place. Time runs from 0 to 1 along the step. Rates are per unit of this time.
-    friction : float
-        Coefficient of friction.
+    friction : ndarray, shape (n,)
+        Coefficient of friction at each node.
     closed_grid : bool
         Whether the grid is the whole circle. If not, its end nodes must stay open.
     typical : float

@@ -108,9 +108,9 @@ def reaches_end(system: System, configuration: Configuration) -> bool:
     return not system.grid.closed and bool(configuration.closed[[0, -1]].any())
 
 
-def resting_status(system: System) -> int:
-    """Status of a closed node that does not move: sticking, or slipping in a system without friction."""
-    return STICK if system.friction > 0.0 else SLIP_POSITIVE
+def resting_status(system: System) -> np.ndarray:
+    """Status of each node where it is closed and does not move, int8, shape (n,): slipping where it has no friction."""
+    return np.where(system.friction > 0.0, STICK, SLIP_POSITIVE).astype(np.int8)
 
 
 def solve_statuses(

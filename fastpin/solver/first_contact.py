@@ -119,13 +119,14 @@ def at_rest(
         rest_gap = system.rest_clearance + system.drive.translation[: system.grid.size] @ rest
     else:
         tangential = -after[M] / size if system.problem.rotation == "free" else 0.0
-        limit = system.friction / math.hypot(1.0, system.friction)
+        angle = math.atan2(force[1], force[0]) + math.asin(max(-1.0, min(tangential, 1.0)))
+        friction = float(system.friction[np.argmin(np.abs(angle_between(system.grid.theta, angle)))])
+        limit = friction / math.hypot(1.0, friction)
         if abs(tangential) > limit:
             raise NoEquilibriumError(
                 f"the moment is {abs(tangential):.4g} times force times radius, more than friction can carry "
                 f"({limit:.4g}): the pin spins"
             )
-        angle = math.atan2(force[1], force[0]) + math.asin(tangential)
         rest, rest_gap = rest_position(system, before, angle)
     resting = floating.copy()
     if np.isnan(resting.origin).any():
@@ -143,9 +144,8 @@ def at_rest(
         raise ArcError("the pin rests on the hole outside the arc; give a wider one, or none")
     offsets = np.arange(-FIRST_BESIDE, FIRST_BESIDE + 1)
     nodes = (lowest[:, None] + offsets).ravel()
-    resting.status[nodes % system.grid.size if system.grid.closed else nodes.clip(1, system.grid.size - 2)] = (
-        resting_status(system)
-    )
+    nodes = nodes % system.grid.size if system.grid.closed else nodes.clip(1, system.grid.size - 2)
+    resting.status[nodes] = resting_status(system)[nodes]
     return resting, begins
 
 
@@ -357,7 +357,7 @@ def _first_patch(
     if rough:
         begun = slip_tally_with(replace(resting, status=found.status))  # its nodes slip from there on
         found.slip_tally = slip_tally_between(replace(resting, slip_tally=begun), found)
-    elif system.friction > 0.0:
+    elif system.has_friction:
         found = _with_grown_slip(system, found, before + begins * (after - before)) or found
     found.dissipation += dissipated
     found.work += elastic_energy(system, found) + dissipated
@@ -374,7 +374,7 @@ def _one_step(
 def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
     """The implicit increment without friction. After it the closed nodes stick where they are."""
     smooth, start, held_load = system.without_friction(), resting.copy(), load.copy()
-    start.status[start.closed] = resting_status(smooth)
+    start.status[start.closed] = resting_status(smooth)[start.closed]
     if system.problem.rotation == "free":
         held_load[ROTATION] = resting.motion[2]
     found = _one_step(smooth, start, held_load)

@@ -109,29 +109,31 @@ def _wanted_status(system: System, start: Configuration, solution: Solution, sta
     closing = (status == OPEN) & (solution.gap < -length_tol)
     wanted[closing] = np.where(slid[closing] < 0.0, -1, 1)
     closed = status != OPEN
-    if system.friction > 0.0:
-        slipping = closed & (status != STICK)
-        wanted[slipping & (status * slid < -length_tol)] = STICK
-        letting_go = (status == STICK) & (np.abs(solution.shear) > system.friction * solution.pressure + traction_tol)
-        wanted[letting_go] = np.where(solution.shear[letting_go] > 0.0, -1, 1)
+    slipping = closed & (status != STICK) & (system.friction > 0.0)
+    wanted[slipping & (status * slid < -length_tol)] = STICK
+    letting_go = (status == STICK) & (np.abs(solution.shear) > system.friction * solution.pressure + traction_tol)
+    wanted[letting_go] = np.where(solution.shear[letting_go] > 0.0, -1, 1)
     wanted[closed & (solution.pressure < -traction_tol)] = OPEN
-    if system.friction > 0.0 and system.problem.rotation == "free" and not np.any(wanted == STICK):
+    if system.has_friction and system.problem.rotation == "free" and not np.any(wanted == STICK):
         _hold_one(wanted, status, solution, system.friction, slid)
     return wanted
 
 
-def _hold_one(wanted: np.ndarray, status: np.ndarray, solution: Solution, friction: float, slid: np.ndarray) -> None:
+def _hold_one(
+    wanted: np.ndarray, status: np.ndarray, solution: Solution, friction: np.ndarray, slid: np.ndarray
+) -> None:
     """Let one closed node stick in `wanted`. All closed nodes slip there, and nothing else would hold the pin.
 
     If several nodes let go, the node nearest to sticking holds. If the last sticking node lets go, the pin turns until
     the first of the nodes that slip the other way sticks.
     """
-    letting_go = np.flatnonzero((status == STICK) & (wanted != OPEN))
+    rough = (wanted != OPEN) & (friction > 0.0)
+    letting_go = np.flatnonzero(rough & (status == STICK))
     if letting_go.size > 1:
         excess = np.abs(solution.shear) - friction * solution.pressure
         wanted[letting_go[np.argmin(excess[letting_go])]] = STICK
         return
-    others = np.flatnonzero((wanted != OPEN) & (status != STICK))
+    others = np.flatnonzero(rough & (status != STICK))
     if letting_go.size == 1:
         others = others[wanted[others] == np.sign(solution.shear[letting_go[0]])]
     if others.size:

@@ -247,7 +247,8 @@ class PathStep:
             return None
         rates = unknowns.rates(self.rate)
         normal, shear = rates[: unknowns.normal.size], rates[unknowns.normal.size : -3]
-        return unknowns if has_turned(status[unknowns.normal], normal, shear, self.system.friction) else None
+        closed = unknowns.normal
+        return unknowns if has_turned(status[closed], normal, shear, self.system.friction[closed]) else None
 
     def _begin_held(self) -> bool:
         """Begin with all closed nodes held, if there are few nodes. Nodes that go on slipping are then let go.
@@ -255,7 +256,7 @@ class PathStep:
         Returns False if the held nodes can't hold the pin, or without friction.
         """
         status = self.now.status
-        if status.size > FEW_NODES or self.system.friction == 0.0:
+        if status.size > FEW_NODES or not self.system.has_friction:
             return False
         table = HeldContacts.of(self.system).table(self.system, self.now.closed)
         if table is None:
@@ -441,7 +442,7 @@ class PathStep:
             pressure += np.where(closed, change[:n], 0.0)
             tied = change[n : 2 * n] - self._contact.tie * system.friction * change[:n]
             shear += np.where(stick, tied, 0.0)
-            shear[slipping] = -system.friction * now.status[slipping] * pressure[slipping]
+            shear[slipping] = -system.friction[slipping] * now.status[slipping] * pressure[slipping]
             motion += change[2 * n :]
         if not error <= MOST_ERROR:
             exact = self._exact_solution()

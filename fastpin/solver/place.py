@@ -128,4 +128,5 @@ def changed_system(system: System, problem: Problem) -> System | None:
     if not alike or old.frictionless != problem.frictionless:  # without friction nothing carries a moment
         return None
     rest_clearance = problem.assembled_clearance / system.scales.displacement
-    return replace(system, problem=problem, friction=problem.friction, rest_clearance=rest_clearance)
+    friction = np.full_like(system.friction, problem.friction)
+    return replace(system, problem=problem, friction=friction, rest_clearance=rest_clearance)

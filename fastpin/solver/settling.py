@@ -65,30 +65,32 @@ def settle(system: System, now: Configuration, load_rate: np.ndarray) -> np.ndar
     n, mu = system.grid.size, system.friction
     closed = now.closed
     bare = np.where(closed, now.pressure == 0.0, now.gap == 0.0)
-    limit = closed & ~bare & ((np.abs(now.status) == 1) | (np.abs(now.shear) >= mu * now.pressure)) & (mu > 0.0)
-    status = np.where(bare | limit, resting_status(system), now.status).astype(np.int8)
+    rough = mu > 0.0
+    limit = closed & ~bare & ((np.abs(now.status) == 1) | (np.abs(now.shear) >= mu * now.pressure)) & rough
+    slippery = closed & ~rough & (now.status == STICK)
+    status = np.where(bare | limit | slippery, resting_status(system), now.status)
     unknowns = DenseUnknowns(system, status)
     if unknowns.singular:
         return None
     first: np.ndarray = np.flatnonzero(limit)
     second: np.ndarray = np.flatnonzero(bare)
+    rubbing = rough[second]
+    third = second[rubbing]
     if first.size + second.size == 0:
-        return None
+        return status if slippery.any() else None
     # The sense of slip of each slipping variable, and the node and row (gap or slip) of each variable.
     sense = np.where(now.shear > 0.0, -1.0, 1.0)[first]
-    if mu > 0.0:
-        nodes = np.r_[first, second, second, second]
-        factor = np.r_[sense, np.ones(2 * second.size), -np.ones(second.size)]
-        rows = np.r_[n + first, second, n + second, n + second]
-    else:
-        nodes, rows, factor = second, second, np.ones(second.size)
+    nodes = np.concatenate([first, second, third, third])
+    factor = np.r_[sense, np.ones(second.size + third.size), -np.ones(third.size)]
+    rows = np.concatenate([n + first, second, n + third, n + third])
     is_gap = rows < n
     positions = np.searchsorted(unknowns.rows, np.asarray(rows))
     answers = unknowns.held_columns(positions)[0][: unknowns.count] * factor
     rates = unknowns.rates(load_rate)[: unknowns.count]
     normal = np.searchsorted(unknowns.rows, nodes)
-    reserve = np.where(is_gap, 1.0, mu)[:, None] * answers[normal]
-    known = np.where(is_gap, 1.0, mu) * rates[normal]
+    part = np.where(is_gap, 1.0, mu[nodes])
+    reserve = part[:, None] * answers[normal]
+    known = part * rates[normal]
     shears = np.flatnonzero(~is_gap)
     reserve[shears] += factor[shears, None] * answers[positions[shears]]
     known[shears] += factor[shears] * rates[positions[shears]]
@@ -101,11 +103,10 @@ def settle(system: System, now: Configuration, load_rate: np.ndarray) -> np.ndar
     tolerance = 1e-11 * float(z.max(initial=0.0))
     slips = z > tolerance
     found[first] = np.where(slips[: first.size], sense, STICK)
-    if mu == 0.0:
-        found[second] = np.where(slips, OPEN, status[second])
-        return found
-    opens, forth, back = slips[first.size :].reshape(3, second.size)
-    found[second] = np.select([opens, forth, back], [OPEN, SLIP_POSITIVE, SLIP_NEGATIVE], STICK)
+    opens, senses = np.split(slips[first.size :], [second.size])
+    forth, back = senses.reshape(2, third.size)
+    found[second] = np.where(opens, OPEN, status[second])
+    found[third] = np.select([opens[rubbing], forth, back], [OPEN, SLIP_POSITIVE, SLIP_NEGATIVE], STICK)
     return found
 
 
@@ -117,7 +118,7 @@ class FiniteStep:
         closed nodes:  z = (h, s+, s-),            w = (N, mu N + T, mu N - T)
         open nodes:    z = (N, mu N + T, s-),      w = (h, s+, mu N - T)
 
-    Without friction only the first of each three is there. Displacements are in units of a typical compliance.
+    At nodes without friction only the first of each three is there. Displacements are in units of a typical compliance.
 
     Parameters
     ----------
@@ -129,16 +130,16 @@ class FiniteStep:
     """
 
     def __init__(self, system: System, now: Configuration, everywhere: bool = False) -> None:
-        n, mu = system.grid.size, system.friction
+        n = system.grid.size
         self._system, self._now = system, now
-        self._base = np.where(now.closed, resting_status(system), OPEN).astype(np.int8)
+        self._base = np.where(now.closed, resting_status(system), OPEN)
         self._unknowns = DenseUnknowns(system, self._base)
         self._length = float(np.median(np.abs(system.operator.diagonal())))
         self._closed = self._unknowns.normal
         away = np.flatnonzero(~now.closed)
         if not system.grid.closed:
             away = away[(away > 0) & (away < n - 1)]
-        room = MOST_VARIABLES // (3 if mu > 0.0 else 1) - self._closed.size
+        room = MOST_VARIABLES // (3 if system.has_friction else 1) - self._closed.size
         room = min(max(room, 0), system.grid.size if everywhere else self._closed.size + MORE_NODES)
         self._away = np.sort(away[np.argsort(now.gap[away], kind="stable")[:room]])
         if not self._unknowns.singular:
@@ -166,29 +167,38 @@ class FiniteStep:
 
     def _complementarity_matrix(self) -> np.ndarray:
         """Matrix (k, k) of the problem."""
-        mu, length, a, b = self._system.friction, self._length, self._closed.size, self._away.size
+        length, a, b, count = self._length, self._closed.size, self._away.size, self._unknowns.count
+        mu, rubbing = self._friction(self._away)
+        r = mu.size
         responses = self._responses()
-        count = self._unknowns.count
         responses[:, :count] *= length
         responses[count:] /= length
-        if mu == 0.0:
-            return responses
-        h, s, N, T = (responses[:, part] for part in np.split(np.arange(2 * a + 2 * b), [a, 2 * a, 2 * a + b]))
-        columns = np.hstack([h, s, -s, N - mu * T, T, np.zeros((2 * a + 2 * b, b))])
-        normal, shear, gap, slip = np.split(columns, [a, 2 * a, 2 * a + b])
-        slip[:, 3 * a + 2 * b :] += np.eye(b)
-        rest = np.zeros((b, columns.shape[1]))
-        rest[:, 3 * a : 3 * a + b], rest[:, 3 * a + b : 3 * a + 2 * b] = 2.0 * mu * np.eye(b), -np.eye(b)
-        return np.vstack([normal, mu * normal + shear, mu * normal - shear, gap, slip, rest])
+        h, s, N, T = np.split(responses, [a, count, count + b], axis=1)
+        N[:, rubbing] -= mu * T
+        columns = np.hstack([h, s, -s, N, T, np.zeros((len(responses), r))])
+        normal, shear, gap, slip = np.split(columns, [a, count, count + b])
+        first, last = 2 * count - a, columns.shape[1] - r  # columns of N, and of the slip backwards
+        slip[:, last:] += np.eye(r)
+        rest = np.zeros((r, columns.shape[1]))
+        rest[:, first + rubbing], rest[:, first + b : last] = 2.0 * mu * np.eye(r), -np.eye(r)
+        mu, rubbing = self._friction(self._closed)
+        bound = mu[:, None] * normal[rubbing]
+        return np.vstack([normal, bound + shear, bound - shear, gap, slip, rest])
+
+    def _friction(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coefficients of friction (r,) where `nodes` have friction, and the places (r,) of these nodes in `nodes`."""
+        mu = self._system.friction[nodes]
+        rubbing = np.flatnonzero(mu)
+        return mu[rubbing], rubbing
 
     def _complementarity_vector(self, resting: Solution) -> np.ndarray:
         """Vector (k,) of the problem. `resting` is the solution with all closed nodes stuck."""
-        mu, closed, away = self._system.friction, self._closed, self._away
-        pressure, shear, gap = resting.pressure[closed], resting.shear[closed], resting.gap[away] / self._length
-        if mu == 0.0:
-            return np.r_[pressure, gap]
-        slid = (resting.slip - self._now.slip)[away] / self._length
-        return np.r_[pressure, mu * pressure + shear, mu * pressure - shear, gap, slid, np.zeros(away.size)]
+        closed, away = self._closed, self._away
+        (mu, rubbing), (_, rubbing_away) = self._friction(closed), self._friction(away)
+        pressure, gap = resting.pressure[closed], resting.gap[away] / self._length
+        bound, shear = mu * pressure[rubbing], resting.shear[closed[rubbing]]
+        slid = (resting.slip - self._now.slip)[away[rubbing_away]] / self._length
+        return np.r_[pressure, bound + shear, bound - shear, gap, slid, np.zeros(slid.size)]
 
     def _responses(self) -> np.ndarray:
         """Tractions of the closed nodes and displacements of the open ones, below one another.
@@ -196,7 +206,7 @@ class FiniteStep:
         The columns are unit gaps and slips of the closed nodes, then unit tractions of the open nodes.
         """
         unknowns, n = self._unknowns, self._system.grid.size
-        slots = self._away if self._system.friction == 0.0 else np.r_[self._away, n + self._away]
+        slots = np.concatenate([self._away, n + self._away[self._friction(self._away)[1]]])
         places, count = np.searchsorted(unknowns.others, slots), unknowns.count
         held, beside = unknowns.held_columns(np.arange(count))
         given, further = unknowns.given_columns(slots, np.zeros(slots.size))
@@ -205,14 +215,13 @@ class FiniteStep:
     def _status(self, z: np.ndarray) -> np.ndarray:
         """The statuses of the solution `z` (k,)."""
         closed, away, status = self._closed, self._away, self._base.copy()
-        a, b = closed.size, away.size
+        here, there = (self._friction(nodes)[1] for nodes in (closed, away))
+        sizes = closed.size, here.size, here.size, away.size, there.size
         positive = z > 1e-12 * float(z.max(initial=0.0))
-        if self._system.friction == 0.0:
-            status[closed[positive[:a]]] = OPEN
-            status[away[positive[a:]]] = resting_status(self._system)
-            return status
-        opens, forth, back = positive[: 3 * a].reshape(3, a)
-        status[closed] = np.select([opens, forth, back], [OPEN, SLIP_POSITIVE, SLIP_NEGATIVE], STICK)
-        pressed, reserve, backwards = positive[3 * a :].reshape(3, b)
-        status[away] = np.select([~pressed, backwards, reserve], [OPEN, SLIP_NEGATIVE, STICK], SLIP_POSITIVE)
+        opens, forth, back, pressed, reserve, backwards = np.split(positive, np.cumsum(sizes))
+        status[closed[opens]] = OPEN
+        status[closed[here]] = np.select([opens[here], forth, back], [OPEN, SLIP_POSITIVE, SLIP_NEGATIVE], STICK)
+        status[away[pressed]] = resting_status(self._system)[away[pressed]]
+        senses = np.select([backwards, reserve], [SLIP_NEGATIVE, STICK], SLIP_POSITIVE)
+        status[away[there]] = np.where(pressed[there], senses, OPEN)
         return status

@@ -230,11 +230,12 @@ def expected_ties(contact: Contact, rates: np.ndarray) -> np.ndarray:
     return np.where(forward, -1, 1)
 
 
-def has_turned(status: np.ndarray, pressure_rate: np.ndarray, shear_rate: np.ndarray, friction: float) -> bool:
+def has_turned(status: np.ndarray, pressure_rate: np.ndarray, shear_rate: np.ndarray, friction: np.ndarray) -> bool:
     """Whether the load has turned: most slipping nodes stick when the load goes on.
 
-    Statuses and rates have the shape (k,). The rates are those while all closed nodes stick.
+    Statuses, rates and coefficients of friction have the shape (k,). The rates are those while all closed nodes stick.
+    Nodes without friction do not count.
     """
-    slipping = np.abs(status) == 1
+    slipping = (np.abs(status) == 1) & (friction > 0.0)
     slips_on = slipping & (-status * shear_rate > friction * pressure_rate)
     return bool(np.count_nonzero(slips_on) <= np.count_nonzero(slipping) // 2)

@@ -205,7 +205,7 @@ class StickingRun(Unknowns):
         prescribed displacement, or with a compliance of any plate, the operator is no Toeplitz matrix.
         """
         closed = np.flatnonzero(status != OPEN)
-        if system.friction == 0.0 or np.any(status[closed] != STICK):
+        if not system.has_friction or np.any(status[closed] != STICK):
             return False
         return have_toeplitz_matrix(system, closed, LEAST_NEIGHBOURS)
 

@@ -176,7 +176,7 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
         if (contact.tie[node] == new) != tied and new in (1, -1):
             continue
         matrix, tableau = whole(columns), columns.tableau
-        updates, size = kernel("_change_status")(tableau, 0, contact, 0.4, typical, node, new)
+        updates, size = kernel("_change_status")(tableau, 0, contact, system.friction, typical, node, new)
         assert size > 1e-3
         assert contact.status[node] == new
         other = at_rest_on(system, contact.status)
@@ -211,7 +211,7 @@ def test_columns_by_chunks_are_those_one_by_one(system, sets, monkeypatch):
         new = int(rng.choice([1, -1])) if contact.status[node] == STICK else STICK
         if new != STICK and np.count_nonzero(contact.status == STICK) < 4:
             continue
-        updates, _ = change(tableau, updates, contact, 0.4, 0.1, node, new)
+        updates, _ = change(tableau, updates, contact, system.friction, 0.1, node, new)
     expected = dense(matrix, tableau, updates)
     size = np.abs(expected).max()
     column = np.zeros(85)
@@ -284,7 +284,7 @@ def naive_path(system, start, after):
         slipping, stick = np.abs(now.status) == 1, now.status == STICK
         tol = 1e-10
         back = slipping & (now.status * r.slip < -tol)
-        direction = np.where(now.pressure > 0.0, np.sign(now.shear), np.sign(r.shear))
+        direction = np.where(mu * now.pressure > 0.0, np.sign(now.shear), np.sign(r.shear))
         at_bound = stick & (np.abs(now.shear) >= mu * now.pressure * (1.0 - 1e-12))
         away = at_bound & (direction * r.shear - mu * r.pressure > tol)
         new = now.status.copy()
@@ -366,6 +366,55 @@ def test_path_agrees_with_the_naive_solver(system):
     assert np.all(naive_sums[:2].max(axis=1) > 0.005)
     assert np.ptp(naive_sums[2:, met], axis=0).max() > 0.005
     assert system.weights @ sums[1] == pytest.approx(fast.dissipation - first.dissipation, rel=1e-13)
+
+
+ALONG = np.linspace(-1.0, 1.0, 41)
+VARIED = {
+    "two zones": np.where(ALONG < -0.05, 0.5, 0.2),
+    "smooth": 0.35 + 0.2 * np.sin(9.0 * ALONG),
+    "bare spots": np.where(np.isin(np.arange(41), (15, 18, 19, 24)), 0.0, 0.4),
+    "bare half": np.where(ALONG < 0.0, 0.0, 0.4),
+}
+"""Coefficients of friction that vary along the rim, shape (41,)."""
+
+
+@pytest.mark.parametrize("road", ["held", "columns"])
+@pytest.mark.parametrize("kind", VARIED)
+def test_friction_that_varies_along_the_rim(system, monkeypatch, kind, road):
+    """The naive solver lets nodes without friction stick and slip like all others; their shear is 0 all the same."""
+    if road == "columns":
+        monkeypatch.setattr(path, "FEW_NODES", 0)
+    rough = replace(system, friction=VARIED[kind])
+    first, _ = first_contact(rough, unloaded_configuration(rough), loads(), loads(P=1.0))
+    now = naive = replace(first, slip_tally=SlipTally.empty(41))
+    known, events = rough.friction > 0.0, 0
+    for target in (loads(P=1.0), loads(P=1.0, Q=0.2), loads(P=1.0, Q=-0.2), loads(P=0.6, Q=0.1)):
+        step = PathStep(rough, now, target)
+        naive, counted = naive_path(rough, naive, target)
+        now, naive.load, events = step.follow(1.0), target.copy(), events + counted
+        assert step.events == counted
+        assert worst_residual(rough, now) < 1e-12
+        assert np.array_equal(now.status[known], naive.status[known])
+        assert np.array_equal(now.closed, naive.closed)
+        for name in ("pressure", "shear", "gap", "slip"):
+            assert np.abs(getattr(now, name) - getattr(naive, name)).max() < 1e-11
+        assert not now.shear[~known].any()
+    assert events > 40
+    assert np.count_nonzero(now.closed & ~known) == np.count_nonzero(now.closed[~known])
+
+
+def test_little_friction_tends_to_none(system):
+    """Nodes whose friction tends to 0 tend to nodes without friction, at first order."""
+    ends = []
+    for small in (0.0, 1e-9, 1e-8):
+        rough = replace(system, friction=np.where(VARIED["bare half"] > 0.0, 0.4, small))
+        now, _ = first_contact(rough, unloaded_configuration(rough), loads(), loads(P=1.0))
+        for target in (loads(P=1.0), loads(P=1.0, Q=0.2), loads(P=1.0, Q=-0.2)):
+            now = PathStep(rough, now, target).follow(1.0)
+        ends.append(np.r_[now.pressure, now.shear])
+    one, two = (np.abs(end - ends[0]).max() for end in ends[1:])
+    assert 0.0 < one < 1e-8
+    assert two == pytest.approx(10.0 * one, rel=0.01)
 
 
 PLAIN = """

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
+from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS, P, Q
 from fastpin.model.problem import Problem
-from fastpin.solver.configuration import Solution
-from fastpin.solver.increment import _hold_one
+from fastpin.solver.assembly import unloaded_configuration
+from fastpin.solver.configuration import Solution, worst_residual
+from fastpin.solver.first_contact import first_contact
+from fastpin.solver.increment import _hold_one, implicit_step
+from fastpin.solver.path import PathStep
 from fastpin.solver.solving import solve
 
 ARC = (-0.5 * np.pi - 1.25, -0.5 * np.pi + 1.25)
@@ -45,6 +53,30 @@ def test_fretting_cycle_agrees(similar, load, rotation, lp):
         assert max(finest.residuals.values()) < 1e-9
 
 
+@pytest.mark.parametrize("bare", [False, True])
+def test_both_solvers_agree_under_friction_that_varies(titanium_in_aluminium, bare):
+    """From the same first contact, with a smooth coefficient, also beside nodes without friction."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    system = System.build(problem, Grid.circle(91), 1.0)
+    friction = 0.35 + 0.2 * np.sin(3.0 * system.grid.theta)
+    system = replace(system, friction=np.where(bare & (np.arange(91) % 4 == 0), 0.0, friction))
+    pull, push = np.eye(len(LOADS))[[P, Q]]
+    start, _ = first_contact(system, unloaded_configuration(system), 0.0 * pull, pull)
+    targets = [pull, pull + 0.15 * push, pull - 0.15 * push]
+    exact, errors = start, []
+    for target in targets:
+        exact = PathStep(system, exact, target).follow(1.0)
+    for count in (20, 80, 320):
+        now = start
+        for target in targets:
+            for load in np.linspace(now.load, target, count + 1)[1:]:
+                now = implicit_step(system, now, load)
+        errors.append(np.abs(now.shear - exact.shear).sum() / exact.pressure.sum())
+        assert worst_residual(system, now) < 1e-9
+    assert 0.6 < -np.polyfit(np.log((20, 80, 320)), np.log(errors), 1)[0] < 1.6
+    assert errors[-1] < 2e-3
+
+
 def test_too_large_increments_are_halved(similar):
     problem = Problem.from_load_parameter(similar, 0.05, 0.55, "body")
     history = [{"P": 1.0}, {"Q": 0.5}, {"Q": -0.5}]
@@ -63,7 +95,7 @@ def test_a_first_corner_on_few_nodes(similar):
 
 @pytest.mark.parametrize("count", [2, 3])
 def test_of_the_nodes_that_let_go_the_nearest_to_sticking_holds(count):
-    nothing, friction, pressure = np.zeros(4), 0.5, np.array([2.0, 2.0, 2.0, 1.0])
+    nothing, friction, pressure = np.zeros(4), np.full(4, 0.5), np.array([2.0, 2.0, 2.0, 1.0])
     shear = np.array([1.3, -1.1, 1.2, -0.5])
     status, wanted = np.full(4, STICK), np.array([-1, 1, -1, 1])
     status[count:] = wanted[count:]
