@@ -81,7 +81,7 @@ class Drive:
         return np.where(self.axes, load[list(DISPLACEMENTS)], 0.0)
 
     def force(self, motion: np.ndarray, load: np.ndarray) -> np.ndarray:
-        """Force on the pin along x and y, shape (2,): reactions from the unknown `motion` (3,), others from `load`."""
+        """Force on the pin along x and y, shape (2,): reactions from the unknown `motion` (m,), others from `load`."""
         return np.where(self.axes, motion[:2], load[list(FORCES)] * SIGNS)
 
     def position(self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest: np.ndarray) -> np.ndarray:
@@ -115,8 +115,8 @@ class Drive:
     def work(self, columns: np.ndarray, motion: np.ndarray, change: np.ndarray, load_change: np.ndarray) -> float:
         """Work of the reactions over a change; 0 under forces, whose work needs no reactions.
 
-        `columns` (2,) is the product of :meth:`work_columns` and the change of the tractions. `motion` (3,) is the mean
-        of the unknown motion, `change` (3,) its change, `load_change` (loads,) the change of the load.
+        `columns` (2,) is the product of :meth:`work_columns` and the change of the tractions. `motion` (m,) is the mean
+        of the unknown motion, `change` (m,) its change, `load_change` (loads,) the change of the load.
         """
         moved = load_change[list(DISPLACEMENTS)] - self.compliance * change[:2] + columns
         return float(np.where(self.axes, motion[:2] * moved, 0.0).sum())

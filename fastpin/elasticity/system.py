@@ -60,7 +60,8 @@ class System:
 
         equilibrium @ (N, T) + motion_rows @ motion = forces @ load.
 
-    For a pin whose rotation is held, the third row prescribes the rotation of the hub, or of the far end of the spring.
+    The number m of motions, and of these conditions, is 3. For a pin whose rotation is held, the third row prescribes
+    the rotation of the hub, or of the far end of the spring.
 
     Attributes
     ----------
@@ -75,15 +76,15 @@ class System:
         Coefficient of friction at each node.
     operator : Operator
         Matrix with 2n rows, stored or not. Maps (N, T) to (h, s).
-    motion : ndarray, shape (2n, 3)
+    motion : ndarray, shape (2n, m)
         Maps the motion (c_x, c_y, omega) of the pin to (h, s).
     loads : ndarray, shape (2n, loads)
         Maps the loads to (h, s).
-    equilibrium : ndarray, shape (3, 2n)
+    equilibrium : ndarray, shape (m, 2n)
         Maps (N, T) to the conditions of equilibrium.
-    motion_rows : ndarray, shape (3, 3)
+    motion_rows : ndarray, shape (m, m)
         Maps the motion of the pin to the conditions of equilibrium.
-    forces : ndarray, shape (3, loads)
+    forces : ndarray, shape (m, loads)
         Maps the loads to the conditions of equilibrium.
     weights : ndarray, shape (n,)
         Integrals of the hat functions of the nodes, rad.
@@ -155,6 +156,11 @@ class System:
         has_matrix = self.drive.has_displacements or (self.bodies is not None and bool(self.bodies.matrix.size))
         return self.grid.uniform and not has_matrix
 
+    @property
+    def motions(self) -> int:
+        """Number m of motions, and of conditions of equilibrium."""
+        return len(self.motion_rows)
+
     @cached_property
     def has_friction(self) -> bool:
         """Whether there is friction at a node."""
@@ -200,7 +206,7 @@ class System:
         return self.drive.columns[:, :acting] @ load[:acting]
 
     def load_forces(self, load: np.ndarray) -> np.ndarray:
-        """Right sides of the conditions of equilibrium, shape (3,), of a load (loads,) or its rate."""
+        """Right sides of the conditions of equilibrium, shape (m,), of a load (loads,) or its rate."""
         acting = self._acting
         return self.forces[:, :acting] @ load[:acting]
 
@@ -218,7 +224,7 @@ class System:
         ----------
         tractions : ndarray, shape (2n,)
             Pressure N, then shear traction T.
-        motion : ndarray, shape (3,)
+        motion : ndarray, shape (m,)
             Motion (c_x, c_y, omega) of the pin.
         load : ndarray, shape (loads,)
         rest_gap : ndarray, shape (n,), or float

@@ -8,21 +8,21 @@ import numpy as np
 
 
 class Tableau(NamedTuple):
-    """A matrix, its updates, and the rates of the dependent variables.
+    """A matrix, its updates, and the rates of the dependent variables. There are n nodes and m motions of the pin.
 
     Attributes
     ----------
-    matrix : ndarray, shape (2n+3, 2n), column by column
+    matrix : ndarray, shape (2n+m, 2n), column by column
     fresh : ndarray of int, shape (blocks,)
         Number of updates that each block of columns contains; -1 if the block was never computed.
-    left : ndarray, shape (2n+3, room), column by column
+    left : ndarray, shape (2n+m, room), column by column
         The vector of each update.
     source, slot : ndarray of int, shape (room,)
     delta : ndarray, shape (room,)
         The three numbers of each update.
-    rates : ndarray, shape (2n+3,)
+    rates : ndarray, shape (2n+m,)
         Rates of the dependent variables and of the pin's motion, per unit of the step.
-    order : ndarray of int, shape (2n+3,)
+    order : ndarray of int, shape (2n+m,)
         Where ``matrix`` is the table of a held contact: the place of each dependent variable in its rows, and of each
         zero-rate variable in its columns. Its rows hold T instead of tau. Empty if rows and columns are in order.
     tied : ndarray, shape (n,)
@@ -47,7 +47,7 @@ class Tableau(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (3,), ``slip_tally`` (4, n).
+    """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (m,), ``slip_tally`` (4, n).
 
     ``touched`` says whether a node was ever closed. :mod:`fastpin.kernels.exchange` defines ``tie``. ``slip_tally``
     has slip distance, friction energy, lowest and highest slip of each node while closed. The extremes count from

@@ -8,9 +8,9 @@ tau = 0. One member of each pair is *dependent*, the other member has rate zero:
     stick:  h and s have rate zero,    N and tau are dependent
     slip:   h and tau have rate zero,  N and s are dependent
 
-The matrix maps the zero-rate variables to the dependent variables. Its last three rows give the components of the
-pin's motion. A change of status exchanges the members of a pair, which is a rank-one update. A change of a tie is a
-rank-one update too. Updates are kept in order. A column of the matrix is brought up to date only when it is needed.
+The matrix maps the zero-rate variables to the dependent variables. Its last rows give the m motions of the pin. A
+change of status exchanges the members of a pair, which is a rank-one update. A change of a tie is a rank-one update
+too. Updates are kept in order. A column of the matrix is brought up to date only when it is needed.
 Update k adds to column j
 
     left[:, k] (M_k[source_k, j] + delta_k [j = slot_k]),
@@ -53,6 +53,8 @@ UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, SETTLED, COUNTS 
 
 # Slots of `sums`.
 TIME, DISSIPATION, WORK, SUMS = 0, 1, 2, 3
+
+ROTATION = 2  # place of the pin's rotation among the motions; its translation stands before it
 
 RATE_TOLERANCE = 1e-11  # rates below this part of the largest rate are zero
 VALUE_TOLERANCE = 1e-13  # likewise for gaps and the reserve mu N - |T|
@@ -139,9 +141,9 @@ def _add_column(tableau, updates, target, source, factor):
 
 
 @inner
-def _needed_column(tableau, updates, node, old, new, tie):
+def _needed_column(tableau, updates, contact, node, new):
     """The first stale column among the columns that a change of status needs; -1 if none is stale."""
-    tangential = (tableau.rates.size - 3) // 2 + node
+    tangential, old, tie = contact.status.size + node, contact.status[node], contact.tie[node]
     if (old == OPEN or new == OPEN) and _stale(tableau, updates, node):
         return node
     if (old == STICK or new == STICK or (old == OPEN and new != tie)) and _stale(tableau, updates, tangential):
@@ -264,7 +266,7 @@ def _contact_violators(contact, rates, traction_tol, length_tol, queue):
 def _relief(free_motion, status, friction, rates, node, direction):
     """The slipping node that sticks first when `node`, the last node that holds the pin, lets go in `direction`.
 
-    `free_motion` (2n+3,) is the motion that becomes free. A node without friction holds nothing. Returns -1 if no node
+    `free_motion` (2n+m,) is the motion that becomes free. A node without friction holds nothing. Returns -1 if no node
     would stop this motion.
     """
     n = status.size
@@ -335,7 +337,7 @@ def _advance(contact, rates, friction, weights, step):
                 begin, end = begin - rest_slip[i], slip[i] - rest_slip[i]
                 tally[2, i] = min(tally[2, i], begin, end)
                 tally[3, i] = max(tally[3, i], begin, end)
-    for i in range(3):
+    for i in range(contact.motion.size):
         contact.motion[i] += step * rates[2 * n + i]
     for i in range(n):
         if status[i] == OPEN:
@@ -367,7 +369,10 @@ def _reaction_work(contact, rates, friction, load, axis, step):
 
 @inner
 def _work(contact, rates, friction, load, time, step):
-    """Work of the loads over `step`, exact for the piecewise linear path. Call it before `_advance`."""
+    """Work of the loads over `step`, exact for the piecewise linear path. Call it before `_advance`.
+
+    The force acts on the translation of the pin. The moment on its rotation is that of the shear on its rim.
+    """
     status, n = contact.status, contact.status.size
     middle = time + 0.5 * step
     moment, moment_rate, work = 0.0, 0.0, 0.0
@@ -386,7 +391,7 @@ def _work(contact, rates, friction, load, time, step):
             work += _reaction_work(contact, rates, friction, load, k, step)
         else:
             work += (load.force[k] + middle * load.force_rate[k]) * rates[2 * n + k]
-    work += (moment + 0.5 * step * moment_rate) * rates[2 * n + 2]
+    work += (moment + 0.5 * step * moment_rate) * rates[2 * n + ROTATION]
     return work * step
 
 
@@ -407,7 +412,7 @@ def _apply_queue(tableau, contact, queue, friction, typical, closed_grid):
         if updates + MOST_UPDATES_A_CHANGE > tableau.left.shape[1]:
             return REBUILD
         new = POSITIVE if old == STICK and wanted == OPEN else wanted  # a sticking node slips before it opens
-        counts[NEEDED_COLUMN] = _needed_column(tableau, updates, node, old, new, np.int64(contact.tie[node]))
+        counts[NEEDED_COLUMN] = _needed_column(tableau, updates, contact, node, new)
         if counts[NEEDED_COLUMN] >= 0:
             return STALE
         updates, size = _change_status(tableau, updates, contact, friction, typical, node, new)
@@ -418,10 +423,8 @@ def _apply_queue(tableau, contact, queue, friction, typical, closed_grid):
             other = _relief(tableau.left[:, updates], contact.status, friction, tableau.rates, node, new)
             if other < 0:
                 return NO_SUPPORT
-            slipping, stick = np.int64(contact.status[other]), np.int64(STICK)
-            counts[NEEDED_COLUMN] = _needed_column(
-                tableau, updates, other, slipping, stick, np.int64(contact.tie[other])
-            )
+            stick = np.int64(STICK)
+            counts[NEEDED_COLUMN] = _needed_column(tableau, updates, contact, other, stick)
             if counts[NEEDED_COLUMN] >= 0:
                 return STALE
             updates, _ = _change_status(tableau, updates, contact, friction, typical, other, stick)
@@ -537,7 +540,7 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
 def apply_updates(tableau, updates, given, values):
     """Apply so many updates, one by one, to a response.
 
-    `values` (2n+3,) is the response to the zero-rate variables `given` (2n+3,) before them. It is changed in place.
+    `values` (2n+m,) is the response to the zero-rate variables `given` (2n+m,) before them. It is changed in place.
     """
     for k in range(updates):
         factor = 0.0

@@ -39,7 +39,7 @@ def unloaded_configuration(system: System) -> Configuration:
         gap=np.full(n, system.rest_clearance),
         slip=zeros.copy(),
         status=np.full(n, OPEN, dtype=np.int8),
-        motion=np.zeros(3),
+        motion=np.zeros(system.motions),
         load=np.zeros(len(LOADS)),
         origin=np.zeros(2) if system.drive.has_displacements else np.full(2, np.nan),
         rest=np.zeros(2),

@@ -37,7 +37,7 @@ class Configuration:
         Gap h >= 0, and slip s of the pin over the plate, positive along +theta. The slip counts from ``rest``.
     status : ndarray of int8, shape (n,)
         Status of each node, see :mod:`fastpin.kernels.status`.
-    motion : ndarray, shape (3,)
+    motion : ndarray, shape (m,)
         Motion of the pin, (c_x, c_y, omega). It counts from ``rest``. The reaction takes the place of c_x or c_y where
         the displacement is prescribed.
     load : ndarray, shape (loads,)
@@ -94,7 +94,7 @@ class Configuration:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """The outcome of one solve: tractions, gap and slip (n,) and motion (3,), or the rates of all these."""
+    """The outcome of one solve: tractions, gap and slip (n,) and motion (m,), or the rates of all these."""
 
     pressure: np.ndarray
     shear: np.ndarray
@@ -149,7 +149,7 @@ def solve_unknowns(
     known[active.normal.size :] -= stuck_slip[active.tangential]
     unknowns = active.solve(np.r_[-known, system.load_forces(load)])
     tractions = active.expand(unknowns)
-    motion = unknowns[-3:]
+    motion = unknowns[active.count :]
     displacement = system.displacement(tractions, motion, load, rest_gap)
     return Solution(tractions[:n], tractions[n:], displacement[:n], displacement[n:], motion)
 
@@ -255,7 +255,7 @@ def contact_residuals(system: System, configuration: Configuration) -> dict[str,
     if not closed.any():
         length = max(length, abs(system.rest_clearance))
     traction = max(float(pressure.max()), 1e-300)
-    total = max(float(np.abs(system.equilibrium) @ np.abs(tractions) @ np.ones(3)), 1e-300)
+    total = max(float(np.abs(system.equilibrium) @ np.abs(tractions) @ np.ones(system.motions)), 1e-300)
     return {
         "gap": float(gap_error.max()) / length,
         "slip": float(slip_error.max()) / length,

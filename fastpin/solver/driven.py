@@ -99,7 +99,7 @@ def rest_on_hole(
         position = _room(system, before + begins * (after - before))[1]
     angle = _narrowest(system, before + begins * (after - before), position)[1]
     if system.rest_clearance == 0.0 and not position.any():  # a neat fit touches where the loads push it
-        push = drive.force(np.zeros(3), after) + drive.prescribed(after)
+        push = drive.force(np.zeros(2), after) + drive.prescribed(after)
         angle = math.atan2(push[1], push[0])
     shift = position - system.rest_clearance * np.array([math.cos(angle), math.sin(angle)])
     n, half = system.grid.size, 0.5 * (system.grid.theta - angle)

@@ -40,7 +40,7 @@ LEAST_RECURRENCES = 192
 """Smallest number of neighbouring nodes for the recurrences of their responses. With fewer, products are as fast."""
 
 MOST_CONDITION = 1e8
-"""Largest condition number of the three equations of the motion. A contact above it hardly holds the pin."""
+"""Largest condition number of the equations of the motion. A contact above it hardly holds the pin."""
 
 MOST_RESIDUAL = 1e-10
 """Largest residual of a table, relative to the right side. A contact above it begins with a factorisation."""
@@ -82,13 +82,13 @@ class HeldTable(NamedTuple):
 
     Attributes
     ----------
-    matrix : ndarray, shape (2n+3, 2n+3)
+    matrix : ndarray, shape (2n+m, 2n+m)
         It maps gap and slip of closed nodes, pressure and shear of open nodes, and the forces out of balance to
         pressure and shear of closed nodes, gap and slip of open nodes, and the motion. Rows and columns stand in the
         sequence of ``stack``. Columns of open end nodes of an arc are for whole hats: these nodes never close.
-    stack : ndarray of int, shape (2n+3,)
+    stack : ndarray of int, shape (2n+m,)
         The variables in the sequence of the matrix: of closed nodes, of open nodes, of the motion.
-    order : ndarray of int, shape (2n+3,)
+    order : ndarray of int, shape (2n+m,)
         The place of each variable in ``stack``.
     """
 
@@ -101,7 +101,8 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     """The table of a contact with all `closed` nodes (n,) sticking; None if they can't hold the pin."""
     n, both = closed.size, np.concatenate([closed, closed])
     rows, others = np.flatnonzero(both), np.flatnonzero(~both)
-    matrix = np.empty((2 * n + 3, 2 * n + 3), order="F")
+    size = 2 * n + system.motions
+    matrix = np.empty((size, size), order="F")
     by_distance = have_toeplitz_matrix(system, np.flatnonzero(closed), LEAST_NEIGHBOURS)
     if not (by_distance and _fill_by_distances(system, rows, others, matrix)):
         if rows.size > MOST_FACTORISED:
@@ -110,23 +111,23 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
         if unknowns.singular:
             return None
         _fill_by_factorisation(unknowns, matrix)
-    stack = np.concatenate([rows, others, np.arange(2 * n, 2 * n + 3)])
-    order = np.empty(2 * n + 3, dtype=np.int64)
-    order[stack] = np.arange(2 * n + 3)
+    stack = np.concatenate([rows, others, np.arange(2 * n, size)])
+    order = np.empty(size, dtype=np.int64)
+    order[stack] = np.arange(size)
     return HeldTable(matrix, stack, order)
 
 
 def _fill_by_factorisation(unknowns: DenseUnknowns, matrix: np.ndarray) -> None:
     """Fill the matrix of a table from factorised equations."""
-    count, others = unknowns.count, unknowns.others
+    count, others, end = unknowns.count, unknowns.others, unknowns.count + unknowns.others.size
     acting, balance = unknowns.unit_responses(others, np.zeros(others.size))
-    right = np.eye(*matrix[: count + 3].shape)
-    right[-3:, :count], right[-3:, count:-3], right[-3:, -3:] = 0.0, -balance, np.eye(3)
-    right[:count, count:-3] = -acting[unknowns.rows]
+    right = np.eye(unknowns.size, len(matrix))
+    right[count:, :count], right[count:, count:end], right[count:, end:] = 0.0, -balance, np.eye(len(balance))
+    right[:count, count:end] = -acting[unknowns.rows]
     found = unknowns.solve(right)
-    matrix[:count], matrix[-3:] = found[:count], found[-3:]
-    matrix[count:-3] = unknowns.at_others(found, np.zeros((others.size, matrix.shape[1])))
-    matrix[count:-3, count:-3] += acting[others]
+    matrix[:count], matrix[end:] = found[:count], found[count:]
+    matrix[count:end] = unknowns.at_others(found, np.zeros((others.size, len(matrix))))
+    matrix[count:end, count:end] += acting[others]
 
 
 def _fill_by_distances(system: System, rows: np.ndarray, others: np.ndarray, matrix: np.ndarray) -> bool:
@@ -134,7 +135,7 @@ def _fill_by_distances(system: System, rows: np.ndarray, others: np.ndarray, mat
 
     Returns whether the nodes hold the pin so well that few digits are lost.
     """
-    count, entries = rows.size, entries_by_distance(system)
+    count, end, entries = rows.size, rows.size + others.size, entries_by_distance(system)
     core = toeplitz.inverse(*entries[:, : count // 2])
     motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
     moved = core @ motion
@@ -142,22 +143,22 @@ def _fill_by_distances(system: System, rows: np.ndarray, others: np.ndarray, mat
     if small is None:
         return False
     free, tied, acting = _responses(system, rows, others, core, entries)
-    moving = np.empty((3, matrix.shape[1]))
+    moving = np.empty((len(small), len(matrix)))
     moving[:, :count] = -small @ (equilibrium @ core)
-    moving[:, count:-3] = -small @ (system.equilibrium[:, others] + equilibrium @ free)
-    moving[:, -3:] = small
+    moving[:, count:end] = -small @ (system.equilibrium[:, others] + equilibrium @ free)
+    moving[:, end:] = small
     matrix[:count, :count] = core.T  # it is symmetric
-    matrix[:count, count:-3] = free
-    matrix[count:-3, :count] = tied
-    matrix[count:-3, count:-3] = acting
-    matrix[-3:], matrix[:, -3:] = 0.0, 0.0
-    turned = np.concatenate([-moved, system.motion[others] - tied @ motion, np.eye(3)])
+    matrix[:count, count:end] = free
+    matrix[count:end, :count] = tied
+    matrix[count:end, count:end] = acting
+    matrix[end:], matrix[:, end:] = 0.0, 0.0
+    turned = np.concatenate([-moved, system.motion[others] - tied @ motion, np.eye(len(small))])
     blas.dgemm(1.0, turned, moving, beta=1.0, c=matrix, overwrite_c=1)
     return True
 
 
 def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray) -> np.ndarray | None:
-    """The motion (3, 3) by the three forces while the closed nodes stick; None if they hardly hold the pin."""
+    """The motion (m, m) by the forces while the closed nodes stick; None if they hardly hold the pin."""
     complement = system.motion_rows - equilibrium @ moved
     try:
         small: np.ndarray = np.linalg.inv(complement)
@@ -188,7 +189,7 @@ def _responses(
 def _holds(system: System, closed: np.ndarray, table: HeldTable) -> bool:
     """Whether the answer of a table to one load meets the equations of the closed nodes and of equilibrium."""
     n, both = closed.size, np.concatenate([closed, closed])
-    given = np.cos(np.arange(2.0 * n + 3.0))
+    given = np.cos(np.arange(float(len(table.matrix))))
     given[: 2 * n] *= both
     answer = (table.matrix @ given[table.stack])[table.order]
     tractions = answer[: 2 * n] * both
@@ -253,9 +254,9 @@ class HeldColumns:
         )
 
     def response(self, given: np.ndarray, updates: int) -> np.ndarray:
-        """The product (2n+3,) of the tableau and the vector `given` (2n+3,).
+        """The product (2n+m,) of the tableau and the vector `given` (2n+m,).
 
-        `given` holds the zero-rate variables, then the three forces out of balance. `updates` is the number of all
+        `given` holds the zero-rate variables, then the m forces out of balance. `updates` is the number of all
         updates so far.
         """
         tableau = self.tableau

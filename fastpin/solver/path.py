@@ -103,7 +103,7 @@ class PathStep:
         self, system: System, configuration: Configuration, after: np.ndarray, memory: TableauMemory | None = None
     ) -> None:
         self.system = system
-        self._memory = TableauMemory(system.grid.size) if memory is None else memory
+        self._memory = TableauMemory(system) if memory is None else memory
         self.now = configuration.copy()
         self.before = configuration.load.copy()
         self.rate = after - self.before
@@ -246,7 +246,7 @@ class PathStep:
         if unknowns is None:
             return None
         rates = unknowns.rates(self.rate)
-        normal, shear = rates[: unknowns.normal.size], rates[unknowns.normal.size : -3]
+        normal, shear = rates[: unknowns.normal.size], rates[unknowns.normal.size : unknowns.count]
         closed = unknowns.normal
         return unknowns if has_turned(status[closed], normal, shear, self.system.friction[closed]) else None
 

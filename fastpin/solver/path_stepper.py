@@ -64,7 +64,7 @@ class PathStepper:
         self._system = system
         self._statistics = statistics
         self._strict = strict
-        self._memory = TableauMemory(system.grid.size)
+        self._memory = TableauMemory(system)
         self._step: PathStep | None = None
         self._begin = 0.0  # fraction of the history's step at which `_step` starts
         self._releases = self._jumps = 0

@@ -51,7 +51,9 @@ def put_at_rest(
     rest_gap = rest_gap - (system.loads - system.drive.columns)[:n] @ load  # prescribed displacements are loads
     configuration.rest, configuration.rest_gap = rest, rest_gap
     held = system.problem.held
-    configuration.motion = np.array([0.0, 0.0, load[ROTATION] if held else configuration.motion[2]])
+    turned = load[ROTATION] if held else configuration.motion[2]
+    configuration.motion = np.zeros_like(configuration.motion)
+    configuration.motion[2] = turned
     free = system.load_displacement(load)
     configuration.gap = np.maximum(rest_gap + free[:n], 0.0)
     configuration.slip = free[n:] + configuration.motion[2]

@@ -41,15 +41,15 @@ class TractionRows:
     ) -> bool:
         """Bring the columns `slots` up to date by the `factors` of some updates. Returns whether it was worthwhile.
 
-        If not, `values` (2n+3, k) stay as they are. `updates` may only grow from call to call.
+        If not, `values` (2n+m, k) stay as they are. `updates` may only grow from call to call.
         """
         if self._system.operator.is_stored:
             return False
         self._follow(tableau, updates.stop)
-        n, loaded = self._system.grid.size, self._loaded
-        parts = [_extent(loaded[:n], 0), _extent(loaded[n:], n), slice(2 * n, 2 * n + 3)]
+        n, rows, loaded = self._system.grid.size, len(values), self._loaded
+        parts = [_extent(loaded[:n], 0), _extent(loaded[n:], n), slice(2 * n, rows)]
         kept = sum(part.stop - part.start for part in parts)
-        if (2 * n + 3 - kept) * (updates.stop - updates.start) < WORTHWHILE:
+        if (rows - kept) * (updates.stop - updates.start) < WORTHWHILE:
             return False
         for part in parts:
             add_product(values[part], tableau.left[part, updates], factors)

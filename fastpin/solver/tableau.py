@@ -25,20 +25,21 @@ class TableauMemory:
 
     Parameters
     ----------
-    nodes : int
+    system : System
+        With n nodes and m motions.
 
     Attributes
     ----------
-    matrix : ndarray, shape (2 nodes + 3, 2 nodes)
-    left : ndarray, shape (2 nodes + 3, updates)
+    matrix : ndarray, shape (2n+m, 2n)
+    left : ndarray, shape (2n+m, updates)
     unknowns : LatestUnknowns
         The linear systems of the latest statuses.
     """
 
-    def __init__(self, nodes: int) -> None:
-        updates = ROOM * nodes + CHUNK
-        self.matrix = np.empty((2 * nodes + 3, 2 * nodes), order="F")  # columns that are never needed take no memory
-        self.left = np.empty((2 * nodes + 3, updates), order="F")
+    def __init__(self, system: System) -> None:
+        rows, columns = len(system.motion) + system.motions, len(system.motion)
+        self.matrix = np.empty((rows, columns), order="F")  # columns that are never needed take no memory
+        self.left = np.empty((rows, ROOM * system.grid.size + CHUNK), order="F")
         self.unknowns = LatestUnknowns()
 
 
@@ -77,7 +78,7 @@ class Columns:
         self._system, self._basis = system, basis
         # Stacked vectors hold the unknowns and, below them, the others. `_order` has the places of (N or h), (T or s)
         # and the motion in them.
-        self._order = np.argsort(np.r_[basis.rows, 2 * n + np.arange(3), basis.others])
+        self._order = np.argsort(np.r_[basis.rows, 2 * n + np.arange(system.motions), basis.others])
         self._position = np.full(2 * n, -1)
         self._position[basis.rows] = np.arange(basis.count)
         self._rows: list[np.ndarray] = []
@@ -98,7 +99,7 @@ class Columns:
         self._tractions = TractionRows(system, basis.rows, contact)
 
     def _rates(self, load_rate: np.ndarray) -> np.ndarray:
-        """Rates (2n+3,) of the dependent variables."""
+        """Rates (2n+m,) of the dependent variables."""
         system, basis = self._system, self._basis
         unknowns = basis.rates(load_rate)
         displaced = system.load_displacement(load_rate) + basis.displacement(unknowns)
@@ -134,9 +135,9 @@ class Columns:
         tableau.fresh[block] = end
 
     def response(self, given: np.ndarray, updates: int) -> np.ndarray:
-        """The product (2n+3,) of the tableau and the vector `given` (2n+3,).
+        """The product (2n+m,) of the tableau and the vector `given` (2n+m,).
 
-        `given` holds the zero-rate variables, then the three forces out of balance. `updates` is the number of all
+        `given` holds the zero-rate variables, then the m forces out of balance. `updates` is the number of all
         updates so far.
         """
         system, basis, n = self._system, self._basis, self._system.grid.size
@@ -147,7 +148,7 @@ class Columns:
         balance = given[2 * n :] - system.equilibrium @ tractions
         unknowns = basis.solve(np.r_[given[basis.rows] - acting[basis.rows], balance])
         acting += basis.displacement(unknowns)
-        values = np.empty((2 * n + 3, 1), order="F")
+        values = np.empty((given.size, 1), order="F")
         self._spread(np.r_[unknowns, acting[basis.others]][:, None], values)
         factors = self._factors(values, given[self.tableau.slot[:updates], None], 0, updates)
         add_product(values, self.tableau.left[:, :updates], factors)
@@ -171,7 +172,7 @@ class Columns:
         """Fill `values` with the columns `slots` before any update."""
         basis, position = self._basis, self._position[slots]
         held, given = np.flatnonzero(position >= 0), np.flatnonzero(position < 0)
-        stacked, count = np.empty((self._order.size, slots.size), order="F"), basis.count + 3
+        stacked, count = np.empty((self._order.size, slots.size), order="F"), basis.size
         if held.size:
             stacked[:count, held], stacked[count:, held] = basis.held_columns(position[held])
         if given.size:
@@ -222,7 +223,7 @@ class Columns:
 def expected_ties(contact: Contact, rates: np.ndarray) -> np.ndarray:
     """The sense of slip (n,) that closed nodes would have at the end of the step, and open nodes when they close.
 
-    `rates` (2n+3,) are the rates while the statuses stay.
+    `rates` (2n+m,) are the rates while the statuses stay.
     """
     n = contact.status.size
     tangential = rates[n : 2 * n]

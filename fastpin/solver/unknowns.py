@@ -1,7 +1,7 @@
 """The linear systems of given statuses, ready to be solved for the unknown tractions and the pin's motion.
 
 N is unknown at closed nodes, and T at sticking nodes. At slipping nodes T = -sigma mu N is eliminated. The equations
-are the gaps at the nodes with an unknown N, the slips at the nodes with an unknown T, and three of equilibrium.
+are the gaps at the nodes with an unknown N, the slips at the nodes with an unknown T, and those of equilibrium.
 """
 
 from __future__ import annotations
@@ -44,6 +44,8 @@ class Unknowns:
         Nodes with an unknown N, and nodes with an unknown T.
     count : int
         Number of unknown tractions.
+    size : int
+        Number of unknowns: the tractions, then the m motions.
     """
 
     def __init__(self, system: System, status: np.ndarray) -> None:
@@ -53,6 +55,7 @@ class Unknowns:
         self.tangential = np.flatnonzero(status == STICK)
         self.rows = np.concatenate([self.normal, n + self.tangential])
         self.count = self.rows.size
+        self.size = self.count + system.motions
         self._coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where it slips
 
     @cached_property
@@ -73,14 +76,14 @@ class Unknowns:
             out[:, part] += operator.entries(rows, self._coupling.size + nodes) * self._coupling[nodes]
 
     def balance_columns(self) -> np.ndarray:
-        """The resultants (3, count) of unit unknown tractions, friction eliminated."""
+        """The resultants (m, count) of unit unknown tractions, friction eliminated."""
         equilibrium, slipping = self._system.equilibrium, np.flatnonzero(self._coupling[self.normal])
         nodes, result = self.normal[slipping], equilibrium[:, self.rows]
         result[:, slipping] += equilibrium[:, self._coupling.size + nodes] * self._coupling[nodes]
         return result
 
     def expand(self, unknowns: np.ndarray) -> np.ndarray:
-        """All tractions, (2n,) or (2n, k), from the unknowns, (count+3,) or (count+3, k)."""
+        """All tractions, (2n,) or (2n, k), from the unknowns, (size,) or (size, k)."""
         tractions = np.zeros((2 * self._coupling.size, *unknowns.shape[1:]), order="F")
         tractions[self.rows] = unknowns[: self.count]
         slipping = np.flatnonzero(self._coupling)
@@ -88,20 +91,20 @@ class Unknowns:
         return tractions
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """Unknown tractions and motion, (count+3,), for given right-hand sides."""
+        """Unknown tractions and motion, (size,), for given right-hand sides."""
         raise NotImplementedError
 
     def rates(self, load_rate: np.ndarray) -> np.ndarray:
-        """Rates (count+3,) of the unknowns while the load changes and the statuses stay."""
+        """Rates (size,) of the unknowns while the load changes and the statuses stay."""
         system = self._system
         return self.solve(np.r_[-system.load_displacement(load_rate)[self.rows], system.load_forces(load_rate)])
 
     def displacement(self, unknowns: np.ndarray) -> np.ndarray:
-        """Gap and slip, (2n,) or (2n, k), that the unknowns, (count+3,) or (count+3, k), cause."""
-        return self._system.operator @ self.expand(unknowns) + self._system.motion @ unknowns[-3:]
+        """Gap and slip, (2n,) or (2n, k), that the unknowns, (size,) or (size, k), cause."""
+        return self._system.operator @ self.expand(unknowns) + self._system.motion @ unknowns[self.count :]
 
     def at_others(self, unknowns: np.ndarray, acting: np.ndarray) -> np.ndarray:
-        """Displacement of the others from the unknowns (count+3, k), added to `acting` (2n-count, k).
+        """Displacement of the others from the unknowns (size, k), added to `acting` (2n-count, k).
 
         `acting` may be overwritten.
         """
@@ -114,15 +117,15 @@ class Unknowns:
 
     @cached_property
     def _tied(self) -> np.ndarray:
-        """Rows of the others for the unknown tractions and the motion, shape (2n-count, count+3)."""
+        """Rows of the others for the unknown tractions and the motion, shape (2n-count, size)."""
         system = self._system
-        result = np.empty((self.others.size, self.count + 3), order="F")
-        self.fill_columns(self.others, result[:, :-3])
-        result[:, -3:] = system.motion[self.others]
+        result = np.empty((self.others.size, self.size), order="F")
+        self.fill_columns(self.others, result[:, : self.count])
+        result[:, self.count :] = system.motion[self.others]
         return result
 
     def unit_responses(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement (2n, k) and resultants (3, k) of unit tractions in the rows `slots` among the others.
+        """Displacement (2n, k) and resultants (m, k) of unit tractions in the rows `slots` among the others.
 
         Where `coupling` (k,) is not zero, the slot is a pressure N, and a shear coupling N comes with it.
         """
@@ -139,14 +142,14 @@ class DenseUnknowns(Unknowns):
 
     def __init__(self, system: System, status: np.ndarray) -> None:
         super().__init__(system, status)
-        matrix = np.empty((self.count + 3, self.count + 3), order="F")
-        self.fill_columns(self.rows, matrix[:-3, :-3])
-        matrix[:-3, -3:] = system.motion[self.rows]
-        matrix[-3:, :-3] = self.balance_columns()
-        matrix[-3:, -3:] = system.motion_rows
+        count, matrix = self.count, np.empty((self.size, self.size), order="F")
+        self.fill_columns(self.rows, matrix[:count, :count])
+        matrix[:count, count:] = system.motion[self.rows]
+        matrix[count:, :count] = self.balance_columns()
+        matrix[count:, count:] = system.motion_rows
         # The unknowns are forces, not tractions: entries are then of order one, and the condition number has a meaning.
         self._width = float(system.weights.mean())
-        matrix[:, :-3] /= self._width
+        matrix[:, :count] /= self._width
         norm = float(lapack.dlange("1", matrix))
         self._lu, self._pivots, info = lapack.dgetrf(matrix, overwrite_a=1)
         self.singular = info != 0 or not np.isfinite(norm)
@@ -155,20 +158,20 @@ class DenseUnknowns(Unknowns):
             self.singular = not rcond > SINGULAR
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """Unknown tractions and motion, (count+3,) or (count+3, k), for given right-hand sides."""
+        """Unknown tractions and motion, (size,) or (size, k), for given right-hand sides."""
         unknowns = lapack.dgetrs(self._lu, self._pivots, right)[0]
-        unknowns[:-3] /= self._width
+        unknowns[: self.count] /= self._width
         return unknowns
 
     def held_columns(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Unknowns (count+3, k), and displacement of the others, for a unit gap or slip at each rows[positions]."""
-        right = np.zeros((self.count + 3, positions.size), order="F")
+        """Unknowns (size, k), and displacement of the others, for a unit gap or slip at each rows[positions]."""
+        right = np.zeros((self.size, positions.size), order="F")
         right[positions, np.arange(positions.size)] = 1.0
         unknowns = self.solve(right)
         return unknowns, self.at_others(unknowns, np.zeros((self.others.size, positions.size)))
 
     def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Unknowns (count+3, k), and displacement of the others, for unit tractions (see :meth:`unit_responses`)."""
+        """Unknowns (size, k), and displacement of the others, for unit tractions (see :meth:`unit_responses`)."""
         acting, balance = self.unit_responses(slots, coupling)
         unknowns = self.solve(-np.concatenate([acting[self.rows], balance]))
         return unknowns, self.at_others(unknowns, acting[self.others])
@@ -177,8 +180,8 @@ class DenseUnknowns(Unknowns):
 class StickingRun(Unknowns):
     """The unknowns of neighbouring, equally spaced nodes that all stick, by a fast inverse.
 
-    Their matrix is block Toeplitz. Its inverse takes O(n^2) operations. The three motions and the three conditions of
-    equilibrium are added by their Schur complement. ``singular`` if the nodes can't hold the pin, or if the inverse
+    Their matrix is block Toeplitz. Its inverse takes O(n^2) operations. The motions and the conditions of equilibrium
+    are added by their Schur complement. ``singular`` if the nodes can't hold the pin, or if the inverse
     has lost its digits.
     """
 
@@ -241,16 +244,17 @@ class StickingRun(Unknowns):
         return motion[self.others] - self._responses.T @ motion[self.rows]
 
     def solve(self, right: np.ndarray) -> np.ndarray:
-        """Unknown tractions and motion, (count+3,), for given right-hand sides."""
-        return self._moving(self._core @ right[:-3], right[-3:])
+        """Unknown tractions and motion, (size,), for given right-hand sides."""
+        return self._moving(self._core @ right[: self.count], right[self.count :])
 
     def held_columns(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Unknowns (count+3, k), and displacement of the others, for a unit gap or slip at each rows[positions]."""
-        unknowns = self._moving(self._core[positions].T, np.zeros((3, positions.size)))  # the core is symmetric
-        return unknowns, self._responses[positions].T + self._tied_motion @ unknowns[-3:]
+        """Unknowns (size, k), and displacement of the others, for a unit gap or slip at each rows[positions]."""
+        no_forces = np.zeros((self._system.motions, positions.size))
+        unknowns = self._moving(self._core[positions].T, no_forces)  # the core is symmetric
+        return unknowns, self._responses[positions].T + self._tied_motion @ unknowns[self.count :]
 
     def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Unknowns (count+3, k), and displacement of the others, for unit tractions (see :meth:`unit_responses`)."""
+        """Unknowns (size, k), and displacement of the others, for unit tractions (see :meth:`unit_responses`)."""
         acting, balance = self.unit_responses(slots, coupling)
         places, pairs = np.searchsorted(self.others, slots), np.flatnonzero(coupling)
         shears = np.searchsorted(self.others, self._coupling.size + slots[pairs])
@@ -261,22 +265,22 @@ class StickingRun(Unknowns):
             return unknowns, self.at_others(unknowns, acting[self.others])
         others = self._complement[:, places]
         others[:, pairs] += coupling[pairs] * self._complement[:, shears]
-        return unknowns, others + self._tied_motion @ unknowns[-3:]
+        return unknowns, others + self._tied_motion @ unknowns[self.count :]
 
     def _moving(self, free: np.ndarray, forces: np.ndarray) -> np.ndarray:
-        """Tractions and motion (count+3, ...) for the resultants `forces`. `free` are the tractions without motion."""
+        """Tractions and motion (size, ...) for the resultants `forces`. `free` are the tractions without motion."""
         motion = self._small @ (forces - self._equilibrium @ free)
-        result = np.empty((self.count + 3, *free.shape[1:]), order="F")
-        result[:-3] = free
-        result[:-3] -= self._moved @ motion
-        result[-3:] = motion
+        result = np.empty((self.size, *free.shape[1:]), order="F")
+        result[: self.count] = free
+        result[: self.count] -= self._moved @ motion
+        result[self.count :] = motion
         return result
 
     def _probe(self) -> float:
         """Largest residual of one solve, from the matrices."""
-        right, system = np.cos(np.arange(self.count + 3.0)), self._system
+        right, system = np.cos(np.arange(float(self.size))), self._system
         unknowns = self.solve(right)
-        balance = system.equilibrium @ self.expand(unknowns) + system.motion_rows @ unknowns[-3:]
+        balance = system.equilibrium @ self.expand(unknowns) + system.motion_rows @ unknowns[self.count :]
         return float(np.abs(np.r_[self.displacement(unknowns)[self.rows], balance] - right).max())
 
 

@@ -18,7 +18,7 @@ from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import CHUNK, WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
+from fastpin.model.loads import LOADS, Q
 from fastpin.model.problem import Problem
 from fastpin.solver import path
 from fastpin.solver import unknowns as solver_unknowns
@@ -172,7 +172,8 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
     rate, typical = loads(P=1.0, Q=0.3), float(np.median(np.diagonal(system.operator)))
     for node, new in ((20, 1), (20, -1), (13, 0), (30, -1), (30, 1), (12, OPEN)):
         contact = at_rest_on(system, zones())
-        columns = Columns(system, LatestUnknowns().solvable(system, contact.status), contact, rate, TableauMemory(41))
+        basis, memory = LatestUnknowns().solvable(system, contact.status), TableauMemory(system)
+        columns = Columns(system, basis, contact, rate, memory)
         if (contact.tie[node] == new) != tied and new in (1, -1):
             continue
         matrix, tableau = whole(columns), columns.tableau
@@ -180,7 +181,7 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
         assert size > 1e-3
         assert contact.status[node] == new
         other = at_rest_on(system, contact.status)
-        expected = Columns(system, LatestUnknowns().solvable(system, other.status), other, rate, TableauMemory(41))
+        expected = Columns(system, LatestUnknowns().solvable(system, other.status), other, rate, TableauMemory(system))
         found = untied(dense(matrix, tableau, updates), contact, 0.4)
         wanted = untied(whole(expected), other, 0.4)
         assert np.abs(found - wanted).max() < 1e-9 * np.abs(wanted).max()
@@ -201,7 +202,7 @@ def test_columns_by_chunks_are_those_one_by_one(system, sets, monkeypatch):
         status[status != OPEN] = STICK
     contact = at_rest_on(system, status)
     columns = Columns(
-        system, LatestUnknowns().solvable(system, status), contact, loads(P=1.0, Q=0.3), TableauMemory(41)
+        system, LatestUnknowns().solvable(system, status), contact, loads(P=1.0, Q=0.3), TableauMemory(system)
     )
     matrix, tableau, updates = whole(columns), columns.tableau, 0
     change, fetch = compiled_kernel("_change_status"), compiled_kernel("_column")
@@ -401,6 +402,34 @@ def test_friction_that_varies_along_the_rim(system, monkeypatch, kind, road):
         assert not now.shear[~known].any()
     assert events > 40
     assert np.count_nonzero(now.closed & ~known) == np.count_nonzero(now.closed[~known])
+
+
+@pytest.mark.parametrize("road", ["held", "columns", "sticking"])
+def test_the_arrays_have_the_number_of_motions(system, monkeypatch, road):
+    """A fourth motion, which follows the load Q along x, is a displacement of the load."""
+    if road != "held":
+        monkeypatch.setattr(path, "FEW_NODES", 0)
+        monkeypatch.setattr(solver_unknowns, "LEAST_NEIGHBOURS", 2 if road == "sticking" else 1000)
+    part, x = 0.1, system.motion[:, 0]
+    moved, rows, forces = system.loads.copy(), np.zeros((4, 4)), np.zeros((4, len(LOADS)))
+    moved[:, Q] += part * x
+    rows[:3, :3], rows[3, 3], forces[:3], forces[3, Q] = system.motion_rows, 1.0, system.forces, part
+    fourth = replace(
+        system, motion=np.column_stack([system.motion, x]), motion_rows=rows, forces=forces,
+        equilibrium=np.vstack([system.equilibrium, np.zeros(82)]),
+    )  # fmt: skip
+    ends = []
+    for alike in (replace(system, loads=moved), fourth):
+        now, _ = first_contact(alike, unloaded_configuration(alike), loads(), loads(P=1.0))
+        for target in (loads(P=1.0), loads(P=1.0, Q=0.2), loads(P=1.0, Q=-0.2)):
+            now = PathStep(alike, now, target).follow(1.0)
+        assert worst_residual(alike, now) < 1e-12
+        ends.append(now)
+    three, four = ends
+    assert four.motion == pytest.approx([*three.motion, -0.2 * part], abs=1e-12)
+    assert np.array_equal(four.status, three.status)
+    for name in ("pressure", "shear", "gap", "slip"):
+        assert getattr(four, name) == pytest.approx(getattr(three, name), abs=1e-12)
 
 
 def test_little_friction_tends_to_none(system):

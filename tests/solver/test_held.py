@@ -76,13 +76,14 @@ CONTACTS = [zones((15, 45)), zones((10, 20), (30, 50)), zones((28, 32))]
 @pytest.mark.parametrize("grid", GRIDS)
 @pytest.mark.parametrize("case", CASES)
 def test_a_held_contact_begins_with_the_tableau_of_a_factorisation(titanium_in_aluminium, case, grid):
-    system, memory = system_of(titanium_in_aluminium, case, grid), TableauMemory(61)
+    system = system_of(titanium_in_aluminium, case, grid)
+    memory = TableauMemory(system)
     for closed in CONTACTS:
         table = held_table(system, closed)
         assert table is not None
         contact, other = contact_of(closed), contact_of(closed)
         columns = HeldColumns(system, table, contact, rate(), memory)
-        expected = Columns(system, DenseUnknowns(system, other.status), other, rate(), TableauMemory(61))
+        expected = Columns(system, DenseUnknowns(system, other.status), other, rate(), TableauMemory(system))
         assert np.array_equal(contact.tie, other.tie)
         size = np.abs(expected.tableau.rates).max()
         assert np.abs(columns.tableau.rates - expected.tableau.rates).max() < 1e-11 * size
@@ -104,7 +105,7 @@ def test_columns_and_updates_of_a_held_contact_are_those_of_the_naive_way(titani
     system = system_of(titanium_in_aluminium)
     closed = zones((15, 45))
     contact = contact_of(closed)
-    columns = HeldColumns(system, held_table(system, closed), contact, rate(), TableauMemory(61))
+    columns = HeldColumns(system, held_table(system, closed), contact, rate(), TableauMemory(system))
     tableau = columns.tableau
     rng = np.random.default_rng(6)
     updates, units = 9, np.eye(125)
