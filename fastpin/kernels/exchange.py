@@ -54,8 +54,6 @@ UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, SETTLED, COUNTS 
 # Slots of `sums`.
 TIME, DISSIPATION, WORK, SUMS = 0, 1, 2, 3
 
-ROTATION = 2  # place of the pin's rotation among the motions; its translation stands before it
-
 RATE_TOLERANCE = 1e-11  # rates below this part of the largest rate are zero
 VALUE_TOLERANCE = 1e-13  # likewise for gaps and the reserve mu N - |T|
 PRESSURE_TOLERANCE = 1e-10  # likewise for pressures; wider, so that mirrored nodes open together
@@ -371,7 +369,8 @@ def _reaction_work(contact, rates, friction, load, axis, step):
 def _work(contact, rates, friction, load, time, step):
     """Work of the loads over `step`, exact for the piecewise linear path. Call it before `_advance`.
 
-    The force acts on the translation of the pin. The moment on its rotation is that of the shear on its rim.
+    The force acts on the first two motions, the translation of the pin. The moment of the shear on its rim acts on the
+    third one, its rotation.
     """
     status, n = contact.status, contact.status.size
     middle = time + 0.5 * step
@@ -391,7 +390,7 @@ def _work(contact, rates, friction, load, time, step):
             work += _reaction_work(contact, rates, friction, load, k, step)
         else:
             work += (load.force[k] + middle * load.force_rate[k]) * rates[2 * n + k]
-    work += (moment + 0.5 * step * moment_rate) * rates[2 * n + ROTATION]
+    work += (moment + 0.5 * step * moment_rate) * rates[2 * n + 2]
     return work * step
 
 
