@@ -13,7 +13,8 @@ matrix, nor symmetric. The place of F in the load vector stays 0, for F is no lo
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -33,48 +34,33 @@ SIGNS = (1.0, -1.0)
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """What moves the pin along x and y: a force, or along the driven axes a displacement. All is dimensionless.
-
-    Under forces no axis is driven. Each answer is then about the forces alone.
+    """What moves the pin along x and y: forces, unless a subclass prescribes displacements. All is dimensionless.
 
     Attributes
     ----------
-    axes : ndarray of bool, shape (2,)
-        Whether each axis is driven: its displacement is prescribed.
-    compliance : float
-        The compliance g.
-    coupling : ndarray, shape (2, 2n)
-        Maps (N, T) to k J, along x and y. It is 0 for an axis that is not driven.
     translation : ndarray, shape (2n, 2)
         Maps the displacement c of the pin to (h, s).
-    offsets : ndarray, shape (2n, 2)
-        Maps the reactions to (h, s) where c is 0: the w terms. It is 0 for an axis that is not driven.
     columns : ndarray, shape (2n, loads)
         Maps the loads to (h, s), without the prescribed displacements.
+    axes : ndarray of bool, shape (2,)
+        Whether each axis is driven: its displacement is prescribed.
+    has_displacements : bool
+        Whether an axis is driven. Then the drive puts the pin in place, in contact or not.
     """
 
-    axes: np.ndarray
-    compliance: float
-    coupling: np.ndarray
     translation: np.ndarray
-    offsets: np.ndarray
     columns: np.ndarray
-
-    @property
-    def has_displacements(self) -> bool:
-        """Whether the displacement along an axis is prescribed. Then it puts the pin in place, in contact or not."""
-        return bool(self.axes.any())
+    axes: np.ndarray = field(default_factory=lambda: np.zeros(2, dtype=bool))
+    has_displacements: ClassVar[bool] = False
 
     @property
     def factors(self) -> tuple[np.ndarray, np.ndarray]:
-        """Factors (2n, r) and (r, 2n) of the matrix that the operator gains. Under forces its rank r is 0."""
-        rank = 2 if self.has_displacements else 0
-        return self.translation[:, :rank], self.coupling[:rank]
+        """Factors (2n, r) and (r, 2n) of the matrix that the operator gains. Its rank r is 0 under forces."""
+        return self.translation[:, :0], self.translation[:, :0].T
 
     def part(self, rows: np.ndarray) -> Drive:
         """The drive with some `rows` (k,) only, indices of tractions."""
-        nodal = {name: getattr(self, name)[rows] for name in ("translation", "offsets", "columns")}
-        return replace(self, coupling=self.coupling[:, rows], **nodal)
+        return replace(self, translation=self.translation[rows], columns=self.columns[rows])
 
     def prescribed(self, load: np.ndarray) -> np.ndarray:
         """The prescribed displacements of a load (loads,), shape (2,); 0 along an axis that is not driven."""
@@ -87,39 +73,96 @@ class Drive:
     def position(self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest: np.ndarray) -> np.ndarray:
         """Displacement c of the pin's rim relative to the hole, from the concentric position, shape (2,).
 
-        `rest` (2,) is the position from which the motion along the other axis counts. `tractions` has the shape (2n,).
+        `rest` (2,) is the position from which the motion counts along an axis that is not driven. `tractions` has the
+        shape (2n,).
         """
-        driven = load[list(DISPLACEMENTS)] - self.compliance * motion[:2] + self.coupling @ tractions
-        return np.where(self.axes, driven, rest + motion[:2])
+        position: np.ndarray = rest + motion[:2]
+        return position
 
     def with_reactions(self, motion: np.ndarray, load: np.ndarray) -> np.ndarray:
         """The load vector (loads,) with the reactions in the places of the forces."""
-        complete = load.copy()
-        complete[list(FORCES)] = self.force(motion, load) * SIGNS
-        return complete
+        return load
 
     def energy(self, weights: np.ndarray, tractions: np.ndarray, motion: np.ndarray) -> float:
         """The part of the elastic energy that the operator lacks: w terms of the reactions, without the coupling.
 
         `tractions` and their `weights` have the shape (2n,).
         """
+        return 0.0
+
+    def reaction_terms(self, weights: np.ndarray, load_rate: np.ndarray) -> np.ndarray:
+        """The ``reactions`` of :class:`fastpin.kernels.arrays.LoadTerms`, shape (2, 2n+3), from the weights (2n,)."""
+        return np.zeros((2, weights.size + 3))
+
+    def work(
+        self, weights: np.ndarray, freed: np.ndarray, motion: np.ndarray, change: np.ndarray, load_change: np.ndarray
+    ) -> float:
+        """Work of the reactions over a change of the tractions by `freed` (2n,), with their `weights` (2n,).
+
+        `motion` (m,) is the mean of the unknown motion, `change` (m,) its change, `load_change` (loads,) the change of
+        the load.
+        """
+        return 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class DisplacementDrive(Drive):
+    """A drive that prescribes the displacement along one axis or both.
+
+    Attributes
+    ----------
+    compliance : float
+        The compliance g.
+    coupling : ndarray, shape (2, 2n)
+        Maps (N, T) to k J, along x and y. It is 0 for an axis that is not driven.
+    offsets : ndarray, shape (2n, 2)
+        Maps the reactions to (h, s) where c is 0: the w terms. It is 0 for an axis that is not driven.
+    """
+
+    compliance: float = field(kw_only=True)
+    coupling: np.ndarray = field(kw_only=True)
+    offsets: np.ndarray = field(kw_only=True)
+    has_displacements: ClassVar[bool] = True
+
+    @property
+    def factors(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.translation, self.coupling
+
+    def part(self, rows: np.ndarray) -> Drive:
+        nodal = {name: getattr(self, name)[rows] for name in ("translation", "columns", "offsets")}
+        return replace(self, coupling=self.coupling[:, rows], **nodal)
+
+    def position(self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest: np.ndarray) -> np.ndarray:
+        driven = load[list(DISPLACEMENTS)] - self.compliance * motion[:2] + self.coupling @ tractions
+        return np.where(self.axes, driven, rest + motion[:2])
+
+    def with_reactions(self, motion: np.ndarray, load: np.ndarray) -> np.ndarray:
+        complete = load.copy()
+        complete[list(FORCES)] = self.force(motion, load) * SIGNS
+        return complete
+
+    def energy(self, weights: np.ndarray, tractions: np.ndarray, motion: np.ndarray) -> float:
         weighted, reactions = weights * tractions, np.where(self.axes, motion[:2], 0.0)
         coupled = (weighted @ self.translation) @ (self.coupling @ tractions)
         return float(weighted @ (self.offsets @ reactions) - 0.5 * coupled)
 
-    def work_columns(self, weights: np.ndarray) -> np.ndarray:
+    def reaction_terms(self, weights: np.ndarray, load_rate: np.ndarray) -> np.ndarray:
+        terms = super().reaction_terms(weights, load_rate)
+        terms[:, :-3] = self._work_columns(weights)
+        terms[:, -3], terms[:, -2], terms[:, -1] = load_rate[list(DISPLACEMENTS)], self.compliance, self.axes
+        return terms
+
+    def work(
+        self, weights: np.ndarray, freed: np.ndarray, motion: np.ndarray, change: np.ndarray, load_change: np.ndarray
+    ) -> float:
+        columns = self._work_columns(weights) @ freed
+        moved = load_change[list(DISPLACEMENTS)] - self.compliance * change[:2] + columns
+        return float(np.where(self.axes, motion[:2] * moved, 0.0).sum())
+
+    def _work_columns(self, weights: np.ndarray) -> np.ndarray:
         """Work of the reactions per reaction and traction rate, shape (2, 2n), from the weights (2n,) of the nodes."""
         columns: np.ndarray = (weights[:, None] * self.offsets).T + self.coupling
         return columns
-
-    def work(self, columns: np.ndarray, motion: np.ndarray, change: np.ndarray, load_change: np.ndarray) -> float:
-        """Work of the reactions over a change; 0 under forces, whose work needs no reactions.
-
-        `columns` (2,) is the product of :meth:`work_columns` and the change of the tractions. `motion` (m,) is the mean
-        of the unknown motion, `change` (m,) its change, `load_change` (loads,) the change of the load.
-        """
-        moved = load_change[list(DISPLACEMENTS)] - self.compliance * change[:2] + columns
-        return float(np.where(self.axes, motion[:2] * moved, 0.0).sum())
 
 
 def displacement_coupling(problem: Problem, grid: Grid) -> np.ndarray:
@@ -146,8 +189,7 @@ def make_drive(
     """
     axes = np.array(problem.driven)
     if not axes.any():
-        nothing = np.zeros((2, 2 * grid.size))
-        return Drive(axes, 0.0, nothing, motion[:, :2], nothing.T, loads)
+        return Drive(motion[:, :2], loads)
     compliance = problem.drive_compliances[0]
     coupling = displacement_coupling(problem, grid) * axes[:, None]
     translation = motion[:, :2].copy()
@@ -160,4 +202,4 @@ def make_drive(
         motion[:, axis] = offsets[:, axis] - compliance * translation[:, axis]
         rows[axis, axis] = -1.0
         forces[axis] *= 0.0
-    return Drive(axes, compliance, coupling, translation, offsets, columns)
+    return DisplacementDrive(translation, columns, axes, compliance=compliance, coupling=coupling, offsets=offsets)

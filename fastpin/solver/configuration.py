@@ -181,8 +181,8 @@ def work_between(system: System, before: Configuration, after: Configuration) ->
     column = system.held_displacement(load)
     internal = float((system.weights * column[:n]) @ change[:n] + (system.weights * column[n:]) @ change[n:])
     work = float(load[Q] * moved[0] - load[P] * moved[1] + moment * moved[2]) + internal
-    columns = system.drive.work_columns(np.r_[system.weights, system.weights]) @ change
-    return work + system.drive.work(columns, 0.5 * (before.motion + after.motion), moved, after.load - before.load)
+    weights, mean = np.r_[system.weights, system.weights], 0.5 * (before.motion + after.motion)
+    return work + system.drive.work(weights, change, mean, moved, after.load - before.load)
 
 
 def dissipation_between(system: System, before: Configuration, after: Configuration) -> float:

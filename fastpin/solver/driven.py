@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fastpin.elasticity.drive import DISPLACEMENTS, FORCES, SIGNS
+from fastpin.elasticity.drive import FORCES, SIGNS
 from fastpin.elasticity.system import System
 from fastpin.kernels.arrays import LoadTerms
 from fastpin.model.loads import UX, UY, M, P, Q
@@ -32,16 +32,13 @@ REFINEMENTS = 4
 def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:
     """The terms of the work of the loads along a straight piece, from its first load and its rate, shape (loads,)."""
     weights = np.concatenate([system.weights, system.weights])
-    drive, reactions = system.drive, np.zeros((2, weights.size + 3))
-    reactions[:, :-3] = drive.work_columns(weights)
-    reactions[:, -3], reactions[:, -2], reactions[:, -1] = rate[list(DISPLACEMENTS)], drive.compliance, drive.axes
     return LoadTerms(
         column=weights * (system.held_displacement(before)),
         column_rate=weights * (system.held_displacement(rate)),
         force=np.array([before[Q], -before[P]]),
         force_rate=np.array([rate[Q], -rate[P]]),
         weights=system.weights,
-        reactions=reactions,
+        reactions=system.drive.reaction_terms(weights, rate),
     )
 
 

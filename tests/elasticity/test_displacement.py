@@ -156,8 +156,8 @@ def test_forces_need_no_reactions(titanium_in_aluminium):
     drive, tractions, motion, load = system.drive, rng.normal(size=82), rng.normal(size=3), rng.normal(size=len(LOADS))
     assert [factor.size for factor in drive.factors] == [0, 0]
     assert drive.energy(np.ones(82), tractions, motion) == 0.0
-    assert not drive.work_columns(np.ones(82)).any()
-    assert drive.work(np.zeros(2), motion, motion, load) == 0.0
+    assert not drive.reaction_terms(np.ones(82), load).any()
+    assert drive.work(np.ones(82), tractions, motion, motion, load) == 0.0
     assert drive.force(motion, load).tolist() == [load[Q], -load[P]]
     assert drive.with_reactions(motion, load).tolist() == load.tolist()
     assert drive.prescribed(load).tolist() == [0.0, 0.0]
