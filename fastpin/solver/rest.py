@@ -28,7 +28,7 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
     new.work -= elastic_energy(system, last)  # the elastic energy that is left goes back to the loads
     new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
     new.load = load.copy()
-    translation, given = system.drive.translation[:n], system.drive.prescribed(load)  # it stays as it is
+    translation, given = system.drive.translation[:n], system.drive.prescribed(load)
     position = np.where(system.drive.axes, 0.0, new.rest + new.motion[:2])
     width = np.maximum(hole_gap(system, load, system.grid.theta)[0] + translation @ given, 0.0)
     approach = -translation @ position

@@ -11,12 +11,12 @@ import pytest
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, P, Q
+from fastpin.model.loads import LOADS, M, P, Q
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import first_contact, path
 from fastpin.solver.assembly import unloaded_configuration
-from fastpin.solver.errors import ArcError
+from fastpin.solver.errors import ArcError, NoEquilibriumError
 from fastpin.solver.solving import solve
 
 BOTTOM = -0.5 * np.pi
@@ -195,3 +195,21 @@ def test_a_neat_fit_begins_where_the_force_points(titanium_in_aluminium, load):
     pushed = np.argmax(after[Q] * np.cos(system.grid.theta) - after[P] * np.sin(system.grid.theta))
     assert begins == 0.0
     assert set(np.flatnonzero(resting.closed)) == {int(node) % 80 for node in pushed + np.arange(-2, 3)}
+
+
+@pytest.mark.parametrize(("slippery", "limit"), [(-1.0, "0.0995"), (1.0, None)])
+def test_the_friction_where_the_pin_touches_limits_a_moment(titanium_in_aluminium, slippery, limit):
+    """A moment lets the pin climb to one side of the hole. There friction must carry the moment."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.2, 0.5)
+    system = System.build(problem, Grid.circle(121), 1.0)
+    side = np.cos(system.grid.theta) * slippery
+    system = replace(system, friction=np.where(side > 0.0, 0.1, 0.5))
+    nothing = unloaded_configuration(system)
+    after = np.zeros(len(LOADS))
+    after[[P, M]] = 1.0, 0.3
+    if limit is not None:
+        with pytest.raises(NoEquilibriumError, match=rf"more than friction can carry \({limit}\)"):
+            first_contact.first_contact(system, nothing, 0.0 * after, after)
+        return
+    now, _ = first_contact.first_contact(system, nothing, 0.0 * after, after)
+    assert np.cos(system.grid.theta[now.closed]).max() < 0.0
