@@ -92,6 +92,49 @@ class Configuration:
         return self.status != OPEN
 
 
+def embedded(
+    system: System,
+    part: Configuration,
+    nodes: np.ndarray,
+    rest_gap: np.ndarray,
+    rest_slip: np.ndarray,
+    slip_tally: SlipTally,
+) -> tuple[Configuration, np.ndarray]:
+    """Put the contact of some nodes on all nodes of a system. The other nodes are open.
+
+    Parameters
+    ----------
+    system : System
+        With n nodes.
+    part : Configuration
+        The contact of k nodes.
+    nodes : ndarray of int, shape (k,)
+        These nodes, in their order round the hole.
+    rest_gap, rest_slip : ndarray, shape (n,)
+        Gap and slip at rest of the other nodes.
+    slip_tally : SlipTally
+        The tally of the other nodes.
+
+    Returns
+    -------
+    (Configuration, ndarray)
+        The contact of all nodes; and their gap and slip from the matrices, shape (2n,).
+    """
+    n = system.grid.size
+    zeros = np.zeros(n)
+    fields: dict[str, Any] = {"pressure": zeros, "shear": zeros, "rest_gap": rest_gap, "rest_slip": rest_slip}
+    fields["status"] = np.full(n, OPEN, dtype=np.int8)
+    for name, values in fields.items():
+        fields[name] = values.copy()
+        fields[name][nodes] = getattr(part, name)
+    tractions = np.r_[fields["pressure"], fields["shear"]]
+    true = system.displacement(tractions, part.motion, part.load, fields["rest_gap"])
+    fields["gap"], fields["slip"] = np.maximum(true[:n], 0.0), true[n:].copy()
+    fields["gap"][nodes], fields["slip"][nodes] = part.gap, part.slip
+    tally = slip_tally.with_part(nodes, part.slip_tally)
+    return replace(part, **fields, slip_tally=tally, marks=part.marks.at(nodes)), true
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """The outcome of one solve: tractions, gap and slip (n,) and motion (m,), or the rates of all these."""

@@ -7,15 +7,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.kernels.status import OPEN
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid
-from fastpin.solver.configuration import NODAL, Configuration
+from fastpin.solver.configuration import Configuration, embedded
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
@@ -105,38 +103,14 @@ def carried(old: System, new: System, restart: Restart) -> Restart:
 
     Remembered configurations are left out.
     """
-    return replace(
-        restart, configuration=_on_wider_grid(old, new, restart.configuration), repeats=Repeats(), marks={},
-        slip_tally=NOT_COUNTED,
-    )  # fmt: skip
-
-
-def _on_wider_grid(old: System, new: System, now: Configuration) -> Configuration:
-    """The configuration `now` of the system `old` on the wider grid of `new`, with open nodes outside."""
-    n, total = old.grid.size, new.grid.size
+    now, n, total = restart.configuration, old.grid.size, new.grid.size
     nodes = int(np.argmin(np.abs(new.grid.theta - old.grid.theta[0]))) + np.arange(n)
     fresh = np.setdiff1d(np.arange(total), nodes)
-
-    def widened(values: np.ndarray, outside: np.ndarray | float) -> np.ndarray:
-        result = np.empty(total, dtype=values.dtype)
-        result[nodes], result[fresh] = values, outside
-        return result
-
-    traction = np.r_[widened(now.pressure, 0.0), widened(now.shear, 0.0)]
-    rest_gap = rest_gap_at(old, now, new.grid.theta[fresh])
-    true = new.displacement(traction, now.motion, now.load, widened(now.rest_gap, rest_gap))
-    outside: dict[str, Any] = {
-        "pressure": 0.0,
-        "shear": 0.0,
-        "gap": np.maximum(true[fresh], 0.0),
-        "slip": true[total + fresh],
-        "status": OPEN,
-        "rest_gap": rest_gap,
-        "rest_slip": _rest_slip_at(old, now, new.loads[total + fresh]),
-    }
-    nodal: dict[str, Any] = {name: widened(getattr(now, name), outside[name]) for name in NODAL}
-    tally = SlipTally.empty(total).with_part(nodes, now.slip_tally)
-    return replace(now, slip_tally=tally, marks=now.marks.at(nodes), **nodal)
+    rest_gap, rest_slip = np.zeros((2, total))
+    rest_gap[fresh] = rest_gap_at(old, now, new.grid.theta[fresh])
+    rest_slip[fresh] = _rest_slip_at(old, now, new.loads[total + fresh])
+    wider, _ = embedded(new, now, nodes, rest_gap, rest_slip, SlipTally.empty(total))
+    return replace(restart, configuration=wider, repeats=Repeats(), marks={}, slip_tally=NOT_COUNTED)
 
 
 def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.ndarray:

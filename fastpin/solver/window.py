@@ -7,14 +7,10 @@ interpolated.
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
-
 import numpy as np
 
 from fastpin.elasticity.large import LargeSystem
-from fastpin.kernels.status import OPEN
-from fastpin.solver.configuration import Configuration
+from fastpin.solver.configuration import Configuration, embedded
 from fastpin.solver.errors import ArcError, ResolutionError
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.rest import release
@@ -74,38 +70,15 @@ class Window:
         SecondPlaceError
             If the pin penetrates the hole outside the window.
         """
-        n = self._large.grid.size
-        fields: dict[str, Any] = {name: np.zeros(n) for name in ("pressure", "shear")}
-        fields["status"] = np.full(n, OPEN, dtype=np.int8)
-        tally = before.slip_tally.with_part(self.nodes, inside.slip_tally)
+        whole, true = embedded(self._large, inside, self.nodes, before.rest_gap, before.rest_slip, before.slip_tally)
         if not inside.closed.any():  # the pin was released: all nodes count from its new position
-            last = before.copy()
-            last.pressure[:], last.shear[:], last.status[:] = 0.0, 0.0, OPEN
-            last = replace(last, rest=inside.rest, motion=inside.motion, origin=inside.origin)
-            last = replace(last, dissipation=inside.dissipation, work=inside.work, slip_tally=tally)
-            released = release(self._large, last, inside.load)
-            tractions = np.zeros(2 * n)
-            self._check_outside(self._large.displacement(tractions, released.motion, released.load, released.rest_gap))
-            return released
-        fields |= {name: getattr(before, name).copy() for name in ("rest_gap", "rest_slip")}
-        for name, values in fields.items():
-            values[self.nodes] = getattr(inside, name)
-        tractions = np.r_[fields["pressure"], fields["shear"]]
-        true = self._large.displacement(tractions, inside.motion, inside.load, fields["rest_gap"])
-        gap, slip = np.maximum(true[:n], 0.0), true[n:].copy()
-        gap[self.nodes], slip[self.nodes] = inside.gap, inside.slip
-        self._check_outside(true)
-        return replace(inside, **fields, gap=gap, slip=slip, slip_tally=tally)
-
-    def _check_outside(self, true: np.ndarray) -> None:
-        """Raise :class:`SecondPlaceError` if the pin penetrates the hole outside the window.
-
-        `true` (2n,) is the gap and slip of all nodes from the matrices.
-        """
+            whole = release(self._large, whole, inside.load)
+            true = self._large.displacement(np.zeros_like(true), whole.motion, whole.load, whole.rest_gap)
         gap = true[: self._large.grid.size].copy()
         gap[self.nodes] = 0.0
         if gap.min() < -PENETRATION * float(np.abs(true).max()):
             raise SecondPlaceError(gap < 0.0)
+        return whole
 
 
 class WindowStepper:
