@@ -19,10 +19,10 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.solver.driven import pushes
 from fastpin.solver.errors import ArcError, SolveError
 from fastpin.solver.rest import climb_angle
 from fastpin.solver.run import Run, RunProgress
+from fastpin.solver.step import pushes
 from fastpin.solver.survey import survey
 
 log = logging.getLogger(__name__)

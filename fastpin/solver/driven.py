@@ -1,4 +1,4 @@
-"""The pin whose displacement is prescribed: its first contact, its reactions, and estimates of force and direction.
+"""The pin whose displacement is prescribed: where it can float, and where it comes to rest on the hole.
 
 Along a driven axis the pin is where the load puts it, in contact or not. Along the other axis a force pushes it.
 :mod:`fastpin.elasticity.drive` has the equations.
@@ -13,11 +13,8 @@ import numpy as np
 
 from fastpin.elasticity.drive import FORCES, SIGNS
 from fastpin.elasticity.system import System
-from fastpin.kernels.arrays import LoadTerms
-from fastpin.model.loads import UX, UY, M, P, Q
-from fastpin.model.problem import Problem
+from fastpin.model.loads import M
 from fastpin.runtime.extensions import optimize
-from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.rest import hole_gap
 from fastpin.solver.step import is_pushed
@@ -27,24 +24,6 @@ FINE = 1440
 
 REFINEMENTS = 4
 """Newton's steps for the place of the narrowest gap."""
-
-
-def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:
-    """The terms of the work of the loads along a straight piece, from its first load and its rate, shape (loads,)."""
-    weights = np.concatenate([system.weights, system.weights])
-    return LoadTerms(
-        column=weights * (system.held_displacement(before)),
-        column_rate=weights * (system.held_displacement(rate)),
-        force=np.array([before[Q], -before[P]]),
-        force_rate=np.array([rate[Q], -rate[P]]),
-        weights=system.weights,
-        reactions=system.drive.reaction_terms(weights, rate),
-    )
-
-
-def force_on_pin(system: System, configuration: Configuration) -> float:
-    """Size of the force on the pin, reactions included (dimensionless)."""
-    return float(np.hypot(*system.drive.force(configuration.motion, configuration.load)))
 
 
 def can_float(system: System, load: np.ndarray) -> bool:
@@ -184,30 +163,3 @@ def _narrowest(system: System, load: np.ndarray, position: np.ndarray) -> tuple[
             break
         angle -= float(np.clip(slope / curvature, -2.0 * math.pi / FINE, 2.0 * math.pi / FINE))
     return float(gap(angle)[0]), angle
-
-
-def pushes(problem: Problem, values: np.ndarray) -> np.ndarray:
-    """The force on the pin along x and y at every corner, N/m, shape (corners, 2); an estimate where it is a reaction.
-
-    `values` are the loads at the corners, SI, shape (corners, loads). The estimate has the direction in which a rigid
-    pin touches the hole. Its size is the force, or else the overlap of pin and hole over beta*.
-    """
-    forces = np.column_stack([values[:, Q], -values[:, P]])
-    if problem.drive == "force":
-        return forces
-    axes = np.array(problem.driven)
-    given = np.where(axes, values[:, [UX, UY]], 0.0)
-    reach = np.hypot(given[:, 0], given[:, 1])
-    overlap = np.maximum(reach - max(problem.assembled_clearance, 0.0), 0.0) / problem.surfaces.beta_star
-    way = np.divide(given, reach[:, None], out=np.zeros_like(given), where=reach[:, None] > 0.0)
-    if axes.all():
-        return overlap[:, None] * way
-    # The force pushes the pin along the hole's wall: at a part of the clearance the normal of the wall has turned.
-    size = np.abs(forces).max(axis=1)
-    part = (
-        np.minimum(reach, problem.assembled_clearance) / problem.assembled_clearance
-        if problem.assembled_clearance > 0.0
-        else np.zeros(len(values))
-    )
-    turned = np.sign(forces) * np.sqrt(1.0 - part**2)[:, None] + way * part[:, None]
-    return np.where(size[:, None] > 0.0, size[:, None] * turned, overlap[:, None] * way)

@@ -16,10 +16,10 @@ import numpy as np
 from fastpin.elasticity.operator import Operator
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
-from fastpin.kernels.arrays import Contact, Queue
+from fastpin.kernels.arrays import Contact, LoadTerms, Queue
 from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.loads import P, Q
 from fastpin.solver.configuration import Configuration, Solution, solve_unknowns
-from fastpin.solver.driven import load_terms
 from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts
 from fastpin.solver.settling import settle
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
@@ -120,7 +120,7 @@ class PathStep:
             now.rest_slip,
             now.slip_tally.sums,
         )
-        self._load = load_terms(system, self.before, self.rate)
+        self._load = _load_terms(system, self.before, self.rate)
         self._queue = Queue(
             node=np.zeros(2 * n, dtype=np.int64),
             status=np.zeros(2 * n, dtype=np.int8),
@@ -455,6 +455,19 @@ class PathStep:
         """The solution of the present statuses, by a factorisation; None if the closed nodes can't hold the pin."""
         now, unknowns = self.now, self._memory.unknowns.dense(self.system, self.now.status)
         return None if unknowns is None else solve_unknowns(self.system, unknowns, now.slip, now.load, now.rest_gap)
+
+
+def _load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:
+    """The terms of the work of the loads along a straight piece, from its first load and its rate, shape (loads,)."""
+    weights = np.concatenate([system.weights, system.weights])
+    return LoadTerms(
+        column=weights * (system.held_displacement(before)),
+        column_rate=weights * (system.held_displacement(rate)),
+        force=np.array([before[Q], -before[P]]),
+        force_rate=np.array([rate[Q], -rate[P]]),
+        weights=system.weights,
+        reactions=system.drive.reaction_terms(weights, rate),
+    )
 
 
 def _snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:

@@ -9,7 +9,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.model.loads import M
 from fastpin.solver.configuration import Configuration
-from fastpin.solver.driven import can_float, force_on_pin
+from fastpin.solver.driven import can_float
 from fastpin.solver.errors import (
     CUT_OFF,
     UNHELD,
@@ -22,7 +22,7 @@ from fastpin.solver.errors import (
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import release
 from fastpin.solver.snap import find_state_beyond
-from fastpin.solver.step import Piece, Position, StepReport, force_of
+from fastpin.solver.step import Piece, Position, StepReport, force_of, force_on_pin
 from fastpin.solver.tableau import TableauMemory
 
 FEW_CLOSED = 8

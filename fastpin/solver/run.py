@@ -27,7 +27,6 @@ from fastpin.solver.configuration import (
     marks_left,
     slip_tally_with,
 )
-from fastpin.solver.driven import force_on_pin
 from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import IncrementStepper
@@ -36,7 +35,7 @@ from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, R
 from fastpin.solver.rest import release
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
-from fastpin.solver.step import Piece, Position, Stepper, force_of, is_pushed, pieces
+from fastpin.solver.step import Piece, Position, Stepper, force_of, force_on_pin, is_pushed, pieces
 from fastpin.solver.window import WindowStepper
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State

@@ -12,7 +12,9 @@ from typing import Protocol
 
 import numpy as np
 
-from fastpin.model.loads import P, Q
+from fastpin.elasticity.system import System
+from fastpin.model.loads import UX, UY, P, Q
+from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration
 
 StepReport = Callable[[float], None]
@@ -65,6 +67,38 @@ def is_pushed(load: np.ndarray) -> bool:
 def force_of(load: np.ndarray) -> float:
     """Size of the force on the pin, in the units of `load`."""
     return float(np.hypot(load[P], load[Q]))
+
+
+def force_on_pin(system: System, configuration: Configuration) -> float:
+    """Size of the force on the pin, reactions included (dimensionless)."""
+    return float(np.hypot(*system.drive.force(configuration.motion, configuration.load)))
+
+
+def pushes(problem: Problem, values: np.ndarray) -> np.ndarray:
+    """The force on the pin along x and y at every corner, N/m, shape (corners, 2); an estimate where it is a reaction.
+
+    `values` are the loads at the corners, SI, shape (corners, loads). The estimate has the direction in which a rigid
+    pin touches the hole. Its size is the force, or else the overlap of pin and hole over beta*.
+    """
+    forces = np.column_stack([values[:, Q], -values[:, P]])
+    if problem.drive == "force":
+        return forces
+    axes = np.array(problem.driven)
+    given = np.where(axes, values[:, [UX, UY]], 0.0)
+    reach = np.hypot(given[:, 0], given[:, 1])
+    overlap = np.maximum(reach - max(problem.assembled_clearance, 0.0), 0.0) / problem.surfaces.beta_star
+    way = np.divide(given, reach[:, None], out=np.zeros_like(given), where=reach[:, None] > 0.0)
+    if axes.all():
+        return overlap[:, None] * way
+    # The force pushes the pin along the hole's wall: at a part of the clearance the normal of the wall has turned.
+    size = np.abs(forces).max(axis=1)
+    part = (
+        np.minimum(reach, problem.assembled_clearance) / problem.assembled_clearance
+        if problem.assembled_clearance > 0.0
+        else np.zeros(len(values))
+    )
+    turned = np.sign(forces) * np.sqrt(1.0 - part**2)[:, None] + way * part[:, None]
+    return np.where(size[:, None] > 0.0, size[:, None] * turned, overlap[:, None] * way)
 
 
 @dataclass(eq=False)

@@ -31,10 +31,10 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.solver.attempts import Attempts, Unfit
-from fastpin.solver.driven import pushes
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Recorder, Run, RunProgress
+from fastpin.solver.step import pushes
 
 log = logging.getLogger(__name__)
 
