@@ -228,7 +228,9 @@ class ShearNodes:
                     continue
                 if np.sign(self.shear[run[border.at]]) != border.sign:
                     continue  # this cusp points towards T = 0
-                cusp = self._old_cusp(run, border, borders)
+                highest = int(beside[np.argmax(size[beside])])
+                best = self._best_at(run, border, borders, GOOD_ENOUGH * float(size[highest]))
+                cusp = None if best is None else self._read(best, int(run[border.at]), border, highest)
                 if cusp is not None:
                     yield cusp
 
@@ -300,13 +302,6 @@ class ShearNodes:
         """Sign of the shear in the slip zone at an end of a stick zone; 0 if the contact ends there."""
         outside = int(run[0] - 1) if inwards > 0 else int((run[-1] + 1) % self.grid.size)
         return int(np.sign(self.shear[outside]))
-
-    def _old_cusp(self, run: np.ndarray, border: OldBorder, borders: list[OldBorder]) -> Cusp | None:
-        """Read the cusp at an old border; None if no fit has it near its node."""
-        around = run[max(border.at - 2, 0) : border.at + 3]
-        highest = int(around[np.argmax(np.abs(self.shear[around]))])
-        best = self._best_at(run, border, borders, GOOD_ENOUGH * abs(float(self.shear[highest])))
-        return None if best is None else self._read(best, int(run[border.at]), border, highest)
 
     def _best_at(self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], enough: float) -> _Reading | None:
         """The best fit at an old border in the stick zone of the nodes `run`, see :func:`_best`."""

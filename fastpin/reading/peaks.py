@@ -89,9 +89,12 @@ def shear_peak(contact: ShearNodes, stick: list[Interval]) -> tuple[float, float
             peaks.append((cusp.value, cusp.angle, cusp.node))
             fitted_here = fitted_here or abs((cusp.node - top + 2) % grid.size - 2) <= 2
     if not fitted_here:
-        value, place = _peak_of_nodes(grid, shear if shear[top] >= 0.0 else -shear, sticking, top)
+        beside, upright = [top - 1, top, (top + 1) % grid.size], shear if shear[top] >= 0.0 else -shear
+        value, place = float(upright[top]), float(grid.theta[top])
+        if sticking[beside].all() or not sticking[beside].any():
+            value, place = _smooth_peak(grid, upright, top)
         if sticking[top]:  # Coulomb's law also holds between the nodes
-            value = min(value, contact.friction * float(pressure[[top - 1, top, (top + 1) % grid.size]].max()))
+            value = min(value, contact.friction * float(pressure[beside].max()))
         peaks.append((value, place, top))
     highest = max(value for value, _, _ in peaks)
     equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest]
@@ -182,18 +185,6 @@ def _highest_cusp(grid: Grid, values: np.ndarray, top: int) -> float:
         first, second, third = (float(values[(top + side * step) % grid.size]) for step in (0, 1, 2))
         drops.append(max(first - second, second - third))
     return float(values[top]) + STEEPEST_RISE * min(drops)
-
-
-def _peak_of_nodes(grid: Grid, shear: np.ndarray, sticking: np.ndarray, top: int) -> tuple[float, float]:
-    """Value and angle of the peak at the node `top`, without a fit at a border.
-
-    If only some of the node and its neighbours stick, it is the nodal value. `shear` is the shear traction with the
-    sign that makes it positive at `top`.
-    """
-    neighbours = sticking[[top - 1, top, (top + 1) % grid.size]]
-    if not np.all(neighbours == neighbours[0]):
-        return float(shear[top]), float(grid.theta[top])
-    return _smooth_peak(grid, shear, top)
 
 
 def _likely(grid: Grid, values: np.ndarray, top: int, peak: float) -> bool:

@@ -51,14 +51,10 @@ def unloaded_configuration(system: System) -> Configuration:
     configuration.status[:] = resting_status(system)
     configuration.origin = np.zeros(2)
     configuration.gap = zeros.copy()
-    found = _uneven(system, configuration) if _is_uneven(system) else _uniform(system, configuration)
+    is_uneven = system.bodies is not None and bool(system.bodies.matrix.size)  # in a plate that is not symmetric
+    found = (_uneven if is_uneven else _uniform)(system, configuration)
     found.work = elastic_energy(system, found)  # the work of the assembly, without that of its friction
     return found
-
-
-def _is_uneven(system: System) -> bool:
-    """Whether the pressure of an interference fit varies round the hole: in a plate that is not symmetric."""
-    return system.bodies is not None and bool(system.bodies.matrix.size)
 
 
 def _uniform(system: System, start: Configuration) -> Configuration:

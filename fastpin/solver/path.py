@@ -198,7 +198,7 @@ class PathStep:
                     if self._repair():
                         checked = 0
                         continue
-                    self._remember()
+                    self._checked = self.now.copy(), self._queue.sums.copy()
                 assert isinstance(self._columns, Columns)  # the table of a held contact is whole
                 self._columns.refresh(int(counts[exchange.NEEDED_COLUMN]), updates)
             elif code in (exchange.REBUILD, exchange.ALL_AT_ONCE):
@@ -347,10 +347,6 @@ class PathStep:
         error = true - np.concatenate([now.gap, now.slip])[self._sample]
         length = max(float(np.abs(elastic).max()), float(np.abs(now.motion).max()), 1e-4 * float(now.gap.max()))
         return float(np.abs(error).max()) / max(length, 1e-300)
-
-    def _remember(self) -> None:
-        """Remember the present configuration, which was checked."""
-        self._checked = self.now.copy(), self._queue.sums.copy()
 
     def _go_back(self) -> bool:
         """Go back to the last configuration that was checked, and rebuild the tableau more often from there.

@@ -148,7 +148,9 @@ class _Survey:
             if self._part < LEAST_PART:
                 if floats or releases == MOST_RELEASES:
                     return False
-                self._let_go()
+                self._load = self._load.copy()
+                self._load[[P, Q, M]] = 0.0  # the next contact begins from no force on the pin
+                self._now = release(self._system, self._now, self._load / self._system.scales.loads)
                 self._part, releases = LARGEST_PART, releases + 1
             elif not floats:
                 finer *= 0.5
@@ -186,12 +188,6 @@ class _Survey:
                 self.places.append((before + part * away, last_width + part * (width - last_width)))
         self.places += places
         self._last = places[0] if len(places) == 1 else None
-
-    def _let_go(self) -> None:
-        """Release the contact. The next one begins from no force on the pin."""
-        self._load = self._load.copy()
-        self._load[[P, Q, M]] = 0.0
-        self._now = release(self._system, self._now, self._load / self._system.scales.loads)
 
     def _place(self, patch: np.ndarray) -> GapPlace:
         """Middle and width of a patch of closed nodes."""
