@@ -24,7 +24,7 @@ from fastpin.studies import identity, sweep
 
 RESULTS = ("example", "fretting", "stopped")
 
-READ = ("peak_shear", "angle", "stick", "contact", "slip_zones", "hoop", "kt_")
+READ = ("peak_shear", "angle", "stick", "contact", "slip_zones", "hoop", "kt_", ".slip[")
 """Parts of the names of what is read between the nodes. Ways of reading change, and a node distance is 0.8 degrees."""
 
 
@@ -55,7 +55,8 @@ def assert_kept(new: Any, old: Any, place: str = "") -> None:
             assert_kept(*both, f"{place}[{index}]")
     elif isinstance(old, float):
         is_read = any(part in place for part in READ)
-        assert new == pytest.approx(old, rel=5e-3 if is_read else 1e-6, abs=1.5 if is_read else 1e-12), place
+        relative = 0.1 if "error_bars" in place else 5e-3  # bars are estimates
+        assert new == pytest.approx(old, rel=relative if is_read else 1e-6, abs=1.5 if is_read else 1e-12), place
     else:
         assert new == old, place
 
