@@ -72,6 +72,8 @@ class System:
         The units.
     rest_clearance : float
         The clearance.
+    initial_gap : ndarray, shape (n,)
+        Initial gap at each node, beside the clearance.
     friction : ndarray, shape (n,)
         Coefficient of friction at each node.
     operator : Operator
@@ -101,6 +103,7 @@ class System:
     grid: Grid
     scales: Scales
     rest_clearance: float
+    initial_gap: np.ndarray
     friction: np.ndarray
     operator: Operator
     motion: np.ndarray
@@ -141,9 +144,11 @@ class System:
             forces[2, ROTATION] = unit
         drive = make_drive(problem, grid, motion, loads, motion_rows, forces)
         scales, operator = Scales.of(problem, force), cls._operator(problem, grid, bodies, drive)
+        initial_gap = problem.gap_at(theta)[0] / scales.displacement
         return cls(
-            problem, grid, scales, problem.assembled_clearance / scales.displacement, np.full(n, problem.friction),
-            operator, motion, loads, equilibrium, motion_rows, forces, weights, plate, drive, bodies,
+            problem, grid, scales, problem.assembled_clearance / scales.displacement, initial_gap,
+            problem.friction_at(theta), operator, motion, loads, equilibrium, motion_rows, forces, weights, plate,
+            drive, bodies,
         )  # fmt: skip
 
     @staticmethod
@@ -184,7 +189,8 @@ class System:
         return replace(
             self, grid=arc_of(self.grid, nodes), operator=DenseOperator(self.operator.entries(rows, rows)),
             motion=self.motion[rows], loads=self.loads[rows], equilibrium=self.equilibrium[:, rows],
-            weights=self.weights[nodes], friction=self.friction[nodes], drive=self.drive.part(rows),
+            weights=self.weights[nodes], friction=self.friction[nodes],
+            initial_gap=self.initial_gap[nodes], drive=self.drive.part(rows),
         )  # fmt: skip
 
     def without_friction(self) -> System:

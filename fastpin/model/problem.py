@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
+import numpy as np
+
 from fastpin.bodies.body import BodyBase, PinBody, PinLoad, PlateBody
 from fastpin.bodies.joint import Joint, check_bodies, without_units
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
@@ -23,6 +25,7 @@ from fastpin.model.checks import (
 )
 from fastpin.model.fields import FIELDS
 from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
+from fastpin.model.profile import NO_GAP, InitialGap, Profile, Term
 from fastpin.model.synonyms import explains_keywords
 
 Rotation = Literal["free", "fixed", "spring"]
@@ -33,6 +36,12 @@ LEAST_RADIUS, MOST_RADIUS = 1e-30, 1e30
 
 MOST_FRICTION = 1e6
 """Largest coefficient of friction. The pin sticks wherever it touches. Beyond, rounding makes it slip."""
+
+MOST_GAP = 0.1
+"""Largest initial gap, in parts of R. A larger one is no small change of a circle."""
+
+LOOKED_AT = 1441
+"""Points round the hole at which profiles are checked."""
 
 LEAST_HUB = 1e-5
 """Least hub radius, in parts of R. The pin turns by 1/r^2 per moment: a smaller hub holds it by rounding only."""
@@ -65,8 +74,9 @@ class Problem:
         R, m, from :data:`LEAST_RADIUS` to :data:`MOST_RADIUS`.
     clearance : float
         Radial clearance R - R_D, m. Zero is a neat fit, negative an interference fit.
-    friction : float
-        Coefficient of friction, 0 to :data:`MOST_FRICTION`.
+    friction : float or Profile
+        Coefficient of friction, 0 to :data:`MOST_FRICTION`. A :class:`fastpin.Profile` gives its value along the rim of
+        the hole; :meth:`Profile.of` says what else is understood.
     pin_load : {"centre", "body"}
         The load of a solid pin acts at its centre, or as a uniform body force (section 4 of the paper). The load of a
         hollow pin is a field of its :class:`fastpin.bodies.Tube`.
@@ -107,6 +117,10 @@ class Problem:
         :meth:`fastpin.LoadHistory.per_thickness` converts loads. In case files loads are in N and N m then. Not for a
         dimensionless problem.
 
+    gap : InitialGap
+        Initial gap beside the clearance, m: profiles of hole and pin, at most :data:`MOST_GAP` R. A profile alone is
+        that of the hole; :meth:`Profile.of` says what else is understood.
+
     Raises
     ------
     InputError
@@ -116,7 +130,7 @@ class Problem:
     pair: MaterialPair
     hole_radius: float
     clearance: float
-    friction: float
+    friction: float | Profile
     pin_load: PinLoad = "centre"
     rotation: Rotation = "free"
     hub_radius: float | None = None
@@ -127,6 +141,7 @@ class Problem:
     pin_body: PinBody = field(default=SOLID_PIN, kw_only=True)
     plate_body: PlateBody = field(default=INFINITE_PLATE, kw_only=True)
     thickness: float | None = field(default=None, kw_only=True)
+    gap: InitialGap = field(default=NO_GAP, kw_only=True)
 
     def __post_init__(self) -> None:
         instance("pair", self.pair, MaterialPair, "a MaterialPair")
@@ -141,8 +156,7 @@ class Problem:
         elif abs(clearance) >= radius:
             limits = f"must lie between minus and plus the hole radius {radius:g}"
             raise InputError("clearance", f"{limits}, not {clearance:g}")
-        friction = not_negative("friction", self.friction)
-        number("friction", friction, 0.0, MOST_FRICTION)
+        friction = self._checked_friction(radius)
         check_bodies(self.pair, radius, self.pin_body, self.plate_body, self.pin_load, self.dimensionless)
         object.__setattr__(self, "hole_radius", radius)
         if clearance + self.joint.press_fit[1] < 0.0 and self.is_incompressible:
@@ -172,6 +186,30 @@ class Problem:
         object.__setattr__(self, "clearance", clearance)
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "dimensionless", bool(self.dimensionless))
+        object.__setattr__(self, "gap", self._checked_gap(radius))
+
+    def _checked_friction(self, radius: float) -> float | Profile:
+        """The coefficient of friction: a number, or a profile if it varies. `radius` is the radius of the hole."""
+        given = self.friction
+        if not (isinstance(given, (Profile, Term, tuple, list)) or callable(given)):
+            friction = not_negative("friction", given)
+            return number("friction", friction, 0.0, MOST_FRICTION)
+        profile = Profile.of("friction", given)
+        values = profile.at(profile.angles(LOOKED_AT), radius)
+        not_negative("friction", float(values.min()))
+        number("friction", float(values.max()), 0.0, MOST_FRICTION)
+        return float(values[0]) if profile.is_constant else profile
+
+    def _checked_gap(self, radius: float) -> InitialGap:
+        """The initial gap. `radius` is the radius of the hole."""
+        gap = InitialGap.of(self.gap)
+        if not gap:
+            return NO_GAP
+        largest = float(np.abs(gap.values(gap.hole.angles(LOOKED_AT), radius)[0]).max())
+        most = MOST_PARAMETER if self.dimensionless else MOST_GAP * radius
+        if largest > most:
+            raise InputError("gap", f"is too large for small strains: must lie within {most:g}, not {largest:g}")
+        return gap
 
     def _check_hub(self, radius: float) -> None:
         """Check the radius and the stiffness of the hub. `radius` is the radius of the hole."""
@@ -243,6 +281,7 @@ class Problem:
         gauge_radius: float | None = None,
         pin_body: PinBody = SOLID_PIN,
         plate_body: PlateBody = INFINITE_PLATE,
+        gap: InitialGap = NO_GAP,
     ) -> Problem:
         """The dimensionless problem of the paper: R = 1, F = 1, beta* = 1.
 
@@ -257,7 +296,7 @@ class Problem:
         return cls(
             pair, 1.0, value, friction, pin_load, rotation, hub_radius, True,
             hub_stiffness=hub_stiffness, drive=drive, gauge_radius=gauge_radius, pin_body=pin_body,
-            plate_body=plate_body,
+            plate_body=plate_body, gap=gap,
         )  # fmt: skip
 
     @cached_property
@@ -326,8 +365,25 @@ class Problem:
 
     @property
     def frictionless(self) -> bool:
-        """Whether the coefficient of friction is zero."""
-        return self.friction == 0.0
+        """Whether the coefficient of friction is zero all round."""
+        return self.most_friction == 0.0
+
+    @cached_property
+    def most_friction(self) -> float:
+        """The largest coefficient of friction round the hole."""
+        if not isinstance(self.friction, Profile):
+            return self.friction
+        return float(self.friction.at(self.friction.angles(LOOKED_AT), self.hole_radius).max())
+
+    def friction_at(self, theta: np.ndarray) -> np.ndarray:
+        """Coefficient of friction at the angles `theta` (...), rad, shape (...)."""
+        if not isinstance(self.friction, Profile):
+            return np.full(np.shape(theta), self.friction)
+        return np.maximum(self.friction.at(theta, self.hole_radius), 0.0)  # a spline may pass below zero in between
+
+    def gap_at(self, theta: np.ndarray) -> np.ndarray:
+        """Initial gap beside the clearance and two derivatives at the angles `theta` (...), rad, m, shape (3, ...)."""
+        return self.gap.values(theta, self.hole_radius)
 
     def load_parameter(self, force: float) -> float:
         """Load parameter L_p = (R - R_D) / (F beta*) for a force F, N/m."""
