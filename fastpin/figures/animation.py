@@ -29,6 +29,7 @@ from fastpin.kernels.status import STICK
 from fastpin.model.checks import check_callable, file_path, number
 from fastpin.model.units import acting_loads, units
 from fastpin.states.choice import StateChoice
+from fastpin.states.curves import friction_along
 from fastpin.states.state import State
 from fastpin.storage.files import check_writable, replacing
 
@@ -213,13 +214,13 @@ class _Scene:
             panel.grid(True, color="0.92", linewidth=0.6)
         self.panels[0].plot(angle, self.factor * pressure, **line(0))
         self.panels[0].set_ylim(0.0, 1.08 * self.largest or 1.0)
-        friction = state.problem.friction
         if len(self.panels) > 1:
+            friction = friction_along(state, angle)
             for sign in (1.0, -1.0):
                 bound = sign * friction * self.factor * pressure
                 self.panels[1].plot(angle, bound, color=COLOURS[0], linewidth=0.5, alpha=0.6)
             self.panels[1].plot(angle, self.factor * shear, **line(1))
-            most = 1.15 * friction * self.largest or 1.0
+            most = 1.15 * state.problem.most_friction * self.largest or 1.0
             self.panels[1].set_ylim(-most, most)
         self._shade(state)
         self.frame.scale(self.panels[-1])

@@ -26,6 +26,7 @@ from fastpin.model.checks import true_or_false
 from fastpin.model.units import units
 from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
+from fastpin.states.curves import friction_along
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
@@ -147,15 +148,16 @@ def _draw_curves(axes: Sequence[Axes], states: DrawnStates, curves: Sequence[Cur
     """Draw the pressure and, with friction, the shear traction of all states, with the bands of their bars if any."""
     problem = states[0].problem
     factor, unit = units(problem)["traction"].scale([float(state.pressure.max()) for state in states])
-    for curve, style in zip(curves, lines, strict=True):
+    for state, curve, style in zip(states, curves, lines, strict=True):
         angle, pressure, shear, *bars = curve.columns.values()
         for panel, traction, bar in zip(axes, (pressure, shear), bars, strict=False):
             band = factor * (traction - bar), factor * (traction + bar)
             panel.fill_between(angle, *band, color=style["color"], alpha=_BAND, linewidth=0.0, zorder=1)
         axes[0].plot(angle, factor * pressure, **style)
         if not problem.frictionless:
+            friction = friction_along(state, angle)
             for sign in (1.0, -1.0):
-                bound = factor * sign * problem.friction * pressure
+                bound = factor * sign * friction * pressure
                 axes[1].plot(angle, bound, color=style["color"], linewidth=0.5, alpha=0.55, zorder=1)
             axes[1].plot(angle, factor * shear, **style)
     axes[0].set_ylabel(quantity("pressure N", unit))

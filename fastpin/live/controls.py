@@ -58,7 +58,7 @@ class ControlScales:
         yielded = self.force * problem.surfaces.beta_star
         self.displacement = max(largest["ux"], largest["uy"]) or abs(problem.assembled_clearance) + yielded
         self.stress = max(0.5 * self.force / problem.hole_radius, *(largest[name] for name in ("sxx", "syy", "sxy")))
-        self.moment = max(largest["M"], max(problem.friction, 0.1) * self.force * problem.hole_radius)
+        self.moment = max(largest["M"], max(problem.most_friction, 0.1) * self.force * problem.hole_radius)
         self.rotation = max(largest["rotation"], yielded / problem.hole_radius)
         self.misfit = max(abs(problem.clearance), yielded)
 
@@ -86,7 +86,7 @@ def problem_controls(problem: Problem, scales: ControlScales) -> list[dict[str, 
     unit = units(problem) | {"modulus": Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL}
     misfit = MISFITS * scales.misfit
     return [
-        _slider("contact", "friction", problem.friction, NUMBER, 0.0, MOST_FRICTION),
+        _slider("contact", "friction", problem.most_friction, NUMBER, 0.0, MOST_FRICTION),
         _slider("contact", "clearance", problem.clearance, unit["displacement"], -misfit, misfit),
         _chooser("contact", "plane", problem.pair.plane, PLANES),
         *_material("pin", problem.pair.pin, unit["modulus"]),

@@ -244,7 +244,7 @@ def _mega(stress: float) -> str:
 
 
 def _of_contact(problem: Problem) -> Iterator[InputWarning]:
-    friction = problem.friction
+    friction = problem.most_friction
     if MOST_FRICTION < friction <= PERCENT:
         percent = float(f"{friction:.2g}")
         yield InputWarning(

@@ -260,8 +260,11 @@ class Problem:
         load = {"centre": "load at the centre", "body": "body load"}[self.pin_load]
         load = load if self.pin_body == SOLID_PIN else repr(self.pin_body)
         plate = "" if self.plate_body == INFINITE_PLATE else f"\n {self.plate_body!r}"
+        friction = f"{self.most_friction:.6g}"
+        if isinstance(self.friction, Profile):
+            friction = f"{self.least_friction:.6g} to {friction} along the rim"
         return (
-            f"<Problem: {self.pair!r}\n {size}, friction {self.friction:.6g}\n"
+            f"<Problem: {self.pair!r}\n {size}, friction {friction}\n"
             f" {load}, rotation {self.rotation}{hub}{driven}{plate}>"
         )
 
@@ -271,7 +274,7 @@ class Problem:
         cls,
         pair: MaterialPair,
         load_parameter: float,
-        friction: float,
+        friction: float | Profile,
         pin_load: PinLoad = "centre",
         rotation: Rotation = "free",
         hub_radius: float | None = None,
@@ -374,6 +377,20 @@ class Problem:
         if not isinstance(self.friction, Profile):
             return self.friction
         return float(self.friction.at(self.friction.angles(LOOKED_AT), self.hole_radius).max())
+
+    @cached_property
+    def least_friction(self) -> float:
+        """The smallest coefficient of friction round the hole."""
+        if not isinstance(self.friction, Profile):
+            return self.friction
+        return float(self.friction_at(self.friction.angles(LOOKED_AT)).min())
+
+    @property
+    def uniform_friction(self) -> float:
+        """The coefficient of friction, for methods that take one number only. Raises InputError if it varies."""
+        if isinstance(self.friction, Profile):
+            raise InputError("friction", "must be one number here: this method knows no friction that varies")
+        return self.friction
 
     def friction_at(self, theta: np.ndarray) -> np.ndarray:
         """Coefficient of friction at the angles `theta` (...), rad, shape (...)."""

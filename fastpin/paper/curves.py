@@ -87,7 +87,8 @@ def traction_curve(state: State, force: float = 1.0, **parameters: float | str) 
     gap = np.full((1, 3), np.nan)
     rows = [row for part in parts for row in (gap, part)][1:]
     theta, pressure, shear = np.vstack(rows).T if rows else np.empty((3, 0))
-    shear = np.clip(shear, -state.problem.friction * pressure, state.problem.friction * pressure)
+    bound = state.friction_at(theta) * pressure
+    shear = np.clip(shear, -bound, bound)
     columns = {"angle_deg": np.degrees(theta) + 90.0, "N": pressure / force, "T": shear / force}
     return Curve(dict(parameters), columns)
 

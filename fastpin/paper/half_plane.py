@@ -190,9 +190,9 @@ def bulk_shift(problem: Problem, stress: str, e: float, nodes: int) -> float:
     The stress is the one that makes the shift `e` in the half-plane (negative: compression).
     """
     load_parameter = problem.load_parameter(1.0)
-    sigma = 4.0 * problem.friction * float(closed_forms.hertz_peak_pressure(load_parameter)) * e
+    sigma = 4.0 * problem.uniform_friction * float(closed_forms.hertz_peak_pressure(load_parameter)) * e
     remote = {name: sigma * part for name, part in REMOTE[stress].items()}
-    return shift(solve(problem, [{"P": 1.0}, {"Q": RATIO * problem.friction, **remote}], nodes=nodes)[-1])
+    return shift(solve(problem, [{"P": 1.0}, {"Q": RATIO * problem.uniform_friction, **remote}], nodes=nodes)[-1])
 
 
 def bulk_errors(problem: Problem, without: float, nodes: int) -> Iterator[Error]:

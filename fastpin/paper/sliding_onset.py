@@ -69,7 +69,7 @@ def reverse_onset(problem: Problem, largest: float, nodes: int) -> float:
         corners = [{"P": 1.0}, {"Q": amplitude}, {"Q": -amplitude}]
         return stick_width(solve(problem, corners, nodes=nodes)[-1]) == 0.0
 
-    amplitudes = np.linspace(problem.friction, largest, 9).tolist()
+    amplitudes = np.linspace(problem.uniform_friction, largest, 9).tolist()
     bounds = next((pair for pair in pairwise(amplitudes) if slides_back(pair[1])), None)
     if bounds is None:
         return math.nan

@@ -184,8 +184,10 @@ class ShearNodes:
     sticking : ndarray of bool, shape (n,)
     marks, places : ndarray, shape (n,)
         Old borders, see :mod:`fastpin.reading.old_borders`.
-    friction, tilt, coupling : float
-        mu, arctan(mu beta_D)/pi of (T26), and beta_D.
+    friction, tilt : ndarray, shape (n,)
+        mu, and arctan(mu beta_D)/pi of (T26).
+    coupling : float
+        beta_D.
     """
 
     grid: Grid
@@ -194,8 +196,8 @@ class ShearNodes:
     sticking: np.ndarray
     marks: np.ndarray
     places: np.ndarray
-    friction: float
-    tilt: float
+    friction: np.ndarray
+    tilt: np.ndarray
     coupling: float
 
     @cached_property
@@ -213,7 +215,7 @@ class ShearNodes:
         for node, border in self._coupled_borders:
             at = (node - int(nodes[0])) % self.grid.size
             if at < nodes.size:
-                end = self._end(border._replace(at=at), 0, CUSP_TERMS, border.sign)
+                end = self._end(border._replace(at=at), node, 0, CUSP_TERMS, border.sign)
                 cusps.append(end._replace(parts=(1.0, -1.0)))
         return _Patch(nodes, np.concatenate([[0.0], np.cumsum(areas)]), margins, cusps)
 
@@ -246,8 +248,8 @@ class ShearNodes:
         if key not in self._border_places:
             sign, borders = self._end_sign(run, inwards), self.old_borders(run)
             inside = borders if inwards > 0 else [border.mirrored(run.size) for border in borders]
-            reserve = self.friction * self.pressure[nodes] - sign * self.shear[nodes]
-            line = half_line(0.5 - self.tilt * sign * inwards, self.coupling)
+            reserve = self.friction[nodes] * self.pressure[nodes] - sign * self.shear[nodes]
+            line = half_line(0.5 - float(self.tilt[key[0]]) * sign * inwards, self.coupling)
             self._border_places[key] = end_place(reserve, line, inside)
         return self._border_places[key]
 
@@ -266,18 +268,19 @@ class ShearNodes:
             return None
         top = _top(read[0])
         angle += self._angle(node, float(offsets[top])) - self._angle(node, offset)
-        return Cusp(self.friction * float(read[0][top]), self.friction * read[1], angle, node)
+        friction = float(self.friction[node])
+        return Cusp(friction * float(read[0][top]), friction * read[1], angle, node)
 
     @cached_property
     def _beyond(self) -> np.ndarray:
         """Distances from a border, outwards, at which the largest shear may lie, in node distances."""
-        return np.zeros(1) if self.tilt == 0.0 else BEYOND * np.linspace(0.0, 1.0, TRIED) ** 2
+        return np.zeros(1) if not self.tilt.any() else BEYOND * np.linspace(0.0, 1.0, TRIED) ** 2
 
     @cached_property
     def _coupled_borders(self) -> list[tuple[int, OldBorder]]:
         """The node and the rest of all borders of unlike bodies, old ones and present ones: N has a cusp at each."""
         found = []
-        for run in runs(self.grid, self.sticking) if self.tilt else []:
+        for run in runs(self.grid, self.sticking) if self.tilt.any() else []:
             inside = [border for border in self.old_borders(run) if border.sign and not border.is_end(run.size)]
             found += [(int(run[border.at]), border) for border in inside]
             for inwards, at in ((1, 0), (-1, run.size - 1)):
@@ -310,7 +313,9 @@ class ShearNodes:
             nodes = run[first:last]
             signs = [self._end_sign(run, side) for side in _met(first, last, run.size)]
             sign = signs[0] if len(signs) == 1 else 0
-            values = self.friction * self.pressure[nodes] - sign * self.shear[nodes] if sign else self.shear[nodes]
+            values = self.shear[nodes]
+            if sign:
+                values = self.friction[nodes] * self.pressure[nodes] - sign * values
             shapes = list(self._shapes(run, border, borders, first, last, sign))
             windows.append(_Window(first, sign, values, shapes, nodes.size == run.size))
         return _best(windows, None, enough)
@@ -327,7 +332,7 @@ class ShearNodes:
                 continue
             series, error = best.fit.series(0)
             if error <= LAW_ERROR * abs(series[0]):
-                end = self._end(border, best.window.first, CUSP_TERMS, best.window.sign)
+                end = self._end(border, node, best.window.first, CUSP_TERMS, best.window.sign)
                 height = sum(end.parts) * float(series[0]) * (-best.window.sign or 1)
                 angle = self._angle(node, place + best.window.first - border.at)
                 yield ShearLaw(angle, border.inwards, end.half_line.exponent, height, float(self.grid.weights[node]))
@@ -342,7 +347,8 @@ class ShearNodes:
             read = self._pressure_at(node, offsets, border.inwards)
             if read is None:
                 return None
-            values, error = self.friction * read[0] - values, error + self.friction * read[1]
+            friction = float(self.friction[node])
+            values, error = friction * read[0] - values, error + friction * read[1]
         values = np.abs(values)
         top = _top(values)
         return Cusp(float(values[top]), error, self._angle(node, float(offsets[top])), highest)
@@ -351,11 +357,11 @@ class ShearNodes:
         self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], first: int, last: int, sign: int
     ) -> Iterator[tuple[tuple[End, ...], int]]:
         """Ends and degrees to try for the nodes first : last of a zone. The border itself is the first end."""
-        own = self._end(border, first, CUSP_TERMS, sign)
+        own = self._end(border, int(run[border.at]), first, CUSP_TERMS, sign)
         others = {(other.at, other.inwards): other for other in borders if first <= other.at < last}
         others.pop((border.at, border.inwards), None)
         others = {key: other for key, other in others.items() if not other.is_end(run.size)}
-        inside = [self._end(other, first, CUSP_TERMS, sign) for other in others.values()]
+        inside = [self._end(other, int(run[other.at]), first, CUSP_TERMS, sign) for other in others.values()]
         met = _met(first, last, run.size)
         if not met:
             yield from (((own, *inside), degree) for degree in DEGREES)
@@ -364,15 +370,19 @@ class ShearNodes:
             for side in met:
                 at = 0 if side > 0 else run.size - 1
                 own_sign = self._end_sign(run, side)
-                outer.append(self._end(OldBorder(at, side, own_sign), first, terms, own_sign))
+                outer.append(self._end(OldBorder(at, side, own_sign), int(run[at]), first, terms, own_sign))
             yield (own, *inside, *outer), -1
 
-    def _end(self, border: OldBorder, first: int, terms: int, sign: int) -> End:
-        """A border as a part of a fit: of the reserve beside slip with the `sign`, or of the shear if this is 0."""
-        exponent = 0.5 - self.tilt * border.sign * border.inwards
+    def _end(self, border: OldBorder, node: int, first: int, terms: int, sign: int) -> End:
+        """A border as a part of a fit: of the reserve beside slip with the `sign`, or of the shear if this is 0.
+
+        Its outermost node is the `node` of the grid.
+        """
+        tilt = float(self.tilt[node])
+        exponent = 0.5 - tilt * border.sign * border.inwards
         line = half_line(exponent, self.coupling if border.sign else None)
         parts = 1.0, 0.0
-        if self.tilt and border.sign not in (0, sign):
+        if tilt and border.sign not in (0, sign):
             parts = (1.0, -2.0) if sign else (0.0, 1.0)
         return End(line, border.at - first, border.inwards, terms, border.place, parts)
 

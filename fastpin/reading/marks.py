@@ -110,11 +110,17 @@ class Marks:
         )
 
     def with_borders(
-        self, problem: Problem, grid: Grid, tractions: tuple[np.ndarray, np.ndarray], status: np.ndarray
+        self,
+        problem: Problem,
+        grid: Grid,
+        friction: np.ndarray,
+        tractions: tuple[np.ndarray, np.ndarray],
+        status: np.ndarray,
     ) -> Marks:
         """These marks and those of the present borders between stick and slip, and of the edges of the contact.
 
-        `tractions` are the pressure and the shear (n,), `status` (n,) tells the zones.
+        `friction` (n,) is that of the nodes, `tractions` are the pressure and the shear (n,), `status` (n,) tells the
+        zones.
         """
         fresh: dict[int, int] = {}
         places: dict[int, MarkedPlace | float] = {}
@@ -122,7 +128,7 @@ class Marks:
         for node, inwards, sign in present_borders(status, grid.closed):
             fresh[node] = fresh.get(node, 0) | BITS[inwards, sign]
             if sign:
-                corner = corner or _Corner(problem, grid.closed, tractions, status, self)
+                corner = corner or _Corner(problem, grid.closed, friction, tractions, status, self)
                 place = MarkedPlace(corner, node, inwards)
                 places[node] = place.read() if corner.depth > DEEPEST else place
         if not fresh:
@@ -173,6 +179,8 @@ class _Corner:
     problem : Problem
     closed : bool
         Whether the last node is joined to the first node.
+    friction : ndarray, shape (n,)
+        Coefficient of friction at each node.
     tractions : (ndarray, ndarray)
         Pressure and shear, shape (n,).
     status : ndarray, shape (n,)
@@ -180,20 +188,26 @@ class _Corner:
         The old borders.
     """
 
-    __slots__ = ("_closed", "_older", "_problem", "_status", "_tractions", "depth")
+    __slots__ = ("_closed", "_friction", "_older", "_problem", "_status", "_tractions", "depth")
 
     def __init__(
-        self, problem: Problem, closed: bool, tractions: tuple[np.ndarray, np.ndarray], status: np.ndarray, older: Marks
+        self,
+        problem: Problem,
+        closed: bool,
+        friction: np.ndarray,
+        tractions: tuple[np.ndarray, np.ndarray],
+        status: np.ndarray,
+        older: Marks,
     ) -> None:
-        self._problem, self._closed, self._tractions = problem, closed, tractions
+        self._problem, self._closed, self._friction, self._tractions = problem, closed, friction, tractions
         self._status, self._older = status, older
         self.depth: int = 1 + older.depth
 
     def place(self, node: int, inwards: int) -> float:
         """The place of the border at a sticking `node`; NaN if the node or the one beyond it carries no shear."""
         (pressure, shear), n = self._tractions, self._status.size
-        bound, coupling = self._problem.friction * pressure, self._problem.surfaces.dundurs()[1]
-        tilt = math.atan(self._problem.friction * coupling) / math.pi
+        bound, coupling = self._friction * pressure, self._problem.surfaces.dundurs()[1]
+        tilt = math.atan(float(self._friction[node]) * coupling) / math.pi
         sticking = truly_sticking(self._status, bound - np.abs(shear))
         sign = float(np.sign(shear[(node - inwards) % n])) if sticking[node] else 0.0
         if sign == 0.0:

@@ -94,7 +94,7 @@ def shear_peak(contact: ShearNodes, stick: list[Interval]) -> tuple[float, float
         if sticking[beside].all() or not sticking[beside].any():
             value, place = _smooth_peak(grid, upright, top)
         if sticking[top]:  # Coulomb's law also holds between the nodes
-            value = min(value, contact.friction * float(pressure[beside].max()))
+            value = min(value, float(contact.friction[top]) * float(pressure[beside].max()))
         peaks.append((value, place, top))
     highest = max(value for value, _, _ in peaks)
     equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest]
@@ -114,13 +114,12 @@ def _peaks_at_borders(
     fitted_here : bool
         Whether the peak at `top` is among them, and was fitted on both sides of its border.
     """
-    grid, pressure, shear, tilt = contact.grid, contact.pressure, contact.shear, contact.tilt
-    sticking, friction = contact.sticking, contact.friction
+    grid, pressure, shear, sticking = contact.grid, contact.pressure, contact.shear, contact.sticking
     magnitude, slipping = np.abs(shear), (pressure > 0.0) & ~sticking
     peaks, fitted_here = [], False
-    bound = friction * pressure
+    bound = contact.friction * pressure
     for border, outwards, nodes in _borders(grid, sticking, stick):
-        offsets = outwards * angle_between(grid.theta, border)
+        tilt, offsets = float(contact.tilt[nodes[0]]), outwards * angle_between(grid.theta, border)
         spacing = float(grid.weights[np.argmin(np.abs(offsets))])
         if not slipping[(offsets >= 0.0) & (offsets <= 1.5 * spacing)].any():
             continue  # no slip beside this end of the stick zone: it is the end of the contact
@@ -135,7 +134,7 @@ def _peaks_at_borders(
             fitted_here = fitted_here or highest == top
             peaks.append((read.value, read.angle, highest))
             continue
-        at_border = friction * _interpolated(grid, pressure, border)
+        at_border = float(contact.friction[nodes[0]]) * _interpolated(grid, pressure, border)
         if _likely(grid, magnitude, highest, at_border):
             by_line = _bound_by_two_nodes(grid, bound, magnitude, nodes, outwards, exponent)
             if at_border > (1.0 + BORDER_DOUBT) * by_line:

@@ -101,8 +101,10 @@ class Patch:
         Of the pressure at the edges, (T21); None all round.
     stick : tuple of Zone
         Its stick zones, in order.
-    friction, beta, tilt : float
-        Friction coefficient, Dundurs' second parameter in the usual sign, and arctan(mu beta)/pi of (T26).
+    friction : ndarray, shape (n,)
+        Coefficient of friction at its nodes.
+    beta : float
+        Dundurs' second parameter in the usual sign.
     """
 
     theta: np.ndarray
@@ -112,9 +114,8 @@ class Patch:
     outside: tuple[float, float]
     exponents: tuple[float, float] | None
     stick: tuple[Zone, ...]
-    friction: float
+    friction: np.ndarray
     beta: float
-    tilt: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,11 +198,11 @@ def _with_hidden_slip(patch: Patch, zone: Zone, pressure: tuple[Law | None, ...]
             nodes = zone.nodes[order]
             theta, shear = patch.theta[nodes], patch.shear[nodes]
             of_shear = fit_law(of_pressure.place, of_pressure.exponent, theta, shear)
-            steepest = patch.friction * of_pressure.coefficients[0].real
+            steepest = patch.friction[nodes[0]] * of_pressure.coefficients[0].real
             if of_shear is None or abs(of_shear.coefficients[0].real) < EXCESS * steepest:
                 continue
             sign = int(np.sign(of_shear.coefficients[0].real))
-            reserve = patch.friction * patch.pressure[nodes] - sign * shear
+            reserve = patch.friction[nodes] * patch.pressure[nodes] - sign * shear
             border = end_angle(theta, reserve, half_line(zone.exponents[k]), of_pressure.place)
             one, two = (border, zone.ends[1]) if k == 0 else (zone.ends[0], border)
             first, second = (sign, zone.signs[1]) if k == 0 else (zone.signs[0], sign)
@@ -216,7 +217,7 @@ def _laws(patch: Patch, pressure: tuple[Law | None, ...]) -> Laws:
         for k, order in enumerate(BOTH_ENDS):
             nodes, place, sign = zone.nodes[order], zone.ends[k], zone.signs[k]
             if sign != 0:
-                reserve = patch.friction * patch.pressure[nodes] - sign * patch.shear[nodes]
+                reserve = patch.friction[nodes] * patch.pressure[nodes] - sign * patch.shear[nodes]
                 line, cusps = half_line(zone.exponents[k], patch.beta), zone.cusps
                 inside = cusps if k == 0 else [cusp.mirrored(nodes.size) for cusp in cusps]
                 found = law_of_nodes(place, line, patch.theta[nodes], reserve, inside)
@@ -244,6 +245,7 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
     theta = np.unique(np.r_[nodes, *graded])
     theta = theta[(theta >= nodes[0]) & (theta <= nodes[-1])]
     pressure, shear = np.interp(theta, nodes, values[0]), np.interp(theta, nodes, values[1])
+    friction = np.interp(theta, patch.theta, patch.friction)
     for law, sign in laws.borders:
         pressure += _pressure_cusp(law, sign * patch.beta, theta, nodes)
     for edge_law in laws.pressure:
@@ -252,10 +254,10 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
             pressure[near] = edge_law.values(theta[near])
     for start, stop, sign in _slip_zones(patch):
         inside = (theta >= start) & (theta <= stop)
-        shear[inside] = sign * patch.friction * pressure[inside]
+        shear[inside] = sign * friction[inside] * pressure[inside]
     for law, sign in laws.borders:
         near = law.applies(theta)
-        shear[near] = sign * (patch.friction * pressure[near] - law.values(theta[near]))
+        shear[near] = sign * (friction[near] * pressure[near] - law.values(theta[near]))
     for law in laws.sticking:
         near = law.applies(theta)
         shear[near] = law.values(theta[near])
@@ -373,7 +375,7 @@ def _patches(
         before, after = grid.theta[run[0]] - left[run[0]], right[run[-1]] - grid.theta[run[-1]]
         yield Patch(
             theta, nodes.pressure[run], nodes.shear[run], edges, (theta[0] - before, theta[-1] + after), exponents,
-            _zones(nodes, stick, run), nodes.friction, nodes.coupling, nodes.tilt,
+            _zones(nodes, stick, run), nodes.friction[run], nodes.coupling,
         )  # fmt: skip
 
 

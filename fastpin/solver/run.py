@@ -274,7 +274,8 @@ class Run:
         system, now = self.system, self.now
         marks = marks_left(self.last_corner, now)
         if not system.problem.frictionless:
-            marks = marks.with_borders(system.problem, system.grid, (now.pressure, now.shear), now.status)
+            tractions = now.pressure, now.shear
+            marks = marks.with_borders(system.problem, system.grid, system.friction, tractions, now.status)
         self.position.now = replace(now, marks=marks)
 
     def _check_resolution(self) -> None:

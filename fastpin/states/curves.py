@@ -31,10 +31,17 @@ def traction_patches(state: State) -> list[np.ndarray]:
         points = np.column_stack([np.degrees(patch[:, 0]) + 90.0, patch[:, 1:]])
         points = points[np.append(np.diff(points[:, 0]) > 0.0, True)]  # rounding may join neighbours
         points = _smoothed(points)
-        most = state.problem.friction * points[:, 1]  # fits and cubics may pass the bound by some 0.5 % of the peak
+        most = (
+            friction_along(state, points[:, 0]) * points[:, 1]
+        )  # fits and cubics may pass the bound by some 0.5 % of the peak
         points[:, 2] = np.clip(points[:, 2], -most, most)
         patches.append(points)
     return patches
+
+
+def friction_along(state: State, angle: np.ndarray) -> np.ndarray:
+    """Coefficient of friction of a state at angles (m,), degrees from the bottom, shape (m,)."""
+    return state.friction_at(np.radians(angle - 90.0))
 
 
 def tractions_at(patches: list[np.ndarray], angle: np.ndarray) -> np.ndarray:

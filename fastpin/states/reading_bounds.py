@@ -105,6 +105,7 @@ class Bounds:
 
     def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
         self._problem, self._grid, self._names = problem, grid, names - set(NUMBERS)
+        self._friction = problem.friction_at(grid.theta)
         self._found: dict[str, list[Pair]] = {name: [] for name in self._names}
         self._stresses = StressBounds(problem, grid, names)
         self._waiting: list[tuple[np.ndarray, ...]] = []  # until so many states make the matrices worth while
@@ -113,13 +114,13 @@ class Bounds:
     def add(self, block: StateBlock, rows: list[int]) -> None:
         """Take these rows of a block."""
         pressure, shear, status = (part[rows] for part in (block.pressure, block.shear, block.status))
-        coupled = self._problem.friction * self._problem.surfaces.dundurs()[1] != 0.0
+        coupled = self._problem.most_friction * self._problem.surfaces.dundurs()[1] != 0.0
         peaks = pressure_bounds(self._grid, pressure, coupled)
         known: dict[str, Callable[[], Pair]] = {
             "peak_pressure": lambda: peaks,
-            "peak_shear": lambda: shear_bounds(shear, self._problem.friction * peaks[1]),
+            "peak_shear": lambda: shear_bounds(shear, self._problem.most_friction * peaks[1]),
             "contact_width": lambda: width_bounds(self._grid, status != OPEN),
-            "stick_width": lambda: width_bounds(self._grid, _sticking(self._problem, pressure, shear, status)),
+            "stick_width": lambda: width_bounds(self._grid, _sticking(self._friction, pressure, shear, status)),
         }
         for name in self._names - self._stresses.names:
             self._found[name].append(known[name]() if name in known else _unbounded(len(rows)))
@@ -226,9 +227,9 @@ def width_bounds(grid: Grid, inside: np.ndarray) -> Pair:
     return np.maximum(length - slack, 0.0), length + slack
 
 
-def _sticking(problem: Problem, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray) -> np.ndarray:
+def _sticking(friction: np.ndarray, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray) -> np.ndarray:
     """Nodes that truly stick, see :func:`fastpin.reading.old_borders.truly_sticking`, bool, shape (k, n)."""
-    reserve = problem.friction * pressure - np.abs(shear)
+    reserve = friction * pressure - np.abs(shear)
     return np.asarray((status == STICK) & (reserve > 1e-9 * reserve.max(axis=1, initial=0.0)[:, None]))
 
 

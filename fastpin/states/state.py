@@ -22,7 +22,7 @@ from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import named_loads, units
 from fastpin.reading import peaks, zones
 from fastpin.reading.cusps import ShearNodes
-from fastpin.reading.exponents import contact_exponents, signs_beside, stick_exponents
+from fastpin.reading.exponents import contact_exponents, signs_beside, stick_exponents, tilts
 from fastpin.reading.half_line import HalfLine, half_line
 from fastpin.reading.marks import Marks
 from fastpin.reading.old_borders import truly_sticking
@@ -253,13 +253,22 @@ class State(ReadOnly):
         if not self.shear.any():
             return 0.0, math.nan
         peak, place = peaks.shear_peak(self.nodes, self._stick)
-        most = self.problem.friction * self.peak_pressure
+        most = self.problem.most_friction * self.peak_pressure
         return min(max(peak, -most), most), near_bottom(place)
 
     @cached_property
-    def tilt(self) -> float:
-        """Shift of the exponents of edges and borders away from 1/2, arctan(mu beta_D)/pi, (T26); 0 for like bodies."""
-        return math.atan(self.problem.friction * self.coupling) / math.pi
+    def friction(self) -> np.ndarray:
+        """Coefficient of friction at the nodes, shape (n,)."""
+        return self.friction_at(self.theta)
+
+    def friction_at(self, theta: np.ndarray) -> np.ndarray:
+        """Coefficient of friction at the angles `theta` (...), rad, shape (...)."""
+        return self.problem.friction_at(theta)
+
+    @cached_property
+    def tilt(self) -> np.ndarray:
+        """Shift of the exponents of edges and borders away from 1/2, (T26), shape (n,); 0 for like bodies."""
+        return tilts(self.friction, self.coupling)
 
     @cached_property
     def coupling(self) -> float:
@@ -276,7 +285,7 @@ class State(ReadOnly):
 
     @cached_property
     def _reserve(self) -> np.ndarray:
-        return self.problem.friction * self.pressure - np.abs(self.shear)
+        return self.friction * self.pressure - np.abs(self.shear)
 
     @cached_property
     def _reserve_beside(self) -> np.ndarray:
@@ -288,7 +297,7 @@ class State(ReadOnly):
         for run in runs(self.grid, self._sticking):
             for values, sign in zip(reserve, signs_beside(self.shear, run), strict=True):
                 if sign != 0:
-                    values[run] = self.problem.friction * self.pressure[run] - sign * self.shear[run]
+                    values[run] = self.friction[run] * self.pressure[run] - sign * self.shear[run]
         return reserve
 
     @cached_property
@@ -312,8 +321,8 @@ class State(ReadOnly):
     def nodes(self) -> ShearNodes:
         """The nodal tractions with the marks of old borders."""
         borders = (self.marks or Marks()).arrays(self.grid.size)
-        laws = self.problem.friction, self.tilt, self.coupling
-        return ShearNodes(self.grid, self.pressure, self.shear, self._sticking, *borders, *laws)
+        tractions = self.grid, self.pressure, self.shear, self._sticking
+        return ShearNodes(*tractions, *borders, self.friction, self.tilt, self.coupling)
 
     @cached_property
     def resultants(self) -> dict[str, float]:

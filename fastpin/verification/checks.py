@@ -195,7 +195,7 @@ def _sliding(pair: MaterialPair, solving: Solving) -> Checks:
     state = solving(problem, [{"P": 1.0}, {"Q": 1.0}])[-1]
     series = solve_sliding(problem, {"P": 1.0, "Q": 1.0})
     yield relative_check("peak N", state.peak_pressure, series.peak_pressure)
-    yield relative_check("peak T", abs(state.peak_shear), problem.friction * series.peak_pressure)
+    yield relative_check("peak T", abs(state.peak_shear), problem.uniform_friction * series.peak_pressure)
     yield relative_check("moment", state.resultants["M"], series.moment)
     for ours, reference in zip(state.contact[0], series.contact, strict=True):
         yield angle_check("end", ours, reference)

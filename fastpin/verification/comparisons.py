@@ -46,7 +46,7 @@ def cattaneo_mindlin(
     half = float(closed_forms.hertz_half_angle(load_parameter))
     peak = float(closed_forms.hertz_peak_pressure(load_parameter))
     # The traction on the pin opposes Q, and theta runs along +x at the bottom.
-    return -closed_forms.cattaneo_mindlin_shear(x, half, peak, state.problem.friction, now, most, branch)
+    return -closed_forms.cattaneo_mindlin_shear(x, half, peak, state.problem.uniform_friction, now, most, branch)
 
 
 def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[float]:
@@ -74,7 +74,7 @@ def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[
         shear = cattaneo_mindlin(state, state.theta - BOTTOM, now, ratio, branch)
         weights = state.grid.weights
         differences.append(
-            float(weights @ np.abs(state.shear - shear) / (state.problem.friction * (weights @ state.pressure)))
+            float(weights @ np.abs(state.shear - shear) / (state.problem.uniform_friction * (weights @ state.pressure)))
         )
     return differences
 
@@ -101,7 +101,7 @@ def half_plane_stress_difference(
     # +r in the plate and -r in the pin: in the pin x and srt change their signs.
     side = 1.0 if body == "plate" else -1.0
     expected = closed_forms.cattaneo_mindlin_stress(
-        side * x, depth, 1.0, 1.0, state.problem.friction, now, most, branch
+        side * x, depth, 1.0, 1.0, state.problem.uniform_friction, now, most, branch
     )
     peak = float(closed_forms.hertz_peak_pressure(state.problem.load_parameter(state.load["P"])))
     return float(np.abs(np.array([stress.hoop, stress.radial, stress.shear]) / peak - expected).max())

@@ -228,7 +228,7 @@ def first_slip_load(problem: Problem) -> float:
     InputError
         If the fit has no interference, or the bodies have no closed form.
     """
-    ratio, friction = stuck_ratio(problem), problem.friction
+    ratio, friction = stuck_ratio(problem), problem.uniform_friction
     largest = math.hypot(1.0 - ratio, friction * (1.0 + ratio))
     return 2.0 * math.pi * problem.hole_radius * _fitted(problem) * friction / largest
 
@@ -247,7 +247,7 @@ def first_slip_moment(problem: Problem) -> float:
         If the pin can't carry a moment, the fit has no interference, or the bodies have no closed form.
     """
     _checked_loads(problem, {"M": 1.0})
-    return 2.0 * math.pi * problem.hole_radius**2 * problem.friction * _fitted(problem)
+    return 2.0 * math.pi * problem.hole_radius**2 * problem.uniform_friction * _fitted(problem)
 
 
 def release_stress(problem: Problem) -> float:

@@ -117,7 +117,7 @@ class Sliding:
 
     def shear(self, theta: ArrayLike) -> np.ndarray:
         """Shear traction T = -slip mu N on the pin, Pa, at the angles `theta`, rad; positive along +theta."""
-        return -self.slip * self.problem.friction * self.pressure(theta)
+        return -self.slip * self.problem.uniform_friction * self.pressure(theta)
 
     @property
     def peak_pressure(self) -> float:
@@ -193,7 +193,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
                 break
         assert ends is not None
         centre, half = ends
-        moment = -case.sign * problem.friction * case.size * problem.hole_radius * patch.total
+        moment = -case.sign * problem.uniform_friction * case.size * problem.hole_radius * patch.total
         result = Sliding(
             problem,
             given,
@@ -253,7 +253,7 @@ class _Case:
             stress * (load["sxx"] - load["syy"]),
             stress * load["sxy"],
             sign,
-            problem.friction,
+            problem.uniform_friction,
             pair.alpha_star / pair.beta_star,
             0.5 * (pair.plate_kolosov + 1.0) * pair.plate_compliance / pair.beta_star,
             body_terms(problem),

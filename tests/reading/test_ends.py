@@ -111,11 +111,11 @@ def test_exponents_of_edges_and_borders_of_unlike_bodies():
     for name in ("contact", "stick"):
         assert getattr(coarse, name)[0] == pytest.approx(getattr(fine, name)[0], abs=0.005 * spacing)
     tilt = math.atan(0.6 * 0.25) / math.pi
-    assert tilt == pytest.approx(coarse.tilt)
+    assert coarse.tilt == pytest.approx(np.full(201, tilt))
     for other in (0.0, -tilt):
         wrong = [dataclasses.replace(state) for state in (coarse, fine)]
         for state in wrong:
-            state.__dict__["tilt"] = other
+            state.__dict__["tilt"] = np.full(state.theta.size, other)
         assert wrong[0].contact[0][1] != pytest.approx(wrong[1].contact[0][1], abs=0.01 * spacing)
         assert wrong[0].stick[0][1] != pytest.approx(fine.stick[0][1], abs=0.01 * spacing)
 

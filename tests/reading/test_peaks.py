@@ -25,7 +25,7 @@ def read(shear: np.ndarray, pressure: np.ndarray, sticking: np.ndarray = ALL, en
     """The peak with mu = 1."""
     no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
     coupling = np.tan(np.pi * tilt)
-    contact = ShearNodes(GRID, pressure, shear, sticking, no_marks, no_places, 1.0, tilt, coupling)
+    contact = ShearNodes(GRID, pressure, shear, sticking, no_marks, no_places, ALL * 1.0, ALL * tilt, coupling)
     return abs(peaks.shear_peak(contact, [ends] if sticking.any() else [])[0])
 
 
@@ -88,7 +88,9 @@ def test_beside_an_edge_the_shear_is_that_of_the_only_slipping_node() -> None:
     sticking = np.abs(X) < 39.0
     for unit in (1.0, 1e-9, 1e9):
         no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
-        contact = ShearNodes(GRID, unit * pressure, unit * pressure, sticking, no_marks, no_places, 1.0, 0.0, 0.0)
+        contact = ShearNodes(
+            GRID, unit * pressure, unit * pressure, sticking, no_marks, no_places, ALL * 1.0, ALL * 0.0, 0.0
+        )
         (patch,) = contact._patches
         integral = contact._turned_until(patch, 0, 20, 1, 1, np.array([-0.5]))
         assert integral / unit == pytest.approx([float(pressure[1] * GRID.weights[1])], rel=1e-12)
@@ -98,7 +100,9 @@ def test_the_sign_beside_a_stick_zone_is_the_one_of_the_next_node() -> None:
     shear, run = np.zeros(81), np.arange(10, 20)
     shear[[8, 9, 20, 21]] = -1.0, 1.0, -1.0, 1.0
     no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
-    contact = ShearNodes(GRID, np.ones(81), shear, np.isin(np.arange(81), run), no_marks, no_places, 1.0, 0.0, 0.0)
+    contact = ShearNodes(
+        GRID, np.ones(81), shear, np.isin(np.arange(81), run), no_marks, no_places, ALL * 1.0, ALL * 0.0, 0.0
+    )
     assert (contact._end_sign(run, 1), contact._end_sign(run, -1)) == (1, -1)
 
 
