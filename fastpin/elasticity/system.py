@@ -167,6 +167,11 @@ class System:
         return len(self.motion_rows)
 
     @cached_property
+    def concentric_gap(self) -> np.ndarray:
+        """Gap of the unloaded, concentric pin at each node, shape (n,)."""
+        return self.rest_clearance + self.initial_gap
+
+    @cached_property
     def has_friction(self) -> bool:
         """Whether there is friction at a node."""
         return bool(self.friction.any())

@@ -82,7 +82,7 @@ class Case:
 
 def check_arc(problem: Problem, options: SolveOptions) -> None:
     """Raise :class:`InputError` if the arc is too short for an interference fit."""
-    if problem.assembled_clearance < 0.0 and options.arc is not None and not options.is_full_turn:
+    if problem.is_gripped and options.arc is not None and not options.is_full_turn:
         raise InputError("arc", "an interference fit is in contact all round: the arc must span 2 pi, or be left out")
 
 

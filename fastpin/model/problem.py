@@ -26,6 +26,7 @@ from fastpin.model.checks import (
 from fastpin.model.fields import FIELDS
 from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
 from fastpin.model.profile import NO_GAP, InitialGap, Profile, Term
+from fastpin.model.room import widest_place
 from fastpin.model.synonyms import explains_keywords
 
 Rotation = Literal["free", "fixed", "spring"]
@@ -42,6 +43,9 @@ MOST_GAP = 0.1
 
 LOOKED_AT = 1441
 """Points round the hole at which profiles are checked."""
+
+LEAST_GRIP = 1e-9
+"""Overlap of pin and hole, in parts of the largest gap, that counts as none: digits of the linear programme."""
 
 LEAST_HUB = 1e-5
 """Least hub radius, in parts of R. The pin turns by 1/r^2 per moment: a smaller hub holds it by rounding only."""
@@ -195,7 +199,7 @@ class Problem:
             friction = not_negative("friction", given)
             return number("friction", friction, 0.0, MOST_FRICTION)
         profile = Profile.of("friction", given)
-        values = profile.at(profile.angles(LOOKED_AT), radius)
+        values = profile.at(profile.angles(LOOKED_AT, radius), radius)
         not_negative("friction", float(values.min()))
         number("friction", float(values.max()), 0.0, MOST_FRICTION)
         return float(values[0]) if profile.is_constant else profile
@@ -205,7 +209,9 @@ class Problem:
         gap = InitialGap.of(self.gap)
         if not gap:
             return NO_GAP
-        largest = float(np.abs(gap.values(gap.hole.angles(LOOKED_AT), radius)[0]).max())
+        if self.dimensionless and (gap.hole.needs_lengths or gap.pin.needs_lengths):
+            raise InputError("gap", "a flat has no meaning in a dimensionless problem: its shape needs lengths in m")
+        largest = float(np.abs(gap.values(gap.angles(LOOKED_AT, radius), radius)[0]).max())
         most = MOST_PARAMETER if self.dimensionless else MOST_GAP * radius
         if largest > most:
             raise InputError("gap", f"is too large for small strains: must lie within {most:g}, not {largest:g}")
@@ -376,7 +382,7 @@ class Problem:
         """The largest coefficient of friction round the hole."""
         if not isinstance(self.friction, Profile):
             return self.friction
-        return float(self.friction.at(self.friction.angles(LOOKED_AT), self.hole_radius).max())
+        return float(self.friction.at(self.friction.angles(LOOKED_AT, self.hole_radius), self.hole_radius).max())
 
     @cached_property
     def least_friction(self) -> float:
@@ -401,6 +407,24 @@ class Problem:
     def gap_at(self, theta: np.ndarray) -> np.ndarray:
         """Initial gap beside the clearance and two derivatives at the angles `theta` (...), rad, m, shape (3, ...)."""
         return self.gap.values(theta, self.hole_radius)
+
+    @cached_property
+    def gap_angles(self) -> np.ndarray:
+        """Angles at which the initial gap shows itself, rad, in order."""
+        return self.gap.angles(LOOKED_AT, self.hole_radius)
+
+    @cached_property
+    def is_gripped(self) -> bool:
+        """Whether the hole grips the unloaded pin: an interference fit, or a gap too narrow for a rigid pin.
+
+        A prescribed displacement holds the pin at 0 before any load.
+        """
+        clearance = self.assembled_clearance
+        if not self.gap:
+            return clearance < 0.0
+        gap = clearance + self.gap_at(self.gap_angles)[0]
+        room = widest_place(self.gap_angles, gap, self.driven)[0]
+        return room < -LEAST_GRIP * float(np.abs(gap).max())
 
     def load_parameter(self, force: float) -> float:
         """Load parameter L_p = (R - R_D) / (F beta*) for a force F, N/m."""

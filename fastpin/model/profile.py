@@ -22,6 +22,9 @@ MOST_ORDER = 1000
 MOST_TERMS, MOST_SAMPLES = 100, 100_000
 """Most terms of a profile, and most samples of a term."""
 
+WAVE = 16
+"""Angles in a wave, or in a crown, at which its value must be looked at."""
+
 CALLED = 1440
 """Samples of a function round the hole: four a degree."""
 
@@ -33,10 +36,10 @@ class Term(ABC):
     """A term of a profile. It has a value, a slope and a curvature at each angle."""
 
     jumps = False
+    needs_lengths = False
 
-    @property
-    def angles_of_note(self) -> np.ndarray:
-        """Angles, rad, at which its value must be looked at."""
+    def angles_of_note(self, radius: float) -> np.ndarray:
+        """Angles, rad, at which its value must be looked at. `radius` is the radius of the hole, m."""
         return np.zeros(0)
 
     @abstractmethod
@@ -68,6 +71,9 @@ class Harmonic(Term):
         for name in ("cosine", "sine"):
             object.__setattr__(self, name, number(name, getattr(self, name)))
 
+    def angles_of_note(self, radius: float) -> np.ndarray:
+        return np.arange(WAVE * self.order) * (2.0 * math.pi / (WAVE * max(self.order, 1))) - math.pi
+
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
         n = self.order
         cos, sin = np.cos(n * theta), np.sin(n * theta)
@@ -90,9 +96,15 @@ class Flat(Term):
     depth: float
     centre: float
 
+    needs_lengths = True
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "depth", positive("depth", self.depth))
         object.__setattr__(self, "centre", number("centre", self.centre))
+
+    def angles_of_note(self, radius: float) -> np.ndarray:
+        half = math.acos(max(1.0 - self.depth / radius, 0.0))
+        return self.centre + np.array([-half, 0.0, half])
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
         away = angle_between(theta, self.centre)
@@ -127,6 +139,9 @@ class Crown(Term):
         positive("half_width", self.half_width)
         object.__setattr__(self, "half_width", number("half_width", self.half_width, 0.0, math.pi))
 
+    def angles_of_note(self, radius: float) -> np.ndarray:
+        return self.centre + np.linspace(-self.half_width, self.half_width, WAVE + 1)
+
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
         away, wave = angle_between(theta, self.centre), math.pi / self.half_width
         inside = np.abs(away) < self.half_width
@@ -158,8 +173,7 @@ class Zone(Term):
         if not 0.0 < self.stop - self.start < 2.0 * math.pi:
             raise InputError("stop", f"must lie less than a turn beyond the start {self.start:g}, not at {self.stop:g}")
 
-    @property
-    def angles_of_note(self) -> np.ndarray:
+    def angles_of_note(self, radius: float) -> np.ndarray:
         return np.array([self.start, 0.5 * (self.start + self.stop)])
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
@@ -210,8 +224,7 @@ class Samples(Term):
         )
         return spline
 
-    @property
-    def angles_of_note(self) -> np.ndarray:
+    def angles_of_note(self, radius: float) -> np.ndarray:
         return np.array(self.angles)
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
@@ -299,14 +312,22 @@ class Profile:
         return any(term.jumps for term in self.terms)
 
     @property
+    def needs_lengths(self) -> bool:
+        """Whether the quantity has no meaning in a dimensionless problem, which has no lengths."""
+        return any(term.needs_lengths for term in self.terms)
+
+    @property
     def is_constant(self) -> bool:
         """Whether the quantity is the same all round, by its terms."""
         return all(isinstance(term, Harmonic) and term.order == 0 for term in self.terms)
 
-    def angles(self, count: int) -> np.ndarray:
-        """Angles at which the profile shows itself, rad: `count` equally spaced, its samples, and ends of zones."""
+    def angles(self, count: int, radius: float) -> np.ndarray:
+        """Angles at which the profile shows itself, rad: `count` equally spaced, and those of its terms.
+
+        `radius` is the radius of the hole, m.
+        """
         theta = np.linspace(-math.pi, math.pi, count)
-        return np.concatenate([theta, *(term.angles_of_note for term in self.terms)])
+        return np.concatenate([theta, *(term.angles_of_note(radius) for term in self.terms)])
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
         """Value, first and second derivative at the angles `theta` (...), rad, shape (3, ...).
@@ -370,6 +391,11 @@ class InitialGap:
 
     def __bool__(self) -> bool:
         return bool(self.hole.terms or self.pin.terms)
+
+    def angles(self, count: int, radius: float) -> np.ndarray:
+        """Angles at which the gap shows itself, rad, in order; see :meth:`Profile.angles`."""
+        found = np.concatenate([self.hole.angles(count, radius), self.pin.angles(0, radius)])
+        return np.unique(np.remainder(found + math.pi, 2.0 * math.pi) - math.pi)
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
         """Gap and two derivatives at the angles `theta` (...), rad, shape (3, ...); see :meth:`Profile.values`."""

@@ -30,6 +30,9 @@ log = logging.getLogger(__name__)
 COARSE_NODES = 121
 """Nodes of a coarse run."""
 
+GAP_NODES = 241
+"""Nodes of a coarse run with an initial gap, on the whole circle."""
+
 QUICK_NODES = 61
 """Nodes of a quick coarse run. Where it is not :func:`sure <_quick_arc>` of its arc, finer ones follow."""
 
@@ -80,7 +83,7 @@ def candidate_grids(
         If the number of nodes is out of range.
     """
     Grid.circle(nodes)  # checks the number of nodes before anything is computed
-    arc = None if problem.assembled_clearance < 0.0 else _touched_arc(problem, values, force, nodes, progress)
+    arc = None if problem.is_gripped else _touched_arc(problem, values, force, nodes, progress)
     while arc is not None and arc[1] - arc[0] < WHOLE:
         shift = _shift_to_node(problem, arc[0], (arc[1] - arc[0]) / (nodes - 1), values)
         yield Grid.arc(arc[0] + shift, arc[1] + shift, nodes)
@@ -149,14 +152,16 @@ def _touched_arc(
     A run with fewer `nodes` than a coarse run has a quick coarse run first: the search would take longer than the run.
     `progress` sees each coarse run as a separate run before the fine run.
     """
-    arc, history = _estimated_arc(problem, values), LoadHistory.from_array(_outline(problem, values))
+    arc = None if problem.gap else _estimated_arc(problem, values)  # with a gap the pin may touch anywhere
+    history = LoadHistory.from_array(_outline(problem, values))
     quick = _quick_arc(problem, history, arc, force, progress) if nodes < COARSE_NODES else None
     if quick is not None:
         return quick
     for _ in range(12):
         if arc is not None and arc[1] - arc[0] >= WHOLE:
             arc = None
-        grid = Grid.circle(COARSE_NODES) if arc is None else Grid.arc(*arc, COARSE_NODES)
+        circle = GAP_NODES if problem.gap else COARSE_NODES
+        grid = Grid.circle(circle) if arc is None else Grid.arc(*arc, COARSE_NODES)
         try:
             run = Run(history, System.build(problem, grid, force), SolveOptions(), progress=progress)
             run.follow()
@@ -166,6 +171,8 @@ def _touched_arc(
             arc = _widened(arc, 1.5)
             continue
         except SolveError:
+            if problem.gap:  # nothing says where the pin touches later
+                return None
             margin = 12  # the fine run reports the error, or gets further
         touched = np.flatnonzero(run.touched)
         if touched.size == 0:

@@ -7,6 +7,7 @@ import numpy as np
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import LOADS
+from fastpin.model.room import widest_place
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -17,6 +18,8 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.errors import ConvergenceError
 from fastpin.solver.increment import implicit_step
+from fastpin.solver.rest import place_between
+from fastpin.solver.settling import FiniteStep
 
 NOT_FOUND = "the pressure of the interference fit was not found; use more nodes"
 
@@ -31,30 +34,42 @@ def unloaded_configuration(system: System) -> Configuration:
     ConvergenceError
         If the pressure of an interference fit was not found on this grid.
     """
-    n = system.grid.size
+    n, drive, load = system.grid.size, system.drive, np.zeros(len(LOADS))
     zeros = np.zeros(n)
+    is_gripped = _is_gripped(system)
+    rest = zeros[:2] if is_gripped else place_between(system, load)
+    gap = system.concentric_gap + drive.translation[:n] @ rest
     configuration = Configuration(
         pressure=zeros.copy(),
         shear=zeros.copy(),
-        gap=np.full(n, system.rest_clearance),
+        gap=np.maximum(gap, 0.0),
         slip=zeros.copy(),
         status=np.full(n, OPEN, dtype=np.int8),
         motion=np.zeros(system.motions),
-        load=np.zeros(len(LOADS)),
-        origin=np.zeros(2) if system.drive.has_displacements else np.full(2, np.nan),
-        rest=np.zeros(2),
-        rest_gap=np.full(n, system.rest_clearance),
+        load=load,
+        origin=np.zeros(2) if drive.has_displacements else np.full(2, np.nan),
+        rest=rest.copy(),
+        rest_gap=gap,
         rest_slip=zeros.copy(),
     )
-    if system.rest_clearance >= 0.0:
+    if not is_gripped:
         return configuration
     configuration.status[:] = resting_status(system)
     configuration.origin = np.zeros(2)
     configuration.gap = zeros.copy()
-    is_uneven = system.bodies is not None and bool(system.bodies.matrix.size)  # in a plate that is not symmetric
+    # In a plate that is not symmetric, or with a gap.
+    is_uneven = bool(system.problem.gap) or (system.bodies is not None and bool(system.bodies.matrix.size))
     found = (_uneven if is_uneven else _uniform)(system, configuration)
     found.work = elastic_energy(system, found)  # the work of the assembly, without that of its friction
     return found
+
+
+def _is_gripped(system: System) -> bool:
+    """Whether the nodes grip the unloaded pin. The hole may be a little too narrow for it between two nodes only."""
+    problem = system.problem
+    if not (problem.gap and problem.is_gripped):
+        return problem.is_gripped
+    return widest_place(system.grid.theta, system.concentric_gap, problem.driven)[0] < 0.0
 
 
 def _uniform(system: System, start: Configuration) -> Configuration:
@@ -69,9 +84,10 @@ def _uniform(system: System, start: Configuration) -> Configuration:
 def _uneven(system: System, start: Configuration) -> Configuration:
     """The tractions of an interference that grows from a neat fit, as of a cooled pin that warms up.
 
-    All grows in proportion to the interference, so one implicit increment is exact, friction included.
+    All grows in proportion to the interference, so one implicit increment is exact, friction included. With an initial
+    gap the pin may touch in some places only.
     """
-    found = implicit_step(system, start, start.load)
+    found = implicit_step(system, start, start.load) or FiniteStep(system, start).to(start.load)
     if found is None or not found.closed.any() or worst_residual(system, found) > MAX_RESIDUAL:
         raise ConvergenceError(NOT_FOUND)
     return found

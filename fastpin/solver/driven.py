@@ -74,12 +74,13 @@ def rest_on_hole(
         begins = _last_crossing(room)
         position = _room(system, before + begins * (after - before))[1]
     angle = _narrowest(system, before + begins * (after - before), position)[1]
-    if system.rest_clearance == 0.0 and not position.any():  # a neat fit touches where the loads push it
+    if not system.concentric_gap.any() and not position.any():  # a neat fit touches where the loads push it
         push = drive.force(np.zeros(2), after) + drive.prescribed(after)
         angle = math.atan2(push[1], push[0])
     shift = position - system.rest_clearance * np.array([math.cos(angle), math.sin(angle)])
     n, half = system.grid.size, 0.5 * (system.grid.theta - angle)
-    return position, 2.0 * system.rest_clearance * np.sin(half) ** 2 + drive.translation[:n] @ shift, angle, begins
+    rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + drive.translation[:n] @ shift + system.initial_gap
+    return position, rest_gap, angle, begins
 
 
 def _last_crossing(room: Callable[[float], float]) -> float:
@@ -104,7 +105,8 @@ def _room(system: System, load: np.ndarray) -> tuple[float, np.ndarray]:
     """
     position = system.drive.prescribed(load)
     free = np.flatnonzero(~system.drive.axes)
-    if free.size and hole_gap(system, load, 0.0)[1:].any() | hole_gap(system, load, 0.5)[1:].any():
+    is_oval = hole_gap(system, load, 0.0)[1:].any() or hole_gap(system, load, 0.5)[1:].any()
+    if free.size and (is_oval or system.problem.gap):
         position[free[0]] = _widest_place(system, load, position, int(free[0]))
     return _narrowest(system, load, position)[0], position
 
@@ -155,11 +157,16 @@ def _narrowest(system: System, load: np.ndarray, position: np.ndarray) -> tuple[
         return found
 
     coarse = np.arange(FINE) * (2.0 * math.pi / FINE) - math.pi
+    if system.problem.gap:
+        coarse = np.r_[coarse, system.problem.gap_angles]
     values = gap(coarse)[0]
-    angle = float(coarse[np.argmin(values)])
+    first = angle = float(coarse[np.argmin(values)])
     for _ in range(REFINEMENTS):
         _, slope, curvature = gap(angle)
         if not curvature > 0.0:
             break
         angle -= float(np.clip(slope / curvature, -2.0 * math.pi / FINE, 2.0 * math.pi / FINE))
-    return float(gap(angle)[0]), angle
+    narrowest = float(gap(angle)[0])
+    if system.problem.gap and narrowest > values.min():  # a kink misleads the slope
+        return float(values.min()), first
+    return narrowest, angle

@@ -8,6 +8,9 @@ from fastpin.solver.result import Result
 CUT_OFF = "the contact reaches an end of the arc; give a wider one, or none"
 """Message of an :class:`ArcError`."""
 
+BEYOND = "the pin touches the hole beyond the arc; give a wider one, or none"
+"""Message of an :class:`ArcError`."""
+
 UNHELD = "nothing holds the pin any more: it spins, slides away or loses contact"
 """Message of a :class:`NoEquilibriumError`."""
 

@@ -11,7 +11,7 @@ from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
-from fastpin.model.loads import REMOTE, ROTATION, UX, UY, M, P, Q
+from fastpin.model.loads import ROTATION, UX, UY, M, P, Q
 from fastpin.reading.zones import runs
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import (
@@ -31,10 +31,10 @@ from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import CUT_OFF, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
-from fastpin.solver.rest import hole_gap, put_at_rest, release
+from fastpin.solver.rest import hole_gap, place_between, put_at_rest, release, rest_position
 from fastpin.solver.settling import FiniteStep
 from fastpin.solver.step import is_pushed
-from fastpin.solver.window import Window
+from fastpin.solver.window import SecondPlaceError, Window
 
 FIRST_NODES = (2, 4)
 """Least and largest number of closed nodes that the first contact aims at, in each of its patches."""
@@ -68,6 +68,9 @@ CONFORMING_PART = 1e-3
 
 STEADY = 0.1
 """Largest relative change of the hole's curvature against the pin's while the first nodes close."""
+
+MOST_WINDOWS = 10
+"""Windows on which a first contact is tried: the pin may also touch outside of one."""
 
 LEAST_PART = 1e-12
 """Smallest part of a step at which a first contact is tried."""
@@ -116,7 +119,7 @@ def at_rest(
         if gripped is None:
             return None
         begins, rest, lowest = gripped
-        rest_gap = system.rest_clearance + system.drive.translation[: system.grid.size] @ rest
+        rest_gap = system.concentric_gap + system.drive.translation[: system.grid.size] @ rest
     else:
         tangential = -after[M] / size if system.problem.rotation == "free" else 0.0
         angle = math.atan2(force[1], force[0]) + math.asin(max(-1.0, min(tangential, 1.0)))
@@ -218,49 +221,15 @@ def _first_contact_from(
     most_part = _steady_part(system, resting, (1.0 - begins) * (after - before)) if steady else 1.0
     if not isinstance(system, LargeSystem):
         return _first_patch(system, resting, way, most_part)
-    window = Window(system, resting.closed)
-    patch, part = _first_patch(window.system, resting.part(window.nodes), way, most_part)
-    return window.paste(patch, resting), part
-
-
-def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:
-    """The position of the rigid pin at rest on the hole, pushed so that the contact normal is at `angle`.
-
-    Parameters
-    ----------
-    system : System
-    load : ndarray, shape (loads,)
-        Dimensionless. Its remote stress deforms the hole.
-    angle : float
-        rad.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        The position of the pin's centre, shape (2,), from the concentric position; and the gap there, shape (n,).
-        The gap is without the remote stress. It keeps its digits beside the contact for any clearance.
-
-    Raises
-    ------
-    NoEquilibriumError
-        If the remote stress closes the hole on the pin.
-    """
-    cos, sin = math.cos(angle), math.sin(angle)
-    gap, slope, _ = hole_gap(system, load, angle)
-    is_round = system.bodies is None and not load[list(REMOTE)].any()  # then the gap is the same everywhere
-    fine = np.linspace(-math.pi, math.pi, 1 if is_round else 1441)
-    values, _, curvature = hole_gap(system, load, fine)
-    if np.all(values + curvature >= 0.0):  # the pin touches at one point, with its normal at `angle`
-        widened = gap - system.rest_clearance
-        shift = np.array([widened * cos - slope * sin, widened * sin + slope * cos])
-        half, moved = 0.5 * (system.grid.theta - angle), system.drive.translation[: system.grid.size] @ shift
-        rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + moved
-        return system.rest_clearance * np.array([cos, sin]) + shift, rest_gap
-    # The oval hole is tighter than the pin: the pin touches at two points.
-    optimum = optimize.linprog([-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None))
-    if not optimum.success:
-        raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
-    return optimum.x, system.rest_clearance + system.drive.translation[: system.grid.size] @ optimum.x
+    nodes = resting.closed
+    for _ in range(MOST_WINDOWS):
+        window = Window(system, nodes)
+        patch, part = _first_patch(window.system, resting.part(window.nodes), way, most_part)
+        try:
+            return window.paste(patch, resting), part
+        except SecondPlaceError as second:
+            nodes = nodes | second.nodes
+    raise ResolutionError(NARROW)
 
 
 def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float, np.ndarray, np.ndarray] | None:
@@ -288,7 +257,9 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
     rows = np.column_stack([first - last, np.cos(theta), np.sin(theta)]) / size
     optimum = optimize.linprog([-1.0, 0.0, 0.0], rows, first / size, bounds=[(0.0, 1.0), (None, None), (None, None)])
     if not optimum.success:  # the hole is too narrow already
-        return 0.0, np.zeros(2), _lowest_places(system, first[: system.grid.size])
+        place = place_between(system, before)
+        gap = first[: system.grid.size] + system.drive.translation[: system.grid.size] @ place
+        return 0.0, place, _lowest_places(system, gap)
     if optimum.x[0] >= 1.0:
         return None
     held = np.flatnonzero(optimum.ineqlin.marginals < -1e-9)
@@ -320,10 +291,11 @@ def _first_patch(
     least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
     self_similar = (
-        system.rest_clearance == 0.0 and not np.delete(before, ROTATION).any()
+        not system.concentric_gap.any() and not np.delete(before, ROTATION).any()
     )  # everything grows in proportion
     left = (1.0 - begins) * (after - before)
-    conforming = np.ptp(resting.gap) <= CONFORMING * abs(system.rest_clearance)  # the hole closes on the pin all round
+    size = np.abs(system.concentric_gap).max()
+    conforming = np.ptp(resting.gap) <= CONFORMING * size  # the hole closes on the pin all round
     part = 1.0 if self_similar else CONFORMING_PART if conforming else _hertz_part(system, resting, left)
     most_part = 1.0 if self_similar or conforming else most_part
     part = min(part, most_part)
@@ -420,32 +392,49 @@ def _young_nodes(system: System, patch: Configuration) -> np.ndarray | None:
 
 def _grown_slip(system: System, patch: Configuration, begin: np.ndarray) -> np.ndarray | None:
     """The slip (n,) of :func:`_with_grown_slip`; None if the nodes that tell it do not all stick."""
-    n, first = system.grid.size, int(np.argmax(patch.pressure))
-    room = GROWN_NODES if system.grid.closed else 2 * min(first, n - 1 - first) - BESIDE_END
-    growth = (min(GROWN_NODES, room) / np.count_nonzero(patch.closed)) ** 2
+    n, places = system.grid.size, runs(system.grid, patch.closed)
+    firsts = [int(place[np.argmax(patch.pressure[place])]) for place in places]
+    sizes = []
+    for place, first in zip(places, firsts, strict=True):
+        room = GROWN_NODES if system.grid.closed else 2 * min(first, n - 1 - first) - BESIDE_END
+        sizes.append((min(GROWN_NODES, room) / place.size) ** 2)
+    growth = min(sizes)
     if growth < 1.0:
         return None
     try:
         grown = PathStep(system, patch, begin + growth * (patch.load - begin)).follow(1.0)
     except StepLostError:
         return None
+    new = patch.slip.copy()
+    for first in firsts:  # places that touch together grow alike, so a mirror image stays one
+        if not _set_slip_beside(system, patch, grown, first, new):
+            return None
+    return new
+
+
+def _set_slip_beside(system: System, patch: Configuration, grown: Configuration, first: int, new: np.ndarray) -> bool:
+    """Set the slip `new` (n,) of the nodes beside the `first` node of a place, from the contact grown on trial.
+
+    Returns whether the nodes that tell it all stick.
+    """
+    n = system.grid.size
     # Remote stress and prescribed displacements have moved the pin along the hole before.
-    new, rest = patch.slip.copy(), patch.rest_slip - patch.rest_slip[first]
+    rest = patch.rest_slip - patch.rest_slip[first]
     for sense in (-1, 1):
         fitted, inner = first + sense * GROWN_FIT, first + sense * np.arange(1, GROWN_FIT[0])
         if system.grid.closed:
             fitted, inner = fitted % n, inner % n
         elif fitted.min() < 0 or fitted.max() >= n:
-            return None
+            return False
         if np.any(grown.status[fitted] != STICK) or grown.status[first] != STICK:
-            return None
+            return False
         away = angle_between(system.grid.theta[fitted], system.grid.theta[first])
         slip = (grown.slip[fitted] - grown.slip[first] - rest[fitted]) / away**2
         linear, constant = np.polyfit(away, slip, 1)
         inner = inner[patch.closed[inner]]
         away = angle_between(system.grid.theta[inner], system.grid.theta[first])
         new[inner] = patch.slip[first] + rest[inner] + (constant + linear * away) * away**2
-    return new
+    return True
 
 
 def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:

@@ -116,8 +116,8 @@ def carried(old: System, new: System, restart: Restart) -> Restart:
 def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.ndarray:
     """The gap of the resting pin, shape (k,), at angles `theta` (k,) beyond the nodes of an arc.
 
-    It differs from the gap at the end of the arc by the first harmonic of the resting position. The sines keep the
-    digits of small gaps in a large clearance.
+    It differs from the gap at the end of the arc by the first harmonic of the resting position, and by the initial gap.
+    The sines keep the digits of small gaps in a large clearance.
     """
     ends = system.grid.theta[[0, -1]]
     nearest = np.argmin(np.abs(theta[:, None] - ends), axis=1)
@@ -125,7 +125,8 @@ def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.nda
     x, y = np.where(system.drive.axes, 0.0, now.rest)
     middle, half = 0.5 * (theta + end), 0.5 * (theta - end)
     change: np.ndarray = 2.0 * np.sin(half) * (x * np.sin(middle) - y * np.cos(middle))
-    return now.rest_gap[[0, -1]][nearest] + change
+    initial = (system.problem.gap_at(theta)[0] - system.problem.gap_at(end)[0]) / system.scales.displacement
+    return now.rest_gap[[0, -1]][nearest] + change + initial
 
 
 def _rest_slip_at(system: System, now: Configuration, columns: np.ndarray) -> np.ndarray:

@@ -24,7 +24,7 @@ from fastpin.states.state import State
 ROWS = 1024
 """Loads in one block of :class:`Loads`."""
 
-IN_PLACE = {"friction", "clearance"}
+IN_PLACE = {"friction", "clearance", "gap"}
 """Fields of a problem that the matrices do not depend on."""
 
 
@@ -128,5 +128,7 @@ def changed_system(system: System, problem: Problem) -> System | None:
     if not alike or old.frictionless != problem.frictionless:  # without friction nothing carries a moment
         return None
     rest_clearance = problem.assembled_clearance / system.scales.displacement
-    friction = np.full_like(system.friction, problem.friction)
-    return replace(system, problem=problem, friction=friction, rest_clearance=rest_clearance)
+    return replace(
+        system, problem=problem, friction=problem.friction_at(system.grid.theta), rest_clearance=rest_clearance,
+        initial_gap=problem.gap_at(system.grid.theta)[0] / system.scales.displacement,
+    )  # fmt: skip

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
-from fastpin.model.loads import ROTATION, SXX, SXY, SYY
+from fastpin.model.loads import REMOTE, ROTATION, SXX, SXY, SYY
+from fastpin.model.room import widest_place
+from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration, elastic_energy
+from fastpin.solver.errors import NoEquilibriumError
+
+FINE = 1441
+"""Angles round the hole at which a gap that varies is looked at."""
+
+TOUCHING = 1e-9
+"""Largest overlap of a resting pin and the hole, in parts of the largest gap."""
+
+REFINEMENTS = 8
+"""Newton's steps for a pin that rests on two places."""
 
 
 def release(system: System, last: Configuration, load: np.ndarray) -> Configuration:
@@ -29,15 +43,29 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
     new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
     new.load = load.copy()
     translation, given = system.drive.translation[:n], system.drive.prescribed(load)
-    position = np.where(system.drive.axes, 0.0, new.rest + new.motion[:2])
-    width = np.maximum(hole_gap(system, load, system.grid.theta)[0] + translation @ given, 0.0)
-    approach = -translation @ position
+    middle = place_between(system, load)
+    way = np.where(system.drive.axes, 0.0, new.rest + new.motion[:2] - middle)
+    width = np.maximum(hole_gap(system, load, system.grid.theta)[0] + translation @ (middle + given), 0.0)
+    approach = -translation @ way
     deep = approach > width
     if deep.any():
-        position *= float(np.min(width[deep] / approach[deep]))
-    position += given
-    put_at_rest(system, new, load, position, system.rest_clearance + translation @ position)
+        way *= float(np.min(width[deep] / approach[deep]))
+    position = middle + way + given
+    put_at_rest(system, new, load, position, system.concentric_gap + translation @ position)
     return new
+
+
+def place_between(system: System, load: np.ndarray) -> np.ndarray:
+    """A place at which the floating pin does not touch the hole under `load`, shape (2,): concentric if it can be.
+
+    A prescribed displacement comes on top of it: along a driven axis it is 0.
+    """
+    place, given = np.zeros(2), system.drive.prescribed(load)
+    if not system.problem.gap:
+        return place
+    theta = np.r_[system.problem.gap_angles, system.grid.theta]
+    gap = hole_gap(system, load, theta)[0] - given[0] * np.cos(theta) - given[1] * np.sin(theta)
+    return place if gap.min() >= 0.0 else widest_place(theta, gap, system.problem.driven)[1]
 
 
 def put_at_rest(
@@ -60,6 +88,91 @@ def put_at_rest(
     configuration.rest_slip = configuration.slip.copy()
 
 
+def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:
+    """The position of the rigid pin at rest on the hole, pushed so that the contact normal is at `angle`.
+
+    Parameters
+    ----------
+    system : System
+    load : ndarray, shape (loads,)
+        Dimensionless. Its remote stress deforms the hole.
+    angle : float
+        rad.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        The position of the pin's centre, shape (2,), from the concentric position; and the gap there, shape (n,).
+        The gap is without the remote stress. It keeps its digits beside the contact for any clearance.
+
+    Raises
+    ------
+    NoEquilibriumError
+        If the remote stress closes the hole on the pin.
+    """
+    cos, sin = math.cos(angle), math.sin(angle)
+    gap, slope, _ = hole_gap(system, load, angle)
+    has_gap = bool(system.problem.gap)
+    is_round = system.bodies is None and not has_gap and not load[list(REMOTE)].any()  # the gap is the same everywhere
+    fine = np.linspace(-math.pi, math.pi, 1 if is_round else FINE)
+    if has_gap:
+        fine = np.unique(np.r_[fine, system.problem.gap_angles])
+    values, _, curvature = hole_gap(system, load, fine)
+    widened = gap - system.rest_clearance
+    shift = np.array([widened * cos - slope * sin, widened * sin + slope * cos])
+    position = system.rest_clearance * np.array([cos, sin]) + shift
+    touches = np.all(values + curvature >= 0.0)  # the pin touches at one point, with its normal at `angle`
+    if has_gap and not touches:
+        left = values - position[0] * np.cos(fine) - position[1] * np.sin(fine)
+        touches = left.min() >= -TOUCHING * np.abs(values).max()
+    if touches:
+        half, moved = 0.5 * (system.grid.theta - angle), system.drive.translation[: system.grid.size] @ shift
+        rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + moved
+        return position, rest_gap + system.initial_gap
+    # The hole is tighter than the pin somewhere: the pin touches at two points.
+    optimum = optimize.linprog([-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None))
+    if not optimum.success:
+        raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
+    position = optimum.x
+    if has_gap:
+        position = _on_two_places(system, load, fine[optimum.ineqlin.marginals < -1e-9], position)
+    return position, system.concentric_gap + system.drive.translation[: system.grid.size] @ position
+
+
+def _on_two_places(system: System, load: np.ndarray, angles: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """The position (2,) of a rigid pin on two places, from a `position` nearby that touches near two `angles`, rad.
+
+    A symmetric hole then has a symmetric pin, to the last digits. `position` itself where there are no two places.
+    """
+    found = position
+    for _ in range(REFINEMENTS):
+        gap, slope, curvature = hole_gap(system, load, angles)
+        across = np.column_stack([np.cos(angles), np.sin(angles)])
+        if angles.size != 2 or abs(np.linalg.det(across)) < TOUCHING:
+            return position
+        found = np.linalg.solve(across, gap)
+        slope = slope - np.column_stack([-across[:, 1], across[:, 0]]) @ found
+        curvature = curvature + across @ found
+        spacing = 2.0 * math.pi / (FINE - 1)
+        smooth = curvature > 0.0
+        angles = angles - np.where(smooth, np.clip(slope / np.where(smooth, curvature, 1.0), -spacing, spacing), 0.0)
+    return found
+
+
+def lowest_angle(system: System, resting: Configuration, angle: float) -> float:
+    """The angle, rad, of the narrowest gap round a resting pin, by Newton's method from an `angle` one node away."""
+    x, y = resting.rest
+    for _ in range(REFINEMENTS):
+        _, slope, curvature = hole_gap(system, resting.load, angle)
+        cos, sin = math.cos(angle), math.sin(angle)
+        slope, curvature = float(slope + x * sin - y * cos), float(curvature + x * cos + y * sin)
+        if not curvature > 0.0:
+            break
+        step = 2.0 * math.pi / system.grid.size
+        angle -= min(max(slope / curvature, -step), step)
+    return angle
+
+
 def climb_angle(force: np.ndarray | float, moment: np.ndarray | float) -> np.ndarray:
     """The angle, rad, by which a pin climbs the hole until friction carries the moment on it; 90 degrees at most.
 
@@ -71,19 +184,29 @@ def climb_angle(force: np.ndarray | float, moment: np.ndarray | float) -> np.nda
 def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
     """Gap of the unloaded, concentric pin in the hole deformed by the remote stress (T16), and two derivatives.
 
+    The initial gap is part of it.
+
     Returns the gap and its first and second derivative at the angles `theta`, rad, dimensionless, shape (3, ...).
     """
     if system.bodies is not None:
         moved = system.bodies.radial(load, theta)
         moved[0] += system.rest_clearance
-        return moved
+        return moved + _initial_gap(system, theta)
     sxx, syy, sxy = load[[SXX, SYY, SXY]]
     mean, oval, diagonal = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy), 2.0 * system.plate * sxy
     cos, sin = np.cos(2.0 * np.asarray(theta)), np.sin(2.0 * np.asarray(theta))
-    return np.array(
+    widened = np.array(
         [
             system.rest_clearance + mean + oval * cos + diagonal * sin,
             -2.0 * oval * sin + 2.0 * diagonal * cos,
             -4.0 * oval * cos - 4.0 * diagonal * sin,
         ]
     )
+    return widened + _initial_gap(system, theta)
+
+
+def _initial_gap(system: System, theta: np.ndarray | float) -> np.ndarray | float:
+    """The initial gap and two derivatives, dimensionless, shape (3, ...); 0 without one."""
+    if not system.problem.gap:
+        return 0.0
+    return system.problem.gap_at(np.asarray(theta)) / system.scales.displacement

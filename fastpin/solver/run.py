@@ -27,8 +27,9 @@ from fastpin.solver.configuration import (
     marks_left,
     slip_tally_with,
 )
-from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
+from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
 from fastpin.solver.first_contact import first_contact
+from fastpin.solver.growth import OutsideGap
 from fastpin.solver.increment import IncrementStepper
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
@@ -155,6 +156,8 @@ class Run:
         self._no_slip = SlipTally.empty(system.grid.size) if counts else NOT_COUNTED
         self.statistics = dict.fromkeys(COUNTED, 0.0)
         self.stepper = _stepper(system, options, self.statistics, strict)
+        # Round a hole that is not round the pin may touch anywhere.
+        self._outside = OutsideGap(system) if system.problem.gap and not system.grid.closed else None
         self._begin_at(start)
 
     def _begin_at(self, start: Restart) -> None:
@@ -252,6 +255,8 @@ class Run:
             for piece in pieces(before, target):
                 self._follow_piece(piece, step)
             self._check_resolution()
+            if self._outside is not None and self._outside.is_closed(self.system, self.now):
+                raise ArcError(BEYOND)
             self._mark_borders()
             known = self.repeats.recall(self.now, ends_cycle, step)
             if known is not None:

@@ -263,7 +263,7 @@ class Session(InTurns):
         history = loads.history() if loads.count else NO_HISTORY
         Task(problem, history, self._options, self._grid)
         place = Place(problem, loads)
-        if here.grid is not None and not new_arc and (problem.assembled_clearance >= 0.0 or here.grid.closed):
+        if here.grid is not None and not new_arc and (here.grid.closed or not problem.is_gripped):
             force = here.force if changes.keys() <= IN_PLACE else reference_force(problem, history.distinct())
             place = replace(place, grid=here.grid, force=force)
         if loads.count:

@@ -28,10 +28,11 @@ from fastpin.reading.zones import runs
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.driven import rest_on_hole
-from fastpin.solver.errors import NoEquilibriumError, SolveError
+from fastpin.solver.errors import ArcError, NoEquilibriumError, SolveError
+from fastpin.solver.first_contact import at_rest
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.repeats import Repeats
-from fastpin.solver.rest import climb_angle, hole_gap, release
+from fastpin.solver.rest import climb_angle, hole_gap, lowest_angle, release
 from fastpin.solver.result import Restart
 from fastpin.solver.run import LEAST_CLOSED, Run, RunProgress
 from fastpin.solver.settling import FiniteStep
@@ -204,6 +205,9 @@ class _Survey:
 
     def _look_where_it_begins(self, load: np.ndarray, finer: float) -> None:
         """Go to a grid that is dense where the floating pin will touch the hole, on the way to `load`, SI."""
+        if self._problem.gap:
+            self._look_where_it_rests(load, finer)
+            return
         scales = self._system.scales
         force, angle, overlap = _force(load), math.atan2(-load[P], load[Q]), 0.0
         if force > 0.0 and self._problem.rotation == "free":
@@ -220,11 +224,31 @@ class _Survey:
             overlap = max(float(moved @ (math.cos(angle), math.sin(angle))), 0.0)
         if force == 0.0 and overlap == 0.0:
             return
+        self._change_grid([(angle, finer * 2.0 * self._half_width(load, angle, overlap))])
+
+    def _look_where_it_rests(self, load: np.ndarray, finer: float) -> None:
+        """The same with an initial gap: the floating pin may touch the hole in several places."""
+        system, unit = self._system, self._system.scales.loads
+        try:
+            found = at_rest(system, self._now, self._load / unit, load / unit)
+        except (NoEquilibriumError, ArcError):
+            return
+        if found is None:
+            return
+        resting, theta = found[0], system.grid.theta
+        nodes = [patch[np.argmin(resting.gap[patch])] for patch in runs(system.grid, resting.closed)]
+        overlap = float(np.abs(load - self._load)[[UX, UY]].max()) / system.scales.displacement
+        if _force(load) > 0.0 or overlap > 0.0:
+            angles = [lowest_angle(system, resting, float(theta[node])) for node in nodes]
+            self._change_grid([(a, finer * 2.0 * self._half_width(load, a, overlap)) for a in angles])
+
+    def _half_width(self, load: np.ndarray, angle: float, overlap: float) -> float:
+        """Half the width, rad, of a contact at `angle` under `load`, SI, or else of an `overlap`."""
+        scales, force = self._system.scales, _force(load)
         gap, _, curvature = hole_gap(self._system, load / scales.loads, angle)
         bend = max(float(gap + curvature), 1e-300)
         square = force / scales.force / (math.pi * bend) if force > 0.0 else 2.0 * overlap / bend
-        half = min(math.sqrt(square), 0.7)
-        self._change_grid([(angle, finer * 2.0 * half)])
+        return min(math.sqrt(square), 0.7)
 
     def _change_grid(self, places: Sequence[GapPlace]) -> None:
         """Go to a graded grid and carry the present contact to it. Without success everything stays."""
@@ -263,7 +287,7 @@ def _carry(old: System, now: Configuration, system: System) -> Configuration | N
         gap=np.where(closed, 0.0, at_nodes(now.gap)),
         slip=at_nodes(now.slip),
         status=status,
-        rest_gap=system.rest_clearance - length + 2.0 * length * np.sin(0.5 * away) ** 2,
+        rest_gap=system.concentric_gap - length + 2.0 * length * np.sin(0.5 * away) ** 2,
         rest_slip=at_nodes(now.rest_slip),
         marks=Marks(),
     )

@@ -79,7 +79,7 @@ class Task:
         object.__setattr__(self, "history", as_history(self.history))
         if self.grid is not None:
             instance("grid", self.grid, Grid, "a Grid")
-            if self.problem.assembled_clearance < 0.0 and not self.grid.closed:
+            if self.problem.is_gripped and not self.grid.closed:
                 raise InputError("grid", "an interference fit is in contact all round: it needs the whole circle")
         check_callable("progress", self.progress)
         check_loads(self.problem, self.history)
