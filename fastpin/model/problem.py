@@ -389,7 +389,7 @@ class Problem:
         """The smallest coefficient of friction round the hole."""
         if not isinstance(self.friction, Profile):
             return self.friction
-        return float(self.friction_at(self.friction.angles(LOOKED_AT)).min())
+        return float(self.friction_at(self.friction.angles(LOOKED_AT, self.hole_radius)).min())
 
     @property
     def uniform_friction(self) -> float:
