@@ -93,7 +93,8 @@ def test_a_result_that_is_too_large_is_not_packed(result: Result) -> None:
     content = store.pack(result, None, LIMIT)
     assert content is not None
     fitting = store.pack(result, None, len(content))
-    assert fitting is not None and len(fitting) == len(content)  # the bytes differ in the date of writing
+    assert fitting is not None
+    assert len(fitting) == len(content)  # the bytes differ in the date of writing
     assert store.pack(result, None, len(content) - 1) is None
     assert store.pack(result, None, 10) is None
 
