@@ -9,7 +9,7 @@ harmless one, so that the rest is still checked.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields
+from dataclasses import fields
 from datetime import date
 from pathlib import Path
 from typing import Any, TypeVar
@@ -19,6 +19,7 @@ from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.material_files import known_materials
 from fastpin.casefile.materials import DUNDURS_KEYS, read_pair
+from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
 from fastpin.model.case import About, Case, check_arc, check_keep
@@ -34,12 +35,17 @@ from fastpin.model.units import PER_THICKNESS
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
 
+_OF_CONTACT = tuple(
+    name for name, each in FIELDS.items() if name not in ("hole_radius", "clearance") and not each.has_section
+)
+
 KEYS: dict[str, tuple[str, ...]] = {
     "about": tuple(field.name for field in fields(About)),
     "pin": MATERIAL_KEYS,
     "plate": MATERIAL_KEYS,
     "dundurs": DUNDURS_KEYS,
-    "contact": tuple(dict.fromkeys(("plane", "hole_radius", "clearance", "load_parameter", *FIELDS))),
+    "contact": ("plane", "hole_radius", "clearance", "load_parameter", *_OF_CONTACT),
+    "gap": GAP_KEYS,
     **{section: keys_of(kinds) for section, kinds in BODY_KINDS.items()},
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
@@ -57,7 +63,7 @@ _DEFAULTS = SolveOptions()
 _SIZES: dict[str, Any] = {
     each.name: each.default
     for each in fields(Problem)
-    if each.name in FIELDS and not FIELDS[each.name].choices and each.default is not MISSING
+    if each.name in FIELDS and isinstance(each.default, (float, type(None)))
 }
 del _SIZES["thickness"]  # it converts the others
 
@@ -285,7 +291,7 @@ def _problem(
         needed = ["load_parameter", "friction"]
     for key in needed:
         contact.require(key, " (or give load_parameter)" if key in ("hole_radius", "clearance") else "")
-    values: dict[str, Any] = {"pair": pair, **{key: contact.number(key) for key in needed}}
+    values: dict[str, Any] = {"pair": pair, **{key: contact.number(key) for key in needed if key != "friction"}}
     chosen = {name: contact.choice(name, field.choices) for name, field in FIELDS.items() if field.choices}
     sizes, thickness = _sizes_and_thickness(contact)
     if chosen["rotation"] == "spring" and "hub_stiffness" not in contact:
@@ -294,8 +300,11 @@ def _problem(
     if radius is None or not LEAST_RADIUS <= radius <= MOST_RADIUS:
         radius, sizes = None, dict(_SIZES)  # without the radius of the hole no size can be checked
     values |= read_bodies(source, folder, radius, given, materials)
-    radius = radius or MOST_RADIUS
+    given_radius, radius = radius, radius or MOST_RADIUS
     unit = radius**2 / (1.0 if make is not Problem else pair.beta_star)
+    dimensionless = make is not Problem
+    values["friction"] = read_friction(contact, folder, "dimensionless" if dimensionless else "per metre")
+    values["gap"] = read_gap(source.section("gap"), folder, given_radius, dimensionless)
     is_complete = None not in chosen.values()
     if is_complete:
         values |= {**chosen, **sizes, **thickness}

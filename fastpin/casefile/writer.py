@@ -23,6 +23,7 @@ from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.profile import Profile
 from fastpin.model.units import PER_THICKNESS
 
 PER_LINE = 8
@@ -46,6 +47,7 @@ def case_text(case: Case) -> str:
         ["[pin]", *_material(case.problem.pair.pin)],
         ["[plate]", *_material(case.problem.pair.plate)],
         ["[contact]", *_contact(case.problem)],
+        ["[gap]", *(f"{name} = {_value(profile.toml())}" for name, profile in case.problem.gap.given.items())],
         *_bodies(case.problem),
         ["[[load]]", *_loads(case.history, case.problem.thickness)],
         ["[solve]", *_options(case.options)],
@@ -78,8 +80,11 @@ def _contact(problem: Problem) -> Iterator[str]:
         yield f"clearance = {problem.clearance!r}"
     for name, field in FIELDS.items():
         value = getattr(problem, name)
-        if value is not None and name not in ("hole_radius", "clearance"):
-            yield f"{name} = {_value(_whole(value, problem.thickness) if field.kind in PER_THICKNESS else value)}"
+        if value is None or field.has_section or name in ("hole_radius", "clearance"):
+            continue
+        if isinstance(value, Profile):
+            value = value.toml()
+        yield f"{name} = {_value(_whole(value, problem.thickness) if field.kind in PER_THICKNESS else value)}"
 
 
 def _bodies(problem: Problem) -> Iterator[list[str]]:
@@ -126,9 +131,12 @@ def _options(options: SolveOptions) -> Iterator[str]:
 
 
 def _value(value: object) -> str:
-    """A number, text, truth value or list of numbers as TOML."""
+    """A number, text, truth value, list of numbers or list of tables as TOML."""
     if isinstance(value, tuple):
         return f"[{', '.join(map(repr, value))}]"
+    if isinstance(value, list):
+        tables = [f"{{ {', '.join(f'{key} = {_value(each)}' for key, each in table.items())} }}" for table in value]
+        return tables[0] if len(tables) == 1 else f"[{', '.join(tables)}]"
     if isinstance(value, str):  # TOML takes the escapes of JSON
         return json.dumps(value, ensure_ascii=False)
     return str(value).lower() if isinstance(value, bool) else repr(value)

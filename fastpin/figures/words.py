@@ -89,7 +89,7 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
     )
     parts = [f"pin: {_material(pair.pin, problem)}{pin_body}; plate: {_material(pair.plate, problem)}"]
     parts[0] += f"{plate_body}; plane {pair.plane}"
-    parts.append(f"friction coefficient {problem.friction:.{DIGITS}g}")
+    parts.append(f"friction coefficient {problem.friction_words(DIGITS)}")
     if not problem.dimensionless:
         parts.append(f"hole radius {short(problem.hole_radius, unit['length'])}")
         word = "clearance" if problem.clearance > 0.0 else "interference"

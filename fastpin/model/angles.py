@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -55,3 +57,32 @@ def interval_from_bottom(start: float, stop: float) -> tuple[float, float]:
     """An interval in rad as degrees from the bottom of the hole. Its middle lies in (-180, 180]."""
     first = degrees_from_bottom(start, turns_from_bottom(0.5 * (start + stop)))
     return first, first + math.degrees(stop - start)
+
+
+DEGREE = math.pi / 180.0
+"""A degree, rad."""
+
+
+def angle_at(degrees: Any) -> Any:
+    """The angle in rad at so many degrees from the bottom of the hole; a number or an array."""
+    return (degrees - 90.0) * DEGREE
+
+
+def degrees_at(angle: float) -> float:
+    """The degrees from the bottom of the hole that :func:`angle_at` turns into an angle, rad: the shortest number.
+
+    Where no number does so, it is the nearest one: the angle that comes back may differ in the last digit.
+    """
+    return _shortest(angle, angle / DEGREE + 90.0, angle_at)
+
+
+def degrees_of(angle: float) -> float:
+    """A difference of angles, rad, in degrees: the shortest number that gives it back. See :func:`degrees_at`."""
+    return _shortest(angle, angle / DEGREE, lambda degrees: degrees * DEGREE)
+
+
+def _shortest(angle: float, degrees: float, back: Callable[[float], float]) -> float:
+    """The number near `degrees` with the fewest decimals that `back` turns into the angle; else `degrees`."""
+    rounded = (round(degrees, decimals) for decimals in range(14))
+    near = (math.nextafter(degrees, end) for end in (-math.inf, math.inf))
+    return next((each for each in (*rounded, degrees, *near) if back(each) == angle), degrees)

@@ -117,7 +117,7 @@ def column_choices(field: str, given: object) -> dict[str, ColumnChoice]:
 def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) -> list[CsvColumn]:
     """Return the columns of a header that hold the chosen loads. An :class:`InputError` names a missing column."""
     titles = [cell.strip() for cell in cells]
-    parts = [_title_and_unit(title) for title in titles]
+    parts = [title_and_unit(title) for title in titles]
     found = []
     for load, choice in choices.items():
         wanted = choice.column.strip()
@@ -148,7 +148,7 @@ def named_columns(cells: Sequence[str]) -> list[CsvColumn]:
     found = []
     for place, cell in enumerate(cells):
         title = cell.strip()
-        name, unit = _title_and_unit(title)
+        name, unit = title_and_unit(title)
         try:
             load = LOADS[load_index(name if unit and name in LOADS else title, f"column {place + 1}")]
         except InputError as error:
@@ -180,7 +180,7 @@ def _one_unit(load: str, given: str, written: str, where: str) -> str:
     return given or written
 
 
-def _title_and_unit(title: str) -> tuple[str, str]:
+def title_and_unit(title: str) -> tuple[str, str]:
     """Split a header such as "Force [N]", "Force (N)" or "Force / N" into a name and a unit in its usual spelling."""
     for begin, end in ("[]", "()"):
         name, bracket, rest = title.rpartition(begin)

@@ -26,6 +26,10 @@ class Field(NamedTuple):
         Its name on an axis; empty if the name of the field is made of words.
     also : str
         Other words that users write for its name, in lower case.
+    is_profile : bool
+        Whether it may be a profile along the rim instead of a number.
+    has_section : bool
+        Whether it is no key of [contact], but a section of its own, with a profile along the rim for each key.
     """
 
     kind: str = ""
@@ -34,13 +38,17 @@ class Field(NamedTuple):
     in_ids: Literal["always", "given", "never"] = "always"
     words: str = ""
     also: str = ""
+    is_profile: bool = False
+    has_section: bool = False
 
 
 FIELDS = {
     "hole_radius": Field("length", also="r radius r_hole plate_radius a"),
     "clearance": Field("length", also="delta delta_r dr gap play radial_clearance initial_gap c"),
     "friction": Field(
-        words="friction coefficient", also="mu cof f friction_coefficient coefficient_of_friction coulomb"
+        words="friction coefficient",
+        also="mu cof f friction_coefficient coefficient_of_friction coulomb",
+        is_profile=True,
     ),
     "pin_load": Field(choices=("centre", "body"), words="load of the pin", also="load_type loading load_model"),
     "rotation": Field(choices=("free", "fixed", "spring"), also="theta omega phi angle twist rotate pin_rotation"),
@@ -54,5 +62,12 @@ FIELDS = {
     "drive": Field(choices=("force", "ux", "uy", "both"), in_ids="given"),
     "gauge_radius": Field("length", is_optional=True, in_ids="given", also="r_gauge gauge"),
     "thickness": Field("length", is_optional=True, in_ids="never", also="t h width plate_thickness depth b"),
+    "gap": Field(
+        "displacement",
+        in_ids="given",
+        words="initial gap",
+        also="initial_gap profile profiles form ovality roundness initial_profile",
+        has_section=True,
+    ),
 }
 """The fields by name, in the order of case files."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -25,7 +25,8 @@ from fastpin.model.checks import (
 )
 from fastpin.model.fields import FIELDS
 from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
-from fastpin.model.profile import NO_GAP, InitialGap, Profile, Term
+from fastpin.model.profile import NO_GAP, InitialGap, Profile, ProfileLike, is_pair
+from fastpin.model.profile_terms import Term
 from fastpin.model.room import widest_place
 from fastpin.model.synonyms import explains_keywords
 
@@ -79,8 +80,8 @@ class Problem:
     clearance : float
         Radial clearance R - R_D, m. Zero is a neat fit, negative an interference fit.
     friction : float or Profile
-        Coefficient of friction, 0 to :data:`MOST_FRICTION`. A :class:`fastpin.Profile` gives its value along the rim of
-        the hole; :meth:`Profile.of` says what else is understood.
+        Coefficient of friction, 0 to :data:`MOST_FRICTION`. A :class:`fastpin.model.Profile` gives its value along the
+        rim of the hole. A function of angles, rad, or a pair of angles and values stands for its profile.
     pin_load : {"centre", "body"}
         The load of a solid pin acts at its centre, or as a uniform body force (section 4 of the paper). The load of a
         hollow pin is a field of its :class:`fastpin.bodies.Tube`.
@@ -120,10 +121,9 @@ class Problem:
         energies in J. Loads and results in Python and HDF5 stay per thickness:
         :meth:`fastpin.LoadHistory.per_thickness` converts loads. In case files loads are in N and N m then. Not for a
         dimensionless problem.
-
     gap : InitialGap
-        Initial gap beside the clearance, m: profiles of hole and pin, at most :data:`MOST_GAP` R. A profile alone is
-        that of the hole; :meth:`Profile.of` says what else is understood.
+        Initial gap beside the clearance, m: the profiles of hole and pin, each at most :data:`MOST_GAP` R, as a
+        :class:`fastpin.model.InitialGap`. All else that stands for a profile is the profile of the hole.
 
     Raises
     ------
@@ -190,32 +190,21 @@ class Problem:
         object.__setattr__(self, "clearance", clearance)
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "dimensionless", bool(self.dimensionless))
-        object.__setattr__(self, "gap", self._checked_gap(radius))
+        object.__setattr__(self, "gap", checked_gap(self.gap, radius, self.dimensionless))
 
     def _checked_friction(self, radius: float) -> float | Profile:
         """The coefficient of friction: a number, or a profile if it varies. `radius` is the radius of the hole."""
         given = self.friction
-        if not (isinstance(given, (Profile, Term, tuple, list)) or callable(given)):
+        if not (isinstance(given, (Profile, Term)) or callable(given) or is_pair(given)):
             friction = not_negative("friction", given)
             return number("friction", friction, 0.0, MOST_FRICTION)
         profile = Profile.of("friction", given)
+        if profile.needs_lengths:
+            raise InputError("friction", "must not have a flat, which is a shape of a pin")
         values = profile.at(profile.angles(LOOKED_AT, radius), radius)
         not_negative("friction", float(values.min()))
         number("friction", float(values.max()), 0.0, MOST_FRICTION)
         return float(values[0]) if profile.is_constant else profile
-
-    def _checked_gap(self, radius: float) -> InitialGap:
-        """The initial gap. `radius` is the radius of the hole."""
-        gap = InitialGap.of(self.gap)
-        if not gap:
-            return NO_GAP
-        if self.dimensionless and (gap.hole.needs_lengths or gap.pin.needs_lengths):
-            raise InputError("gap", "a flat has no meaning in a dimensionless problem: its shape needs lengths in m")
-        largest = float(np.abs(gap.values(gap.angles(LOOKED_AT, radius), radius)[0]).max())
-        most = MOST_PARAMETER if self.dimensionless else MOST_GAP * radius
-        if largest > most:
-            raise InputError("gap", f"is too large for small strains: must lie within {most:g}, not {largest:g}")
-        return gap
 
     def _check_hub(self, radius: float) -> None:
         """Check the radius and the stiffness of the hub. `radius` is the radius of the hole."""
@@ -266,12 +255,10 @@ class Problem:
         load = {"centre": "load at the centre", "body": "body load"}[self.pin_load]
         load = load if self.pin_body == SOLID_PIN else repr(self.pin_body)
         plate = "" if self.plate_body == INFINITE_PLATE else f"\n {self.plate_body!r}"
-        friction = f"{self.most_friction:.6g}"
-        if isinstance(self.friction, Profile):
-            friction = f"{self.least_friction:.6g} to {friction} along the rim"
+        gap = "".join(f"\n {name} profile {profile!r}" for name, profile in self.gap.given.items())
         return (
-            f"<Problem: {self.pair!r}\n {size}, friction {friction}\n"
-            f" {load}, rotation {self.rotation}{hub}{driven}{plate}>"
+            f"<Problem: {self.pair!r}\n {size}, friction {self.friction_words()}\n"
+            f" {load}, rotation {self.rotation}{hub}{driven}{plate}{gap}>"
         )
 
     @classmethod
@@ -377,19 +364,47 @@ class Problem:
         """Whether the coefficient of friction is zero all round."""
         return self.most_friction == 0.0
 
-    @cached_property
+    @property
     def most_friction(self) -> float:
         """The largest coefficient of friction round the hole."""
-        if not isinstance(self.friction, Profile):
-            return self.friction
-        return float(self.friction.at(self.friction.angles(LOOKED_AT, self.hole_radius), self.hole_radius).max())
+        return self._friction_limits[1]
 
-    @cached_property
+    @property
     def least_friction(self) -> float:
         """The smallest coefficient of friction round the hole."""
+        return self._friction_limits[0]
+
+    @cached_property
+    def _friction_limits(self) -> tuple[float, float]:
         if not isinstance(self.friction, Profile):
-            return self.friction
-        return float(self.friction_at(self.friction.angles(LOOKED_AT, self.hole_radius)).min())
+            return self.friction, self.friction
+        values = self.friction_at(self.friction.angles(LOOKED_AT, self.hole_radius))
+        return float(values.min()), float(values.max())
+
+    def friction_words(self, digits: int = 6) -> str:
+        """The coefficient of friction as text, to so many significant digits: its range if it varies."""
+        least, most = self._friction_limits
+        if not isinstance(self.friction, Profile):
+            return f"{most:.{digits}g}"
+        return f"{least:.{digits}g} to {most:.{digits}g} along the rim"
+
+    @property
+    def profiles(self) -> dict[str, Profile]:
+        """The profiles along the rim that are given, by their names in case files: section and key."""
+        found = {f"gap.{name}": profile for name, profile in self.gap.given.items()}
+        return found | ({"contact.friction": self.friction} if isinstance(self.friction, Profile) else {})
+
+    def entries(self) -> dict[str, Any]:
+        """The fields of :data:`fastpin.model.fields.FIELDS` by name, as ids and HDF5 files hold them.
+
+        A profile is its list of terms. An initial gap is the profiles of "hole" and "pin"; none is left out.
+        """
+        found = {name: getattr(self, name) for name in FIELDS if name != "gap" or self.gap}
+        if isinstance(self.friction, Profile):
+            found["friction"] = self.friction.entries()
+        if self.gap:
+            found["gap"] = {name: profile.entries() for name, profile in self.gap.given.items()}
+        return found
 
     @property
     def uniform_friction(self) -> float:
@@ -470,3 +485,21 @@ class Problem:
 def checked_thickness(field: str, value: object) -> float:
     """Check a thickness, m, from :data:`LEAST_RADIUS` to :data:`MOST_RADIUS`, and return it as a float."""
     return number(field, positive(field, value), LEAST_RADIUS, MOST_RADIUS)
+
+
+def checked_gap(given: InitialGap | ProfileLike, radius: float, dimensionless: bool) -> InitialGap:
+    """Check an initial gap, m, or in units of F beta*, for a hole of this radius, m. A profile of zeros is left out."""
+    gap, kept = InitialGap.of(given), {}
+    most = MOST_PARAMETER if dimensionless else MOST_GAP * radius
+    for name, profile in gap.given.items():
+        if dimensionless and profile.needs_lengths:
+            raise InputError(
+                f"gap.{name}", "a flat has no meaning in a dimensionless problem: its shape needs lengths in m"
+            )
+        largest = float(np.abs(profile.at(profile.angles(LOOKED_AT, radius), radius)).max())
+        if not largest <= most:
+            limits = f"must lie within {most:g}, a tenth of the hole radius" if not dimensionless else f"{most:g}"
+            raise InputError(f"gap.{name}", f"is too large for small strains: {limits}, not {largest:g}")
+        if largest:
+            kept[name] = profile
+    return InitialGap(**kept) if kept else NO_GAP

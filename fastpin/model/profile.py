@@ -1,249 +1,53 @@
-"""A quantity along the rim as a sum of terms: the initial gap, or the coefficient of friction."""
+"""A quantity along the rim as a sum of terms: the initial gap, or the coefficient of friction.
+
+In Python angles are in rad and count from +x. Case files, JSON and texts have degrees from the bottom of the hole.
+"""
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TypeAlias
+from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.angles import angle_between
-from fastpin.model.checks import instance, number, positive, whole_number
-from fastpin.runtime.extensions import interpolate
+from fastpin.model.angles import angle_at
+from fastpin.model.checks import as_toml, check_callable, choice, instances, number, number_array, whole_number
+from fastpin.model.profile_csv import QUANTITIES, read_samples
+from fastpin.model.profile_terms import (
+    MOST_ANGLE,
+    MOST_ORDER,
+    MOST_SAMPLES,
+    TERMS,
+    Crown,
+    Flat,
+    Harmonic,
+    InWords,
+    Samples,
+    Term,
+    Zone,
+)
+from fastpin.model.synonyms import explains_keywords
 
-MOST_ORDER = 1000
-"""Largest number of waves of a harmonic round the hole."""
-
-MOST_TERMS, MOST_SAMPLES = 100, 100_000
-"""Most terms of a profile, and most samples of a term."""
-
-WAVE = 16
-"""Angles in a wave, or in a crown, at which its value must be looked at."""
+MOST_TERMS = 100
+"""Most terms of a profile."""
 
 CALLED = 1440
 """Samples of a function round the hole: four a degree."""
 
-PERIODIC = 1e-9
-"""Largest difference of samples a turn apart, in parts of the largest sample."""
+MOST_DESCRIBED = 4
+"""Most terms that are described one by one."""
 
 
-class Term(ABC):
-    """A term of a profile. It has a value, a slope and a curvature at each angle."""
-
-    jumps = False
-    needs_lengths = False
-
-    def angles_of_note(self, radius: float) -> np.ndarray:
-        """Angles, rad, at which its value must be looked at. `radius` is the radius of the hole, m."""
-        return np.zeros(0)
-
-    @abstractmethod
-    def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
-        """Value, first and second derivative at the angles `theta` (...), rad, shape (3, ...).
-
-        `radius` is the radius of the hole, m.
-        """
-
-
-@dataclass(frozen=True)
-class Harmonic(Term):
-    """A wave round the hole: cosine cos n theta + sine sin n theta.
-
-    Parameters
-    ----------
-    order : int
-        The number n of waves, 0 to :data:`MOST_ORDER`. Order 0 is a constant.
-    cosine, sine : float
-        Amplitudes, in the unit of the profile.
-    """
-
-    order: int
-    cosine: float = 0.0
-    sine: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "order", whole_number("order", self.order, 0, MOST_ORDER))
-        for name in ("cosine", "sine"):
-            object.__setattr__(self, name, number(name, getattr(self, name)))
-
-    def angles_of_note(self, radius: float) -> np.ndarray:
-        return np.arange(WAVE * self.order) * (2.0 * math.pi / (WAVE * max(self.order, 1))) - math.pi
-
-    def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
-        n = self.order
-        cos, sin = np.cos(n * theta), np.sin(n * theta)
-        value = self.cosine * cos + self.sine * sin
-        return np.array([value, n * (self.sine * cos - self.cosine * sin), -n * n * value])
-
-
-@dataclass(frozen=True)
-class Flat(Term):
-    """A flat, ground on a pin: the gap between a circle and its chord.
-
-    Parameters
-    ----------
-    depth : float
-        Depth of the chord below the circle, m, positive.
-    centre : float
-        Angle of its middle, rad.
-    """
-
-    depth: float
-    centre: float
-
-    needs_lengths = True
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "depth", positive("depth", self.depth))
-        object.__setattr__(self, "centre", number("centre", self.centre))
-
-    def angles_of_note(self, radius: float) -> np.ndarray:
-        half = math.acos(max(1.0 - self.depth / radius, 0.0))
-        return self.centre + np.array([-half, 0.0, half])
-
-    def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
-        away = angle_between(theta, self.centre)
-        chord = max(radius - self.depth, 0.0)
-        inside = np.cos(away) * radius > chord
-        cos, tan = np.cos(np.where(inside, away, 0.0)), np.tan(np.where(inside, away, 0.0))
-        secant = chord / cos
-        return np.where(inside, [radius - secant, -secant * tan, -secant * (1.0 + 2.0 * tan * tan)], 0.0)
-
-
-@dataclass(frozen=True)
-class Crown(Term):
-    """A smooth bump: height (1 + cos(pi phi / half_width)) / 2 at the angle phi from its middle, 0 beyond.
-
-    Parameters
-    ----------
-    height : float
-        Its value in the middle, in the unit of the profile. In a gap a negative height is material that stands out.
-    centre : float
-        Angle of its middle, rad.
-    half_width : float
-        Angle from its middle to its foot, rad, positive, at most pi.
-    """
-
-    height: float
-    centre: float
-    half_width: float
-
-    def __post_init__(self) -> None:
-        for name in ("height", "centre"):
-            object.__setattr__(self, name, number(name, getattr(self, name)))
-        positive("half_width", self.half_width)
-        object.__setattr__(self, "half_width", number("half_width", self.half_width, 0.0, math.pi))
-
-    def angles_of_note(self, radius: float) -> np.ndarray:
-        return self.centre + np.linspace(-self.half_width, self.half_width, WAVE + 1)
-
-    def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
-        away, wave = angle_between(theta, self.centre), math.pi / self.half_width
-        inside = np.abs(away) < self.half_width
-        cos, sin, half = np.cos(wave * away), np.sin(wave * away), 0.5 * self.height
-        return np.where(inside, [half * (1.0 + cos), -half * wave * sin, -half * wave * wave * cos], 0.0)
-
-
-@dataclass(frozen=True)
-class Zone(Term):
-    """A constant from one angle to another, counter-clockwise, and 0 elsewhere. It jumps at its ends.
-
-    Parameters
-    ----------
-    value : float
-        In the unit of the profile.
-    start, stop : float
-        Its ends, rad. The zone may pass the angle pi. It is shorter than a turn.
-    """
-
-    value: float
-    start: float
-    stop: float
-
-    jumps = True
-
-    def __post_init__(self) -> None:
-        for name in ("value", "start", "stop"):
-            object.__setattr__(self, name, number(name, getattr(self, name)))
-        if not 0.0 < self.stop - self.start < 2.0 * math.pi:
-            raise InputError("stop", f"must lie less than a turn beyond the start {self.start:g}, not at {self.stop:g}")
-
-    def angles_of_note(self, radius: float) -> np.ndarray:
-        return np.array([self.start, 0.5 * (self.start + self.stop)])
-
-    def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
-        inside = np.remainder(np.asarray(theta) - self.start, 2.0 * math.pi) < self.stop - self.start
-        value = np.where(inside, self.value, 0.0)
-        return np.array([value, np.zeros_like(value), np.zeros_like(value)])
-
-
-@dataclass(frozen=True)
-class Samples(Term):
-    """Values at angles round the hole, joined by a periodic cubic spline.
-
-    Parameters
-    ----------
-    angles : sequence of float
-        Angles, rad, increasing, at least four, within a turn. A last angle a whole turn beyond the first one repeats
-        the first value.
-    heights : sequence of float
-        Values there, in the unit of the profile.
-    """
-
-    angles: Sequence[float] | np.ndarray
-    heights: Sequence[float] | np.ndarray
-
-    def __post_init__(self) -> None:
-        angles, heights = _samples("angles", self.angles), _samples("heights", self.heights)
-        if angles.size != heights.size:
-            raise InputError("heights", f"must be as many as the angles, {angles.size}, not {heights.size}")
-        turn = 2.0 * math.pi
-        if angles.size > 1 and math.isclose(angles[-1] - angles[0], turn, rel_tol=PERIODIC):
-            if abs(heights[-1] - heights[0]) > PERIODIC * np.abs(heights).max():
-                raise InputError(
-                    "heights", f"must be equal at the ends of a turn, not {heights[0]:g} and {heights[-1]:g}"
-                )
-            angles, heights = angles[:-1], heights[:-1]
-        if not 4 <= angles.size <= MOST_SAMPLES:
-            raise InputError("angles", f"must be from 4 to {MOST_SAMPLES} angles within a turn, not {angles.size}")
-        if np.any(np.diff(angles) <= 0.0) or angles[-1] - angles[0] >= turn:
-            raise InputError("angles", "must increase, all within one turn")
-        object.__setattr__(self, "angles", tuple(angles.tolist()))
-        object.__setattr__(self, "heights", tuple(heights.tolist()))
-
-    @cached_property
-    def _spline(self) -> Callable[..., np.ndarray]:
-        angles, heights = np.array(self.angles), np.array(self.heights)
-        spline: Callable[..., np.ndarray] = interpolate.CubicSpline(
-            np.r_[angles, angles[0] + 2.0 * math.pi], np.r_[heights, heights[0]], bc_type="periodic"
-        )
-        return spline
-
-    def angles_of_note(self, radius: float) -> np.ndarray:
-        return np.array(self.angles)
-
-    def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
-        return np.array([self._spline(theta, order) for order in range(3)])
-
-
-TERMS: dict[str, type[Term]] = {
-    "harmonic": Harmonic,
-    "flat": Flat,
-    "crown": Crown,
-    "zone": Zone,
-    "samples": Samples,
-}
-"""The kinds of terms by their names in files."""
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Profile:
     """A quantity along the rim of the hole: the sum of its terms. Angles count from +x, counter-clockwise, in rad.
+
+    A profile is made by the methods :meth:`ellipse`, :meth:`lobes`, :meth:`harmonic`, :meth:`flat`, :meth:`crown`,
+    :meth:`zone`, :meth:`constant`, :meth:`samples` and :meth:`from_csv`. Profiles are added by ``+``.
 
     Parameters
     ----------
@@ -254,17 +58,21 @@ class Profile:
     terms: tuple[Term, ...] = ()
 
     def __post_init__(self) -> None:
-        terms = tuple(self.terms)
-        for term in terms:
-            instance("terms", term, Term, "a term of a profile")  # type: ignore[type-abstract]
+        terms = tuple(instances("terms", self.terms, Term, "terms of a profile"))  # type: ignore[type-abstract]
         if len(terms) > MOST_TERMS:
             raise InputError("terms", f"must be at most {MOST_TERMS}, not {len(terms)}")
+        samples = sum(len(term.angles) for term in terms if isinstance(term, Samples))
+        if samples > MOST_SAMPLES:
+            raise InputError("terms", f"must have at most {MOST_SAMPLES:,} samples in all, not {samples:,}")
         object.__setattr__(self, "terms", terms)
+
+    def __repr__(self) -> str:
+        return f"<Profile: {self.words(lambda value: f'{value:.6g}')}>"
 
     @classmethod
     def constant(cls, value: float) -> Profile:
         """The same value all round."""
-        return cls((Harmonic(0, value),))
+        return cls((Harmonic(0, number("value", value)),))
 
     @classmethod
     def ellipse(cls, size: float, axis: float = 0.0) -> Profile:
@@ -275,8 +83,67 @@ class Profile:
     def lobes(cls, count: int, size: float, axis: float = 0.0) -> Profile:
         """A rim with so many lobes: `size` cos `count` (theta - axis)."""
         size, axis = number("size", size), number("axis", axis)
+        if abs(axis) > MOST_ANGLE:
+            raise InputError("axis", f"must lie within two turns: angles are in rad, not {axis:g}")
         count = whole_number("count", count, 1, MOST_ORDER)
         return cls((Harmonic(count, size * math.cos(count * axis), size * math.sin(count * axis)),))
+
+    @classmethod
+    def harmonic(cls, order: int, cosine: float = 0.0, sine: float = 0.0) -> Profile:
+        """A wave round the hole: `cosine` cos n theta + `sine` sin n theta, with n = `order` from 0 to 1000."""
+        return cls((Harmonic(order, cosine, sine),))
+
+    @classmethod
+    def flat(cls, depth: float, centre: float) -> Profile:
+        """A flat, ground on a pin: a chord, m, `depth` below the circle at the angle `centre`. For gaps only."""
+        return cls((Flat(depth, centre),))
+
+    @classmethod
+    def crown(cls, height: float, centre: float, half_width: float) -> Profile:
+        """A smooth bump of a `height` at the angle `centre`, and 0 at `half_width` from it and beyond.
+
+        It is height (1 + cos(pi phi / half_width)) / 2 at the angle phi from its middle. In a gap a negative height is
+        material that stands out.
+        """
+        return cls((Crown(height, centre, half_width),))
+
+    @classmethod
+    def zone(cls, value: float, start: float, stop: float) -> Profile:
+        """A `value` from the angle `start` counter-clockwise to `stop`, and 0 elsewhere. For friction only."""
+        return cls((Zone(value, start, stop),))
+
+    @classmethod
+    def samples(cls, angles: Sequence[float] | np.ndarray, values: Sequence[float] | np.ndarray) -> Profile:
+        """Values at increasing angles within a turn, shape (n,), joined by a periodic cubic spline.
+
+        Neighbours are at most 120 degrees apart. A last angle a turn beyond the first one repeats the first value.
+        """
+        try:
+            return cls((Samples(angles, values),))
+        except InputError as error:
+            raise InputError("values" if error.field == "heights" else error.field, error.reason) from None
+
+    @classmethod
+    def from_csv(cls, path: str | Path, quantity: str = "gap") -> Profile:
+        """Samples from a CSV file with two columns: the angle from the bottom of the hole, and the value there.
+
+        The first line names the columns, each perhaps with a unit: ``angle [deg]``, ``gap [um]``. Without units angles
+        are in degrees and gaps in m.
+
+        Parameters
+        ----------
+        path : str or Path
+        quantity : {"gap", "friction"}
+            What the values are. Friction has no unit.
+
+        Raises
+        ------
+        CaseFileError
+            If the file can't be read or has faults. It lists them with their lines.
+        InputError
+            If the samples do not go round the hole, see :meth:`samples`.
+        """
+        return cls.samples(*read_samples(path, choice("quantity", quantity, QUANTITIES)))  # type: ignore[arg-type]
 
     @classmethod
     def of(cls, place: str, value: ProfileLike) -> Profile:
@@ -290,16 +157,53 @@ class Profile:
         if isinstance(value, Term):
             return cls((value,))
         if callable(value):
-            theta = np.arange(CALLED) * (2.0 * math.pi / CALLED) - math.pi
-            heights = np.asarray(value(theta))
+            check_callable(place, value, 1)
+            theta = angle_at(np.arange(CALLED + 1) * (360.0 / CALLED) - 90.0)
+            heights = number_array(place, value(theta))
             if heights.shape != theta.shape:
                 shape = f"must return an array of the shape {theta.shape} of its angles, not {heights.shape}"
                 raise InputError(place, shape)
-            return cls((Samples(theta, heights),))
-        if isinstance(value, (tuple, list)) and len(value) == 2:
-            return cls((Samples(value[0], value[1]),))
+            value = theta, heights
+        if is_pair(value):
+            try:
+                return cls.samples(*value)  # type: ignore[misc]
+            except InputError as error:
+                raise InputError(place, f"{error.field}: {error.reason}") from None
         height = number(place, value)
         return cls.constant(height) if height else cls()
+
+    @classmethod
+    def from_entries(cls, entries: Sequence[dict[str, Any]]) -> Profile:
+        """The profile of the :meth:`entries` of its terms.
+
+        Raises
+        ------
+        ValueError
+            If a kind is unknown.
+        InputError
+            If a value is out of range.
+        """
+        terms = []
+        for each in entries:
+            if each.get("kind") not in TERMS:
+                raise ValueError(f"the kind {as_toml(each.get('kind'))} of a profile is unknown")
+            terms.append(TERMS[each["kind"]](**{name: value for name, value in each.items() if name != "kind"}))
+        return cls(tuple(terms))
+
+    def entries(self) -> list[dict[str, Any]]:
+        """The entries of its terms, as ids and HDF5 files hold them. Angles are in rad from +x."""
+        return [term.entries() for term in self.terms]
+
+    def toml(self) -> list[dict[str, Any]]:
+        """The tables of its terms, as case files and JSON hold them. Angles are in degrees from the bottom."""
+        return [term.toml() for term in self.terms]
+
+    def words(self, text: InWords) -> str:
+        """Words that describe it. `text` words a value."""
+        described = [term.words(text) for term in self.terms[:MOST_DESCRIBED]]
+        if len(self.terms) > MOST_DESCRIBED:
+            described.append(f"and {len(self.terms) - MOST_DESCRIBED} more terms")
+        return "; ".join(described) or text(0.0)
 
     def __add__(self, other: Profile) -> Profile:
         if not isinstance(other, Profile):
@@ -313,7 +217,7 @@ class Profile:
 
     @property
     def needs_lengths(self) -> bool:
-        """Whether the quantity has no meaning in a dimensionless problem, which has no lengths."""
+        """Whether the shape of a term depends on its size in parts of the radius."""
         return any(term.needs_lengths for term in self.terms)
 
     @property
@@ -350,17 +254,13 @@ ProfileLike: TypeAlias = "Profile | Term | float | Callable[[np.ndarray], np.nda
 """Whatever :meth:`Profile.of` understands."""
 
 
-def _samples(field: str, values: object) -> np.ndarray:
-    """Finite numbers in one row, at most :data:`MOST_SAMPLES`."""
-    try:
-        row = np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise InputError(field, "must be numbers in one row") from error
-    if row.ndim != 1 or not np.isfinite(row).all():
-        raise InputError(field, "must be finite numbers in one row")
-    return row
+def is_pair(value: object) -> bool:
+    """Whether a value is a pair of angles and values."""
+    rows = (list, tuple, np.ndarray)
+    return isinstance(value, (list, tuple)) and len(value) == 2 and all(isinstance(each, rows) for each in value)
 
 
+@explains_keywords
 @dataclass(frozen=True)
 class InitialGap:
     """The initial gap between pin and hole beside the clearance: the profiles of both, radial, m.
@@ -371,7 +271,8 @@ class InitialGap:
     Parameters
     ----------
     hole, pin : Profile
-        Without jumps. In a dimensionless problem, in units of F beta*. :meth:`Profile.of` says what else is understood.
+        Without jumps. In a dimensionless problem, in units of F beta*. A number, a function of angles, rad, or a pair
+        of angles and values stands for its profile.
     """
 
     hole: Profile = field(default_factory=Profile)
@@ -387,10 +288,15 @@ class InitialGap:
     @classmethod
     def of(cls, value: InitialGap | ProfileLike) -> InitialGap:
         """The initial gap that a user means by `value`. All but an initial gap is the profile of the hole."""
-        return value if isinstance(value, InitialGap) else cls(Profile.of("gap", value))
+        return value if isinstance(value, InitialGap) else cls(value)  # type: ignore[arg-type]
+
+    @property
+    def given(self) -> dict[str, Profile]:
+        """The profiles with terms, by "hole" and "pin"."""
+        return {name: profile for name in ("hole", "pin") if (profile := getattr(self, name)).terms}
 
     def __bool__(self) -> bool:
-        return bool(self.hole.terms or self.pin.terms)
+        return bool(self.given)
 
     def angles(self, count: int, radius: float) -> np.ndarray:
         """Angles at which the gap shows itself, rad, in order; see :meth:`Profile.angles`."""

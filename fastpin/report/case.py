@@ -66,7 +66,8 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         ("plate", _material(pair.plate, problem.dimensionless)),
         *_bodies(problem),
         ("pair", f"plane {pair.plane}, {contact}Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),
-        ("contact", f"{size}, friction {problem.friction:g}"),
+        ("contact", f"{size}, friction {problem.friction_words()}"),
+        *profile_rows(problem),
         ("loading", f"{pin_load}, rotation {problem.rotation}{_hub(problem)}{_drive(problem)}"),
         ("solver", f"{method}, {options.nodes} nodes, {where}"),
         ("loads", f"{count:,} corner{'s' * (count != 1)}, reached {'one after the other ' * (count != 1)}from no load"),
@@ -74,6 +75,16 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
     if options.keep != "all":
         rows.append(("states", f"kept: {options.keep}"))
     return rows
+
+
+def profile_rows(problem: Problem) -> list[tuple[str, str]]:
+    """Return the rows that describe the profiles along the rim; none for a round hole and pin and uniform friction."""
+    gap, angle = units(problem)["displacement"], "angles in degrees from the bottom"
+    found = [(f"{name} profile", profile.words(gap.text)) for name, profile in problem.gap.given.items()]
+    friction = problem.profiles.get("contact.friction")
+    if friction is not None:
+        found.append(("friction", friction.words(lambda value: f"{value:.4g}")))
+    return [(name, f"{words} ({angle})" if "deg" in words else words) for name, words in found]
 
 
 def edge_body(problem: Problem, body: str) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 
 from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.model.checks import choice
-from fastpin.model.fields import FIELDS
+from fastpin.model.fields import FIELDS, Field
 from fastpin.model.loads import LOADS
 from fastpin.model.options import METHODS, SolveOptions
 from fastpin.states.cycles import Cycle
@@ -102,13 +102,24 @@ def _problem() -> Schema:
             "plane": {"enum": ["strain", "stress"]},
             "dundurs": _object({"alpha": _NUMBER, "beta": _NUMBER, "convention": _TEXT}),
             "beta_star": _NUMBER,
-            **{name: _TEXT if f.choices else _UNKNOWN if f.is_optional else _NUMBER for name, f in FIELDS.items()},
+            **{name: _field(field) for name, field in FIELDS.items()},
             **dict.fromkeys(("pin_body", "plate_body"), body),
             "assembled_clearance": _NUMBER,
             "press_fit_pressure": _NUMBER,
             "dimensionless": _TRUTH,
-        }
+        },
+        without=[name for name, field in FIELDS.items() if field.has_section],
     )
+
+
+def _field(field: Field) -> Schema:
+    """A field of a problem. A profile along the rim is a list of tables, as in a case file."""
+    profile = _list_of({"type": "object"}) | {"description": "terms of a profile; angles in degrees from the bottom"}
+    if field.has_section:
+        return _map_of(profile, "profiles; left out without any")
+    if field.is_profile:
+        return {"anyOf": [_NUMBER, profile]}
+    return _TEXT if field.choices else _UNKNOWN if field.is_optional else _NUMBER
 
 
 def _state() -> Schema:
@@ -254,9 +265,11 @@ COMMANDS = tuple(_DOCUMENTS)
 """Commands whose document has a schema."""
 
 
-def _object(properties: Mapping[str, Schema], required: Iterable[str] | None = None) -> Schema:
-    """An object with these keys only; all of them must be there, unless some are `required`."""
-    needed = list(properties if required is None else required)
+def _object(
+    properties: Mapping[str, Schema], required: Iterable[str] | None = None, without: Iterable[str] = ()
+) -> Schema:
+    """An object with these keys only. All must be there, unless some are `required`, or it may be `without` some."""
+    needed = [name for name in (properties if required is None else required) if name not in tuple(without)]
     return {"type": "object", "properties": dict(properties), "required": needed, "additionalProperties": False}
 
 

@@ -15,6 +15,7 @@ from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
+from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, units
 from fastpin.report import cycle as cycle_report
 from fastpin.report.margins import document as margins_document
@@ -61,7 +62,7 @@ def document(
             "plane": pair.plane,
             "dundurs": {"alpha": alpha, "beta": beta, "convention": "usual"},
             "beta_star": problem.surfaces.beta_star,
-            **{name: _in_its_unit(problem, name) for name in FIELDS},
+            **{name: _in_its_unit(problem, name) for name in problem.entries()},
             "pin_body": _body_summary(problem.pin_body),
             "plate_body": _body_summary(problem.plate_body),
             "assembled_clearance": problem.assembled_clearance,
@@ -91,6 +92,10 @@ def document(
 def _in_its_unit(problem: Problem, name: str) -> Any:
     """A field of the problem, in the unit that :func:`unit_names` gives to its kind."""
     value, kind = getattr(problem, name), FIELDS[name].kind
+    if isinstance(value, Profile):
+        return value.toml()
+    if FIELDS[name].has_section:
+        return {key: profile.toml() for key, profile in value.given.items()}
     return units(problem)[kind].factor * value if kind and value is not None else value
 
 

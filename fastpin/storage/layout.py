@@ -3,6 +3,7 @@
 ======================  ============================================================================================
 ``/``                   attributes: format, versions, date and machine, whether the run is complete, its error
 ``/problem``            attributes: geometry, friction, materials, units; bodies that are no solid pin or infinite plate
+                        ``gap/hole``, ``gap/pin``, ``friction``: profiles along the rim, a group for each term
 ``/history``            ``corners`` (NaN: not given), ``blocks`` of corners with the number of times of each block
 ``/grid``               ``theta`` (n,), rad
 ``/solver``             attributes: method and options; ``statistics``
@@ -56,6 +57,7 @@ from fastpin.storage.damage import (
     numbers_of,
     text_of,
 )
+from fastpin.storage.profiles import read_profiles, write_profiles
 from fastpin.version import __version__
 
 FORMAT = "fastpin result"
@@ -64,6 +66,9 @@ FORMAT_VERSION = 2
 
 WITH_BODIES = 3
 """Version with other bodies. Programs that know version 2 only would not see the bodies, and must refuse the file."""
+
+WITH_PROFILES = 4
+"""Version with an initial gap, or with friction that varies along the rim, for the same reason."""
 
 # Each dict below maps a stored field to its kind of quantity: a key of fastpin.model.units.units, or "" for a plain
 # number. The other fields of State are written and read one by one. Error bars come from the states in ``/coarse``.
@@ -172,7 +177,7 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     without rows.
     """
     file.attrs["format"] = FORMAT
-    file.attrs["format_version"] = WITH_BODIES if problem.has_bodies else FORMAT_VERSION
+    file.attrs["format_version"] = _version(problem)
     file.attrs["complete"] = False
     file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
     file.attrs["platform"] = platform.platform()
@@ -212,10 +217,17 @@ def versions() -> dict[str, str]:
     return {"fastpin": __version__, "python": platform.python_version(), **libraries}
 
 
+def _version(problem: Problem) -> int:
+    if problem.profiles:
+        return WITH_PROFILES
+    return WITH_BODIES if problem.has_bodies else FORMAT_VERSION
+
+
 def _write_problem(group: h5py.Group, problem: Problem) -> None:
-    for name in _PROBLEM_FIELDS:
-        value = getattr(problem, name)
-        if value is not None:
+    for name, value in (problem.entries() | {"dimensionless": problem.dimensionless}).items():
+        if isinstance(value, (list, dict)):
+            write_profiles(group, name, value)
+        elif value is not None:
             group.attrs[name] = value
     group.attrs["plane"] = problem.pair.plane
     for name, material in (("pin", problem.pair.pin), ("plate", problem.pair.plate)):
@@ -229,7 +241,7 @@ def read_problem(file: h5py.File) -> Problem:
     group = file["problem"]
     pair = MaterialPair(read_material(group["pin"]), read_material(group["plate"]), group.attrs["plane"])
     given = {name: as_python(group.attrs[name]) for name in _PROBLEM_FIELDS if name in group.attrs}
-    return Problem(pair, **given, **read_bodies(group))
+    return Problem(pair, **given, **read_profiles(group), **read_bodies(group))
 
 
 def _write_history(group: h5py.Group, problem: Problem, history: LoadHistory) -> None:
@@ -544,7 +556,7 @@ def check_format(file: h5py.File, path: str) -> None:
     """Raise :class:`InputError` if a file is no result, or has another version of the format."""
     if file.attrs.get("format") != FORMAT:
         raise InputError(path, "is an HDF5 file, but not a result of fastpin")
-    if file.attrs.get("format_version") not in (FORMAT_VERSION, WITH_BODIES):
+    if file.attrs.get("format_version") not in (FORMAT_VERSION, WITH_BODIES, WITH_PROFILES):
         made_by = file.attrs.get("version_fastpin")
         origin = "" if made_by is None else f"; it was written by fastpin {made_by}"
         raise InputError(path, f"has a format that this version of fastpin can't read{origin}")

@@ -89,18 +89,17 @@ def _material(material: Material) -> dict[str, Any]:
 def _fields(problem: Problem) -> dict[str, Any]:
     """Return the fields of a problem. A later field with its default is left out, so that older ids stay."""
     usual = {each.name: each.default for each in fields(Problem)}
-    values = {name: (getattr(problem, name), each.in_ids) for name, each in FIELDS.items()}
     return {
         name: _without_negative_zero(value)
-        for name, (value, in_ids) in values.items()
-        if in_ids == "always" or (in_ids == "given" and value != usual[name])
+        for name, value in problem.entries().items()
+        if FIELDS[name].in_ids == "always" or (FIELDS[name].in_ids == "given" and value != usual[name])
     }
 
 
 def _without_negative_zero(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _without_negative_zero(item) for name, item in value.items()}
-    if isinstance(value, list):
+    if isinstance(value, (list, tuple)):
         return [_without_negative_zero(item) for item in value]
     return _number(value) if isinstance(value, float) else value
 

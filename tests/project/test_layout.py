@@ -27,7 +27,7 @@ BREAKS = {
     ),
     "an import from the upper floor of the model": (
         "one_direction",
-        "model/csv_columns.py",
+        "model/options.py",
         "from fastpin.model.units import PASCAL\n",
     ),
     "an import from a folder of the same rank": (

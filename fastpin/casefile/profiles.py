@@ -1,0 +1,228 @@
+"""The profiles along the rim in a case file: ``friction`` in [contact], ``hole`` and ``pin`` in [gap].
+
+A profile is a number, the name of a CSV file, a table for a term, or a list of these, which are added. Angles are in
+degrees from the bottom of the hole, counter-clockwise.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from fastpin.casefile.toml_text import Section
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.angles import DEGREE, angle_at
+from fastpin.model.checks import any_text, as_toml, number, whole_number
+from fastpin.model.load_units import Basis
+from fastpin.model.problem import checked_gap
+from fastpin.model.profile import MOST_TERMS, NO_GAP, InitialGap, Profile
+from fastpin.model.profile_csv import Quantity, read_samples
+from fastpin.model.profile_terms import MOST_ORDER, Crown, Flat, Harmonic, Zone
+from fastpin.model.synonyms import closest
+
+GAP_KEYS = ("hole", "pin")
+"""Keys of the section [gap]."""
+
+IN_RADIANS = 2e-4
+"""Relative distance from a multiple of pi/12 within which an angle is in rad by mistake: 1.5708 is meant as 90."""
+
+
+class Word(NamedTuple):
+    """A kind of term in a case file.
+
+    Attributes
+    ----------
+    keys : tuple of str
+        The keys of its table. The first one names the kind.
+    optional : dict of str to float
+        The keys that may be left out, and their values then.
+    make : callable
+        Makes the profile of the values of the keys, in their order.
+    """
+
+    keys: tuple[str, ...]
+    optional: Mapping[str, float]
+    make: Callable[..., Profile]
+
+
+def _angle(field: str, value: object) -> float:
+    """Check an angle in degrees from the bottom of the hole, and return it in rad from +x."""
+    return float(angle_at(_degrees(field, value)))
+
+
+def _span(field: str, value: object) -> float:
+    """Check a difference of angles in degrees, and return it in rad."""
+    return _degrees(field, value) * DEGREE
+
+
+def _degrees(field: str, value: object) -> float:
+    degrees = number(field, value, -360.0, 360.0)
+    parts = degrees / (15.0 * DEGREE)
+    if 1.0 <= abs(round(parts)) <= 24 and abs(parts - round(parts)) <= IN_RADIANS * abs(parts) and degrees % 1.0:
+        words = f"{degrees:g} is {15 * round(parts)} degrees in rad"
+        raise InputError(field, f"must be in degrees from the bottom of the hole; {words}")
+    return degrees
+
+
+def _lobes(count: object, size: object, axis: float) -> Profile:
+    """A rim with lobes, exact for an axis in whole quarters of a turn."""
+    order, amplitude = whole_number("lobes", count, 1, MOST_ORDER), number("size", size)
+    turn = math.remainder(order * axis, 360.0)
+    cos, sin = math.cos(turn * DEGREE), math.sin(turn * DEGREE)
+    if turn % 90.0 == 0.0:
+        cos, sin = round(cos), round(sin)
+    return Profile((Harmonic.from_bottom(order, amplitude * cos, amplitude * sin),))
+
+
+def _harmonic(order: object, cosine: object, sine: object) -> Profile:
+    count = whole_number("order", order, 0, MOST_ORDER)
+    return Profile((Harmonic.from_bottom(count, number("cosine", cosine), number("sine", sine)),))
+
+
+def _samples(angles: object, values: object) -> Profile:
+    if not isinstance(angles, list):
+        raise InputError("angles", f"must be a list of angles, not {as_toml(angles)}")
+    return Profile.samples([_angle("angles", angle) for angle in angles], values)  # type: ignore[arg-type]
+
+
+WORDS = {
+    "constant": Word(("constant",), {}, lambda value: Profile.constant(value)),
+    "ellipse": Word(
+        ("ellipse", "axis"),
+        {"axis": 0.0},
+        lambda size, axis: _lobes(2, number("ellipse", size), _degrees("axis", axis)),
+    ),
+    "lobes": Word(
+        ("lobes", "size", "axis"), {"axis": 0.0}, lambda count, size, axis: _lobes(count, size, _degrees("axis", axis))
+    ),
+    "harmonic": Word(("harmonic", "cosine", "sine"), {"cosine": 0.0, "sine": 0.0}, _harmonic),
+    "flat": Word(("flat", "centre"), {}, lambda depth, at: Profile((Flat(depth, _angle("centre", at)),))),
+    "crown": Word(
+        ("crown", "centre", "half_width"),
+        {},
+        lambda height, at, wide: Profile((Crown(height, _angle("centre", at), _span("half_width", wide)),)),
+    ),
+    "zone": Word(
+        ("zone", "start", "stop"),
+        {},
+        lambda value, start, stop: Profile((Zone(value, _angle("start", start), _angle("stop", stop)),)),
+    ),
+    "angles": Word(("angles", "values"), {}, _samples),
+}
+"""The kinds of terms by their first keys."""
+
+_FIRST = ("depth", "height", "value", "order")
+"""Fields of terms whose key is the name of the kind."""
+
+
+class _Reader:
+    """Reads the profiles of a section, and reports their faults to it."""
+
+    def __init__(self, section: Section, folder: Path, quantity: Quantity, basis: Basis) -> None:
+        self._section, self._folder, self._quantity, self._basis = section, folder, quantity, basis
+
+    def profile(self, key: str) -> Profile | None:
+        """The profile of a key; None if it is missing or wrong (reported)."""
+        value = self._section.value(key)
+        if value is None:
+            return None
+        values = value if isinstance(value, list) else [value]
+        if len(values) > MOST_TERMS:
+            self._section.report(f"{key}: must have at most {MOST_TERMS} terms, not {len(values)}", key)
+            return None
+        if not any(isinstance(each, dict) or _is_file(each) for each in values):
+            same = self._section.number(key)
+            return None if same is None else Profile.constant(same)
+        names = [key] if not isinstance(value, list) else [f"{key}.{place}" for place in range(1, len(values) + 1)]
+        parts = [self._term(key, name, each) for name, each in zip(names, values, strict=True)]
+        known = [part for part in parts if part is not None]
+        if len(known) < len(parts):
+            return None
+        return Profile(tuple(term for part in known for term in part.terms))
+
+    def _term(self, key: str, name: str, value: Any) -> Profile | None:
+        """The profile of a number, a file or a table that is called `name` in messages; None if wrong (reported)."""
+        try:
+            if _is_file(value):
+                return self._from_csv(key, name, value)
+            if isinstance(value, dict):
+                return _from_table(name, value)
+            return Profile.of(name, number(name, value))
+        except InputError as error:
+            self._section.report(str(error), key)
+            return None
+
+    def _from_csv(self, key: str, name: str, file: str) -> Profile | None:
+        try:
+            place = self._folder / any_text(name, file)
+            angles, values = read_samples(place, self._quantity, self._basis)
+        except CaseFileError as error:
+            for line, sentence in error.problems:
+                self._section.report(f"{name}: {file}{f', line {line}' if line else ''}: {sentence}", key)
+            return None
+        try:
+            return Profile.samples(angles, values)
+        except InputError as error:
+            raise InputError(name, f"{file}: {error.field} {error.reason}") from None
+
+
+def _from_table(name: str, table: Mapping[str, Any]) -> Profile:
+    """The profile of a table. An :class:`InputError` names the key that is wrong."""
+    kinds = [word for word in table if word in WORDS]
+    if not kinds:
+        hint = next((found for word in table if (found := closest(str(word), tuple(WORDS)))), "")
+        given = f", not {', '.join(map(str, table))}" if table else ""
+        raise InputError(name, f"must be a table with one of {', '.join(WORDS)}{given}{hint}")
+    if len(kinds) > 1:
+        raise InputError(name, f"{kinds[1]} can't be given together with {kinds[0]}; write a list of tables")
+    keys, optional, make = WORDS[kinds[0]]
+    for key in table:
+        if key not in keys:
+            hint = closest(str(key), keys) or f"; the keys are {', '.join(keys)}"
+            raise InputError(name, f'unknown key "{key}" beside {kinds[0]}{hint}')
+    values = {key: table.get(key, optional.get(key)) for key in keys}
+    for key, value in values.items():
+        if value is None:
+            raise InputError(name, f"{key} is missing beside {kinds[0]}")
+    try:
+        return make(*values.values())
+    except InputError as error:
+        field = kinds[0] if error.field in _FIRST else error.field
+        raise InputError(f"{name}.{field}", error.reason) from None
+
+
+def _is_file(value: object) -> bool:
+    """Whether a value is the name of a CSV file: a text with an ending that is no number."""
+    return isinstance(value, str) and bool(re.search(r"\.\s*[A-Za-z]\w*$", value))
+
+
+def read_friction(contact: Section, folder: Path, basis: Basis) -> float | Profile | None:
+    """The coefficient of friction of [contact]; None if it is missing or wrong (reported)."""
+    if isinstance(contact.value("friction"), (dict, list, str)):
+        return _Reader(contact, folder, "friction", basis).profile("friction")
+    return contact.number("friction")
+
+
+def read_gap(section: Section, folder: Path, radius: float | None, dimensionless: bool) -> InitialGap:
+    """The initial gap of [gap]. Without a fault-free gap it is none, and the faults are reported.
+
+    `radius` is that of the hole. None if it is unknown; the size of the gap is then not checked.
+    """
+    basis: Basis = "dimensionless" if dimensionless else "per metre"
+    reader = _Reader(section, folder, "gap", basis)
+    if section.present and not section.table:
+        section.report("[gap]: gives no profile; the keys are hole and pin")
+    found = {}
+    for key in GAP_KEYS:
+        profile = reader.profile(key)
+        if profile is None:
+            continue
+        try:
+            gap = InitialGap(**{key: profile})
+            found[key] = getattr(gap if radius is None else checked_gap(gap, radius, dimensionless), key)
+        except InputError as error:
+            section.report(f"{key}: {error.reason}", key)
+    return InitialGap(**found) if any(profile.terms for profile in found.values()) else NO_GAP
