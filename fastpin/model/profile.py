@@ -303,6 +303,22 @@ class InitialGap:
         found = np.concatenate([self.hole.angles(count, radius), self.pin.angles(0, radius)])
         return np.unique(np.remainder(found + math.pi, 2.0 * math.pi) - math.pi)
 
+    def waves(self) -> dict[int, complex]:
+        """The amplitudes A of the waves Re A exp(i n theta) of the gap, by n. They are its harmonics.
+
+        Raises
+        ------
+        InputError
+            If a term is no harmonic.
+        """
+        found: dict[int, complex] = {}
+        for term in (*self.hole.terms, *self.pin.terms):
+            if term.wave is None:
+                raise InputError("gap", "must be a sum of harmonics here")
+            order, amplitude = term.wave
+            found[order] = found.get(order, 0j) + amplitude
+        return found
+
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
         """Gap and two derivatives at the angles `theta` (...), rad, shape (3, ...); see :meth:`Profile.values`."""
         return self.hole.values(theta, radius) + self.pin.values(theta, radius)

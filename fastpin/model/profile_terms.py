@@ -65,6 +65,11 @@ class Term(ABC):
     jumps: ClassVar[bool] = False
     needs_lengths: ClassVar[bool] = False
 
+    @property
+    def wave(self) -> tuple[int, complex] | None:
+        """Its number of waves n, and the amplitude A of Re A exp(i n theta); None if it is no wave round the hole."""
+        return None
+
     def angles_of_note(self, radius: float) -> np.ndarray:
         """Angles, rad, at which its value must be looked at. `radius` is the radius of the hole, m."""
         return np.zeros(0)
@@ -125,6 +130,10 @@ class Harmonic(Term):
         object.__setattr__(self, "order", whole_number("order", self.order, 0, MOST_ORDER))
         for name in ("cosine", "sine"):
             object.__setattr__(self, name, number(name, getattr(self, name)))
+
+    @property
+    def wave(self) -> tuple[int, complex] | None:
+        return self.order, complex(self.cosine, -self.sine)
 
     def angles_of_note(self, radius: float) -> np.ndarray:
         return np.arange(WAVE * self.order) * (2.0 * math.pi / (WAVE * max(self.order, 1))) - math.pi

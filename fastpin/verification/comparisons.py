@@ -12,9 +12,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fastpin.elasticity.stress import press_fit_hoop
+from fastpin.elasticity.system import System
 from fastpin.model.angles import BOTTOM, angle_between
+from fastpin.model.grid import LEAST_NODES, Grid
+from fastpin.model.loads import LOADS
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
+from fastpin.solver.rest import rest_position
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -168,7 +172,7 @@ def residuals_away(state: State, margin: float) -> tuple[float, float]:
     ----------
     state : State
         A state with one contact interval. The pin must have been pressed to the bottom first, and no load reversed: a
-        reversal leaves kinks of the slip.
+        reversal leaves kinks of the slip. An initial gap must be smooth.
     margin : float
         Least distance from contact edges and stick borders, rad.
 
@@ -180,7 +184,7 @@ def residuals_away(state: State, margin: float) -> tuple[float, float]:
     load = state.load
     equations = integral_equations.residuals(
         state.problem, load["P"], state.grid, state.pressure, state.shear, state.slip, state.rotation,
-        sxx=load["sxx"], syy=load["syy"], sxy=load["sxy"],
+        sxx=load["sxx"], syy=load["syy"], sxy=load["sxy"], rest=_bottom(state),
     )  # fmt: skip
     ((start, stop),) = state.contact
     away = np.abs(angle_between(state.theta, 0.5 * (start + stop))) < 0.5 * (stop - start) - margin
@@ -188,6 +192,15 @@ def residuals_away(state: State, margin: float) -> tuple[float, float]:
         away &= np.abs(angle_between(state.theta, border)) > margin
     first, second = (float(np.abs(residual[away]).max()) for residual in equations)
     return first, second
+
+
+def _bottom(state: State) -> tuple[float, float] | None:
+    """The position of the rigid pin that is pushed to the bottom of a hole with a gap, m; None in a round hole."""
+    if not state.problem.gap:
+        return None
+    system = System.build(state.problem, Grid.circle(LEAST_NODES), state.problem.natural_loads()["force"])
+    x, y = rest_position(system, np.zeros(len(LOADS)), BOTTOM)[0] * system.scales.displacement
+    return float(x), float(y)
 
 
 def all_round_difference(state: State) -> float:

@@ -4,8 +4,8 @@ The solvers work with displacements and logarithmic kernels. The paper applies t
 displacements, which leaves Cauchy kernels cot((theta - xi)/2). The equations have separate matrices, so they check a
 solved state inside its contact independently.
 
-Finite bodies add smooth terms X to gap and slip. With gap and slip h_X and s_X, (46) gains s_X' - h_X and (47) gains
-h_X' + s_X.
+An initial gap g0 adds -g0 to the left side of (46), and g0' to the left side of (47). Finite bodies add smooth terms X
+to gap and slip. With gap and slip h_X and s_X, (46) gains s_X' - h_X and (47) gains h_X' + s_X.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from fastpin.bodies.compliance import complex_coefficients, plate_coefficients
 from fastpin.elasticity.terms import BodyTerms, body_terms
 from fastpin.errors import InputError
 from fastpin.kernels import fourier, influence
-from fastpin.model.checks import number, positive
+from fastpin.model.checks import number, numbers, positive
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
@@ -47,6 +47,7 @@ def residuals(
     sxx: float = 0.0,
     syy: float = 0.0,
     sxy: float = 0.0,
+    rest: tuple[float, float] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Left minus right side of (46) and (47) at every node, divided by F beta*.
 
@@ -54,7 +55,7 @@ def residuals(
     h'/(F beta*). Leave out the nodes beside contact edges and borders of zones: tractions and slip have kinks there.
 
     (46) needs the derivative of the slip. A stick zone keeps the kinks that earlier borders left in the slip. So after
-    a reversal (47) is the sharper check.
+    a reversal (47) is the sharper check. Leave out nodes at kinks of an initial gap too: edges of flats and worn zones.
 
     Parameters
     ----------
@@ -67,12 +68,14 @@ def residuals(
     pressure, shear : array_like, shape (n,)
         N and T (on the pin, counter-clockwise positive), Pa.
     total_slip : array_like, shape (n,)
-        Slip s of Eq. (18), m, positive along +theta, counted from the pin at the bottom of the hole. In an interference
-        fit slip counts from the concentric position; it is then smaller by (R - R_D) cos theta.
+        Slip s of Eq. (18), m, positive along +theta, counted from the pin at `rest`.
     rotation : float
         C_omega, rad, counter-clockwise, from the same position.
     sxx, syy, sxy : float
         Remote stress, Pa.
+    rest : (float, float), optional
+        Position of the pin's centre from which slip counts, m. The default is the bottom of a round hole. In an
+        interference fit it is (0, 0). :func:`fastpin.solver.rest.rest_position` finds it in a hole with an initial gap.
 
     Returns
     -------
@@ -92,6 +95,7 @@ def residuals(
     s = _nodal("total_slip", total_slip, grid) / length
     C_omega = number("rotation", rotation) * radius / length
     clearance = problem.assembled_clearance / length
+    gap, gap_slope, _ = problem.gap_at(grid.theta) / length
     stresses = {SXX: sxx, SYY: syy, SXY: sxy}
     remote = {place: number(LOADS[place], stress) * radius / unit for place, stress in stresses.items()}
 
@@ -111,9 +115,13 @@ def residuals(
     cauchy = cauchy_matrix(grid)
     cot_N, cot_T = _principal_value(cauchy, N), _principal_value(cauchy, T)
 
-    left_46 = -clearance * (1.0 + sin) - _derivative(s, grid)
+    opened, along = clearance * (1.0 + sin), clearance * cos  # the resting pin: its gap, and the derivative
+    if rest is not None:
+        x, y = numbers("rest", rest) / length
+        opened, along = clearance - x * cos - y * sin, x * sin - y * cos
+    left_46 = -(opened + gap) - _derivative(s, grid)
     right_46 = cot_T - math.pi * alpha * N - gamma * S_T + plate * N_total + gamma * C_N
-    left_47 = C_omega - s + clearance * cos
+    left_47 = C_omega - s + along + gap_slope
     right_47 = -T_total - gamma_prime * C_T + math.pi * alpha * T + cot_N - gamma_prime * S_N
     bodies = body_terms(problem)
     if bodies is None:

@@ -10,6 +10,12 @@ the amplitudes of s_rr + i s_rtheta on the contact circle. The rims of pin and p
 The force gives t_-1 = -(Q - i P)/(2 pi R). Where all sticks u_1 = 0, so t_1 = m conj t_-1 with m = -g12/g11. Without
 friction the tractions are radial, so t_1 = conj t_-1. docs/interference.md shows the formulas.
 
+An initial gap of harmonics, g0 = Re A exp(i n theta), adds tractions of the same harmonics. For n >= 2 let
+(t_n, conj t_-n) be their amplitudes; (u_n, conj u_-n) = (R/2) g (t_n, conj t_-n) with a symmetric matrix g. A solid pin
+in an infinite plate has g++ = [kappa_I/G_I + 1/G]/(n+1), g-- = [1/G_I + kappa/G]/(n-1), and g+- = 0. Where all sticks
+u_n = conj u_-n = A/2. Without friction t_n = conj t_-n, and only the sum is given: u_n + conj u_-n = A. For n = 1 the
+gap is a shift of the pin. Without friction it presses nothing; where all sticks t_1 = A/(R g11).
+
 Units are SI, or those of the dimensionless problem. Signs are those of :class:`fastpin.State`: pressure N >= 0, shear T
 on the pin, positive along +theta; angles from the +x axis. The bodies are those of a problem: the pin solid or hollow,
 the plate infinite, a ring or with a bush. Forces must enter and leave symmetrically: a reaction at a point, the support
@@ -44,7 +50,7 @@ def uniform_pressure(problem: Problem, sxx: float = 0.0, syy: float = 0.0) -> fl
 
     N0 = 2 (delta/R)/g0 with the interference delta = -clearance after assembly. For a solid pin in an infinite plate
     2/g0 = 1/[1/(2 G) + (kappa_I - 1)/(4 G_I)]. A remote stress widens the hole: it takes (kappa + 1)(sxx + syy)/(8 G)
-    off delta/R.
+    off delta/R. An initial gap that is the same all round takes its height off delta.
 
     Parameters
     ----------
@@ -66,7 +72,8 @@ def uniform_pressure(problem: Problem, sxx: float = 0.0, syy: float = 0.0) -> fl
     if problem.is_incompressible:
         raise InputError("problem", "uniform pressure changes no radius of these bodies")
     widened = 0.125 * (problem.pair.plate_kolosov + 1.0) * problem.pair.plate_compliance * (given["sxx"] + given["syy"])
-    strain = -problem.assembled_clearance / problem.hole_radius - widened
+    clearance = problem.assembled_clearance + problem.gap.waves().get(0, 0j).real
+    strain = -clearance / problem.hole_radius - widened
     return strain / problem.joint.uniform_compliance
 
 
@@ -91,10 +98,48 @@ def stuck_ratio(problem: Problem) -> float:
         If the bodies have no closed form.
     """
     _checked_loads(problem, {})
+    of_traction, of_force = _first_compliances(problem)
+    return -of_force / of_traction
+
+
+def _first_compliances(problem: Problem) -> tuple[float, float]:
+    """The compliances g11 and g12, 1/Pa."""
     joint = problem.joint
     plate = joint.plate_first.displacement() * problem.surfaces.plate_compliance
     of_traction, of_force = joint.pin_first.displacement() * problem.pair.pin_compliance - plate
-    return -float(of_force / of_traction)
+    return float(of_traction), float(of_force)
+
+
+def _compliances(problem: Problem, order: int) -> tuple[float, float, float]:
+    """The compliances g++, g+- and g-- of the harmonic `order`, at least 2, 1/Pa."""
+    joint, pair = problem.joint, problem.surfaces
+    n = np.array([float(order)])
+    change = joint.pin_body.change(joint.pin_rim, n) - joint.plate_body.change(joint.hole, n)
+    first, cross, last = change[:, 0].tolist()
+    first += (pair.pin_kolosov * pair.pin_compliance + pair.plate_compliance) / (order + 1.0)
+    last += (pair.pin_compliance + pair.plate_kolosov * pair.plate_compliance) / (order - 1.0)
+    return first, cross, last
+
+
+def _gap_tractions(problem: Problem, angle: np.ndarray, stuck: bool) -> np.ndarray:
+    """N and T, Pa, shape (2, ...), of the harmonics n >= 1 of the initial gap."""
+    found = np.zeros((2, *angle.shape))
+    for order, amplitude in problem.gap.waves().items():
+        if order == 0 or (order == 1 and not stuck):
+            continue
+        if order == 1:
+            plus, minus = amplitude / _first_compliances(problem)[0], 0j
+        else:
+            first, cross, last = _compliances(problem, order)
+            if stuck:
+                plus, minus = amplitude * np.linalg.solve([[first, cross], [cross, last]], [1.0, 1.0])
+            else:
+                plus = minus = 2.0 * amplitude / (first + last + 2.0 * cross)
+        # s_rr + i s_rtheta = t_n exp(i n theta) + t_-n exp(-i n theta); minus is conj t_-n.
+        turn = np.exp(1j * order * angle)
+        whole = (plus * turn + np.conj(minus * turn)) / problem.hole_radius
+        found += [-whole.real, whole.imag]
+    return found
 
 
 def frictionless_pressure(problem: Problem, theta: ArrayLike, load: Mapping[str, float]) -> np.ndarray:
@@ -133,7 +178,7 @@ def frictionless_pressure(problem: Problem, theta: ArrayLike, load: Mapping[str,
     force = (loads["Q"] * np.cos(angle) - loads["P"] * np.sin(angle)) / (math.pi * problem.hole_radius)
     even = uniform_pressure(problem, loads["sxx"], loads["syy"])
     found: np.ndarray = even + force + (second * np.exp(-2j * angle)).real
-    return found
+    return found + _gap_tractions(problem, angle, stuck=False)[0]
 
 
 def stuck_tractions(problem: Problem, theta: ArrayLike, load: Mapping[str, float]) -> np.ndarray:
@@ -174,7 +219,7 @@ def stuck_tractions(problem: Problem, theta: ArrayLike, load: Mapping[str, float
     even = complex(uniform_pressure(problem, loads["sxx"], loads["syy"]), 0.5 * loads["M"] / (math.pi * radius**2))
     turn = np.exp(1j * angle)
     whole = even - plus * turn - minus / turn - second / turn**2
-    return np.array([whole.real, -whole.imag])
+    return np.array([whole.real, -whole.imag]) + _gap_tractions(problem, angle, stuck=True)
 
 
 def frictionless_opening_load(problem: Problem) -> float:
@@ -268,13 +313,15 @@ def release_stress(problem: Problem) -> float:
     _checked_loads(problem, {"sxx": 1.0})
     if problem.pair.plate.is_rigid:
         raise InputError("problem", "remote stress does not widen the hole of a rigid plate")
-    strain = -problem.clearance / problem.hole_radius
+    strain = -(problem.clearance + problem.gap.waves().get(0, 0j).real) / problem.hole_radius
     return 4.0 * strain / ((problem.pair.plate_kolosov + 1.0) * problem.pair.plate_compliance)
 
 
 def _fitted(problem: Problem) -> float:
     """N0 of a fit with interference."""
     pressure = uniform_pressure(problem)
+    if any(order > 0 for order in problem.gap.waves()):
+        raise InputError("gap", "must be the same all round: this load is known for a uniform pressure only")
     if pressure <= 0.0:
         raise InputError("clearance", f"must be negative after assembly, not {problem.assembled_clearance:g}")
     return pressure

@@ -9,7 +9,8 @@ contact. The dominant part of (58) determines the exponents, with r + l = 1. The
 in closed form. The rest of the kernel is smooth and is integrated by Gauss-Jacobi quadrature. (58) is collocated at the
 zeros of P_m^(l, r). The ends follow from equilibrium (50).
 
-Finite bodies add a smooth kernel with the harmonics n of their compliances, times 1 - n^2, and columns of the loads.
+An initial gap g0 adds g0 + g0'' to the right side, as a displacement of the hole does. Finite bodies add a smooth
+kernel with the harmonics n of their compliances, times 1 - n^2, and columns of the loads.
 
 With alpha* = 0 the error falls faster than any power of the number of terms. Otherwise the pressure has terms
 x^(r + 1) log x at the ends, and the error falls with the fourth power of the number of terms.
@@ -226,7 +227,8 @@ def _checked_load(load: Mapping[str, float]) -> dict[str, float]:
 class _Case:
     """The numbers of (58) without dimensions: tractions in F/R, displacements in F beta*, F the size of the force.
 
-    `size` is F, N/m. `force` is the direction of the force, (Q, -P)/F. `sign` is the sign in T = sign mu N.
+    `size` is F, N/m. `force` is the direction of the force, (Q, -P)/F. `sign` is the sign in T = sign mu N. `gap_share`
+    is the part of the initial gap that is there.
     """
 
     size: float
@@ -240,6 +242,8 @@ class _Case:
     alpha: float
     plate: float
     bodies: BodyTerms | None
+    problem: Problem
+    gap_share: float = 1.0
 
     @classmethod
     def of(cls, problem: Problem, load: dict[str, float], sign: float) -> _Case:
@@ -257,6 +261,7 @@ class _Case:
             pair.alpha_star / pair.beta_star,
             0.5 * (pair.plate_kolosov + 1.0) * pair.plate_compliance / pair.beta_star,
             body_terms(problem),
+            problem,
         )
 
     @property
@@ -266,7 +271,16 @@ class _Case:
         return 0.5 + turn, 0.5 - turn
 
     def hole(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """v_r of the hole under the loads, up to a translation, and the term H = v_r + v_r'' of (58)."""
+        """The gap g of the hole under the loads, up to a translation, and the term H = g + g'' of (58).
+
+        It holds the displacement v_r of the hole and the initial gap.
+        """
+        moved, bent = self._moved(theta)
+        gap, _, curvature = self.gap_share * self.problem.gap_at(theta) / (self.size * self.problem.surfaces.beta_star)
+        return moved + gap, bent + gap + curvature
+
+    def _moved(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """v_r of the hole under the loads, up to a translation, and v_r + v_r''."""
         if self.bodies is not None:
             loads = {
                 P: -float(self.force[1]),
@@ -418,7 +432,7 @@ def _two_ends(case: _Case, basis: _Basis, start: tuple[float, float] | None) -> 
         ends = _ends_near(case, basis, start)
         if ends is not None:
             return ends
-    unstressed = replace(case, sum_stress=0.0, difference_stress=0.0, shear_stress=0.0)
+    unstressed = replace(case, sum_stress=0.0, difference_stress=0.0, shear_stress=0.0, gap_share=0.0)
     loose = replace(unstressed, clearance=max(case.clearance, 1.0))
     stressed = replace(case, clearance=loose.clearance)
     tight = replace(loose, clearance=case.clearance)
@@ -440,7 +454,7 @@ def _two_ends(case: _Case, basis: _Basis, start: tuple[float, float] | None) -> 
 def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float]) -> tuple[float, float] | None:
     """Continue the contact from the case `before`, near `place`, to the case `after`. None if it fails.
 
-    Clearance and stresses change linearly from case to case, in steps of variable size.
+    Clearance, stresses and initial gap change linearly from case to case, in steps of variable size.
     """
     done, step = 0.0, 1.0
     for _ in range(_MOST_STEPS):
@@ -451,6 +465,7 @@ def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float
             sum_stress=before.sum_stress + part * (after.sum_stress - before.sum_stress),
             difference_stress=before.difference_stress + part * (after.difference_stress - before.difference_stress),
             shear_stress=before.shear_stress + part * (after.shear_stress - before.shear_stress),
+            gap_share=before.gap_share + part * (after.gap_share - before.gap_share),
         )
         ends = _ends_near(between, basis, place)
         if ends is not None:
