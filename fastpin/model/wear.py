@@ -1,0 +1,117 @@
+"""How pin and plate wear: the law, the coefficients of both bodies, the cycles, and the control of fat cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.checks import choice, items, not_negative, number, whole_number
+from fastpin.model.problem import LOOKED_AT, Problem
+from fastpin.model.profile import Profile, ProfileLike
+
+LAWS = ("archard", "energy")
+"""Names of the laws of wear."""
+
+MOST_CYCLES = 10**12
+"""Cycles, at most."""
+
+MOST_CHOSEN = 10_000
+"""Chosen cycles, at most."""
+
+A_DECADE = 10
+"""Cycles that are chosen in each decade, unless others are given."""
+
+LARGEST_TOLERANCE = 0.1
+"""Largest tolerance of a fat cycle."""
+
+
+@dataclass(frozen=True)
+class Wear:
+    """How pin and plate wear over many cycles. Worn-off debris is not modelled: it leaves the contact at once.
+
+    Parameters
+    ----------
+    coefficient : float or Profile, optional
+        Wear coefficient of both bodies together, 1/Pa, at least 0. Half of it is that of each body. A profile gives the
+        coefficient along the rim.
+    pin, plate : float or Profile, optional
+        Instead: the coefficients of the two bodies, 1/Pa. One that is left out is 0.
+    cycles : int
+        Number of cycles.
+    law : {"archard", "energy"}
+        "archard": depth = coefficient times int p |ds|, with the pressure p and the slip s. "energy": depth =
+        coefficient times the energy that friction dissipates per area, int |q| |ds| with the shear traction q.
+    at : sequence of int, optional
+        Cycles after which profile and states are stored. Ten a decade unless given. The last one is always stored.
+    tolerance : float
+        Largest error of a fat cycle, in parts of the largest worn depth; 0 solves every cycle.
+
+    Raises
+    ------
+    InputError
+        If a field can't be used.
+    """
+
+    coefficient: ProfileLike | None = None
+    pin: ProfileLike | None = None
+    plate: ProfileLike | None = None
+    cycles: int = 1
+    law: str = "archard"
+    at: Sequence[int] | None = None
+    tolerance: float = 3e-3
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "law", choice("law", self.law, LAWS))
+        object.__setattr__(self, "cycles", _whole_cycles(self.cycles))
+        object.__setattr__(self, "tolerance", number("tolerance", self.tolerance, 0.0, LARGEST_TOLERANCE))
+        if self.coefficient is None and self.pin is None and self.plate is None:
+            raise InputError("coefficient", "give the wear coefficient, or those of pin and plate")
+        if self.coefficient is not None and (self.pin is not None or self.plate is not None):
+            raise InputError("coefficient", "is that of both bodies together; give it, or those of pin and plate")
+        for name in ("coefficient", "pin", "plate"):
+            if (given := getattr(self, name)) is not None:
+                profile = Profile.of(name, given)
+                not_negative(name, float(profile.at(np.linspace(-np.pi, np.pi, LOOKED_AT), 1.0).min()))
+                object.__setattr__(self, name, profile)
+        if self.at is not None:
+            chosen = [whole_number("at", each, 1, self.cycles) for each in items("at", self.at, "a list of cycles")]
+            if len(chosen) > MOST_CHOSEN or chosen != sorted(set(chosen)):
+                raise InputError("at", f"must be at most {MOST_CHOSEN:,} increasing numbers of cycles")
+            object.__setattr__(self, "at", tuple(chosen))
+
+    def coefficients(self, problem: Problem, theta: np.ndarray) -> np.ndarray:
+        """Coefficients of pin and plate, 1/Pa, at the angles `theta` (n,), rad, shape (2, n).
+
+        Raises
+        ------
+        InputError
+            If they are 0 all round.
+        """
+        found = np.zeros((2, theta.size))
+        for place, name, share in ((0, "pin", 1.0), (1, "plate", 1.0), (slice(None), "coefficient", 0.5)):
+            if isinstance(profile := getattr(self, name), Profile):
+                found[place] += share * profile.at(theta, problem.hole_radius)
+        if not found.max() > 0.0:
+            raise InputError("coefficient", "must be positive somewhere on pin or plate")
+        positive: np.ndarray = np.maximum(found, 0.0)  # a spline may pass below zero in between
+        return positive
+
+    @property
+    def chosen(self) -> tuple[int, ...]:
+        """The cycles after which profile and states are stored, in order, 0 and the last one included."""
+        if self.at is not None:
+            return tuple(sorted({0, *self.at, self.cycles}))
+        count = int(np.ceil(A_DECADE * np.log10(self.cycles))) + 1
+        some = np.round(10.0 ** (np.arange(count) / A_DECADE)).astype(np.int64).tolist()
+        return tuple(sorted({0, *(each for each in some if each < self.cycles), self.cycles}))
+
+
+def _whole_cycles(value: object) -> int:
+    """A number of cycles; 1e5 is one too."""
+    plain = number("cycles", value, 1, MOST_CYCLES)
+    if plain != int(plain):
+        raise InputError("cycles", f"must be a whole number, not {plain:g}")
+    return int(plain)

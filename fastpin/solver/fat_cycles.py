@@ -1,0 +1,218 @@
+"""Fat cycles: load cycles whose wear counts many times, under control of their error.
+
+A cycle is followed piece by piece, from corner to corner. The wear of a piece is applied at its end, where its contact
+is (:meth:`fastpin.solver.wear_path.WearRun.wear`). In a fat cycle it is multiplied by the jump J, the number of cycles
+for which it stands. A fat cycle of J is compared with two of about J/2 from the same start. The finer result goes on.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fastpin.model.checks import MOST_PARAMETER
+from fastpin.model.loads import complete_load
+from fastpin.model.problem import MOST_GAP
+from fastpin.model.wear import Wear
+from fastpin.solver.errors import SolveError
+from fastpin.solver.result import Restart
+from fastpin.solver.slip_tally import NOT_COUNTED
+from fastpin.solver.wear_path import WearRun
+from fastpin.states.state import State
+
+SETTLING = 2
+"""First cycles, which are solved one by one: the contact forgets how it was loaded first."""
+
+LEAST_JUMP = 4
+"""Smallest jump under control. Three cycles are solved for it, so smaller ones save nothing."""
+
+SAFETY, MOST_GROWTH, LEAST_GROWTH = 0.8, 2.0, 0.2
+"""Part of the jump that the error allows; largest and smallest ratio of a jump to the one before."""
+
+PRESSURE_SHARE = 0.1
+"""Weight of the error of the pressure, in parts of the largest pressure, beside that of the worn depth."""
+
+
+@dataclass(frozen=True, eq=False)
+class Worn:
+    """A place in a life of wear: everything from which it goes on, to the same bits. Arrays are dimensionless.
+
+    Attributes
+    ----------
+    cycle : int
+        Cycles that are done.
+    jump : int
+        The next jump.
+    solved : int
+        Cycles that were solved, those of control included.
+    depth : ndarray, shape (2, n)
+        Worn depth of pin and plate at each node.
+    removed : float
+        Elastic energy that went with the material.
+    restart : Restart
+        The contact. Its energies count each fat cycle J times.
+    """
+
+    cycle: int
+    jump: int
+    solved: int
+    depth: np.ndarray
+    removed: float
+    restart: Restart
+
+    @property
+    def gap(self) -> np.ndarray:
+        """Growth of the gap, shape (n,)."""
+        total: np.ndarray = self.depth.sum(axis=0)
+        return total
+
+
+class FatCycles:
+    """The driver of a life of wear on one grid.
+
+    Parameters
+    ----------
+    run : WearRun
+        A run that counts slip, and stands at the beginning of its history.
+    wear : Wear
+    cycle : ndarray, shape (corners, loads)
+        Loads at the corners of the cycle, SI; NaN keeps the last value.
+    """
+
+    def __init__(self, run: WearRun, wear: Wear, cycle: np.ndarray) -> None:
+        system = run.system
+        self.run, self._wear, self._cycle = run, wear, cycle
+        unit = system.scales.traction
+        self._coefficients = unit * wear.coefficients(system.problem, system.grid.theta)
+        total = self._coefficients.sum(axis=0)
+        self._total = total * (system.friction if wear.law == "energy" else 1.0)
+        self._shares = np.divide(self._coefficients, total, out=np.zeros_like(self._coefficients), where=total > 0.0)
+        self._stable = system.weights / (2.0 * math.pi)  # compliance of a sawtooth on the grid
+        problem = system.problem
+        self._deepest = MOST_PARAMETER if problem.dimensionless else MOST_GAP * problem.hole_radius
+        self._approach = 0
+
+    def begin(self, loads: np.ndarray, wears: bool = True) -> Worn:
+        """Follow what leads to the cycle once, corners (corners, loads) in SI, with its own wear only if it `wears`."""
+        self._approach = len(loads)
+        start = Worn(0, 1, 0, np.zeros((2, self.run.system.grid.size)), 0.0, self._restart())
+        return self._followed(start, loads, 1 if wears else 0)
+
+    def at(self, place: Worn, approach: int) -> None:
+        """Stand at a place of an earlier run, whose cycle was led to by so many corners."""
+        self._approach = approach
+        self.run.go_back(place.restart)
+
+    def next(self, place: Worn, target: int) -> Worn:
+        """Go on from a place: by one cycle, or by a fat cycle that ends at the cycle `target` at the latest.
+
+        Raises
+        ------
+        SolveError
+            If a cycle can't be followed. It names the cycle.
+        """
+        room, tolerance = target - place.cycle, self._wear.tolerance
+        if tolerance == 0.0 or place.cycle < SETTLING:
+            return replace(self._fat(place, 1), jump=LEAST_JUMP if tolerance else 1)
+        if place.jump < LEAST_JUMP:  # control has failed: it is tried again soon
+            return replace(self._fat(place, 1), jump=place.jump + 1)
+        jump = min(room, place.jump)
+        while jump >= LEAST_JUMP:
+            fine, error = self._pair(place, jump)
+            place = replace(place, solved=place.solved + 3)
+            ratio = SAFETY * math.sqrt(tolerance / error) if error > 0.0 else math.inf
+            wanted = int(jump * min(max(ratio, LEAST_GROWTH), MOST_GROWTH))
+            if error <= tolerance:
+                most = place.jump if jump < place.jump else 0  # a chosen cycle has cut it short
+                return replace(fine, solved=place.solved, jump=max(wanted, LEAST_JUMP, most))
+            place, jump = replace(place, jump=1), min(wanted, jump - 1)
+        return replace(self._fat(place, 1), jump=place.jump)
+
+    def _pair(self, place: Worn, jump: int) -> tuple[Worn, float]:
+        """Two halves of a fat cycle, and the error against the whole one; infinite if one can't be followed."""
+        try:
+            coarse = self._fat(place, jump)
+            fine = self._fat(self._fat(place, jump // 2), jump - jump // 2)
+        except SolveError:
+            return place, math.inf
+        return fine, self._error(fine, coarse)
+
+    def states(self, place: Worn) -> tuple[State, ...]:
+        """The states over one cycle at a place, at its beginning and at its corners, without further wear."""
+        run, recorder = self.run, self.run.recorder
+        assert recorder is not None
+        run.go_back(place.restart)
+        run.corner = self._approach + place.cycle * len(self._cycle) - 1
+        try:
+            run.step_to(run.load)
+            for given in self._cycle:
+                run.step_to(complete_load(given, run.load))
+        except SolveError as error:
+            _name_cycle(error, place.cycle + 1)
+            raise
+        states = tuple(recorder.states)  # type: ignore[attr-defined]
+        recorder.states.clear()  # type: ignore[attr-defined]
+        run.go_back(place.restart)
+        return states
+
+    def _fat(self, place: Worn, jump: int) -> Worn:
+        self.run.go_back(place.restart)
+        after = self._followed(place, self._cycle, jump)
+        return replace(after, cycle=place.cycle + jump, solved=place.solved + 1)
+
+    def _followed(self, place: Worn, loads: np.ndarray, jump: int) -> Worn:
+        """Follow some corners once. The wear of each piece counts `jump` times, its energies once at least."""
+        run, depth, removed, times = self.run, place.depth, place.removed, max(jump, 1)
+        dissipation, work = run.dissipation, run.work
+        for given in loads:
+            try:
+                run.step_to(complete_load(given, run.load), kept=False)
+                piece = run.corner_log.latest
+                dissipation, work = dissipation + times * piece.dissipation, work + times * piece.work
+                if jump:
+                    removal = run.wear(*self._worn_by(piece.slip_tally.sums, jump))
+                    depth = depth + self._shares * removal.depth
+                    dissipation, work = dissipation + removal.dissipation, work + removal.work
+                    removed += removal.energy
+            except SolveError as error:
+                _name_cycle(error, place.cycle + 1)
+                raise
+            self._check_depth(depth)
+        return replace(place, depth=depth, removed=removed, restart=self._restart(dissipation, work))
+
+    def _worn_by(self, sums: np.ndarray, jump: int) -> tuple[np.ndarray, np.ndarray | None]:
+        """Depth (n,) by the slip tally of a piece, and the softness (n,) of the implicit way where that is needed."""
+        slip, loaded = sums[0], sums[4]
+        depth = jump * self._total * loaded
+        if self._wear.law == "energy":
+            depth = jump * self._coefficients.sum(axis=0) * sums[1]
+        if np.all(jump * self._total * slip < self._stable):
+            return depth, None
+        pressure = self.run.now.pressure
+        mean = np.divide(loaded, pressure, out=np.full_like(slip, np.inf), where=pressure > 0.0)
+        return depth, jump * self._total * np.minimum(slip, mean)
+
+    def _error(self, fine: Worn, coarse: Worn) -> float:
+        """The larger error of a fat cycle: of the worn gap, or PRESSURE_SHARE of that of the pressure."""
+        one, other = fine.restart.configuration.pressure, coarse.restart.configuration.pressure
+        deepest, most = float(fine.gap.max()), float(one.max())
+        gap = float(np.abs(fine.gap - coarse.gap).max()) / deepest if deepest else 0.0
+        return max(gap, PRESSURE_SHARE * float(np.abs(one - other).max()) / most if most else 0.0)
+
+    def _check_depth(self, depth: np.ndarray) -> None:
+        """Raise :class:`SolveError` if the worn depth (2, n) is too large for small strains."""
+        deepest = float(depth.sum(axis=0).max()) * self.run.system.scales.displacement
+        if not deepest <= self._deepest:
+            raise SolveError(
+                f"the worn depth {deepest:.3g} is too large for small strains: it must stay within {self._deepest:g}"
+            )
+
+    def _restart(self, dissipation: float = 0.0, work: float = 0.0) -> Restart:
+        return replace(self.run.bookmark(), dissipation=dissipation, work=work, slip_tally=NOT_COUNTED)
+
+
+def _name_cycle(error: SolveError, cycle: int) -> None:
+    """Put the cycle in front of the message of an error."""
+    error.args = (f"cycle {cycle:,}: {error}",)

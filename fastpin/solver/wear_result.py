@@ -1,0 +1,176 @@
+"""The result of a life of wear: the profiles of pin and hole, and the states, after chosen cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import overload
+
+import numpy as np
+
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.problem import Problem
+from fastpin.model.read_only import ReadOnly
+from fastpin.model.wear import Wear
+from fastpin.states.state import State
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WornCycle(ReadOnly):
+    """The contact after a chosen cycle.
+
+    Attributes
+    ----------
+    cycle : int
+        Cycles that are done; 0 before the first one.
+    next_jump : int
+        The number of cycles for which the next fat cycle was to stand.
+    solved : int
+        Cycles that were solved so far, those of control included.
+    pin_depth, plate_depth : ndarray, shape (n,)
+        Depth worn off pin and plate at each node, m.
+    dissipation : float
+        Energy dissipated by friction so far, J/m.
+    removed : float
+        Elastic energy that went with the material so far, J/m.
+    states : tuple of State
+        The states over one cycle on this profile, without further wear: at its beginning, and at its corners.
+    """
+
+    cycle: int
+    next_jump: int
+    solved: int
+    pin_depth: np.ndarray
+    plate_depth: np.ndarray
+    dissipation: float
+    removed: float
+    states: tuple[State, ...]
+
+    @property
+    def grid(self) -> Grid:
+        """The nodes."""
+        return self.states[0].grid
+
+    @property
+    def theta(self) -> np.ndarray:
+        """Angles of the nodes, rad, shape (n,)."""
+        return self.states[0].theta
+
+    @property
+    def gap_growth(self) -> np.ndarray:
+        """Growth of the gap by the wear of both bodies, m, shape (n,)."""
+        total: np.ndarray = self.pin_depth + self.plate_depth
+        return total
+
+    @property
+    def depth(self) -> float:
+        """Largest growth of the gap at a node, m."""
+        return float(self.gap_growth.max())
+
+    @property
+    def volumes(self) -> tuple[float, float]:
+        """Volume worn off pin and plate per thickness, m^2."""
+        width = self.grid.weights * self.states[0].problem.hole_radius
+        return float(width @ self.pin_depth), float(width @ self.plate_depth)
+
+    @property
+    def volume(self) -> float:
+        """Volume worn off both bodies per thickness, m^2."""
+        return sum(self.volumes)
+
+    @property
+    def pin_share(self) -> float:
+        """Part of the worn volume that comes from the pin; NaN without wear."""
+        pin, plate = self.volumes
+        return pin / (pin + plate) if pin + plate else float("nan")
+
+    @property
+    def energy_per_cycle(self) -> float:
+        """Energy dissipated by friction in a cycle on this profile, J/m."""
+        return self.states[-1].dissipation - self.states[0].dissipation
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Pressure at the nodes at the beginning of the next cycle, Pa, shape (n,)."""
+        return self.states[0].pressure
+
+    def __repr__(self) -> str:
+        return f"<WornCycle: after {self.cycle:,} cycles, depth {self.depth:.4g}, volume {self.volume:.4g}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WearResult(Sequence[WornCycle]):
+    """A life of wear: a sequence of :class:`WornCycle`, one for each chosen cycle that was reached.
+
+    Attributes
+    ----------
+    problem : Problem
+    history : LoadHistory
+        What leads to the cycle, and the cycle, at its end.
+    wear : Wear
+    grid : Grid
+    cycles : tuple of WornCycle
+    complete : bool
+        Whether all cycles were followed; False in the result that an error carries.
+    statistics : dict of str to float
+        Counts of the solver, see :class:`fastpin.Result`, and "solved": the cycles that were really solved.
+    """
+
+    problem: Problem
+    history: LoadHistory
+    wear: Wear
+    grid: Grid
+    cycles: tuple[WornCycle, ...]
+    complete: bool
+    statistics: dict[str, float]
+
+    @property
+    def theta(self) -> np.ndarray:
+        """Angles of the nodes, rad, shape (n,)."""
+        return self.grid.theta
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """The chosen cycles, shape (chosen,)."""
+        return np.array([each.cycle for each in self.cycles])
+
+    @property
+    def coefficients(self) -> np.ndarray:
+        """Wear coefficients of pin and plate at the nodes, 1/Pa, shape (2, n)."""
+        return self.wear.coefficients(self.problem, self.grid.theta)
+
+    @property
+    def tau(self) -> np.ndarray:
+        """Cycles times the largest wear coefficient of both bodies, 1/Pa, shape (chosen,).
+
+        For slow wear the profile depends on this product alone.
+        """
+        tau: np.ndarray = self.numbers * float(self.coefficients.sum(axis=0).max())
+        return tau
+
+    def summary(self) -> str:
+        """The chosen cycles as a table."""
+        import fastpin
+
+        return fastpin.report.wear.table(self)
+
+    def __repr__(self) -> str:
+        whole = "complete" if self.complete else "incomplete"
+        head = f"<WearResult: {len(self.cycles)} chosen cycles, {self.grid.size} nodes, {whole}"
+        return f"{head}\n last: {self.cycles[-1]!r}>" if self.cycles else f"{head}>"
+
+    @overload
+    def __getitem__(self, index: int) -> WornCycle: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[WornCycle, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> WornCycle | tuple[WornCycle, ...]:
+        return self.cycles[index]
+
+    def __len__(self) -> int:
+        return len(self.cycles)
+
+    def __iter__(self) -> Iterator[WornCycle]:
+        return iter(self.cycles)
