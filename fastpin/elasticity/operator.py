@@ -35,9 +35,12 @@ class Operator:
     is_stored : bool
         Whether all entries are stored. If not, products with many columns are better made by the operator itself than
         from a copy of its entries.
+    by_distance : bool
+        Whether the entries of equally spaced nodes depend on their distance, up to what bodies and drive add.
     """
 
     is_stored = False
+    by_distance = True
 
     def __init__(self, size: int) -> None:
         self.size = size
@@ -99,6 +102,35 @@ class DenseOperator(Operator):
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         return np.array(self.matrix, dtype) if copy else self.matrix.astype(dtype or float, copy=False)
+
+
+class SoftOperator(Operator):
+    """An operator whose nodes are softer: a pressure also opens the gap at its own node.
+
+    Parameters
+    ----------
+    base : Operator
+    softness : ndarray, shape (n,)
+        Gap per pressure at each node, beside that of `base`.
+    """
+
+    by_distance = False
+
+    def __init__(self, base: Operator, softness: np.ndarray) -> None:
+        super().__init__(base.size)
+        self.is_stored = base.is_stored
+        self._base, self._softness = base, np.concatenate([softness, np.zeros_like(softness)])
+
+    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
+        product: np.ndarray = self._base @ tractions + (self._softness * tractions.T).T
+        return product
+
+    def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        self._base.fill(rows, columns, out)
+        out += np.where(rows[:, None] == columns, self._softness[columns], 0.0)
+
+    def diagonal(self) -> np.ndarray:
+        return self._base.diagonal() + self._softness
 
 
 class ToeplitzOperator(Operator):

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, make_drive
-from fastpin.elasticity.operator import DenseOperator, Operator, make_operator, uniform_part
+from fastpin.elasticity.operator import DenseOperator, Operator, SoftOperator, make_operator, uniform_part
 from fastpin.elasticity.terms import BodyTerms, body_terms
 from fastpin.model.grid import Grid, arc_of
 from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
@@ -97,6 +97,9 @@ class System:
         motion; see :mod:`fastpin.elasticity.drive`.
     bodies : BodyTerms or None
         The smooth terms of hollow pins and finite plates. None for a solid pin in an infinite plate.
+    held_as : System or None
+        The system whose contacts answer alike while all closed nodes stick: it differs in loads only. None for a
+        system of its own.
     """
 
     problem: Problem
@@ -115,6 +118,7 @@ class System:
     plate: float
     drive: Drive
     bodies: BodyTerms | None = None
+    held_as: System | None = None
 
     @classmethod
     def build(cls, problem: Problem, grid: Grid, force: float) -> System:
@@ -159,7 +163,7 @@ class System:
     def is_toeplitz(self) -> bool:
         """Whether entries of the operator depend on the distance of two nodes only, up to the half hats of an arc."""
         has_matrix = self.drive.has_displacements or (self.bodies is not None and bool(self.bodies.matrix.size))
-        return self.grid.uniform and not has_matrix
+        return self.grid.uniform and self.operator.by_distance and not has_matrix
 
     @property
     def motions(self) -> int:
@@ -206,6 +210,19 @@ class System:
         friction = np.zeros_like(self.friction)
         return replace(self, friction=friction, equilibrium=equilibrium, motion_rows=motion_rows, forces=forces)
 
+    def with_wear(self, depth: np.ndarray, softness: np.ndarray | None = None) -> System:
+        """The same system with one more load, the last one: wear. Its unit opens the gap by `depth` (n,).
+
+        Where the wear goes on with the pressure, a pressure N opens the gap at its node by `softness` (n,) times N too.
+        """
+        column = np.concatenate([depth, np.zeros_like(depth)])
+        loads, columns = np.column_stack([self.loads, column]), np.column_stack([self.drive.columns, column])
+        forces = np.column_stack([self.forces, np.zeros(self.motions)])
+        worn = replace(self, loads=loads, forces=forces, drive=replace(self.drive, columns=columns))
+        if softness is None:
+            return replace(worn, held_as=self.held_as or self)
+        return replace(worn, operator=SoftOperator(self.operator, softness), held_as=None)
+
     def load_displacement(self, load: np.ndarray, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Gap and slip, shape (2n,) or only some `rows`, of a load (loads,) or its rate."""
         acting = self._acting
@@ -224,7 +241,8 @@ class System:
     @property
     def _acting(self) -> int:
         """Number of loads in products."""
-        return len(LOADS) if self.drive.has_displacements else _ACTING_FORCES
+        columns = self.loads.shape[1]
+        return columns if self.drive.has_displacements or columns > len(LOADS) else _ACTING_FORCES
 
     def displacement(
         self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float

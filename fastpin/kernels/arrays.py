@@ -47,11 +47,12 @@ class Tableau(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (m,), ``slip_tally`` (4, n).
+    """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (m,) and ``slip_tally``.
 
     ``touched`` says whether a node was ever closed. :mod:`fastpin.kernels.exchange` defines ``tie``. ``slip_tally``
-    has slip distance, friction energy, lowest and highest slip of each node while closed. The extremes count from
-    ``rest_slip``. It is empty if they are not counted.
+    has slip distance, friction energy, lowest and highest slip of each node while closed, shape (4, n). The extremes
+    count from ``rest_slip``. Runs with wear have pressure times slip distance below, shape (5, n). It is empty if
+    nothing is counted.
     """
 
     pressure: np.ndarray

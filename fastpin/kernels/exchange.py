@@ -54,6 +54,9 @@ UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, SETTLED, COUNTS 
 # Slots of `sums`.
 TIME, DISSIPATION, WORK, SUMS = 0, 1, 2, 3
 
+# The row of the slip tally that only runs with wear have: pressure times slip distance.
+WEAR = 4
+
 RATE_TOLERANCE = 1e-11  # rates below this part of the largest rate are zero
 VALUE_TOLERANCE = 1e-13  # likewise for gaps and the reserve mu N - |T|
 PRESSURE_TOLERANCE = 1e-10  # likewise for pressures; wider, so that mirrored nodes open together
@@ -311,7 +314,8 @@ def _advance(contact, rates, friction, weights, step):
     """
     status, pressure, shear, gap, slip = contact.status, contact.pressure, contact.shear, contact.gap, contact.slip
     n, tally, rest_slip = status.size, contact.slip_tally, contact.rest_slip
-    counts, most_pressure, most_gap, dissipated = tally.size > 0, 0.0, 0.0, 0.0
+    counts, wears = tally.size > 0, tally.shape[0] > WEAR
+    most_pressure, most_gap, dissipated = 0.0, 0.0, 0.0
     for i in range(n):
         if status[i] == OPEN:
             gap[i] += step * rates[i]
@@ -331,6 +335,8 @@ def _advance(contact, rates, friction, weights, step):
                 if counts:
                     tally[0, i] += abs(slid)
                     tally[1, i] += friction[i] * 0.5 * (old + pressure[i]) * abs(slid)
+                if wears:
+                    tally[WEAR, i] += 0.5 * (old + pressure[i]) * abs(slid)
             if counts:
                 begin, end = begin - rest_slip[i], slip[i] - rest_slip[i]
                 tally[2, i] = min(tally[2, i], begin, end)

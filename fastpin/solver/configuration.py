@@ -248,6 +248,7 @@ def slip_tally_between(before: Configuration, after: Configuration) -> SlipTally
     if tally.is_counted:
         slid = np.where(after.closed, after.slip - before.slip, 0.0)
         tally.sums[:2] += np.array([np.abs(slid), -0.5 * slid * (before.shear + after.shear)])
+        tally.sums[4:] += 0.5 * np.abs(slid) * (before.pressure + after.pressure)
     return tally
 
 

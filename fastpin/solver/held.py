@@ -57,8 +57,8 @@ class HeldContacts:
 
     @classmethod
     def of(cls, system: System) -> HeldContacts:
-        """The held contacts of a system. They are kept as long as the system is."""
-        return cls._of_systems.setdefault(system, cls())
+        """The held contacts of a system. They are kept as long as the system is, and shared where only loads differ."""
+        return cls._of_systems.setdefault(system.held_as or system, cls())
 
     def table(self, system: System, closed: np.ndarray) -> HeldTable | None:
         """The table of the `closed` nodes (n,); None if it has too few digits."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Collection
 from dataclasses import replace
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -125,7 +125,12 @@ class Run:
         Whether the whole history was followed.
     statistics : dict of str to float
         The counts of :data:`COUNTED`.
+    wears : bool
+        Whether the gap changes from step to step. Then no configuration repeats, borders have no marks, and the slip
+        tally counts int N |ds|.
     """
+
+    wears: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -153,7 +158,7 @@ class Run:
             start = Restart(0, load, system.scales.force, now, first.dissipation, first.work, Repeats(), {}, {})
         self.corner_log = CornerLog(history, start.marks)
         counts = options.slip_sums and recorder is not None
-        self._no_slip = SlipTally.empty(system.grid.size) if counts else NOT_COUNTED
+        self._no_slip = SlipTally.empty(system.grid.size, self.wears) if counts else NOT_COUNTED
         self.statistics = dict.fromkeys(COUNTED, 0.0)
         self.stepper = _stepper(system, options, self.statistics, strict)
         # Round a hole that is not round the pin may touch anywhere.
@@ -206,16 +211,18 @@ class Run:
             self._show_corner()
         self.complete = True
 
-    def step_to(self, load: np.ndarray) -> None:
-        """Follow one more step, to a `load` (loads,), SI. The load is no corner of the history. Its state is kept.
+    def step_to(self, load: np.ndarray, kept: bool = True) -> None:
+        """Follow one more step, to a `load` (loads,), SI. The load is no corner of the history.
+
+        `kept` says whether its state is kept.
 
         Raises
         ------
         SolveError
             See :meth:`follow`.
         """
-        self._step(load, ends_cycle=False, kept=True)
-        self._close_step(load, kept=True)
+        self._step(load, ends_cycle=False, kept=kept)
+        self._close_step(load, kept=kept)
         self.corner += 1
         self._show_corner()
 
@@ -257,8 +264,10 @@ class Run:
             self._check_resolution()
             if self._outside is not None and self._outside.is_closed(self.system, self.now):
                 raise ArcError(BEYOND)
-            self._mark_borders()
-            known = self.repeats.recall(self.now, ends_cycle, step)
+            known = None
+            if not self.wears:
+                self._mark_borders()
+                known = self.repeats.recall(self.now, ends_cycle, step)
             if known is not None:
                 sums = {name: getattr(self.now, name) for name in ("dissipation", "work", "slip_tally")}
                 position.now = replace(known.configuration, **sums)

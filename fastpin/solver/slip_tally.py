@@ -20,18 +20,18 @@ class SlipTally:
 
     Attributes
     ----------
-    sums : ndarray, shape (4, n)
+    sums : ndarray, shape (4, n) or (5, n)
         Slip distance int |ds|, friction energy int -T ds, lowest and highest slip of each node while closed. The
-        extremes are the slip that users see, and (inf, -inf) at a node that was never closed. Compiled code adds to
-        this array.
+        extremes are the slip that users see, and (inf, -inf) at a node that was never closed. In a run with wear, the
+        fifth row is int N |ds|. Compiled code adds to this array.
     """
 
     sums: np.ndarray
 
     @classmethod
-    def empty(cls, nodes: int) -> SlipTally:
-        """The tally of so many nodes that were never closed."""
-        return cls(np.tile([[0.0], [0.0], [np.inf], [-np.inf]], nodes))
+    def empty(cls, nodes: int, wears: bool = False) -> SlipTally:
+        """The tally of so many nodes that were never closed; with `wears` it has the row of int N |ds|."""
+        return cls(np.tile([[0.0], [0.0], [np.inf], [-np.inf]] + [[0.0]] * wears, nodes))
 
     @property
     def is_counted(self) -> bool:
@@ -69,13 +69,13 @@ class SlipTally:
             return later
         first, second = self.sums, later.sums
         lowest, highest = np.minimum(first[2], second[2]), np.maximum(first[3], second[3])
-        return SlipTally(np.array([*(first[:2] + second[:2]), lowest, highest]))
+        return SlipTally(np.array([*(first[:2] + second[:2]), lowest, highest, *(first[4:] + second[4:])]))
 
     def fields(self, scales: Scales) -> SlipFields:
         """The fields of a state whose part of the history this is, SI; none if it is not counted."""
         if not self.is_counted:
             return {}
-        lowest, highest = np.where(self.sums[2] <= self.sums[3], self.sums[2:], np.nan) * scales.displacement
+        lowest, highest = np.where(self.sums[2] <= self.sums[3], self.sums[2:4], np.nan) * scales.displacement
         distance = self.sums[0] * scales.displacement
         energy = self.sums[1] * (scales.traction * scales.displacement)
         for array in (distance, energy, lowest, highest):
@@ -121,6 +121,7 @@ class RunningTally:
             return step
         since = step.copy()
         since.sums[:2] -= self._until_kept.sums[:2]
+        since.sums[4:] -= self._until_kept.sums[4:]
         return self.to_corner.joined(since)
 
     def keep(self, step: SlipTally) -> None:

@@ -1,0 +1,106 @@
+"""A run whose bodies wear. Wear is one more load: the gap opens along an exact path, while all other loads are held.
+
+Nothing acts on tangential displacements when material goes. So sticking nodes keep their slip, the shear follows from
+the mechanics, and every change of status on the way is an event of the path solver, as on a load path.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from fastpin.solver.configuration import Configuration, work_between
+from fastpin.solver.path_stepper import PathStepper
+from fastpin.solver.run import Run
+from fastpin.solver.step import Piece, Position
+
+
+@dataclass(frozen=True, eq=False)
+class Removal:
+    """The material that one wear path has removed, dimensionless.
+
+    Attributes
+    ----------
+    depth : ndarray, shape (n,)
+        Growth of the gap at each node.
+    dissipation : float
+        Energy dissipated by the slip on the way.
+    work : float
+        Work of the loads that are held.
+    energy : float
+        Elastic energy that goes with the material, int int N dg dtheta.
+    """
+
+    depth: np.ndarray
+    dissipation: float
+    work: float
+    energy: float
+
+
+class WearRun(Run):
+    """A run whose gap opens by wear at its corners; see :class:`fastpin.solver.run.Run`."""
+
+    wears: ClassVar[bool] = True
+
+    def wear(self, depth: np.ndarray, softness: np.ndarray | None = None) -> Removal:
+        """Remove material at the present corner, and go on from there.
+
+        Parameters
+        ----------
+        depth : ndarray, shape (n,)
+            Growth of the gap at each node, at least 0, dimensionless.
+        softness : ndarray, shape (n,), optional
+            Growth of this depth with the pressure at the node, at least 0, dimensionless: the implicit way. A node
+            whose pressure changes by dN on the path is worn by depth + softness dN.
+
+        Raises
+        ------
+        SolveError
+            If the path can't be followed.
+        """
+        before = self.now
+        if not before.closed.any():
+            after, removal = _opened(before, depth), Removal(depth, 0.0, 0.0, 0.0)
+        else:
+            after, removal = self._follow(before, depth, softness)
+        dissipation, work = self.dissipation + removal.dissipation, self.work + removal.work
+        self.go_back(replace(self.bookmark(), configuration=after, dissipation=dissipation, work=work))
+        return removal
+
+    def _follow(
+        self, before: Configuration, depth: np.ndarray, softness: np.ndarray | None
+    ) -> tuple[Configuration, Removal]:
+        """Follow the wear path from the configuration `before`."""
+        load, rest_gap = before.load, before.rest_gap
+        if softness is not None:
+            rest_gap = rest_gap - softness * before.pressure
+        begin, end = np.r_[load, 0.0], np.r_[load, 1.0]
+        start = replace(before, load=begin, rest_gap=rest_gap, dissipation=0.0, work=0.0)
+        position, piece = Position(start, before.closed.copy()), Piece(0.0, 1.0, begin, end)
+        stepper = PathStepper(self.system.with_wear(depth, softness), self.statistics, self.strict)
+        while not np.array_equal(position.now.load, end):
+            stepper.advance(position, piece, 1.0, self._check)
+        stepper.leave(position)
+        now, worn = position.now, depth
+        if softness is not None:
+            worn = depth + softness * (now.pressure - before.pressure)
+        after = replace(now, load=load, rest_gap=before.rest_gap + worn)
+        work = work_between(self.system, replace(before, work=0.0), after)
+        weights = self.system.weights
+        # The kernel counts wear as a load: int depth dN. By parts, int N d(depth) is the rest.
+        removed = float(weights @ (depth * now.pressure)) - (now.work - work)
+        if softness is not None:
+            removed += 0.5 * float(weights @ (softness * (now.pressure**2 - before.pressure**2)))
+        return after, Removal(worn, now.dissipation, work, removed)
+
+    def _check(self, reached: float) -> None:
+        """Let Ctrl-C end a long path."""
+        if self.progress is not None:
+            self.progress(float(self.corner), len(self.history))
+
+
+def _opened(before: Configuration, depth: np.ndarray) -> Configuration:
+    """A floating pin whose gap has opened by `depth` (n,)."""
+    return replace(before, gap=before.gap + depth, rest_gap=before.rest_gap + depth)
