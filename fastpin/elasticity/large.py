@@ -69,7 +69,8 @@ class LargeSystem(System):
 
     def window(self, nodes: np.ndarray) -> System:
         """The system of neighbouring `nodes`, shape (k,), in their order round the hole. Its end nodes stay open."""
-        return System.build(self.problem, arc_of(self.grid, nodes), self.scales.force)
+        built = System.build(self.problem, arc_of(self.grid, nodes), self.scales.force)
+        return built.with_friction(self.friction[nodes])
 
     @staticmethod
     def _operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> Operator:

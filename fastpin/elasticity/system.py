@@ -23,10 +23,10 @@ from fastpin.elasticity.drive import DISPLACEMENTS, Drive, make_drive
 from fastpin.elasticity.operator import DenseOperator, Operator, SoftOperator, make_operator, uniform_part
 from fastpin.elasticity.terms import BodyTerms, body_terms
 from fastpin.model.grid import Grid, arc_of
-from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
+from fastpin.model.loads import ACTING, FRICTION_CHANGE, LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
 from fastpin.model.problem import Problem
 
-_ACTING_FORCES = min(DISPLACEMENTS) if max(DISPLACEMENTS) == len(LOADS) - 1 else len(LOADS)
+_ACTING_FORCES = min(DISPLACEMENTS) if max(DISPLACEMENTS) == ACTING - 1 else ACTING
 """Number of loads in products under forces. The displacements, where they stand last, are left out: zeros cost bits."""
 
 
@@ -47,7 +47,7 @@ class Scales:
         radius, beta = problem.hole_radius, problem.surfaces.beta_star
         traction, rotation = force / radius, force * beta / radius
         unit = {"force": force, "moment": force * radius, "traction": traction, "rotation": rotation}
-        unit["displacement"] = force * beta
+        unit |= {"displacement": force * beta, "ratio": 1.0}
         loads = np.array([unit[kind] for kind in LOAD_KIND.values()])
         return cls(force, traction, force * beta, rotation, force * force * beta, loads)
 
@@ -80,13 +80,13 @@ class System:
         Matrix with 2n rows, stored or not. Maps (N, T) to (h, s).
     motion : ndarray, shape (2n, m)
         Maps the motion (c_x, c_y, omega) of the pin to (h, s).
-    loads : ndarray, shape (2n, loads)
+    loads : ndarray, shape (2n, acting loads)
         Maps the loads to (h, s).
     equilibrium : ndarray, shape (m, 2n)
         Maps (N, T) to the conditions of equilibrium.
     motion_rows : ndarray, shape (m, m)
         Maps the motion of the pin to the conditions of equilibrium.
-    forces : ndarray, shape (m, loads)
+    forces : ndarray, shape (m, acting loads)
         Maps the loads to the conditions of equilibrium.
     weights : ndarray, shape (n,)
         Integrals of the hat functions of the nodes, rad.
@@ -135,7 +135,7 @@ class System:
         equilibrium = np.zeros((3, 2 * n))
         equilibrium[0] = np.r_[cos_moment, sin_moment]  # Q
         equilibrium[1] = np.r_[sin_moment, -cos_moment]  # -P
-        motion_rows, forces = np.zeros((3, 3)), np.zeros((3, len(LOADS)))
+        motion_rows, forces = np.zeros((3, 3)), np.zeros((3, ACTING))
         forces[0, Q], forces[1, P] = 1.0, -1.0
         if problem.rotation == "free" and not problem.frictionless:
             equilibrium[2, n:] = -weights  # M
@@ -223,6 +223,15 @@ class System:
             return replace(worn, held_as=self.held_as or self)
         return replace(worn, operator=SoftOperator(self.operator, softness), held_as=None)
 
+    def with_friction(self, friction: np.ndarray) -> System:
+        """The same system with another friction at its nodes, shape (n,); itself if it is the same."""
+        return self if np.array_equal(friction, self.friction) else replace(self, friction=friction)
+
+    def under(self, load: np.ndarray) -> System:
+        """The system with the friction under a load (loads,): its own times 1 + ``friction_change``."""
+        change = float(load[FRICTION_CHANGE])
+        return self.with_friction(self.friction * (1.0 + change)) if change else self
+
     def load_displacement(self, load: np.ndarray, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Gap and slip, shape (2n,) or only some `rows`, of a load (loads,) or its rate."""
         acting = self._acting
@@ -242,7 +251,9 @@ class System:
     def _acting(self) -> int:
         """Number of loads in products."""
         columns = self.loads.shape[1]
-        return columns if self.drive.has_displacements or columns > len(LOADS) else _ACTING_FORCES
+        if columns > len(LOADS):  # wear is one more
+            return columns
+        return ACTING if self.drive.has_displacements else _ACTING_FORCES
 
     def displacement(
         self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
@@ -276,7 +287,7 @@ class System:
 def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) -> tuple[float, np.ndarray]:
     """The size R kappa'/(2 G) of the hole's displacement per remote stress, and the columns of all loads.
 
-    The columns, shape (2n, loads), map forces and remote stresses to gap and slip at the angles `theta` (n,),
+    The columns, shape (2n, acting loads), map forces and remote stresses to gap and slip at the angles `theta` (n,),
     dimensionless. Those of the other loads are 0. `bodies` are the :func:`fastpin.elasticity.terms.body_terms`.
     """
     pair = problem.surfaces
@@ -284,7 +295,7 @@ def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) 
     share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4
     point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star) if bodies is None else bodies.force_factor
     plate = 0.5 * (1.0 - uniform_part(problem))  # R kappa'/(2 G) per beta*, Eq. (42)
-    loads = np.zeros((2 * theta.size, len(LOADS)))
+    loads = np.zeros((2 * theta.size, ACTING))
     loads[:, P] = point * np.r_[sin, cos]
     loads[:, Q] = point * np.r_[-cos, sin]
     if bodies is not None:

@@ -86,6 +86,7 @@ _UNITS = {
         "in": LoadUnit(0, INCH),
         "mil": LoadUnit(-3, INCH),
     },
+    "ratio": {"1": LoadUnit(), "%": LoadUnit(-2)},
 }
 _PER_METRE = {**_UNITS, "force": _FORCE_PER_LENGTH, "moment": _MOMENT_PER_LENGTH}
 _WITH_THICKNESS = {**_UNITS, "force": _FORCE, "moment": _MOMENT}
@@ -114,7 +115,8 @@ _OTHER_WORDS = {
     "degrees": "deg",
 }
 _SIGNS = str.maketrans({"µ": "u", "μ": "u", "²": "2", "·": " ", "⋅": " ", "*": " ", "°": "deg", "-": " ", ".": " "})
-_KINDS = {"force": "force", "moment": "moment", "traction": "stress", "rotation": "rotation", "displacement": "length"}
+_KINDS = {"force": "force", "moment": "moment", "traction": "stress", "rotation": "rotation", "displacement": "length",
+          "ratio": "ratio"}  # fmt: skip
 
 
 def unit_name(text: str) -> str:

@@ -40,6 +40,7 @@ LOAD = {
     "sxy": Load("traction", "remote stress sxy", "remote shear stress of the plate"),
     "ux": Load("displacement", "displacement ux", "prescribed displacement of the pin to the right"),
     "uy": Load("displacement", "displacement uy", "prescribed displacement of the pin upwards"),
+    "friction_change": Load("ratio", "change of the friction", "relative change of the coefficient of friction"),
 }
 """The loads by name.
 
@@ -52,6 +53,8 @@ LOAD = {
 * ``sxy``: remote shear stress in the plate, Pa.
 * ``ux``, ``uy``: prescribed displacement of the pin along +x and +y, m, from the concentric position; only where the
   problem's ``drive`` says so. Q is then the reaction to ``ux``, and P to ``uy``.
+* ``friction_change``: relative change of the coefficient of friction, a plain number from -1. All round the hole the
+  friction is that of the problem times 1 + ``friction_change``.
 
 Files hold load vectors, so a new load stands at the end.
 """
@@ -62,8 +65,11 @@ LOADS = tuple(LOAD)
 LOAD_KIND = {name: load.kind for name, load in LOAD.items()}
 """The kind of quantity of every load."""
 
-P, Q, M, SXX, SYY, ROTATION, SXY, UX, UY = range(len(LOADS))
+P, Q, M, SXX, SYY, ROTATION, SXY, UX, UY, FRICTION_CHANGE = range(len(LOADS))
 """Places of the loads in a load vector."""
+
+ACTING = FRICTION_CHANGE
+"""Number of loads, the first ones, with columns in the equations. Later ones change their coefficients."""
 
 REMOTE = tuple(place for place, kind in enumerate(LOAD_KIND.values()) if kind == "traction")
 """Places of the remote stresses in a load vector."""

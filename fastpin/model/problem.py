@@ -419,6 +419,17 @@ class Problem:
             return np.full(np.shape(theta), self.friction)
         return np.maximum(self.friction.at(theta, self.hole_radius), 0.0)  # a spline may pass below zero in between
 
+    def check_friction_change(self, low: float, high: float) -> None:
+        """Raise :class:`InputError` if the friction of a history can't change by the parts `low` to `high`."""
+        if low == high == 0.0:
+            return
+        if self.frictionless:
+            raise InputError("friction_change", "there is no friction that could change: friction = 0")
+        number("friction_change", low, -1.0)
+        if (1.0 + high) * self.most_friction > MOST_FRICTION:
+            largest = f"the coefficient of friction would be {(1.0 + high) * self.most_friction:g}"
+            raise InputError("friction_change", f"{largest}; it must be at most {MOST_FRICTION:g}")
+
     def gap_at(self, theta: np.ndarray) -> np.ndarray:
         """Initial gap beside the clearance and two derivatives at the angles `theta` (...), rad, m, shape (3, ...)."""
         return self.gap.values(theta, self.hole_radius)
@@ -458,6 +469,7 @@ class Problem:
             "traction": stress,
             "rotation": 1.0,
             "displacement": radius,
+            "ratio": 1.0,
         }
 
     @property

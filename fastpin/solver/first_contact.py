@@ -11,7 +11,7 @@ from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
-from fastpin.model.loads import ROTATION, UX, UY, M, P, Q
+from fastpin.model.loads import FRICTION_CHANGE, ROTATION, UX, UY, M, P, Q
 from fastpin.reading.zones import runs
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import (
@@ -291,7 +291,9 @@ def _first_patch(
     least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
     self_similar = (
-        not system.concentric_gap.any() and not np.delete(before, ROTATION).any()
+        not system.concentric_gap.any()
+        and not np.delete(before, [ROTATION, FRICTION_CHANGE]).any()
+        and before[FRICTION_CHANGE] == after[FRICTION_CHANGE]
     )  # everything grows in proportion
     left = (1.0 - begins) * (after - before)
     size = np.abs(system.concentric_gap).max()

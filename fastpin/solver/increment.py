@@ -204,7 +204,7 @@ class IncrementStepper:
 
         A complete unloading that has no solution releases the pin.
         """
-        system = self._system
+        system = self._system.under(load)
         found = implicit_step(system, start, load)
         if found is None or worst_residual(system, found) > MAX_RESIDUAL:
             if can_float(system, load):  # unloaded completely

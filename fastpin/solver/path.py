@@ -220,7 +220,7 @@ class PathStep:
                 if (solution := self._correct()) is None:
                     checked = 0
                     continue
-                settled = _snap_to_bounds(system, self.now, solution)
+                settled = snap_to_bounds(system, self.now, solution)
                 last = settlings == MOST_SETTLINGS
                 if not _exceeds_bounds(settled, solution) or (last and _is_rounding(settled, solution)):
                     return settled
@@ -377,7 +377,7 @@ class PathStep:
         self._book()
         exact = self._exact_solution()
         if exact is not None:
-            self._take(_snap_to_bounds(self.system, self.now, exact))
+            self._take(snap_to_bounds(self.system, self.now, exact))
         self._rebuild()
         return True
 
@@ -393,7 +393,7 @@ class PathStep:
         solution = self._correct()
         if solution is None:
             return False
-        self._take(_snap_to_bounds(self.system, self.now, solution))
+        self._take(snap_to_bounds(self.system, self.now, solution))
         if self.rebuilds > before:
             return False
         self._columns.refine_rates(self._contact, self.rate, int(self._queue.counts[exchange.UPDATES]))
@@ -466,7 +466,7 @@ def _load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTer
     )
 
 
-def _snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:
+def snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:
     """The configuration with the solution of its statuses, each value kept within the bounds of its status.
 
     A pressure, shear or gap beyond its bound, or almost at it, is put exactly on the bound.
@@ -490,7 +490,7 @@ def _snap_to_bounds(system: System, configuration: Configuration, solution: Solu
 def _exceeds_bounds(settled: Configuration, solution: Solution) -> bool:
     """Whether a solution exceeds the bounds of its statuses by more than rounding.
 
-    `settled` is the configuration from :func:`_snap_to_bounds`.
+    `settled` is the configuration from :func:`snap_to_bounds`.
     """
     stick, gaping = settled.status == STICK, ~settled.closed
     traction, length = MOST_DRIFT * settled.pressure.max(), MOST_DRIFT * settled.gap.max()

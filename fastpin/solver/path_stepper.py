@@ -5,10 +5,13 @@ Where a path is lost, a contact that has just opened is released, and a pin that
 
 from __future__ import annotations
 
+import numpy as np
+
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
-from fastpin.model.loads import M
+from fastpin.model.loads import FRICTION_CHANGE, M
 from fastpin.solver.configuration import Configuration
+from fastpin.solver.drift import DriftPath
 from fastpin.solver.driven import can_float
 from fastpin.solver.errors import (
     CUT_OFF,
@@ -47,6 +50,10 @@ ALMOST_UNLOADED = 1.0 - 1e-8
 """Beyond this part of a complete unloading everything falls to zero together. The order of events is rounding there."""
 
 
+MOST_SYSTEMS = 8
+"""Systems with another friction that are kept, with their tables. A history returns to the same few."""
+
+
 class PathStepper:
     """The path solver as a stepper: it follows a step from event to event, exactly.
 
@@ -65,7 +72,8 @@ class PathStepper:
         self._statistics = statistics
         self._strict = strict
         self._memory = TableauMemory(system)
-        self._step: PathStep | None = None
+        self._step: PathStep | DriftPath | None = None
+        self._systems: dict[float, System] = {}
         self._begin = 0.0  # fraction of the history's step at which `_step` starts
         self._releases = self._jumps = 0
 
@@ -92,7 +100,7 @@ class PathStepper:
         try:
             if self._step is None:
                 self._begin = position.reached
-                self._step = PathStep(self._system, position.now, piece.after, self._memory)
+                self._step = self._path(position.now, piece.after)
             begin, length = self._begin, piece.end - self._begin
             part = 1.0 if stop == piece.end else (stop - begin) / length
             position.now = self._step.follow(part, lambda done: report(begin + done * length))
@@ -118,12 +126,25 @@ class PathStepper:
         self._statistics["resettled"] += self._step.resettled
         self._step = None
 
+    def _path(self, now: Configuration, after: np.ndarray) -> PathStep | DriftPath:
+        """The path from a configuration to the load `after` (loads,)."""
+        change = float(now.load[FRICTION_CHANGE])
+        system = self._systems.get(change)
+        if system is None:
+            if len(self._systems) == MOST_SYSTEMS:
+                self._systems.clear()
+            system = self._systems[change] = self._system.under(now.load)
+        if change == after[FRICTION_CHANGE]:
+            return PathStep(system, now, after, self._memory)
+        return DriftPath(system, now, after, self._system.under(after).friction)
+
     def _jump(self, position: Position, piece: Piece, stop: float) -> bool:
         """Take the pin over a snap to a state at a finite distance. Returns whether one was found."""
         jump = FIRST_JUMP * JUMP_GROWTH**self._jumps * (piece.end - piece.begin)
         ends = [min(position.reached + min(factor * jump, LARGEST_JUMP), stop) for factor in LONGER_JUMPS]
         for reached in dict.fromkeys(ends):
-            found = find_state_beyond(self._system, position.now, piece.load_at(reached))
+            load = piece.load_at(reached)
+            found = find_state_beyond(self._system.under(load), position.now, load)
             if found is not None:
                 self.leave(position)
                 position.now, position.reached = found, reached

@@ -8,7 +8,7 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
-from fastpin.model.loads import REMOTE, ROTATION, SXX, SXY, SYY
+from fastpin.model.loads import ACTING, REMOTE, ROTATION, SXX, SXY, SYY
 from fastpin.model.room import widest_place
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration, elastic_energy
@@ -76,7 +76,9 @@ def put_at_rest(
     `rest` (2,) is the position of the pin's centre, and `rest_gap` (n,) the gap there. `configuration` is changed.
     """
     n = system.grid.size
-    rest_gap = rest_gap - (system.loads - system.drive.columns)[:n] @ load  # prescribed displacements are loads
+    rest_gap = (
+        rest_gap - (system.loads - system.drive.columns)[:n] @ load[:ACTING]
+    )  # prescribed displacements are loads
     configuration.rest, configuration.rest_gap = rest, rest_gap
     held = system.problem.held
     turned = load[ROTATION] if held else configuration.motion[2]

@@ -13,7 +13,7 @@ from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS, M, P, Q, complete_load, named_load
+from fastpin.model.loads import FRICTION_CHANGE, LOADS, M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.read_only import ReadOnlyDict
 from fastpin.model.units import named_loads
@@ -57,6 +57,10 @@ NEXT_TO_NOTHING = 1e-6
 
 UNLOADED_PRESSURE = 1e-9
 """Largest pressure of a pin after a complete unloading, in parts of the force before (dimensionless)."""
+
+
+MOST_FIRST = 12
+"""First contacts that are tried while the friction changes, at most. The load of the second is that of the third."""
 
 
 class Recorder(Protocol):
@@ -330,13 +334,23 @@ class Run:
         self.stepper.leave(position)
         before = self.now.load.copy()
         before[[P, Q, M]] = 0.0  # a contact that was released under a little load begins anew from none
-        position.now, part = first_contact(self.system, self.now, before, load, self.strict)
+        position.now, part = self._first_contact(before, load)
         position.now.slip_tally = slip_tally_with(self.now)
         position.touched |= self.now.closed
         position.reached += part * (stop - position.reached)
         if part == 1.0:
             self.now.load = load
         position.fresh = part if part < 1.0 else 0.0
+
+    def _first_contact(self, before: np.ndarray, load: np.ndarray) -> tuple[Configuration, float]:
+        """Find the first contact, see :func:`first_contact`. Its friction is that of the load at which it is found."""
+        friction_at = before
+        for _ in range(MOST_FIRST):
+            found = first_contact(self.system.under(friction_at), self.now, before, load, self.strict)
+            if found[0].load[FRICTION_CHANGE] == friction_at[FRICTION_CHANGE]:
+                return found
+            friction_at = found[0].load
+        raise ConvergenceError("no first contact was found while the friction changes; change it after the first load")
 
     def _release_if_unloaded(self, piece: Piece, load: np.ndarray) -> None:
         """Release the pin after a complete unloading, when the contact carries nothing any more."""
@@ -426,7 +440,7 @@ class Run:
 
     def _keep(self, step: int, fraction: float) -> None:
         """Check the present configuration and hand it to the recorder as a state."""
-        residuals = contact_residuals(self.system, self.now)
+        residuals = contact_residuals(self.system.under(self.now.load), self.now)
         if not np.max(list(residuals.values())) <= MAX_RESIDUAL:
             worst = max(residuals, key=lambda name: residuals[name])
             raise ConvergenceError(

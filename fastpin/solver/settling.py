@@ -46,7 +46,9 @@ def lemke(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray | None:
     return z if code == complementarity.SOLVED else None
 
 
-def settle(system: System, now: Configuration, load_rate: np.ndarray) -> np.ndarray | None:
+def settle(
+    system: System, now: Configuration, load_rate: np.ndarray, growth: np.ndarray | None = None
+) -> np.ndarray | None:
     """Find the statuses with which the contact goes on from an event.
 
     Parameters
@@ -56,6 +58,8 @@ def settle(system: System, now: Configuration, load_rate: np.ndarray) -> np.ndar
         The contact at the event. Values at a limit are exactly at the limit.
     load_rate : ndarray, shape (loads,)
         Dimensionless, per unit of the step.
+    growth : ndarray, shape (n,), optional
+        Rate of the coefficient of friction. The limits then grow by it, too.
 
     Returns
     -------
@@ -94,6 +98,8 @@ def settle(system: System, now: Configuration, load_rate: np.ndarray) -> np.ndar
     shears = np.flatnonzero(~is_gap)
     reserve[shears] += factor[shears, None] * answers[positions[shears]]
     known[shears] += factor[shears] * rates[positions[shears]]
+    if growth is not None:
+        known[: first.size] += growth[first] * now.pressure[first]
     # Rates of tractions and of displacements have different sizes. Scaled, the covering vector of ones has a meaning.
     size = float(np.abs(known).max())
     z = lemke(np.ascontiguousarray(reserve), known / (size or 1.0))
