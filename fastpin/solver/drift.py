@@ -41,8 +41,11 @@ from fastpin.solver.unknowns import DenseUnknowns
 MOST_AHEAD = 0.1
 """Longest stretch of a path between two solutions, in parts of the path."""
 
-LIMIT = 1e-12
+LIMIT = 1e-13
 """Part of the largest pressure, displacement or rate. A function below it is at its limit."""
+
+BROKEN = 1e-11
+"""Part of the largest pressure, displacement or rate. A function below minus this part is no rounding."""
 
 FALLING = 1e-10
 """Part of the largest rate. A function at its limit that falls faster ends its status."""
@@ -137,9 +140,9 @@ class Moment:
 
     @cached_property
     def broken(self) -> np.ndarray:
-        """Whether each function is negative, bool, shape (4, n)."""
-        found: np.ndarray = self.functions[0] < -LIMIT
-        return found
+        """Whether each function is negative, bool, shape (4, n): by more than rounding, or still falling."""
+        values, rates = self.functions
+        return (values < -BROKEN) | ((values < -LIMIT) & (rates < -FALLING))
 
     @cached_property
     def ending(self) -> np.ndarray:
