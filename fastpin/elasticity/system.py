@@ -135,7 +135,7 @@ class System:
         equilibrium = np.zeros((3, 2 * n))
         equilibrium[0] = np.r_[cos_moment, sin_moment]  # Q
         equilibrium[1] = np.r_[sin_moment, -cos_moment]  # -P
-        motion_rows, forces = np.zeros((3, 3)), np.zeros((3, ACTING))
+        motion_rows, forces = np.zeros((3, 3)), np.zeros((3, len(LOADS)))
         forces[0, Q], forces[1, P] = 1.0, -1.0
         if problem.rotation == "free" and not problem.frictionless:
             equilibrium[2, n:] = -weights  # M
@@ -295,7 +295,7 @@ def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) 
     share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4
     point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star) if bodies is None else bodies.force_factor
     plate = 0.5 * (1.0 - uniform_part(problem))  # R kappa'/(2 G) per beta*, Eq. (42)
-    loads = np.zeros((2 * theta.size, ACTING))
+    loads = np.zeros((2 * theta.size, len(LOADS)))
     loads[:, P] = point * np.r_[sin, cos]
     loads[:, Q] = point * np.r_[-cos, sin]
     if bodies is not None:

@@ -77,7 +77,7 @@ def put_at_rest(
     """
     n = system.grid.size
     rest_gap = (
-        rest_gap - (system.loads - system.drive.columns)[:n] @ load[:ACTING]
+        rest_gap - (system.loads - system.drive.columns)[:n, :ACTING] @ load[:ACTING]
     )  # prescribed displacements are loads
     configuration.rest, configuration.rest_gap = rest, rest_gap
     held = system.problem.held

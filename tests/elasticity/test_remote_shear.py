@@ -136,7 +136,7 @@ def test_column_and_gap_of_the_hole(plane):
 
 def test_gap_of_the_hole_is_that_of_the_columns_and_has_its_derivatives(titanium_in_aluminium):
     system = System.build(problem_of(titanium_in_aluminium, 0.3), CIRCLE, 1.0)
-    load = np.array([0.0, 0.0, 0.0, 0.2, -0.1, 0.0, 0.3, 0.0, 0.0])
+    load = np.array([0.0, 0.0, 0.0, 0.2, -0.1, 0.0, 0.3, 0.0, 0.0, 0.0])
     gap, slope, curvature = hole_gap(system, load, CIRCLE.theta)
     assert gap == pytest.approx(0.3 + (system.loads @ load)[:NODES], abs=1e-15)
     step = 1e-3
