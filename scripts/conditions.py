@@ -21,6 +21,7 @@ from fastpin.errors import FastpinError
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
+from fastpin.model.profile import Crown, Flat, Harmonic, InitialGap
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -189,6 +190,28 @@ class Integrals:
         return np.array([cos @ T - sin @ N, sin @ T + cos @ N, -(one @ T)]), float(one @ (np.abs(N) + np.abs(T)))
 
 
+def initial_gap(gap: InitialGap, theta: np.ndarray, radius: float) -> np.ndarray:
+    """The initial gap, m, shape (n,), from the definitions of its terms.
+
+    The value of a spline is the only one that is not computed anew.
+    """
+    total = np.zeros(theta.size)
+    for term in (*gap.hole.terms, *gap.pin.terms):
+        if isinstance(term, Harmonic):
+            total += (complex(term.cosine, -term.sine) * np.exp(1j * term.order * theta)).real
+        elif isinstance(term, Crown):
+            away = np.angle(np.exp(1j * (theta - term.centre)))
+            bump = term.height * np.cos(0.5 * math.pi * away / term.half_width) ** 2
+            total += np.where(np.abs(away) < term.half_width, bump, 0.0)
+        elif isinstance(term, Flat):
+            along = np.cos(theta - term.centre)
+            chord = (radius - term.depth) / np.where(along > 0.0, along, 1.0)
+            total += np.where(along > 0.0, np.maximum(radius - chord, 0.0), 0.0)
+        else:
+            total += term.values(theta, radius)[0]
+    return total
+
+
 def integrals_of(states: Sequence[State]) -> Integrals:
     """The integrals for the states of one result."""
     loaded = np.any([(state.pressure != 0.0) | (state.shear != 0.0) for state in states], axis=0)
@@ -205,13 +228,15 @@ class _Checked:
         cos, sin = np.cos(state.theta), np.sin(state.theta)
         radius = self.problem.hole_radius
         # Gap and slip from the first resting position of the pin. The place of that position is not known.
-        self.gap = self.problem.assembled_clearance - state.dx * cos - state.dy * sin + self.elastic[0] + self.loads[0]
+        initial = initial_gap(self.problem.gap, state.theta, radius)
+        resting = self.problem.assembled_clearance + initial
+        self.gap = resting - state.dx * cos - state.dy * sin + self.elastic[0] + self.loads[0]
         self.slip = radius * state.rotation + state.dy * cos - state.dx * sin + self.elastic[1] + self.loads[1]
         self.touches = bool(np.any(state.status != OPEN))
         least = LEAST_LENGTH if self.touches else 1.0
         self.length = max(
             *(float(np.abs(part).max()) for part in self.elastic), abs(state.dx), abs(state.dy),
-            radius * abs(state.rotation), least * abs(self.problem.assembled_clearance), 1e-300,
+            radius * abs(state.rotation), least * float(np.abs(resting).max()), 1e-300,
         )  # fmt: skip
         self.peak = max(float(np.abs(state.pressure).max()), 1e-300)
 
@@ -279,8 +304,13 @@ def check_states(states: Sequence[State]) -> list[dict[str, float]]:
 
 
 def _check_gaps(checked: list[_Checked], found: list[dict[str, float]]) -> None:
-    """Compare the gaps. Before the first contact the pin is in the middle; its later datum is fitted."""
+    """Compare the gaps. Before the first contact the pin is in the middle; its later datum is fitted.
+
+    With an initial gap the pin may float beside the middle. Then it is not judged.
+    """
     began = next((place for place, one in enumerate(checked) if one.touches), len(checked))
+    if checked[0].problem.gap:
+        checked, found, began = checked[began:], found[began:], 0
     for one, conditions in zip(checked[:began], found, strict=False):
         conditions["gap"] = float(np.abs(one.gap - one.state.gap).max()) / one.length
     if began == len(checked):
@@ -313,7 +343,7 @@ def _check_slips(checked: list[_Checked], found: list[dict[str, float]]) -> None
 
 def _may_lose_contact(before: State, after: State) -> bool:
     """Whether the pin may float between two states with clearance: no force acts, or the force passes through zero."""
-    if before.problem.assembled_clearance < 0.0:
+    if before.problem.is_gripped:
         return False
     first, last = (np.array([state.load["P"], state.load["Q"]]) for state in (before, after))
     way = last - first

@@ -10,7 +10,7 @@ import functools
 import math
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,7 @@ from fastpin.model.loads import Corner
 from fastpin.model.lug import Lug, Part, PartLoad
 from fastpin.model.materials import Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
+from fastpin.model.profile import Crown, Flat, Harmonic, InitialGap, Profile, Samples, Term
 
 NODES = 81
 """Nodes of the general class."""
@@ -274,6 +275,86 @@ def bodies(rng: np.random.Generator, seed: int) -> RandomCase:
     return RandomCase(problem, LoadHistory(corners), _nodes(rng))
 
 
+def gap(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Initial gaps of hole and pin: waves, bumps and samples; all fits, held, free and driven pins, some other bodies.
+
+    One case of eight has lengths in m, and flats.
+    """
+    del seed
+    pair = MaterialPair(
+        *(Material(10.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.0, 0.49)) for _ in range(2)),
+        "strain" if rng.random() < 0.5 else "stress",
+    )
+    if rng.random() < 0.3:
+        pair = MaterialPair(pair.pin, pair.pin, pair.plane)
+    load_parameter = 10.0 ** rng.uniform(-2.5, 1.5) * rng.choice([1.0, 1.0, 1.0, 0.0, -0.5])
+    size = max(abs(load_parameter), 0.03)
+    chosen: dict[str, Any] = {**_support(rng), "friction": _any_friction(rng)}
+    if rng.random() < 0.15:
+        chosen |= {"pin_body": Tube(rng.uniform(0.1, 0.8)), "plate_body": _plate_body(rng)}
+        chosen |= {"pin_load": "centre", "hub_radius": None}
+    elif rng.random() < 0.15:
+        chosen["drive"] = rng.choice(["ux", "uy", "both"]).item()
+    profiles = [Profile(_terms(rng, size)) for _ in range(2)]
+    profiles[int(rng.integers(2))] = Profile() if rng.random() < 0.6 else profiles[0]
+    problem = Problem.from_load_parameter(pair, load_parameter, gap=InitialGap(*profiles), **chosen)
+    stress = 0.5 if rng.random() < 0.25 and not _is_held(problem) else 0.0
+    corners = _extreme_loads(rng, problem, int(rng.integers(1, 6)), 0.0)
+    for corner in corners:
+        if stress:
+            corner |= {name: stress * size * rng.uniform(-1.0, 1.0) for name in ("sxx", "syy", "sxy")}
+        for name, force, driven in zip(("ux", "uy"), ("Q", "P"), problem.driven, strict=True):
+            if driven:
+                del corner[force]
+                corner[name] = 3.0 * (size + 0.3) * rng.uniform(-1.0, 1.0)
+    if problem.drive != "force":
+        corners = [{name: value for name, value in corner.items() if name != "M"} for corner in corners]
+    if problem.drive == "force" and not problem.has_bodies and not problem.is_gripped and rng.random() < 0.15:
+        return _with_flats(rng, problem, corners)
+    return RandomCase(problem, LoadHistory(corners), {"nodes": int(rng.integers(81, 202))})
+
+
+def _is_held(problem: Problem) -> bool:
+    """Whether a ring round the plate is held, so that there is no remote stress."""
+    outside = problem.plate_body.lug
+    return isinstance(outside, Ring) and outside.held
+
+
+def _terms(rng: np.random.Generator, size: float) -> list[Term]:
+    """One to three terms of a gap, of the order of `size`."""
+    terms: list[Term] = []
+    for _ in range(int(rng.integers(1, 4))):
+        height, kind = 10.0 ** rng.uniform(-2.0, 0.2) * size, rng.random()
+        turn = rng.uniform(-math.pi, math.pi)
+        if kind < 0.65:
+            order = int(rng.choice([1, 2, 2, 2, 3, 3, 4, 5, 6, 8, 20]))
+            height /= max(order, 1)
+            terms.append(Harmonic(order, height * math.cos(turn), height * math.sin(turn)))
+        elif kind < 0.85:
+            terms.append(Crown(height * rng.choice([-0.3, 1.0]), turn, rng.uniform(0.3, math.pi)))
+        else:
+            angles = turn + np.arange(12) * (math.pi / 6.0)
+            terms.append(Samples(angles, 0.3 * height * rng.uniform(-1.0, 1.0, 12)))
+    return terms
+
+
+def _with_flats(rng: np.random.Generator, problem: Problem, corners: list[dict[str, float]]) -> RandomCase:
+    """The same with lengths in m, and a flat on the pin: a load of 1 strains the bodies by 1e-3."""
+    radius, strain = 0.01, 1e-3
+    natural = Problem(problem.pair, radius, 0.0, 0.0).natural_loads()["force"]
+    unit = strain * radius
+    flat = Flat(unit * rng.uniform(0.1, 2.0) * max(problem.clearance, 0.1), rng.uniform(-math.pi, math.pi))
+    found = replace(
+        problem, hole_radius=radius, clearance=unit * problem.clearance, dimensionless=False,
+        hub_radius=None if problem.hub_radius is None else radius * problem.hub_radius,
+        gap=InitialGap(pin=Profile((flat,))),
+    )  # fmt: skip
+    sizes = {"P": 1.0, "Q": 1.0, "M": radius, "sxx": 1.0 / radius, "syy": 1.0 / radius, "sxy": 1.0 / radius}
+    loads = {name: strain * natural * size for name, size in sizes.items()} | {"rotation": strain}
+    scaled = [{name: loads[name] * value for name, value in corner.items()} for corner in corners]
+    return RandomCase(found, LoadHistory(scaled), {"nodes": int(rng.integers(81, 202))})
+
+
 @functools.cache
 def lug(nu: float, plane: Plane) -> Compliance:
     """An oblique lug that no axis divides, with tractions of its own for all remote stresses."""
@@ -311,7 +392,7 @@ def _ring(rng: np.random.Generator, hole: float) -> Ring:
 GENERATORS: dict[str, Callable[[np.random.Generator, int], RandomCase]] = {
     function.__name__: function
     for function in (
-        general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering, bodies,
+        general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering, bodies, gap,
     )
 }  # fmt: skip
 """The classes of random cases, by name."""

@@ -54,7 +54,8 @@ def unloaded_configuration(system: System) -> Configuration:
     )
     if not is_gripped:
         return configuration
-    configuration.status[:] = resting_status(system)
+    overlaps = system.concentric_gap < 0.0
+    configuration.status[:] = np.where(overlaps, resting_status(system), OPEN)
     configuration.origin = np.zeros(2)
     configuration.gap = zeros.copy()
     # In a plate that is not symmetric, or with a gap.
@@ -87,7 +88,7 @@ def _uneven(system: System, start: Configuration) -> Configuration:
     All grows in proportion to the interference, so one implicit increment is exact, friction included. With an initial
     gap the pin may touch in some places only.
     """
-    found = implicit_step(system, start, start.load) or FiniteStep(system, start).to(start.load)
+    found = implicit_step(system, start, start.load) or FiniteStep(system, start, everywhere=True).to(start.load)
     if found is None or not found.closed.any() or worst_residual(system, found) > MAX_RESIDUAL:
         raise ConvergenceError(NOT_FOUND)
     return found

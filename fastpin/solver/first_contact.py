@@ -224,11 +224,14 @@ def _first_contact_from(
     nodes = resting.closed
     for _ in range(MOST_WINDOWS):
         window = Window(system, nodes)
-        patch, part = _first_patch(window.system, resting.part(window.nodes), way, most_part)
         try:
+            patch, part = _first_patch(window.system, resting.part(window.nodes), way, most_part)
             return window.paste(patch, resting), part
         except SecondPlaceError as second:
             nodes = nodes | second.nodes
+        except ArcError:
+            nodes = nodes.copy()
+            nodes[window.nodes] = True
     raise ResolutionError(NARROW)
 
 
