@@ -342,13 +342,27 @@ def _check_slips(checked: list[_Checked], found: list[dict[str, float]]) -> None
 
 
 def _may_lose_contact(before: State, after: State) -> bool:
-    """Whether the pin may float between two states with clearance: no force acts, or the force passes through zero."""
-    if before.problem.is_gripped:
+    """Whether the pin may float between two states with clearance: no force acts, or the force passes through zero.
+
+    A pin with a prescribed displacement may float where it is not beyond the clearance.
+    """
+    problem = before.problem
+    if problem.is_gripped:
         return False
-    first, last = (np.array([state.load["P"], state.load["Q"]]) for state in (before, after))
+    if problem.drive != "force":
+        free = max(map(abs, problem.clearances))
+        driven = [name for name, axis in zip(("ux", "uy"), problem.driven, strict=True) if axis]
+        return _least_on_the_way(before, after, driven) <= free
+    largest = max(abs(state.load[name]) for state in (before, after) for name in "PQ")
+    return _least_on_the_way(before, after, ["P", "Q"]) <= 1e-9 * max(largest, 1e-300)
+
+
+def _least_on_the_way(before: State, after: State, names: Sequence[str]) -> float:
+    """The least size of the vector of some loads on the straight way between two states."""
+    first, last = (np.array([state.load[name] for name in names]) for state in (before, after))
     way = last - first
     part = min(max(float(-(first @ way)) / max(float(way @ way), 1e-300), 0.0), 1.0)
-    return float(np.hypot(*(first + part * way))) <= 1e-9 * max(float(np.abs([first, last]).max()), 1e-300)
+    return float(np.linalg.norm(first + part * way))
 
 
 def _held(states: Sequence[State]) -> list[tuple[int, State, State]]:

@@ -394,7 +394,7 @@ def _too_small(problem: Problem, largest: dict[str, float], strains: dict[str, f
     if (
         alone
         and 0.0 < strains[name] < LEAST_STRAIN
-        and problem.assembled_clearance >= 0.0
+        and not problem.is_gripped
         and radius <= LARGEST_HOLE
         and force != 1.0
     ):
@@ -423,7 +423,7 @@ def _of_displacements(problem: Problem, largest: dict[str, float]) -> Iterator[I
         yield InputWarning(
             "rotation", f"{rotation:g} rad is {math.degrees(rotation):.3g} degrees; rotations are in rad, and small"
         )
-    free = abs(problem.assembled_clearance)
+    free = max(map(abs, problem.clearances))
     for name in ("ux", "uy"):
         shift = largest.get(name, 0.0)
         if abs(shift) - free > MOST_SHIFT * problem.hole_radius:

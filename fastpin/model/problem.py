@@ -440,6 +440,15 @@ class Problem:
         return self.gap.angles(LOOKED_AT, self.hole_radius)
 
     @cached_property
+    def clearances(self) -> tuple[float, float]:
+        """The least and the largest gap round the unloaded, concentric pin, m. They are equal in a round hole."""
+        clearance = self.assembled_clearance
+        if not self.gap:
+            return clearance, clearance
+        gap = self.gap_at(self.gap_angles)[0]
+        return clearance + float(gap.min()), clearance + float(gap.max())
+
+    @cached_property
     def is_gripped(self) -> bool:
         """Whether the hole grips the unloaded pin: an interference fit, or a gap too narrow for a rigid pin.
 

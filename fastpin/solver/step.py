@@ -78,7 +78,8 @@ def pushes(problem: Problem, values: np.ndarray) -> np.ndarray:
     """The force on the pin along x and y at every corner, N/m, shape (corners, 2); an estimate where it is a reaction.
 
     `values` are the loads at the corners, SI, shape (corners, loads). The estimate has the direction in which a rigid
-    pin touches the hole. Its size is the force, or else the overlap of pin and hole over beta*.
+    pin touches a round hole with the least clearance. Its size is the force, or else the overlap of pin and hole over
+    beta*.
     """
     forces = np.column_stack([values[:, Q], -values[:, P]])
     if problem.drive == "force":
@@ -86,17 +87,14 @@ def pushes(problem: Problem, values: np.ndarray) -> np.ndarray:
     axes = np.array(problem.driven)
     given = np.where(axes, values[:, [UX, UY]], 0.0)
     reach = np.hypot(given[:, 0], given[:, 1])
-    overlap = np.maximum(reach - max(problem.assembled_clearance, 0.0), 0.0) / problem.surfaces.beta_star
+    play = problem.clearances[0]
+    overlap = np.maximum(reach - max(play, 0.0), 0.0) / problem.surfaces.beta_star
     way = np.divide(given, reach[:, None], out=np.zeros_like(given), where=reach[:, None] > 0.0)
     if axes.all():
         return overlap[:, None] * way
     # The force pushes the pin along the hole's wall: at a part of the clearance the normal of the wall has turned.
     size = np.abs(forces).max(axis=1)
-    part = (
-        np.minimum(reach, problem.assembled_clearance) / problem.assembled_clearance
-        if problem.assembled_clearance > 0.0
-        else np.zeros(len(values))
-    )
+    part = np.minimum(reach, play) / play if play > 0.0 else np.zeros(len(values))
     turned = np.sign(forces) * np.sqrt(1.0 - part**2)[:, None] + way * part[:, None]
     return np.where(size[:, None] > 0.0, size[:, None] * turned, overlap[:, None] * way)
 

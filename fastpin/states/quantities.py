@@ -231,7 +231,7 @@ def sizes(state: State) -> dict[str, float]:
     """The natural size of each kind of quantity."""
     problem, pressure = state.problem, state.peak_pressure
     force = QUANTITIES["pressure_integral"].of(state)
-    strain = problem.surfaces.beta_star * pressure or abs(problem.assembled_clearance) / problem.hole_radius
+    strain = problem.surfaces.beta_star * pressure or max(map(abs, problem.clearances)) / problem.hole_radius
     return {
         "traction": pressure,
         "angle": width(state.contact),
