@@ -174,6 +174,6 @@ class OutsideGap:
         if not now.closed.any():  # a floating pin is looked after by the first contact
             return False
         elastic = self._operator @ np.r_[now.pressure, now.shear]
-        moved = self._moved @ now.motion + self._loads @ now.load
+        moved = self._moved @ now.motion + self._loads @ now.load[: self._loads.shape[1]]
         gap = elastic + moved + rest_gap_at(system, now, self._theta)
         return bool(gap.min() < -PENETRATION * max(float(np.abs(elastic).max()), float(np.abs(moved).max())))
