@@ -36,6 +36,9 @@ POINTS, WEIGHTS = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS
 HALVINGS = 44
 """Halvings of a segment towards a logarithm at its end."""
 
+STOPS = 101
+"""Places between two states at which a driven pin may float."""
+
 LEAST_LENGTH = 1e-6
 """Least size of displacements, in parts of the clearance: below it the clearance leaves no digits."""
 
@@ -344,25 +347,24 @@ def _check_slips(checked: list[_Checked], found: list[dict[str, float]]) -> None
 def _may_lose_contact(before: State, after: State) -> bool:
     """Whether the pin may float between two states with clearance: no force acts, or the force passes through zero.
 
-    A pin with a prescribed displacement may float where it is not beyond the clearance.
+    Along an axis with a prescribed displacement the pin must also be where it is not beyond the clearance.
     """
     problem = before.problem
     if problem.is_gripped:
         return False
-    if problem.drive != "force":
-        free = max(map(abs, problem.clearances))
-        driven = [name for name, axis in zip(("ux", "uy"), problem.driven, strict=True) if axis]
-        return _least_on_the_way(before, after, driven) <= free
-    largest = max(abs(state.load[name]) for state in (before, after) for name in "PQ")
-    return _least_on_the_way(before, after, ["P", "Q"]) <= 1e-9 * max(largest, 1e-300)
-
-
-def _least_on_the_way(before: State, after: State, names: Sequence[str]) -> float:
-    """The least size of the vector of some loads on the straight way between two states."""
-    first, last = (np.array([state.load[name] for name in names]) for state in (before, after))
+    first, last = (
+        np.array([[state.load["Q"], state.load["P"]], [state.load["ux"], state.load["uy"]]])
+        for state in (before, after)
+    )
+    driven = np.array(problem.driven)
+    first, last = (np.where([~driven, driven], given, 0.0) for given in (first, last))
     way = last - first
-    part = min(max(float(-(first @ way)) / max(float(way @ way), 1e-300), 0.0), 1.0)
-    return float(np.linalg.norm(first + part * way))
+    part = min(max(float(-(first[0] @ way[0])) / max(float(way[0] @ way[0]), 1e-300), 0.0), 1.0)
+    stops = np.r_[part, np.linspace(0.0, 1.0, STOPS)]
+    forces, shifts = (np.linalg.norm(first[k] + stops[:, None] * way[k], axis=1) for k in (0, 1))
+    largest = max(float(np.abs([first[0], last[0]]).max()), 1e-300)
+    room = shifts <= max(map(abs, problem.clearances)) if driven.any() else np.ones(stops.size, dtype=bool)
+    return bool(np.any(room & (forces <= 1e-9 * largest)))
 
 
 def _held(states: Sequence[State]) -> list[tuple[int, State, State]]:
