@@ -47,7 +47,7 @@ class Wear:
     at : sequence of int, optional
         Cycles after which profile and states are stored. Ten a decade unless given. The last one is always stored.
     tolerance : float
-        Largest error of a fat cycle, in parts of the largest worn depth; 0 solves every cycle.
+        Largest error of the worn gap by fat cycles, in parts of its largest depth; 0 solves every cycle.
 
     Raises
     ------
@@ -61,7 +61,7 @@ class Wear:
     cycles: int = 1
     law: str = "archard"
     at: Sequence[int] | None = None
-    tolerance: float = 3e-3
+    tolerance: float = 1e-2
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "law", choice("law", self.law, LAWS))

@@ -122,7 +122,7 @@ class FatCycles:
         while jump >= LEAST_JUMP:
             fine, error = self._pair(place, jump)
             place = replace(place, solved=place.solved + 3)
-            ratio = SAFETY * math.sqrt(tolerance / error) if error > 0.0 else math.inf
+            ratio = SAFETY * tolerance / error if error > 0.0 else math.inf
             wanted = int(jump * min(max(ratio, LEAST_GROWTH), MOST_GROWTH))
             if error <= tolerance:
                 most = place.jump if jump < place.jump else 0  # a chosen cycle has cut it short
@@ -137,7 +137,7 @@ class FatCycles:
             fine = self._fat(self._fat(place, jump // 2), jump - jump // 2)
         except SolveError:
             return place, math.inf
-        return fine, self._error(fine, coarse)
+        return fine, self._error(place, fine, coarse)
 
     def states(self, place: Worn) -> tuple[State, ...]:
         """The states over one cycle at a place, at its beginning and at its corners, without further wear."""
@@ -194,11 +194,15 @@ class FatCycles:
         mean = np.divide(loaded, pressure, out=np.full_like(slip, np.inf), where=pressure > 0.0)
         return depth, jump * self._total * np.minimum(slip, mean)
 
-    def _error(self, fine: Worn, coarse: Worn) -> float:
-        """The larger error of a fat cycle: of the worn gap, or PRESSURE_SHARE of that of the pressure."""
+    def _error(self, start: Worn, fine: Worn, coarse: Worn) -> float:
+        """The larger error of a fat cycle: of the worn gap in parts of its growth, or of the pressure.
+
+        The errors of the gap then add up to at most this part of the largest depth. Those of the pressure do not add
+        up, and have the weight PRESSURE_SHARE.
+        """
         one, other = fine.restart.configuration.pressure, coarse.restart.configuration.pressure
-        deepest, most = float(fine.gap.max()), float(one.max())
-        gap = float(np.abs(fine.gap - coarse.gap).max()) / deepest if deepest else 0.0
+        grown, most = float((fine.gap - start.gap).max()), float(one.max())
+        gap = float(np.abs(fine.gap - coarse.gap).max()) / grown if grown else 0.0
         return max(gap, PRESSURE_SHARE * float(np.abs(one - other).max()) / most if most else 0.0)
 
     def _check_depth(self, depth: np.ndarray) -> None:
