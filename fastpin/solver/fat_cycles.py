@@ -53,6 +53,8 @@ class Worn:
         Elastic energy that went with the material.
     restart : Restart
         The contact. Its energies count each fat cycle J times.
+    loses_contact : bool
+        Whether the pin loses contact in the cycle.
     """
 
     cycle: int
@@ -61,6 +63,7 @@ class Worn:
     depth: np.ndarray
     removed: float
     restart: Restart
+    loses_contact: bool = False
 
     @property
     def gap(self) -> np.ndarray:
@@ -84,6 +87,7 @@ class FatCycles:
     def __init__(self, run: WearRun, wear: Wear, cycle: np.ndarray) -> None:
         system = run.system
         self.run, self._wear, self._cycle = run, wear, cycle
+        self._first = system
         unit = system.scales.traction
         self._coefficients = unit * wear.coefficients(system.problem, system.grid.theta)
         total = self._coefficients.sum(axis=0)
@@ -98,11 +102,21 @@ class FatCycles:
         """Follow what leads to the cycle once, corners (corners, loads) in SI, with its own wear only if it `wears`."""
         self._approach = len(loads)
         start = Worn(0, 1, 0, np.zeros((2, self.run.system.grid.size)), 0.0, self._restart())
-        return self._followed(start, loads, 1 if wears else 0)
+        place = self._followed(start, loads, 1 if wears else 0)
+        rest = place.restart.configuration.rest
+        self._followed(place, self._cycle, 0)
+        loses_contact = self.run.now.rest is not rest
+        self._stand_at(place)
+        return replace(place, loses_contact=loses_contact)
 
     def at(self, place: Worn, approach: int) -> None:
         """Stand at a place of an earlier run, whose cycle was led to by so many corners."""
         self._approach = approach
+        self._stand_at(place)
+
+    def _stand_at(self, place: Worn) -> None:
+        if place.loses_contact:
+            self.run.set_gap(self._first, place.gap)
         self.run.go_back(place.restart)
 
     def next(self, place: Worn, target: int) -> Worn:
@@ -143,7 +157,7 @@ class FatCycles:
         """The states over one cycle at a place, at its beginning and at its corners, without further wear."""
         run, recorder = self.run, self.run.recorder
         assert recorder is not None
-        run.go_back(place.restart)
+        self._stand_at(place)
         run.corner = self._approach + place.cycle * len(self._cycle) - 1
         try:
             run.step_to(run.load)
@@ -158,7 +172,7 @@ class FatCycles:
         return states
 
     def _fat(self, place: Worn, jump: int) -> Worn:
-        self.run.go_back(place.restart)
+        self._stand_at(place)
         after = self._followed(place, self._cycle, jump)
         return replace(after, cycle=place.cycle + jump, solved=place.solved + 1)
 
@@ -176,6 +190,8 @@ class FatCycles:
                     depth = depth + self._shares * removal.depth
                     dissipation, work = dissipation + removal.dissipation, work + removal.work
                     removed += removal.energy
+                    if place.loses_contact:
+                        run.set_gap(self._first, depth.sum(axis=0))
             except SolveError as error:
                 _name_cycle(error, place.cycle + 1)
                 raise

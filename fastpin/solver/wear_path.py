@@ -11,10 +11,15 @@ from typing import ClassVar
 
 import numpy as np
 
+from fastpin.elasticity.system import System
+from fastpin.model.profile import InitialGap, Profile, Samples
 from fastpin.solver.configuration import Configuration, work_between
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.run import Run
 from fastpin.solver.step import Piece, Position
+
+BEYOND_ARC = 8
+"""Angles beyond an arc at which a worn gap is said not to have grown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,9 +45,29 @@ class Removal:
 
 
 class WearRun(Run):
-    """A run whose gap opens by wear at its corners; see :class:`fastpin.solver.run.Run`."""
+    """A run whose gap opens by wear at its corners; see :class:`fastpin.solver.run.Run`.
+
+    The worn gap is part of the configuration. A pin that loses contact needs it in the problem as well, for its next
+    first contact: :meth:`set_gap`.
+    """
 
     wears: ClassVar[bool] = True
+
+    def set_gap(self, first: System, worn: np.ndarray) -> None:
+        """Let the next first contact see a gap that has grown by `worn` (n,), dimensionless, since the system `first`.
+
+        Between the nodes the grown gap is a spline.
+        """
+        problem, grid = first.problem, first.grid
+        theta, heights = grid.theta, worn * first.scales.displacement
+        if not grid.closed:  # nothing is worn beyond an arc
+            beyond = np.linspace(theta[-1], theta[0] + 2.0 * np.pi, BEYOND_ARC + 2)[1:-1]
+            theta, heights = np.r_[theta, beyond], np.r_[heights, np.zeros(BEYOND_ARC)]
+        hole = problem.gap.hole + Profile((Samples(theta, heights),))
+        grown = replace(problem, gap=InitialGap(hole, problem.gap.pin))
+        gap = first.initial_gap + worn
+        self.system = replace(first, problem=grown, initial_gap=gap, held_as=first.held_as or first)
+        self.stepper = PathStepper(self.system, self.statistics, self.strict)
 
     def wear(self, depth: np.ndarray, softness: np.ndarray | None = None) -> Removal:
         """Remove material at the present corner, and go on from there.
