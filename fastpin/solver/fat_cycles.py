@@ -28,6 +28,9 @@ SETTLING = 2
 LEAST_JUMP = 4
 """Smallest jump under control. Three cycles are solved for it, so smaller ones save nothing."""
 
+LEAST_PAUSE, LONGEST_PAUSE = 4, 64
+"""Single cycles after a failure of control: at first, and after many failures in a row. They double in between."""
+
 SAFETY, MOST_GROWTH, LEAST_GROWTH = 0.8, 2.0, 0.2
 """Part of the jump that the error allows; largest and smallest ratio of a jump to the one before."""
 
@@ -44,7 +47,9 @@ class Worn:
     cycle : int
         Cycles that are done.
     jump : int
-        The next jump.
+        The next jump. Below 1 so many single cycles and one more come first: control has failed before.
+    pause : int
+        Single cycles after the next failure of control.
     solved : int
         Cycles that were solved, those of control included.
     depth : ndarray, shape (2, n)
@@ -64,6 +69,7 @@ class Worn:
     removed: float
     restart: Restart
     loses_contact: bool = False
+    pause: int = LEAST_PAUSE
 
     @property
     def gap(self) -> np.ndarray:
@@ -130,8 +136,8 @@ class FatCycles:
         room, tolerance = target - place.cycle, self._wear.tolerance
         if tolerance == 0.0 or place.cycle < SETTLING:
             return replace(self._fat(place, 1), jump=LEAST_JUMP if tolerance else 1)
-        if place.jump < LEAST_JUMP:  # control has failed: it is tried again soon
-            return replace(self._fat(place, 1), jump=place.jump + 1)
+        if place.jump < LEAST_JUMP:
+            return replace(self._fat(place, 1), jump=LEAST_JUMP if place.jump == 0 else place.jump + 1)
         jump = min(room, place.jump)
         while jump >= LEAST_JUMP:
             fine, error = self._pair(place, jump)
@@ -140,8 +146,10 @@ class FatCycles:
             wanted = int(jump * min(max(ratio, LEAST_GROWTH), MOST_GROWTH))
             if error <= tolerance:
                 most = place.jump if jump < place.jump else 0  # a chosen cycle has cut it short
-                return replace(fine, solved=place.solved, jump=max(wanted, LEAST_JUMP, most))
-            place, jump = replace(place, jump=1), min(wanted, jump - 1)
+                return replace(fine, solved=place.solved, jump=max(wanted, LEAST_JUMP, most), pause=LEAST_PAUSE)
+            jump = min(wanted, jump - 1)
+            if jump < LEAST_JUMP:
+                place = replace(place, jump=1 - place.pause, pause=min(2 * place.pause, LONGEST_PAUSE))
         return replace(self._fat(place, 1), jump=place.jump)
 
     def _pair(self, place: Worn, jump: int) -> tuple[Worn, float]:

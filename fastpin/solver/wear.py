@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -12,19 +14,19 @@ from fastpin.elasticity.large import build_system
 from fastpin.errors import InputError, InputWarning
 from fastpin.model.doubts import warn_of
 from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
+from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
+from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.wear import Wear
 from fastpin.solver.attempts import first_wide_enough
-from fastpin.solver.errors import Interrupted
+from fastpin.solver.errors import ArcError, Interrupted
 from fastpin.solver.fat_cycles import FatCycles, Worn
 from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import MemoryRecorder
 from fastpin.solver.task import Task, deferred_interrupts, one_blas_thread
 from fastpin.solver.wear_path import WearRun
-from fastpin.solver.wear_result import WornCycle
+from fastpin.solver.wear_result import WearResult, WornCycle
 
 log = logging.getLogger(__name__)
 
@@ -102,7 +104,32 @@ class WearTask:
             raise InputError("history", "must end with the cycle that wears: repeat its last block")
         if self.grid is not None and not self.grid.uniform:
             raise InputError("grid", "wear needs equally spaced nodes")
-        self.wear.coefficients(self.problem, np.linspace(-np.pi, np.pi, 1441))
+        self.wear.coefficients(self.problem, np.linspace(-np.pi, np.pi, LOOKED_AT))
+        _ = self.stored_history
+
+    @property
+    def stored_history(self) -> LoadHistory:
+        """What leads to the cycle, and all cycles, one more for the states after the last one.
+
+        Raises
+        ------
+        InputError
+            If it has too many corners.
+        """
+        *before, last = self.history.blocks
+        block = replace(last, count=self.wear.cycles + 1)
+        if len(self.history) - last.corners + block.corners > MAX_CORNERS:
+            raise InputError("cycles", f"must be fewer: the cycles have more than {MAX_CORNERS:,} corners")
+        return LoadHistory.of_blocks([*before, block])
+
+    def result(self, grid: Grid, cycles: Sequence[WornCycle], statistics: dict[str, float]) -> WearResult:
+        """The result of the chosen cycles on a grid."""
+        coefficients = self.wear.coefficients(self.problem, grid.theta)
+        complete = bool(cycles) and cycles[-1].cycle == self.wear.cycles
+        law, tolerance = self.wear.law, self.wear.tolerance
+        return WearResult(
+            self.problem, self.stored_history, law, tolerance, coefficients, grid, tuple(cycles), complete, statistics
+        )
 
     def _task(self) -> Task:
         return Task(self.problem, self.history, self.options, self.grid)
@@ -118,8 +145,8 @@ class WearTask:
         count = len(self.history) - self.history.blocks[-1].corners
         return self.history[:count].values() if count else np.zeros((0, len(LOADS)))
 
-    def follow(self, recorder: WearRecorder) -> None:
-        """Follow the life from no load, on the first grid that is wide enough.
+    def follow(self, recorder: WearRecorder, beyond: Grid | None = None) -> None:
+        """Follow the life from no load, on the first grid that is wide enough; with `beyond` a wider one than that.
 
         Raises
         ------
@@ -142,10 +169,15 @@ class WearTask:
                 life = self._life(grid, attempts.force, watch)
                 self._live(life, life.begin(self.approach), recorder)
 
-            first_wide_enough(attempts.arcs(), on_grid)
+            arcs = attempts.arcs()
+            if beyond is not None:
+                nodes = beyond.theta
+                before = itertools.dropwhile(lambda grid: not np.array_equal(grid.theta, nodes), arcs)
+                arcs = itertools.islice(before, 1, None)
+            first_wide_enough(arcs, on_grid)
 
     def go_on(self, recorder: WearRecorder, place: Worn, grid: Grid) -> None:
-        """Go on from a place of an earlier run on `grid`, to the same bits. On a wider arc all begins anew.
+        """Go on from a place of an earlier run on `grid`, to the same bits. A wider arc begins anew.
 
         Raises
         ------
@@ -160,7 +192,15 @@ class WearTask:
 
             life = self._life(grid, place.restart.force, watch)
             life.at(place, len(self.approach))
-            self._live(life, place, recorder)
+            try:
+                self._live(life, place, recorder)
+            except ArcError:
+                is_given = self.grid is not None or self.options.arc is not None
+                if is_given:
+                    raise
+            else:
+                return
+        self.follow(recorder, beyond=grid)
 
     def _life(self, grid: Grid, force: float, watch: RunProgress) -> FatCycles:
         system = build_system(self.problem, grid, force)

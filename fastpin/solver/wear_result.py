@@ -12,7 +12,6 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.wear import Wear
 from fastpin.states.state import State
 
 
@@ -100,7 +99,7 @@ class WornCycle(ReadOnly):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class WearResult(Sequence[WornCycle]):
+class WearResult(ReadOnly, Sequence[WornCycle]):
     """A life of wear: a sequence of :class:`WornCycle`, one for each chosen cycle that was reached.
 
     Attributes
@@ -108,7 +107,12 @@ class WearResult(Sequence[WornCycle]):
     problem : Problem
     history : LoadHistory
         What leads to the cycle, and the cycle, at its end.
-    wear : Wear
+    law : str
+        "archard" or "energy", see :class:`fastpin.model.Wear`.
+    tolerance : float
+        Largest error of the worn gap by fat cycles; 0 if every cycle was solved.
+    coefficients : ndarray, shape (2, n)
+        Wear coefficients of pin and plate at the nodes, 1/Pa.
     grid : Grid
     cycles : tuple of WornCycle
     complete : bool
@@ -119,7 +123,9 @@ class WearResult(Sequence[WornCycle]):
 
     problem: Problem
     history: LoadHistory
-    wear: Wear
+    law: str
+    tolerance: float
+    coefficients: np.ndarray
     grid: Grid
     cycles: tuple[WornCycle, ...]
     complete: bool
@@ -134,11 +140,6 @@ class WearResult(Sequence[WornCycle]):
     def numbers(self) -> np.ndarray:
         """The chosen cycles, shape (chosen,)."""
         return np.array([each.cycle for each in self.cycles])
-
-    @property
-    def coefficients(self) -> np.ndarray:
-        """Wear coefficients of pin and plate at the nodes, 1/Pa, shape (2, n)."""
-        return self.wear.coefficients(self.problem, self.grid.theta)
 
     @property
     def tau(self) -> np.ndarray:

@@ -94,6 +94,16 @@ def clear_checkpoints(path: Path) -> None:
     forget_temporaries(checkpoint)
 
 
+def check_overwriting(path: Path, overwrite: bool) -> None:
+    """Raise :class:`InputError` if a result exists and must not be overwritten."""
+    if path.exists() and not path.is_file():
+        raise InputError(str(path), "must be an ordinary file")
+    if overwrite or not path.exists() or is_empty(path):
+        return
+    reason = "holds an unfinished run: resume it, or replace it" if is_unfinished(path) else "exists already"
+    raise InputError(str(path), f"{reason}; overwrite=True (--overwrite) replaces it")
+
+
 @contextmanager
 def closing_file(writer: FileRecorder) -> Iterator[None]:
     """End the file of a run when the block ends.
@@ -166,12 +176,7 @@ class FileRecorder:
 
     def check_overwriting(self) -> None:
         """Raise :class:`InputError` if the file exists and must not be overwritten."""
-        if self.path.exists() and not self.path.is_file():
-            raise InputError(str(self.path), "must be an ordinary file")
-        if self.overwrite or not self.path.exists() or is_empty(self.path):
-            return
-        reason = "holds an unfinished run: resume it, or replace it" if is_unfinished(self.path) else "exists already"
-        raise InputError(str(self.path), f"{reason}; overwrite=True (--overwrite) replaces it")
+        check_overwriting(self.path, self.overwrite)
 
     # -- calls of the run ----------------------------------------------------------------------------------------
 

@@ -1,0 +1,440 @@
+"""Lives of wear in HDF5 files, and the function :func:`wear` that follows one.
+
+The file is a result, see layout.py: its states are those over one cycle after each chosen cycle. The group ``/wear``
+has the law as attributes, ``coefficients`` (2, n), a row for each chosen cycle, and ``place``, from which the life goes
+on. A checkpoint stands beside the file, as beside that of a run.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+import uuid
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Unpack
+
+import h5py
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.checks import check_callable, file_path, string, true_or_false
+from fastpin.model.doubts import doubts, warn_of
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.options import OptionValues, SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.model.profile import ProfileLike
+from fastpin.model.wear import Wear
+from fastpin.solver.errors import Interrupted, SolveError
+from fastpin.solver.fat_cycles import Worn
+from fastpin.solver.run import RunProgress
+from fastpin.solver.task import as_history, deferred_interrupts
+from fastpin.solver.wear import InMemory, WearTask
+from fastpin.solver.wear_result import WearResult, WornCycle
+from fastpin.storage import hdf5
+from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of, reading, text_of
+from fastpin.storage.file_objects import written_h5
+from fastpin.storage.files import check_exists, check_writable, replacing
+from fastpin.storage.journal import JournaledFile, check_beside, not_readable
+from fastpin.storage.layout import (
+    append,
+    check_format,
+    option_attributes,
+    read_grid,
+    read_history,
+    read_problem,
+    rows_of,
+    state_rows,
+    write_head,
+    write_statistics,
+)
+from fastpin.storage.restarts import read_restart, write_restart
+from fastpin.storage.store import load, open_result
+from fastpin.storage.writer import CHECKPOINT_EVERY, check_overwriting, checkpoint_of, clear_checkpoints
+
+log = logging.getLogger(__name__)
+
+DEPTHS = ("pin_depth", "plate_depth")
+"""Arrays of ``/wear`` with a value for each node, m."""
+
+NUMBERS = {"cycle": np.int64, "next_jump": np.int64, "solved": np.int64, "dissipation": float, "removed": float}
+"""Arrays of ``/wear`` with a number for each chosen cycle."""
+
+
+def wear(
+    problem: Problem,
+    history: LoadHistory | Sequence[dict[str, float]],
+    *,
+    cycles: float | None = None,
+    coefficient: ProfileLike | None = None,
+    pin: ProfileLike | None = None,
+    plate: ProfileLike | None = None,
+    law: str = "archard",
+    at: Sequence[int] | None = None,
+    tolerance: float = Wear.tolerance,
+    output: str | Path | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
+    title: str = "",
+    grid: Grid | None = None,
+    progress: RunProgress | None = None,
+    **options: Unpack[OptionValues],
+) -> WearResult:
+    """Follow a load cycle many times on a profile that wears, and return the profiles after chosen cycles.
+
+    What leads to the cycle is followed once. Then every cycle is solved, or cycles that stand for many, under control
+    of their error. Debris is not modelled: worn material leaves the contact at once.
+
+    Parameters
+    ----------
+    problem : Problem
+    history : LoadHistory
+        What leads to the cycle, then the cycle: ``LoadHistory(...) + LoadHistory(cycle).repeated(n)``.
+    cycles : float, optional
+        Number of cycles; the n of the history unless given.
+    coefficient, pin, plate, law, at, tolerance
+        See :class:`fastpin.model.Wear`.
+    output : path, optional
+        An HDF5 file for the result. It survives a kill, and `resume` continues it.
+    overwrite : bool
+        Replace an existing result.
+    resume : bool
+        Continue the unfinished life in `output`, to the same bits. All other arguments must be those of its beginning.
+    title : str
+        Title of the result in the file.
+    grid : Grid, optional
+        Ready, equally spaced nodes.
+    progress : callable, optional
+        Called as ``progress(done_cycles, all_cycles)`` now and then.
+    **options
+        ``nodes`` and ``arc``, see :class:`fastpin.SolveOptions`.
+
+    Returns
+    -------
+    WearResult
+        Also the ``result`` of an error or interrupt: the chosen cycles that were reached before.
+
+    Raises
+    ------
+    InputError
+        If an argument can't be used, or the file must not be replaced or does not fit. It names the field.
+    SolveError
+        If a cycle can't be followed, or the worn depth is too large for small strains. It names the cycle.
+    Interrupted
+        After Ctrl-C.
+    """
+    history = as_history(history)
+    last = history.blocks[-1]
+    given = {name: value for name, value in options.items() if name not in ("nodes", "arc")}
+    if given:
+        raise InputError(next(iter(given)), "has no effect on wear; of the options of a run it takes nodes and arc")
+    how = Wear(coefficient, pin, plate, last.count if cycles is None else cycles, law, at, tolerance)  # type: ignore[arg-type]
+    check_callable("progress", progress)
+    task = WearTask(problem, history, how, SolveOptions(**options), grid, progress)
+    warn_of(doubts(problem, history, task.options), 2)
+    string("title", title)
+    for name, value in (("overwrite", overwrite), ("resume", resume)):
+        if true_or_false(name, value) and output is None:
+            raise InputError(name, "needs an output")
+    if output is None:
+        return _in_memory(task)
+    path = file_path("output", output)
+    check_writable(path, result=True)
+    if resume:
+        return _resumed(path, task)
+    writer = WearFile(path, task, title)
+    check_overwriting(path, overwrite)
+    with _closing(writer):
+        task.follow(writer)
+    return load_wear(path)
+
+
+def _in_memory(task: WearTask) -> WearResult:
+    kept = InMemory()
+    try:
+        task.follow(kept)
+    except (SolveError, Interrupted) as ended:
+        if kept.grid is not None:
+            ended.result = task.result(kept.grid, kept.cycles, kept.statistics)  # type: ignore[assignment]
+        raise
+    assert kept.grid is not None
+    return task.result(kept.grid, kept.cycles, kept.statistics)
+
+
+def _resumed(path: Path, task: WearTask) -> WearResult:
+    """Continue the life in a file."""
+    check_exists(path)
+    writer = WearFile(path, task, "")
+    place, grid = writer.reopen()
+    with _closing(writer):
+        if place is None:
+            task.follow(writer)
+        else:
+            task.go_on(writer, place, grid)
+    return load_wear(path)
+
+
+@contextmanager
+def _closing(writer: WearFile) -> Iterator[None]:
+    """End the file when the block ends. The exception of an early end then holds the result so far."""
+    try:
+        yield
+    except (SolveError, Interrupted) as error:
+        if writer.finish(str(error)):
+            error.result = load_wear(writer.path)  # type: ignore[assignment]
+        raise
+    except BaseException:
+        writer.abort()
+        raise
+    writer.finish(None)
+
+
+class WearFile:
+    """The recorder of a life of wear that writes to a file; see :class:`fastpin.solver.wear.WearRecorder`.
+
+    Parameters
+    ----------
+    path : Path
+    task : WearTask
+    title : str
+    """
+
+    def __init__(self, path: Path, task: WearTask, title: str) -> None:
+        self.path, self._task, self._title = path, task, title
+        self._file: JournaledFile | None = None
+        self._h5: h5py.File
+        self._name = ""
+        self._place: Worn | None = None
+        self._noted = 0.0  # when the latest checkpoint was written
+
+    def reopen(self) -> tuple[Worn | None, Grid]:
+        """Open the file of an unfinished life, and return the place from which it goes on, and its grid.
+
+        Raises
+        ------
+        InputError
+            If it is no such file, holds another life, or another process is writing to it.
+        """
+        check_beside(checkpoint_of(self.path))
+        self._file = JournaledFile(self.path, new=False)
+        try:
+            self._h5 = h5py.File(self._file, "r+")
+        except OSError:
+            self._file.abandon()
+            self._file.release()
+            raise not_readable(self.path) from None
+        try:
+            with reading(self.path, "resume"):
+                stored = hdf5.Group(self._h5)
+                check_format(stored, str(self.path))
+                _check_same(self.path, stored, self._task)
+                grid = read_grid(stored)
+                self._name = str(self._h5.attrs["run"])
+                self._h5.attrs.pop("error", None)
+                return self._latest(stored, grid.size), grid
+        except BaseException:
+            self.abort()
+            raise
+
+    def _latest(self, stored: hdf5.Group, nodes: int) -> Worn | None:
+        """The latest place, of the checkpoint or of the file itself."""
+        place = _read_place(stored["wear/place"], nodes) if "place" in stored["wear"] else None
+        try:
+            with h5py.File(checkpoint_of(self.path), "r") as file:
+                beside = hdf5.Group(file)
+                if beside.attrs["run"] == stored.attrs["run"]:
+                    noted = _read_place(beside["place"], nodes)
+                    if place is None or noted.cycle > place.cycle:
+                        return noted
+        except FileNotFoundError:
+            pass
+        except (OSError, KeyError, ValueError, TypeError, IndexError):
+            log.warning("%s can't be read: continuing from an earlier cycle", checkpoint_of(self.path))
+        return place
+
+    def begin(self, grid: Grid, force: float) -> None:
+        """Begin a new file."""
+        self.abort()
+        check_beside(checkpoint_of(self.path))
+        task, self._name = self._task, uuid.uuid4().hex
+        self._file = JournaledFile(self.path, new=True)
+        self._h5 = h5py.File(self._file, "w")
+        self._h5.flush()
+        attributes = {**option_attributes(task.options), "nodes": grid.size, "slip_sums": True, "title": self._title}
+        write_head(self._h5, task.problem, task.stored_history, grid, attributes)
+        self._h5.attrs["run"] = self._name
+        group = self._h5.create_group("wear")
+        group.attrs.update(law=task.wear.law, tolerance=task.wear.tolerance, chosen=np.array(task.wear.chosen))
+        group["coefficients"] = task.wear.coefficients(task.problem, grid.theta)
+        for name in DEPTHS:
+            group.create_dataset(name, (0, grid.size), maxshape=(None, grid.size), chunks=(1, grid.size), dtype=float)
+        for name, kind in NUMBERS.items():
+            group.create_dataset(name, (0,), maxshape=(None,), chunks=(128,), dtype=kind)
+        self._place = None
+        self._commit()
+
+    def add(self, cycle: WornCycle, place: Worn, statistics: dict[str, float]) -> None:
+        """Write a chosen cycle, and the place from which the life goes on, in one transaction."""
+        group, states = self._h5["wear"], rows_of(cycle.states)
+        append(self._h5["states"], {name: states[name] for name in state_rows(self._h5["states"])})
+        for name in (*DEPTHS, *NUMBERS):
+            array = group[name]
+            array.resize(len(array) + 1, axis=0)
+            array[-1] = getattr(cycle, name)
+        if "place" in group:
+            del group["place"]
+        _write_place(group.create_group("place"), place)
+        write_statistics(self._h5, statistics)
+        self._place = place
+        self._commit()
+
+    def reached(self, place: Worn) -> None:
+        """Write a checkpoint, if one is due."""
+        now = time.monotonic()
+        if now - self._noted < CHECKPOINT_EVERY:
+            return
+        if self._noted:
+            with replacing(checkpoint_of(self.path), result=True) as temporary, written_h5(temporary) as file:
+                file.attrs["run"] = self._name
+                _write_place(file.create_group("place"), place)
+        self._noted = time.monotonic()
+
+    def finish(self, error: str | None) -> bool:
+        """End the file with the message of an error, if any. Return False if the file has not begun."""
+        if self._file is None:
+            return False
+        try:
+            with deferred_interrupts():
+                self._h5.attrs["complete"] = error is None
+                if error is not None:
+                    self._h5.attrs["error"] = error
+                self._commit()
+                self._close()
+                if error is None:
+                    clear_checkpoints(self.path)
+        except BaseException:
+            self.abort()
+            raise
+        return True
+
+    def abort(self) -> None:
+        """Close the file as the last transaction left it."""
+        if self._file is not None:
+            self._file.abandon()
+            self._close()
+
+    def _commit(self) -> None:
+        assert self._file is not None
+        self._h5.flush()
+        self._file.commit()
+
+    def _close(self) -> None:
+        assert self._file is not None
+        file, self._file = self._file, None
+        try:
+            self._h5.close()
+            file.commit()
+        finally:
+            file.release()
+
+
+def load_wear(path: str | Path) -> WearResult:
+    """Read the result of a life of wear. It may be finished, unfinished or killed.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, or holds no life of wear.
+    """
+    path = file_path("path", path)
+    states = load(path).states
+    with open_result(path) as file:
+        if "wear" not in file:
+            raise InputError(str(path), "holds no wear: it is the result of a run; fastpin.load reads it")
+        group, grid, history = file["wear"], read_grid(file), read_history(file)
+        nodes, corners = grid.size, len(history.blocks[-1].given) + 1
+        arrays: dict[str, Any] = {name: dataset_of(group, name, float, (nodes,))[()] for name in DEPTHS}
+        arrays |= {name: dataset_of(group, name, kind, ())[()] for name, kind in NUMBERS.items()}
+        coefficients = dataset_of(group, "coefficients", float, (nodes,))[()]
+        size = len(arrays["cycle"])
+        if any(len(array) != size for array in arrays.values()) or len(states) != size * corners:
+            raise ValueError("wear has arrays of different lengths")
+        for name in (*DEPTHS, "dissipation", "removed"):
+            check_finite(f"wear/{name}", arrays[name])
+        check_between("wear/coefficients", coefficients, 0.0, np.finfo(float).max)
+        cycles = tuple(
+            WornCycle(
+                **{name: array[k] if array.ndim > 1 else array[k].item() for name, array in arrays.items()},
+                states=tuple(states[k * corners : (k + 1) * corners]),
+            )
+            for k in range(size)
+        )
+        return WearResult(
+            problem=read_problem(file),
+            history=history,
+            law=text_of(group.attrs["law"]),
+            tolerance=float(group.attrs["tolerance"]),
+            coefficients=coefficients,
+            grid=grid,
+            cycles=cycles,
+            complete=bool(file.attrs["complete"]),
+            statistics=numbers_of(file["solver/statistics"]),
+        )
+
+
+def _check_same(path: Path, file: hdf5.Group, task: WearTask) -> None:
+    """Raise :class:`InputError` if a file holds no unfinished life of the same task."""
+    if "wear" not in file:
+        raise InputError(str(path), "holds no wear: it is the result of a run")
+    if file.attrs["complete"]:
+        raise InputError(str(path), "holds a finished life of wear: there is nothing to continue")
+    group, grid = file["wear"], read_grid(file)
+    same = {
+        "problem": read_problem(file) == task.problem,
+        "history": _same_history(read_history(file), task.stored_history),
+        "coefficient": np.array_equal(group["coefficients"][()], task.wear.coefficients(task.problem, grid.theta)),
+        "law": text_of(group.attrs["law"]) == task.wear.law,
+        "at": np.array_equal(group.attrs["chosen"], task.wear.chosen),
+        "tolerance": float(group.attrs["tolerance"]) == task.wear.tolerance,
+        "nodes": as_python(file["solver"].attrs["nodes"]) == task.options.nodes or task.grid is not None,
+        "grid": task.grid is None or np.array_equal(task.grid.theta, grid.theta),
+    }
+    for name, is_same in same.items():
+        if not is_same:
+            raise InputError("resume", f"{path} was begun with another {name}")
+
+
+def _same_history(one: LoadHistory, other: LoadHistory) -> bool:
+    """Whether two histories have the same blocks."""
+    pairs = list(zip(one.blocks, other.blocks, strict=False))
+    same = all(a.count == b.count and np.array_equal(a.given, b.given, equal_nan=True) for a, b in pairs)
+    return same and len(one.blocks) == len(other.blocks)
+
+
+def _write_place(group: h5py.Group, place: Worn) -> None:
+    group.attrs.update(
+        cycle=place.cycle, jump=place.jump, solved=place.solved, removed=place.removed, pause=place.pause,
+        loses_contact=place.loses_contact,
+    )  # fmt: skip
+    group["depth"] = place.depth
+    write_restart(group.create_group("restart"), place.restart)
+
+
+def _read_place(group: hdf5.Group, nodes: int) -> Worn:
+    """Read a place of a life on a grid of so many nodes.
+
+    Raises
+    ------
+    ValueError
+        If an array does not fit, or a number is not finite.
+    """
+    depth = dataset_of(group, "depth", float, (nodes,))[()]
+    if len(depth) != 2:
+        raise ValueError(f"depth has the shape {depth.shape}")
+    check_finite("depth", depth)
+    numbers = {name: as_python(group.attrs[name]) for name in ("cycle", "jump", "solved", "removed", "pause")}
+    restart = read_restart(group["restart"], nodes)
+    return Worn(**numbers, depth=depth, restart=replace(restart), loses_contact=bool(group.attrs["loses_contact"]))
