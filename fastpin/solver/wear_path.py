@@ -12,7 +12,8 @@ from typing import ClassVar
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.model.profile import InitialGap, Profile, Samples
+from fastpin.model.profile import InitialGap, Profile
+from fastpin.model.profile_terms import Samples
 from fastpin.solver.configuration import Configuration, work_between
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.run import Run
