@@ -216,9 +216,8 @@ class System:
         Where the wear goes on with the pressure, a pressure N opens the gap at its node by `softness` (n,) times N too.
         """
         column = np.concatenate([depth, np.zeros_like(depth)])
-        others = ((0, 0), (0, len(LOADS) - ACTING))  # loads without a column
-        loads, columns = (np.column_stack([np.pad(each, others), column]) for each in (self.loads, self.drive.columns))
-        forces = np.column_stack([np.pad(self.forces, others), np.zeros(self.motions)])
+        loads, columns = (np.column_stack([each, column]) for each in (self.loads, self.drive.columns))
+        forces = np.column_stack([self.forces, np.zeros(self.motions)])
         worn = replace(self, loads=loads, forces=forces, drive=replace(self.drive, columns=columns))
         if softness is None:
             return replace(worn, held_as=self.held_as or self)
