@@ -10,7 +10,15 @@ from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import any_text, as_toml, number, whole_number
 from fastpin.model.csv_columns import COLUMN_KEYS, ColumnChoice, column_choice
-from fastpin.model.history import MAX_CORNERS, MOST_POINTS, LoadHistory, check_largest, check_loads, read_csv
+from fastpin.model.history import (
+    MAX_CORNERS,
+    MOST_POINTS,
+    LoadHistory,
+    check_friction_changes,
+    check_largest,
+    check_loads,
+    read_csv,
+)
 from fastpin.model.history_csv import MAX_ROWS
 from fastpin.model.load_units import Basis
 from fastpin.model.loads import LOADS
@@ -72,6 +80,10 @@ def report_loads(source: CaseText, problem: Problem, history: LoadHistory) -> No
             check_largest(problem, {name: value})
         except InputError as error:
             _report_load(source, name, str(error))
+    try:
+        check_friction_changes(problem, history)
+    except InputError as error:
+        _report_load(source, error.field, str(error))
 
 
 def _report_load(source: CaseText, name: str, message: str) -> None:

@@ -32,7 +32,7 @@ from fastpin.model.checks import (
 from fastpin.model.csv_columns import ColumnChoice, column_choices
 from fastpin.model.history_csv import read_corners
 from fastpin.model.load_units import Basis
-from fastpin.model.loads import LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
+from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
 from fastpin.model.problem import Problem, checked_thickness
 from fastpin.model.synonyms import explains_keywords
 
@@ -519,6 +519,14 @@ def _locate(history: LoadHistory, index: int) -> tuple[int, int]:
 def check_loads(problem: Problem, history: LoadHistory) -> None:
     """Raise :class:`InputError` if a load of `history` can't act in `problem`, or is beyond :data:`MOST_LOAD`."""
     check_largest(problem, history.largest)
+    check_friction_changes(problem, history)
+
+
+def check_friction_changes(problem: Problem, history: LoadHistory) -> None:
+    """Raise :class:`InputError` if the friction of `problem` can't change as in `history`."""
+    given = np.concatenate([block.given[:, FRICTION_CHANGE] for block in history.blocks])
+    low, high = np.fmin.reduce(given, initial=0.0), np.fmax.reduce(given, initial=0.0)
+    problem.check_friction_change(float(low), float(high))
 
 
 def check_largest(problem: Problem, largest: Mapping[str, float]) -> None:

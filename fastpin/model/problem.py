@@ -420,14 +420,15 @@ class Problem:
         return np.maximum(self.friction.at(theta, self.hole_radius), 0.0)  # a spline may pass below zero in between
 
     def check_friction_change(self, low: float, high: float) -> None:
-        """Raise :class:`InputError` if the friction of a history can't change by the parts `low` to `high`."""
+        """Raise :class:`InputError` if the friction can't change by parts from `low` to `high`."""
         if low == high == 0.0:
             return
         if self.frictionless:
             raise InputError("friction_change", "there is no friction that could change: friction = 0")
-        number("friction_change", low, -1.0)
+        if low <= -1.0:
+            raise InputError("friction_change", f"must be more than -1, which would leave no friction, not {low:g}")
         if (1.0 + high) * self.most_friction > MOST_FRICTION:
-            largest = f"the coefficient of friction would be {(1.0 + high) * self.most_friction:g}"
+            largest = f"{high:g} makes the coefficient of friction {(1.0 + high) * self.most_friction:g}"
             raise InputError("friction_change", f"{largest}; it must be at most {MOST_FRICTION:g}")
 
     def gap_at(self, theta: np.ndarray) -> np.ndarray:

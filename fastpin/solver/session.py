@@ -22,7 +22,7 @@ from fastpin.model.checks import choice, true_or_false, whole_number
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import MAX_CORNERS, MOST_LOAD, LoadHistory, check_loads
-from fastpin.model.loads import LOAD_KIND, LOADS, Corner, complete_load
+from fastpin.model.loads import ACTING, LOAD_KIND, LOADS, Corner, complete_load
 from fastpin.model.options import KeepRule, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads
@@ -380,7 +380,7 @@ class Session(InTurns):
         check_loads(self.problem, history)
         natural = self.problem.natural_loads()
         given = history.blocks[0].given[0]
-        for place in np.flatnonzero(np.nan_to_num(given)).tolist():
+        for place in np.flatnonzero(np.nan_to_num(given[:ACTING])).tolist():
             limits[LOADS[place]] = place, MOST_LOAD * natural[LOAD_KIND[LOADS[place]]]
         return given
 
