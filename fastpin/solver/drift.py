@@ -97,15 +97,26 @@ class Moment:
         self.bends = _rates(self.system, unknowns, np.zeros_like(path.rate), 2.0 * dragging * self.rates.pressure)
 
     @cached_property
+    def scales(self) -> list[tuple[float, float]]:
+        """Largest traction and displacement of the solution, of its rates, and of the rates of these.
+
+        A displacement that is small against the force of the tractions is rounding.
+        """
+        found = []
+        for each in (self.solution, self.rates, self.bends):
+            traction = max(float(np.abs(each.pressure).max()), float(np.abs(each.shear).max()))
+            force = float(self.system.weights @ (np.abs(each.pressure) + np.abs(each.shear)))
+            length = max(float(np.abs(each.gap).max()), float(np.abs(each.slip).max()), force)
+            found.append((traction or 1.0, length or 1.0))
+        return found
+
+    @cached_property
     def sizes(self) -> tuple[np.ndarray, np.ndarray]:
         """Sizes of the functions and of their rates, shape (4, n)."""
-        values, rates, bends = self.solution, self.rates, self.bends
-        traction, length = _size(values.pressure, values.shear), _size(values.gap, values.slip)
-        traction_rate, length_rate = _size(rates.pressure, rates.shear), _size(rates.gap, rates.slip)
+        (traction, length), (traction_rate, length_rate), (_, bend) = self.scales
         is_open, one = self.status == OPEN, np.ones(self.status.size)
         of_values = np.array([np.where(is_open, length, traction), *[traction * one] * 2, length_rate * one])
         traction_rate = max(traction_rate, float(np.abs(self._growth).max()) * traction)
-        bend = _size(bends.gap, bends.slip)
         of_rates = np.array([np.where(is_open, length_rate, traction_rate), *[traction_rate * one] * 2, bend * one])
         return of_values, of_rates
 
@@ -367,19 +378,15 @@ def _rates(system: System, unknowns: DenseUnknowns, load_rate: np.ndarray, dragg
     return Solution(tractions[:n], tractions[n:], displaced[:n], displaced[n:], found[unknowns.count :])
 
 
-def _size(*parts: np.ndarray) -> float:
-    return max(float(np.abs(part).max()) for part in parts) or 1.0
-
-
 def _bend(here: Moment, middle: Moment, end: Moment) -> float:
     """Largest difference of the solution and its rates in the middle from the cubics through both ends, relative."""
     length, largest = end.time - here.time, 0.0
-    for first, later, names in (
-        ("solution", "rates", ("pressure", "shear")),
-        ("solution", "rates", ("gap", "slip")),
-        ("rates", "bends", ("gap", "slip")),
+    (traction, shift), (_, speed), _ = end.scales
+    for first, later, names, size in (
+        ("solution", "rates", ("pressure", "shear"), traction),
+        ("solution", "rates", ("gap", "slip"), shift),
+        ("rates", "bends", ("gap", "slip"), speed),
     ):
-        size = _size(*(getattr(getattr(end, first), name) for name in names))
         for name in names:
             values = [getattr(getattr(moment, first), name) for moment in (here, middle, end)]
             rates = [getattr(getattr(moment, later), name) for moment in (here, end)]
