@@ -178,6 +178,7 @@ class _Scene:
         self.names = acting_loads([state.load for state in states])
         self.factor, unit = units(states[0].problem)["traction"].scale([state.peak_pressure for state in states])
         self.largest = self.factor * max(state.peak_pressure for state in states)
+        self.most_friction = max(state.most_friction for state in states)
         words = ("pressure N", "shear traction T")
         self.force = max(abs(state.load[name]) for state in states for name in ("P", "Q"))
         looks = dict.fromkeys(zone_look(states[0].problem, status) for status in LOOKS)
@@ -220,7 +221,7 @@ class _Scene:
                 bound = sign * friction * self.factor * pressure
                 self.panels[1].plot(angle, bound, color=COLOURS[0], linewidth=0.5, alpha=0.6)
             self.panels[1].plot(angle, self.factor * shear, **line(1))
-            most = 1.15 * state.problem.most_friction * self.largest or 1.0
+            most = 1.15 * self.most_friction * self.largest or 1.0
             self.panels[1].set_ylim(-most, most)
         self._shade(state)
         self.frame.scale(self.panels[-1])

@@ -402,4 +402,4 @@ def _is_twin(one: State, other: State) -> bool:
     peak = max(one.peak_pressure, other.peak_pressure)
     pressure = float(np.abs(one.pressure - other.pressure).max())
     shear = float(np.abs(one.shear - other.shear).max())
-    return pressure <= SAME * peak and shear <= SAME * one.problem.most_friction * peak
+    return pressure <= SAME * peak and shear <= SAME * one.most_friction * peak

@@ -132,5 +132,6 @@ def named_loads(problem: Problem, load: Mapping[str, float]) -> str:
     """The loads that are not zero, as text with their units."""
     unit = units(problem)
     return (
-        ", ".join(f"{name} = {unit[LOAD_KIND[name]].text(load[name], 5)}".rstrip() for name in acting_loads([load])) or "no load"
+        ", ".join(f"{name} = {unit[LOAD_KIND[name]].text(load[name], 5)}".rstrip() for name in acting_loads([load]))
+        or "no load"
     )

@@ -433,7 +433,8 @@ def _flipped(moment: Moment, ending: np.ndarray) -> np.ndarray:
 
 
 def _simpson(halves: SlipTally, whole: SlipTally) -> SlipTally:
-    """The tally over two halves of a stretch, with the friction energy by Simpson's rule."""
+    """The tally over two halves of a stretch, with the integrals of tractions by Simpson's rule."""
     better = halves.copy()
-    better.sums[1] = (4.0 * halves.sums[1] - whole.sums[1]) / 3.0
+    for row in (1, *range(4, len(better.sums))):  # int -T ds, and int N |ds| with wear
+        better.sums[row] = (4.0 * halves.sums[row] - whole.sums[row]) / 3.0
     return better

@@ -293,7 +293,9 @@ class Run:
         marks = marks_left(self.last_corner, now)
         if not system.problem.frictionless:
             tractions = now.pressure, now.shear
-            marks = marks.with_borders(system.problem, system.grid, system.friction, tractions, now.status)
+            marks = marks.with_borders(
+                system.problem, system.grid, system.under(now.load).friction, tractions, now.status
+            )
         self.position.now = replace(now, marks=marks)
 
     def _check_resolution(self) -> None:

@@ -17,7 +17,7 @@ from fastpin.elasticity.stress import plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.model.grid import Grid
-from fastpin.model.loads import REMOTE
+from fastpin.model.loads import FRICTION_CHANGE, REMOTE
 from fastpin.model.problem import Problem
 from fastpin.reading.hoop import AROUND
 from fastpin.reading.joint import AROUND as AROUND_BUSH
@@ -116,11 +116,13 @@ class Bounds:
         pressure, shear, status = (part[rows] for part in (block.pressure, block.shear, block.status))
         coupled = self._problem.most_friction * self._problem.surfaces.dundurs()[1] != 0.0
         peaks = pressure_bounds(self._grid, pressure, coupled)
+        factor = 1.0 + block.loads[rows][:, FRICTION_CHANGE]
+        friction, most = factor[:, None] * self._friction, factor * self._problem.most_friction
         known: dict[str, Callable[[], Pair]] = {
             "peak_pressure": lambda: peaks,
-            "peak_shear": lambda: shear_bounds(shear, self._problem.most_friction * peaks[1]),
+            "peak_shear": lambda: shear_bounds(shear, most * peaks[1]),
             "contact_width": lambda: width_bounds(self._grid, status != OPEN),
-            "stick_width": lambda: width_bounds(self._grid, _sticking(self._friction, pressure, shear, status)),
+            "stick_width": lambda: width_bounds(self._grid, _sticking(friction, pressure, shear, status)),
         }
         for name in self._names - self._stresses.names:
             self._found[name].append(known[name]() if name in known else _unbounded(len(rows)))

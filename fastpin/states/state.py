@@ -253,7 +253,7 @@ class State(ReadOnly):
         if not self.shear.any():
             return 0.0, math.nan
         peak, place = peaks.shear_peak(self.nodes, self._stick)
-        most = self.problem.most_friction * self.peak_pressure
+        most = self.most_friction * self.peak_pressure
         return min(max(peak, -most), most), near_bottom(place)
 
     @cached_property
@@ -262,8 +262,17 @@ class State(ReadOnly):
         return self.friction_at(self.theta)
 
     def friction_at(self, theta: np.ndarray) -> np.ndarray:
-        """Coefficient of friction at the angles `theta` (...), rad, shape (...)."""
-        return self.problem.friction_at(theta)
+        """Coefficient of friction at the angles `theta` (...), rad, shape (...), with its change at this load."""
+        return self._friction_factor * self.problem.friction_at(theta)
+
+    @property
+    def most_friction(self) -> float:
+        """The largest coefficient of friction round the hole, with its change at this load."""
+        return self._friction_factor * self.problem.most_friction
+
+    @property
+    def _friction_factor(self) -> float:
+        return 1.0 + self.load.get("friction_change", 0.0)
 
     @cached_property
     def tilt(self) -> np.ndarray:
