@@ -131,7 +131,5 @@ def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:
 def named_loads(problem: Problem, load: Mapping[str, float]) -> str:
     """The loads that are not zero, as text with their units."""
     unit = units(problem)
-    return (
-        ", ".join(f"{name} = {unit[LOAD_KIND[name]].text(load[name], 5)}".rstrip() for name in acting_loads([load]))
-        or "no load"
-    )
+    texts = (f"{name} = {unit[LOAD_KIND[name]].text(load[name], 5)}" for name in acting_loads([load]))
+    return ", ".join(text.rstrip() for text in texts) or "no load"
