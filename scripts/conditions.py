@@ -246,7 +246,9 @@ class _Checked:
     @cached_property
     def conditions(self) -> dict[str, float]:
         """Largest relative violations of the conditions at this state alone."""
-        state, mu = self.state, self.problem.friction
+        state = self.state
+        mu = self.problem.friction_at(state.theta) * (1.0 + state.load["friction_change"])
+        most = max(float(mu.max()), 1.0)
         N, T, status, peak = state.pressure, state.shear, state.status, self.peak
         is_open, slips = status == OPEN, (status != OPEN) & (status != STICK)
         found = {
@@ -254,8 +256,8 @@ class _Checked:
             "gap >= 0": max(0.0, -state.gap.min() / self.length),
             "N gap = 0": np.minimum(np.abs(N) / peak, np.abs(state.gap) / self.length).max(),
             "open": max(np.abs(N[is_open]).max(initial=0.0), np.abs(T[is_open]).max(initial=0.0)) / peak,
-            "|T| <= mu N": max((np.abs(T) - mu * N).max(), 0.0) / (max(mu, 1.0) * peak),
-            "slipping": np.abs(T + status * mu * N)[slips].max(initial=0.0) / (max(mu, 1.0) * peak),
+            "|T| <= mu N": max((np.abs(T) - mu * N).max(), 0.0) / (most * peak),
+            "slipping": np.abs(T + status * mu * N)[slips].max(initial=0.0) / (most * peak),
         }
         forces, size = self._integrals.resultants(state)
         wrong = forces - np.array([state.load["P"], state.load["Q"], state.load["M"] / self.problem.hole_radius])

@@ -195,13 +195,17 @@ def fixed(rng: np.random.Generator, seed: int) -> RandomCase:
     return RandomCase(problem, LoadHistory(_extreme_loads(rng, problem, int(rng.integers(2, 8)), 0.0)), _nodes(rng))
 
 
+def _everyday_pair(rng: np.random.Generator) -> MaterialPair:
+    """Stiffness ratio 1/10 to 10, nu 0.1 to 0.45."""
+    return MaterialPair(
+        Material(1.0, rng.uniform(0.1, 0.45)), Material(10.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.1, 0.45))
+    )
+
+
 def moderate_stress(rng: np.random.Generator, seed: int) -> RandomCase:
     """Everyday materials, forces and remote stress in every case."""
     del seed
-    pair = MaterialPair(
-        Material(1.0, rng.uniform(0.1, 0.45)), Material(10.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.1, 0.45))
-    )
-    problem = _problem(rng, 10.0 ** rng.uniform(-1.5, 1.0), pair=pair, friction=rng.uniform(0.05, 1.0))
+    problem = _problem(rng, 10.0 ** rng.uniform(-1.5, 1.0), pair=_everyday_pair(rng), friction=rng.uniform(0.05, 1.0))
     return RandomCase(problem, LoadHistory(_extreme_loads(rng, problem, int(rng.integers(1, 7)), 2.0)), _nodes(rng))
 
 
@@ -389,10 +393,26 @@ def _ring(rng: np.random.Generator, hole: float) -> Ring:
     return Ring(hole * (1.0 + 10.0 ** rng.uniform(-1.3, 1.0)), rng.choice(SUPPORTS).item())
 
 
+def drift(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Friction that changes at the corners by a factor of 1/10 to 3; in half of the cases it varies along the rim."""
+    del seed
+    load_parameter = float(10.0 ** rng.uniform(-2.0, 1.0)) * (-0.3 if rng.random() < 0.2 else 1.0)
+    problem = _problem(rng, load_parameter, pair=_everyday_pair(rng), friction=rng.uniform(0.05, 1.0))
+    corners = _extreme_loads(rng, problem, int(rng.integers(2, 6)), 0.3 if rng.random() < 0.2 else 0.0)
+    for corner in corners[int(rng.random() < 0.5) :]:
+        if rng.random() < 0.8:
+            corner["friction_change"] = float(10.0 ** rng.uniform(-1.0, 0.5)) - 1.0
+    held = [dict(corners[-1], friction_change=float(10.0 ** rng.uniform(-0.5, 0.5)) - 1.0)]  # at constant load
+    if rng.random() < 0.5:
+        wave = Profile.lobes(int(rng.integers(1, 5)), rng.uniform(0.1, 0.9) * problem.friction, rng.uniform(0.0, 6.0))
+        problem = replace(problem, friction=Profile.constant(problem.friction) + wave)
+    return RandomCase(problem, LoadHistory([*corners, *held]), {"nodes": int(rng.integers(41, 82))})
+
+
 GENERATORS: dict[str, Callable[[np.random.Generator, int], RandomCase]] = {
     function.__name__: function
     for function in (
-        general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering, bodies, gap,
+        general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering, bodies, gap, drift,
     )
 }  # fmt: skip
 """The classes of random cases, by name."""

@@ -86,7 +86,7 @@ _UNITS = {
         "in": LoadUnit(0, INCH),
         "mil": LoadUnit(-3, INCH),
     },
-    "ratio": {"1": LoadUnit(), "%": LoadUnit(-2)},
+    "ratio": {"%": LoadUnit(-2)},
 }
 _PER_METRE = {**_UNITS, "force": _FORCE_PER_LENGTH, "moment": _MOMENT_PER_LENGTH}
 _WITH_THICKNESS = {**_UNITS, "force": _FORCE, "moment": _MOMENT}
@@ -158,4 +158,5 @@ def load_unit(load: str, name: str, basis: Basis) -> LoadUnit:
             else "; with a thickness loads are in N and N m"
         )
     *most, last = units
-    raise InputError(load, f"a {_KINDS[kind]} must be in {', '.join(most)} or {last}, not {as_toml(name)}{hint}")
+    allowed = f"in {', '.join(most)} or {last}" if most else f"a plain number or in {last}"
+    raise InputError(load, f"a {_KINDS[kind]} must be {allowed}, not {as_toml(name)}{hint}")
