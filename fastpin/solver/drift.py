@@ -44,8 +44,11 @@ MOST_AHEAD = 0.1
 LIMIT = 1e-13
 """Part of the largest pressure, displacement or rate. A function below it is at its limit."""
 
-BROKEN = 1e-11
+BROKEN = 1e-10
 """Part of the largest pressure, displacement or rate. A function below minus this part is no rounding."""
+
+CLOSING = 0.1
+"""Part of the largest displacement for gaps. An overlap that is left when a node closes becomes a pressure."""
 
 FALLING = 1e-10
 """Part of the largest rate. A function at its limit that falls faster ends its status."""
@@ -115,7 +118,7 @@ class Moment:
         """Sizes of the functions and of their rates, shape (4, n)."""
         (traction, length), (traction_rate, length_rate), (_, bend) = self.scales
         is_open, one = self.status == OPEN, np.ones(self.status.size)
-        of_values = np.array([np.where(is_open, length, traction), *[traction * one] * 2, length_rate * one])
+        of_values = np.array([np.where(is_open, CLOSING * length, traction), *[traction * one] * 2, length_rate * one])
         traction_rate = max(traction_rate, float(np.abs(self._growth).max()) * traction)
         of_rates = np.array([np.where(is_open, length_rate, traction_rate), *[traction_rate * one] * 2, bend * one])
         return of_values, of_rates
