@@ -71,6 +71,9 @@ P, Q, M, SXX, SYY, ROTATION, SXY, UX, UY, FRICTION_CHANGE = range(len(LOADS))
 ACTING = FRICTION_CHANGE
 """Number of loads, the first ones, with columns in the equations. Later ones change their coefficients."""
 
+LATER = LOADS[ACTING:]
+"""Names of the later loads. JSON has them only where they are given, as files of older versions."""
+
 REMOTE = tuple(place for place, kind in enumerate(LOAD_KIND.values()) if kind == "traction")
 """Places of the remote stresses in a load vector."""
 

@@ -13,7 +13,7 @@ from typing import Any
 from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.model.checks import choice
 from fastpin.model.fields import FIELDS, Field
-from fastpin.model.loads import LOADS
+from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.options import METHODS, SolveOptions
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
@@ -135,7 +135,7 @@ def _state() -> Schema:
             "load_point": _NUMBER,
             "step": _WHOLE,
             "fraction": _NUMBER,
-            "load": _object(dict.fromkeys(LOADS, _NUMBER)),
+            "load": _object(dict.fromkeys(LOADS, _NUMBER), LOADS[:ACTING]),
             "in_contact": _TRUTH,
             **quantities,
             "peak_hoop_resolved": {"type": ["boolean", "null"]},

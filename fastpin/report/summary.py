@@ -12,7 +12,7 @@ from fastpin.bodies.body import BodyBase
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
-from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.loads import LATER, LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
@@ -50,6 +50,7 @@ def document(
     alpha, beta = problem.surfaces.dundurs()
     unit = units(problem)
     factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
+    listed = [place for place, name in enumerate(LOADS) if name not in LATER or name in case.history.largest]
     found = {
         "fastpin": __version__,
         "title": case.title,
@@ -70,9 +71,10 @@ def document(
             "dimensionless": problem.dimensionless,
         },
         "history": {
-            "loads": list(LOADS),  # a load that a corner does not give becomes null
+            "loads": [LOADS[place] for place in listed],  # a load that a corner does not give becomes null
             "blocks": [
-                {"repeat": each.count, "corners": (factors * each.given).tolist()} for each in case.history.blocks
+                {"repeat": each.count, "corners": (factors * each.given)[:, listed].tolist()}
+                for each in case.history.blocks
             ],
         },
         "solver": case.options.keywords(),
@@ -106,9 +108,11 @@ def unit_names(problem: Problem) -> dict[str, str]:
 
 
 def printed_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, float]:
-    """Return loads, by name, in printed units."""
+    """Return loads, by name, in printed units. Later loads are left out where they are 0."""
     unit = units(problem)
-    return {name: unit[LOAD_KIND[name]].factor * value for name, value in load.items()}
+    return {
+        name: unit[LOAD_KIND[name]].factor * value for name, value in load.items() if value != 0.0 or name not in LATER
+    }
 
 
 def _material_summary(material: Material) -> dict[str, Any]:

@@ -31,7 +31,7 @@ IN_PLACE = {"friction", "clearance", "gap"}
 class Loads:
     """The loads of a session so far. Adding one gives another object, and leaves this one as it was.
 
-    A load takes 72 bytes. Later objects share the loads of earlier ones.
+    A load takes 80 bytes. Later objects share the loads of earlier ones.
 
     Attributes
     ----------

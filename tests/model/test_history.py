@@ -189,7 +189,7 @@ def test_csv(tmp_path: Path) -> None:
                 (
                     1,
                     'column 2: unknown load "q"; the loads are P, Q, M, sxx, syy, rotation, sxy, ux, uy, '
-                    'did you mean "Q"',
+                    'friction_change, did you mean "Q"',
                 )
             ],
         ),

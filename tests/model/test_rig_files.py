@@ -79,8 +79,8 @@ def test_columns_units_and_signs(
             None,
             None,
             1,
-            'column 1: unknown load "Force [N]"; the loads are P, Q, M, sxx, syy, rotation, sxy, ux, uy; a [[load]] '
-            'block reads it with P = { column = "Force [N]" }',
+            'column 1: unknown load "Force [N]"; the loads are P, Q, M, sxx, syy, rotation, sxy, ux, uy, '
+            'friction_change; a [[load]] block reads it with P = { column = "Force [N]" }',
         ),
         (
             "P [MPa]\n1\n",
