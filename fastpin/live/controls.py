@@ -34,6 +34,9 @@ MOST_FRICTION = 1.2
 USUAL_STRAIN = 1e-3
 """Strain of a usual load, where the case has none to go by."""
 
+USUAL_CHANGE = 0.5
+"""End of the slider of a change of the friction."""
+
 MISFITS = 1.5
 """End of the slider of the clearance, in parts of the clearance or of the displacement under the usual force."""
 
@@ -47,6 +50,8 @@ class ControlScales:
         Largest force on the pin in the history, N/m; that of the strain 1e-3 if there is none.
     displacement : float
         Largest prescribed displacement, or else the clearance and the displacement under the force together, m.
+    ratio : float
+        A usual change of the friction.
     stress : float
         Bearing stress of the force or largest remote stress, whichever is larger, Pa.
     """
@@ -60,6 +65,7 @@ class ControlScales:
         self.stress = max(0.5 * self.force / problem.hole_radius, *(largest[name] for name in ("sxx", "syy", "sxy")))
         self.moment = max(largest["M"], max(problem.most_friction, 0.1) * self.force * problem.hole_radius)
         self.rotation = max(largest["rotation"], yielded / problem.hole_radius)
+        self.ratio = USUAL_CHANGE
         self.misfit = max(abs(problem.clearance), yielded)
 
     def of_load(self, name: str) -> float:

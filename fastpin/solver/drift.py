@@ -18,6 +18,7 @@ solutions are noticed by a third solution in their middle, and by the cubic thro
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 
 import numpy as np
@@ -67,6 +68,22 @@ SAMPLES = np.linspace(0.0, 1.0, 33)[1:-1, None, None]
 
 MOST_FLIPS = 3
 """Times that the statuses at an event change one by one, before Lemke's method finds them."""
+
+
+@dataclass(frozen=True, eq=False)
+class DriftingSystem(System):
+    """A system whose friction goes to `later` (n,). One more load, the last one, says how far, from 0 to 1."""
+
+    later: np.ndarray = field(kw_only=True)
+
+    @classmethod
+    def between(cls, first: System, later: np.ndarray) -> DriftingSystem:
+        """The system `first` while its friction goes to `later` (n,)."""
+        return cls(**{each.name: getattr(first, each.name) for each in fields(first)}, later=later)
+
+    def under(self, load: np.ndarray) -> System:
+        part = float(load[-1])
+        return self.with_friction((1.0 - part) * self.friction + part * self.later)
 
 
 class Moment:

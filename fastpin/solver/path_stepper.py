@@ -73,7 +73,7 @@ class PathStepper:
         self._strict = strict
         self._memory = TableauMemory(system)
         self._step: PathStep | DriftPath | None = None
-        self._systems: dict[float, System] = {}
+        self._systems: dict[bytes, System] = {}
         self._begin = 0.0  # fraction of the history's step at which `_step` starts
         self._releases = self._jumps = 0
 
@@ -128,15 +128,19 @@ class PathStepper:
 
     def _path(self, now: Configuration, after: np.ndarray) -> PathStep | DriftPath:
         """The path from a configuration to the load `after` (loads,)."""
-        change = float(now.load[FRICTION_CHANGE])
-        system = self._systems.get(change)
-        if system is None:
+        system, friction = self._under(now.load), self._under(after).friction
+        if np.array_equal(system.friction, friction):
+            return PathStep(system, now, after, self._memory)
+        return DriftPath(system, now, after, friction)
+
+    def _under(self, load: np.ndarray) -> System:
+        """The system with the friction under a load (loads,), kept for the next question."""
+        key = load[FRICTION_CHANGE:].tobytes()
+        if key not in self._systems:
             if len(self._systems) == MOST_SYSTEMS:
                 self._systems.clear()
-            system = self._systems[change] = self._system.under(now.load)
-        if change == after[FRICTION_CHANGE]:
-            return PathStep(system, now, after, self._memory)
-        return DriftPath(system, now, after, self._system.under(after).friction)
+            self._systems[key] = self._system.under(load)
+        return self._systems[key]
 
     def _jump(self, position: Position, piece: Piece, stop: float) -> bool:
         """Take the pin over a snap to a state at a finite distance. Returns whether one was found."""

@@ -84,6 +84,8 @@ class Place:
         None under no load.
     state : State or None
         None under no load.
+    followed : bool
+        Whether a change of the friction was followed on the way. Then the loads alone do not lead here.
     """
 
     problem: Problem
@@ -92,6 +94,7 @@ class Place:
     force: float = 0.0
     restart: Restart | None = None
     state: State | None = None
+    followed: bool = False
 
 
 def changed_problem(problem: Problem, changes: dict[str, Any]) -> Problem:
@@ -115,6 +118,27 @@ def changed_problem(problem: Problem, changes: dict[str, Any]) -> Problem:
     values = {name: getattr(problem, name) for name in names} | changes
     del values["hole_radius"]
     return Problem.from_load_parameter(load_parameter=values.pop("clearance"), **values)
+
+
+def followed_problem(problem: Problem, changes: dict[str, Any]) -> Problem:
+    """The problem with a friction to which a contact can be followed.
+
+    Raises
+    ------
+    InputError
+        If something else changes, the friction can't be used, or it is 0 all round before or after.
+    """
+    if changes.keys() != {"friction"}:
+        raise InputError("replay", '"follow" is for a change of the friction alone')
+    changed = changed_problem(problem, changes)
+    if problem.frictionless or changed.frictionless:
+        raise InputError("friction", "can't be followed to or from 0: friction must stay on both sides")
+    return changed
+
+
+def system_with_friction(system: System, problem: Problem) -> System:
+    """The system of another problem that differs in its friction."""
+    return replace(system, problem=problem, friction=problem.friction_at(system.grid.theta))
 
 
 def changed_system(system: System, problem: Problem) -> System | None:

@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, MutableSequence, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -30,7 +30,7 @@ from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.growth import carried, dividing_the_circle, most_nodes, wider_grid
 from fastpin.solver.latest import LatestState, touches_outside
-from fastpin.solver.place import IN_PLACE, Loads, Place, changed_problem, changed_system
+from fastpin.solver.place import IN_PLACE, Loads, Place, changed_problem, changed_system, followed_problem
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Run
@@ -47,8 +47,8 @@ from fastpin.solver.task import (
 from fastpin.solver.turns import InTurns, in_turn
 from fastpin.states.state import State
 
-Replay = Literal["history", "load", "none"]
-"""What follows a change of the problem: the same history, the last load in one step, or nothing."""
+Replay = Literal["history", "load", "none", "follow"]
+"""What a change of the problem means: the same history, the last load in one step, no load, or a step of its own."""
 
 ALL_ROUND = (-1.5 * math.pi, 0.5 * math.pi)
 """The whole circle as an arc, rad."""
@@ -224,15 +224,16 @@ class Session(InTurns):
     def change(self, *, replay: Replay = "history", new_arc: bool = False, **changes: Any) -> State | None:
         """Change fields of the problem, follow the loads again, and return the state.
 
-        A contact has a memory, so a change of friction or clearance restarts the history. The changed problem begins
-        with no load. Friction and clearance need no new matrices.
+        A contact has a memory, so a change restarts the history, from no load, unless `replay` is "follow". Friction
+        and clearance need no new matrices.
 
         Parameters
         ----------
-        replay : {"history", "load", "none"}
+        replay : {"history", "load", "none", "follow"}
             "history": follow all loads again, as if the problem had been this one from the start. "load": go from no
             load straight to the present load; this is the new history. It takes the same short time however long the
-            session lasts. "none": stay without load.
+            session lasts. "none": stay without load. "follow": keep the contact, and let ``friction`` alone change at
+            the present load, as a step of its own. The loads then no longer lead here: there is no :meth:`result`.
         new_arc : bool
             Whether to choose a new arc. The nodes stay otherwise. A much larger clearance makes a contact narrow, and a
             new arc then has more nodes on it.
@@ -252,9 +253,11 @@ class Session(InTurns):
 
         :meth:`undo` takes the change back.
         """
-        choice("replay", replay, ("history", "load", "none"))
+        choice("replay", replay, get_args(Replay))
         true_or_false("new_arc", new_arc)
         here = self._here
+        if replay == "follow" and here.restart is not None:
+            return self._follow_friction(followed_problem(here.problem, changes))
         problem = changed_problem(here.problem, changes)
         loads = here.loads if replay == "history" else Loads()
         if replay == "load" and here.restart is not None:
@@ -310,7 +313,7 @@ class Session(InTurns):
     @in_turn
     def reset(self) -> None:
         """Go back to no load, with the present problem and nodes. The history and all other places are forgotten."""
-        self._here = replace(self._here, loads=Loads(), restart=None, state=None)
+        self._here = replace(self._here, loads=Loads(), restart=None, state=None, followed=False)
         self._undo.clear()
         self._redo.clear()
         self._run = None
@@ -341,6 +344,8 @@ class Session(InTurns):
         history = self.history
         if history is None:
             raise InputError("result", "no load was followed yet")
+        if self._here.followed:
+            raise InputError("result", "a change of the friction was followed; the loads alone give other states")
         return solve(self.problem, history, grid=self.grid, keep=keep, slip_sums=self._options.slip_sums)
 
     @in_turn
@@ -512,6 +517,24 @@ class Session(InTurns):
 
         return attempts.first_followed(follow, [arc])
 
+    def _follow_friction(self, problem: Problem) -> State | None:
+        """Follow the change to the friction of another problem at the present load, and return the state."""
+        here, given = self._here, np.full(len(LOADS), np.nan)
+        place = replace(here, problem=problem, loads=here.loads.with_load(given), followed=True)
+        with self._guarded(place):
+            run = self._run or self._start(self._system_at(here), here.restart)
+            while True:
+                try:
+                    run = run.with_friction_followed(problem)
+                    break
+                except ArcError:
+                    if (wider := self._wider_system(run)) is None:
+                        raise
+                    run = self._start(wider, carried(run.system, wider, run.bookmark()), run.strict)
+            self._recorder.begin(run)
+            self._arrive(place, self._step_to(run, place, given))
+        return self._here.state
+
     def _step_to(self, run: Run, place: Place, given: np.ndarray) -> Run:
         """Follow one step to the last load of a place, if need be on a wider arc. Returns the run that got there."""
         load = complete_load(given, run.load)
@@ -562,8 +585,10 @@ class Session(InTurns):
 
     def _on_new_nodes(self, place: Place, lost: SolveError) -> Run:
         """Choose new nodes for the whole history to a place, and follow it there. `lost` is the reason."""
-        if self._grid is not None:
-            lost.args = (f"{lost}; the given grid can't grow that far: give Grid.circle, or no grid",)
+        if place.followed or self._grid is not None:
+            given = "the given grid can't grow that far: give Grid.circle, or no grid"
+            followed = "new nodes need the whole history, but a change of the friction was followed"
+            lost.args = (f"{lost}; {followed if place.followed else given}",)
             raise lost
         arc = ALL_ROUND if self._recorder.touched_outside else None
         while True:
