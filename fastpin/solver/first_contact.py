@@ -31,7 +31,7 @@ from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import CUT_OFF, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
-from fastpin.solver.rest import hole_gap, place_between, put_at_rest, release, rest_position
+from fastpin.solver.rest import bend, hole_gap, place_between, put_at_rest, release, rest_position
 from fastpin.solver.settling import FiniteStep
 from fastpin.solver.step import is_pushed
 from fastpin.solver.window import SecondPlaceError, Window
@@ -451,15 +451,15 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     force = float(np.hypot(change[Q], change[P]))
     nearest = int(np.argmin(resting.gap))
     theta = system.grid.theta[nearest]
-    gap, _, curvature = hole_gap(system, resting.load, theta)
+    gap = hole_gap(system, resting.load, theta)[0]
     half = 2.5 * _width(system, nearest)
-    bend = max(float(gap + curvature), 0.0)
+    bent = max(bend(system, resting.load, theta, half), 0.0)
     if force == 0.0:
         shrinking = float(gap - hole_gap(system, resting.load + change, theta)[0])
         shrinking += float(change[UX] * math.cos(theta) + change[UY] * math.sin(theta))
-        part = 0.5 * bend * half**2 / shrinking if shrinking > 0.0 else LEAST_PART
+        part = 0.5 * bent * half**2 / shrinking if shrinking > 0.0 else LEAST_PART
     else:
-        part = math.pi * bend * half**2 / force
+        part = math.pi * bent * half**2 / force
     return min(max(part, LEAST_PART), 1.0)
 
 
@@ -468,9 +468,9 @@ def _steady_part(system: System, resting: Configuration, change: np.ndarray) -> 
     theta = system.grid.theta
     gap, _, curvature = hole_gap(system, resting.load, theta)
     later, _, bent = hole_gap(system, resting.load + change, theta)
-    bend = max(float((gap + curvature)[np.argmin(resting.gap)]), 0.0)
+    here = max(float((gap + curvature)[np.argmin(resting.gap)]), 0.0)
     changed = float(np.abs(later + bent - gap - curvature).max())
-    return 1.0 if changed <= STEADY * bend else max(STEADY * bend / changed, LEAST_PART)
+    return 1.0 if changed <= STEADY * here else max(STEADY * here / changed, LEAST_PART)
 
 
 def _width(system: System, node: int) -> float:

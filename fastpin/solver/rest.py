@@ -20,6 +20,9 @@ FINE = 1441
 TOUCHING = 1e-9
 """Largest overlap of a resting pin and the hole, in parts of the largest gap."""
 
+LEAST_BEND = 1e-4
+"""Angle beside a place, rad, at least, over which a gap is bent: rounding is 1e-8 of the gap there."""
+
 REFINEMENTS = 8
 """Newton's steps for a pin that rests on two places."""
 
@@ -159,6 +162,19 @@ def _on_two_places(system: System, load: np.ndarray, angles: np.ndarray, positio
         smooth = curvature > 0.0
         angles = angles - np.where(smooth, np.clip(slope / np.where(smooth, curvature, 1.0), -spacing, spacing), 0.0)
     return found
+
+
+def bend(system: System, load: np.ndarray, angle: float, half: float) -> float:
+    """Curvature of the hole against the pin at `angle`, rad; with an initial gap the mean over `half`, rad, beside it.
+
+    A gap may have kinks, and waves that are shorter than a contact.
+    """
+    gap, _, curvature = hole_gap(system, load, angle)
+    if not system.problem.gap:
+        return float(gap + curvature)
+    width = max(half, LEAST_BEND)
+    beside = hole_gap(system, load, angle + width * np.array([-1.0, 1.0]))[0]
+    return float(beside.sum() - 2.0 * math.cos(width) * gap) / width**2
 
 
 def lowest_angle(system: System, resting: Configuration, angle: float) -> float:

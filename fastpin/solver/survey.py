@@ -32,7 +32,7 @@ from fastpin.solver.errors import ArcError, NoEquilibriumError, SolveError
 from fastpin.solver.first_contact import at_rest
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.repeats import Repeats
-from fastpin.solver.rest import climb_angle, hole_gap, lowest_angle, release
+from fastpin.solver.rest import bend, climb_angle, lowest_angle, release
 from fastpin.solver.result import Restart
 from fastpin.solver.run import LEAST_CLOSED, Run, RunProgress
 from fastpin.solver.settling import FiniteStep
@@ -71,6 +71,12 @@ MOST_FAILURES = 500
 
 MOST_JUMPS = 30
 """Snaps of the pin in one history, at most."""
+
+WIDEST_HALF = 0.7
+"""Largest guess of half the width of a new contact, rad."""
+
+MOST_GUESSES = 20
+"""Guesses of the width of a new contact in a hole with an initial gap."""
 
 LEAST_WIDTH = 1e-6
 """Smallest width of a contact, rad. A narrower one is not resolved."""
@@ -244,11 +250,12 @@ class _Survey:
 
     def _half_width(self, load: np.ndarray, angle: float, overlap: float) -> float:
         """Half the width, rad, of a contact at `angle` under `load`, SI, or else of an `overlap`."""
-        scales, force = self._system.scales, _force(load)
-        gap, _, curvature = hole_gap(self._system, load / scales.loads, angle)
-        bend = max(float(gap + curvature), 1e-300)
-        square = force / scales.force / (math.pi * bend) if force > 0.0 else 2.0 * overlap / bend
-        return min(math.sqrt(square), 0.7)
+        scales, force, half = self._system.scales, _force(load), WIDEST_HALF
+        for _ in range(MOST_GUESSES if self._problem.gap else 1):  # the bend depends on the width
+            bent = max(bend(self._system, load / scales.loads, angle, half), 1e-300)
+            square = force / scales.force / (math.pi * bent) if force > 0.0 else 2.0 * overlap / bent
+            half = min(math.sqrt(square), WIDEST_HALF)
+        return half
 
     def _change_grid(self, places: Sequence[GapPlace]) -> None:
         """Go to a graded grid and carry the present contact to it. Without success everything stays."""
