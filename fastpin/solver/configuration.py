@@ -297,7 +297,7 @@ def contact_residuals(system: System, configuration: Configuration) -> dict[str,
     balance_error = np.abs(balance - system.load_forces(configuration.load))
     length = max(float(np.abs(elastic).max()), float(np.abs(configuration.motion).max()), 1e-300)
     if not closed.any():
-        length = max(length, abs(system.rest_clearance))
+        length = max(length, float(np.abs(system.concentric_gap).max()))
     traction = max(float(pressure.max()), 1e-300)
     total = max(float(np.abs(system.equilibrium) @ np.abs(tractions) @ np.ones(system.motions)), 1e-300)
     return {

@@ -136,9 +136,10 @@ def at_rest(
         resting.origin = rest.copy()
     resting.load = before + begins * (after - before)
     put_at_rest(system, resting, resting.load, rest, rest_gap)
-    if lowest is None or np.ptp(resting.gap) == 0.0:
+    touches_all_round = np.ptp(resting.gap) <= (_rounding(system) if system.problem.gap else 0.0)
+    if lowest is None or touches_all_round:
         nearness = resting.gap
-        if np.ptp(nearness) == 0.0:  # a neat fit: the load decides which nodes close first
+        if touches_all_round:  # a neat fit: the load decides which nodes close first
             nearness = system.load_displacement(after - before, slice(system.grid.size))
             if size > 0.0:
                 nearness = nearness - np.cos(system.grid.theta - angle)
@@ -150,6 +151,11 @@ def at_rest(
     nodes = nodes % system.grid.size if system.grid.closed else nodes.clip(1, system.grid.size - 2)
     resting.status[nodes] = resting_status(system)[nodes]
     return resting, begins
+
+
+def _rounding(system: System) -> float:
+    """The largest difference of the gap round a pin that touches all round."""
+    return CONFORMING * float(np.abs(system.concentric_gap).max())
 
 
 def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
@@ -293,14 +299,16 @@ def _first_patch(
     patches = len(runs(system.grid, resting.closed))
     least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
+    is_neat = not system.concentric_gap.any()
+    if system.problem.gap and begins == 0.0:  # it may be neat beside the middle
+        is_neat = bool(resting.gap.max() <= _rounding(system))
     self_similar = (
-        not system.concentric_gap.any()
+        is_neat
         and not np.delete(before, [ROTATION, FRICTION_CHANGE]).any()
         and before[FRICTION_CHANGE] == after[FRICTION_CHANGE]
     )  # everything grows in proportion
     left = (1.0 - begins) * (after - before)
-    size = np.abs(system.concentric_gap).max()
-    conforming = np.ptp(resting.gap) <= CONFORMING * size  # the hole closes on the pin all round
+    conforming = np.ptp(resting.gap) <= _rounding(system)  # the hole closes on the pin all round
     part = 1.0 if self_similar else CONFORMING_PART if conforming else _hertz_part(system, resting, left)
     most_part = 1.0 if self_similar or conforming else most_part
     part = min(part, most_part)

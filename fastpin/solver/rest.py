@@ -174,7 +174,7 @@ def bend(system: System, load: np.ndarray, angle: float, half: float) -> float:
         return float(gap + curvature)
     width = max(half, LEAST_BEND)
     beside = hole_gap(system, load, angle + width * np.array([-1.0, 1.0]))[0]
-    return float(beside.sum() - 2.0 * math.cos(width) * gap) / width**2
+    return float(beside.sum() - 2.0 * math.cos(width) * gap) / (4.0 * math.sin(0.5 * width) ** 2)
 
 
 def lowest_angle(system: System, resting: Configuration, angle: float) -> float:

@@ -18,8 +18,9 @@ from fastpin.model.checks import check_callable
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
+from fastpin.model.profile import Harmonic
 from fastpin.states.state import State
-from fastpin.verification import body_cases, body_rows, closed_forms
+from fastpin.verification import body_cases, body_rows, closed_forms, gap_rows
 from fastpin.verification.comparisons import (
     cattaneo_mindlin,
     cattaneo_mindlin_differences,
@@ -90,6 +91,8 @@ TOLERANCES: dict[str, dict[str, float]] = {
         "T, stuck": 5e-6,
     },
     "bodies, exact": {"peak N": 4e-14, "N, T": 3e-11, "compliance": 1e-15},
+    "gaps": {"tractions": 2e-4, "peak N": 6e-5, "moment": 1e-6, "end": 3e-5},
+    "gaps, exact": {"N, T": 1e-13},
     "mirror": {"N": 1.5e-12, "T": 1.5e-12, "slip": 1.5e-14},
     "energy": {"work": 1.5e-5},
     "parts": {"differing numbers": 0.0},
@@ -457,6 +460,24 @@ TOPICS: dict[str, tuple[str, Cases]] = {
             "interference fit": body_rows.pressed_bodies,
             "ring by its compliance": body_rows.ring_by_compliance,
             "cut bush": body_rows.cut_layer,
+        },
+    ),
+    "gaps": (
+        "Initial gaps: interference fits with waves, and full sliding by Eq. (58)",
+        {
+            "like, mu = 0": partial(gap_rows.waves, LIKE, 0.0, False),
+            "like, stuck": partial(gap_rows.waves, LIKE, 1.0, False),
+            "unlike, stuck": partial(gap_rows.waves, UNLIKE, 1.0, False),
+            "tube in ring, stuck": partial(gap_rows.waves, UNLIKE, 1.0, True),
+            "full sliding": gap_rows.sliding,
+        },
+    ),
+    "gaps, exact": (
+        "Initial gaps: exact relations to a round hole",
+        {
+            "clearance": partial(gap_rows.round_hole, Harmonic(0, 0.2)),
+            "shift of the pin": partial(gap_rows.round_hole, Harmonic(1, 0.5, -0.2)),
+            "ellipse, remote stress": gap_rows.oval,
         },
     ),
     "mirror": (
