@@ -11,6 +11,8 @@ from fastpin.model.room import widest_place
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
+    Solution,
+    accept_solution,
     elastic_energy,
     resting_status,
     solve_statuses,
@@ -89,6 +91,22 @@ def _uneven(system: System, start: Configuration) -> Configuration:
     gap the pin may touch in some places only.
     """
     found = implicit_step(system, start, start.load) or FiniteStep(system, start, everywhere=True).to(start.load)
+    if found is not None and system.problem.gap:
+        found = _corrected(system, start, found)
     if found is None or not found.closed.any() or worst_residual(system, found) > MAX_RESIDUAL:
         raise ConvergenceError(NOT_FOUND)
     return found
+
+
+def _corrected(system: System, start: Configuration, found: Configuration) -> Configuration:
+    """The configuration `found` from `start` without the rounding of its solve: one more solve with what is left."""
+    n = system.grid.size
+    left = system.displacement(np.r_[found.pressure, found.shear], found.motion, found.load, found.rest_gap)
+    more = solve_statuses(system, found.status, start.slip - left[n:], np.zeros_like(found.load), left[:n])
+    if more is None:
+        return found
+    whole = Solution(
+        found.pressure + more.pressure, found.shear + more.shear, more.gap, left[n:] + more.slip,
+        found.motion + more.motion,
+    )  # fmt: skip
+    return accept_solution(start, whole, found.status, found.load)

@@ -24,7 +24,7 @@ from fastpin.verification.checks import TOLERANCES, TOPICS
 from fastpin.verification.rows import Check
 
 MOST_SLACK = 3.0
-ROUNDING = {"mirror", "conditions", "parts", "stresses", "bodies, exact"}
+ROUNDING = {"mirror", "conditions", "parts", "stresses", "bodies, exact", "gaps, exact"}
 STATED = {"elements, frictionless", "elements, monotonic", "elements, fretting"}
 
 
