@@ -206,6 +206,11 @@ def read_friction(contact: Section, folder: Path, basis: Basis) -> float | Profi
     return contact.number("friction")
 
 
+def read_wear_coefficient(section: Section, folder: Path, key: str) -> Profile | None:
+    """A wear coefficient of [wear]; None if it is missing or wrong (reported)."""
+    return _Reader(section, folder, "wear", "per metre").profile(key)
+
+
 def read_gap(section: Section, folder: Path, radius: float | None, dimensionless: bool) -> InitialGap:
     """The initial gap of [gap]. Without a fault-free gap it is none, and the faults are reported.
 

@@ -25,6 +25,7 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import PER_THICKNESS
+from fastpin.model.wear import WEAR_KEYS, Wear
 
 PER_LINE = 8
 """Numbers of a list of loads on one line. Lines stay shorter than 200 letters."""
@@ -50,6 +51,7 @@ def case_text(case: Case) -> str:
         ["[gap]", *(f"{name} = {_value(profile.toml())}" for name, profile in case.problem.gap.given.items())],
         *_bodies(case.problem),
         ["[[load]]", *_loads(case.history, case.problem.thickness)],
+        ["[wear]", *_wear(case.wear)],
         ["[solve]", *_options(case.options)],
     ]
     return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
@@ -69,6 +71,13 @@ def _material(material: Material) -> Iterator[str]:
     if material.fatigue is not None:
         constants = ", ".join(f"{name} = {_value(value)}" for name, value in material.fatigue.given().items())
         yield f"fatigue = {{ {constants} }}"
+
+
+def _wear(wear: Wear | None) -> Iterator[str]:
+    for name in WEAR_KEYS if wear is not None else ():
+        value = getattr(wear, name)
+        if value is not None:
+            yield f"{name} = {_value(value.toml() if isinstance(value, Profile) else value)}"
 
 
 def _contact(problem: Problem) -> Iterator[str]:

@@ -29,7 +29,7 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""
 
-SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance")
+SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear")
 """Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
 
 
@@ -65,6 +65,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_case_commands(commands)
     add_run(commands)
     add_stored_commands(commands)
+    add_wear(commands)
     add_plot(commands)
     add_report(commands)
     add_live(commands)
@@ -177,6 +178,30 @@ def add_stored_commands(commands: Any) -> None:
     show = _command(commands, "show", "run", "show", "print and draw a stored result")
     show.add_argument("output", metavar="FILE", type=Path, help="HDF5 file (run -o FILE); the run may still be going")
     _add_outputs(show)
+
+
+def add_wear(commands: Any) -> None:
+    """Add ``wear``."""
+    wear = _command(
+        commands, "wear", "wear", "run", "follow a load cycle many times on a profile that wears (without debris)"
+    )
+    wear.add_argument("case", type=Path, help="case file (TOML), with the section [wear], or with --coefficient")
+    wear.add_argument("--cycles", metavar="N", type=literal, help="number of cycles, such as 1e5")
+    wear.add_argument("--coefficient", metavar="K", type=literal, help="wear coefficient of both bodies together, 1/Pa")
+    wear.add_argument("--law", metavar="LAW", help="archard: per pressure and slip; energy: per friction energy")
+    wear.add_argument("--at", metavar="N,N", help="cycles after which profile and states are stored")
+    wear.add_argument(
+        "--tolerance",
+        metavar="T",
+        type=literal,
+        help="largest error of the worn gap by cycles that stand for many (default 0.01); 0 solves every cycle",
+    )
+    wear.add_argument("--nodes", metavar="N", type=literal, help="number of nodes, 5 to 20000")
+    wear.add_argument("-o", "--output", metavar="FILE", type=Path, help="write the result to an HDF5 file, as it grows")
+    wear.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
+    wear.add_argument("--resume", action="store_true", help="with -o: continue the file of a life that ended early")
+    _add_json(wear, "write the chosen cycles as JSON")
+    wear.add_argument("-v", "--verbose", action="count", default=0, help="log each grid; -vv: more")
 
 
 def add_plot(commands: Any) -> None:

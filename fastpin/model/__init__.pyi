@@ -14,3 +14,4 @@ from .materials import MaterialPair as MaterialPair
 from .options import SolveOptions as SolveOptions
 from .points import Points as Points
 from .problem import Problem as Problem
+from .wear import Wear as Wear

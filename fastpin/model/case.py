@@ -9,6 +9,7 @@ from fastpin.model.checks import instance, string
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.wear import Wear
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,8 @@ class Case:
         Empty if there is none.
     about : About
         Project, author, revision and date. No result depends on them.
+    wear : Wear or None
+        How the bodies wear, for ``fastpin wear``.
 
     Raises
     ------
@@ -71,8 +74,11 @@ class Case:
     options: SolveOptions = field(default_factory=SolveOptions)
     title: str = ""
     about: About = field(default_factory=About)
+    wear: Wear | None = None
 
     def __post_init__(self) -> None:
+        if self.wear is not None:
+            instance("wear", self.wear, Wear, "a Wear")
         instance("about", self.about, About, "an About")
         instance("problem", self.problem, Problem, "a Problem")
         instance("history", self.history, LoadHistory, "a LoadHistory")

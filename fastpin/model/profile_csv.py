@@ -16,10 +16,10 @@ from fastpin.model.csv_columns import title_and_unit
 from fastpin.model.inputs import open_input
 from fastpin.model.load_units import Basis, LoadUnit, load_unit
 
-Quantity = Literal["gap", "friction"]
+Quantity = Literal["gap", "friction", "wear"]
 """What the values of a file are."""
 
-QUANTITIES = ("gap", "friction")
+QUANTITIES = ("gap", "friction", "wear")
 """The names of quantities."""
 
 MOST_BYTES = 2_000_000
@@ -104,6 +104,8 @@ def _units(cells: list[str], quantity: Quantity, basis: Basis) -> dict[str, Load
         raise InputError(angle, f"an angle must be in deg or rad, not {as_toml(angle_unit)}")
     if quantity == "friction" and unit not in ("", "-", "1"):
         raise InputError(title, f"friction has no unit; leave it out, not {as_toml(unit)}")
+    if quantity == "wear" and unit not in ("", "1/Pa"):
+        raise InputError(title, f"a wear coefficient must be in 1/Pa, not {as_toml(unit)}")
     found = None
     if quantity == "gap" and unit:
         if basis == "dimensionless":

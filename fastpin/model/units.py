@@ -28,6 +28,7 @@ _SI = {
     "stress times strain": "Pa",
     "life": "cycles",
     "work per stress": "m^2",
+    "wear coefficient": "1/Pa",
 }
 
 PER_THICKNESS = {"force": "N", "moment": "N m", "stiffness": "N m/rad", "energy": "J", "work per stress": "m^3"}
@@ -50,6 +51,7 @@ _DIMENSIONLESS = {
     "stress times strain": "F^2 beta*/R^2",
     "life": "cycles",
     "work per stress": "F R beta*",
+    "wear coefficient": "R/F",
 }
 
 FIXED_PREFIXES = {"kN, mm": {"N": 3, "N/m": 3, "N m": 0, "J": 0, "J/m": 0, "m": -3, "Pa": 6}}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -40,7 +40,7 @@ class Wear:
     pin, plate : float or Profile, optional
         Instead: the coefficients of the two bodies, 1/Pa. One that is left out is 0.
     cycles : int
-        Number of cycles.
+        Number of cycles; 1e5 is one too.
     law : {"archard", "energy"}
         "archard": depth = coefficient times int p |ds|, with the pressure p and the slip s. "energy": depth =
         coefficient times the energy that friction dissipates per area, int |q| |ds| with the shear traction q.
@@ -115,3 +115,10 @@ def _whole_cycles(value: object) -> int:
     if plain != int(plain):
         raise InputError("cycles", f"must be a whole number, not {plain:g}")
     return int(plain)
+
+
+COEFFICIENTS = ("coefficient", "pin", "plate")
+"""The fields that are coefficients."""
+
+WEAR_KEYS = tuple(field.name for field in fields(Wear))
+"""The fields of :class:`Wear`, the keys of [wear] in a case file."""

@@ -37,7 +37,7 @@ def json_schema(command: str) -> Schema:
 
     Parameters
     ----------
-    command : {"run", "converge", "verify", "benchmarks", "compliance"}
+    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear"}
         ``fastpin resume`` and ``show`` write the document of "run".
 
     Raises
@@ -253,12 +253,36 @@ def _compliance() -> Schema:
     )
 
 
+def _wear() -> Schema:
+    whole, plain = ("cycle", "next_jump", "solved"), ("tau", "depth", "volume", "pin_volume", "plate_volume")
+    arrays = dict.fromkeys(("pin_depth", "plate_depth", "pressure"), _list_of(_NUMBER))
+    numbers = (*plain, "energy_per_cycle", "dissipation", "removed", "peak_pressure")
+    cycle = _object(dict.fromkeys(whole, _WHOLE) | dict.fromkeys(numbers, _NUMBER) | arrays)
+    return _object(
+        {
+            "fastpin": _TEXT,
+            "title": _TEXT,
+            "complete": _TRUTH,
+            "error": _OPTIONAL_TEXT,
+            "units": _map_of(_TEXT, "unit of each kind of quantity"),
+            "law": _TEXT,
+            "tolerance": _NUMBER,
+            "angles": _list_of(_NUMBER),
+            "pin_coefficient": _list_of(_NUMBER),
+            "plate_coefficient": _list_of(_NUMBER),
+            "statistics": _map_of(_NUMBER, "counters of the solver"),
+            "cycles": _list_of(cycle),
+        }
+    )
+
+
 _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "run": _summary,
     "converge": _convergence,
     "verify": _verify,
     "benchmarks": _benchmarks,
     "compliance": _compliance,
+    "wear": _wear,
 }
 
 COMMANDS = tuple(_DOCUMENTS)

@@ -8,3 +8,5 @@ from .result import Restart as Restart
 from .result import Result as Result
 from .session import Session as Session
 from .solving import solve as solve
+from .wear_result import WearResult as WearResult
+from .wear_result import WornCycle as WornCycle

@@ -207,7 +207,8 @@ class WearFile:
         self._file: JournaledFile | None = None
         self._h5: h5py.File
         self._name = ""
-        self._place: Worn | None = None
+        self._place: Worn | None = None  # the latest one, and whether the file has it
+        self._is_stored = True
         self._noted = 0.0  # when the latest checkpoint was written
 
     def reopen(self) -> tuple[Worn | None, Grid]:
@@ -273,7 +274,7 @@ class WearFile:
             group.create_dataset(name, (0, grid.size), maxshape=(None, grid.size), chunks=(1, grid.size), dtype=float)
         for name, kind in NUMBERS.items():
             group.create_dataset(name, (0,), maxshape=(None,), chunks=(128,), dtype=kind)
-        self._place = None
+        self._place, self._is_stored = None, True
         self._commit()
 
     def add(self, cycle: WornCycle, place: Worn, statistics: dict[str, float]) -> None:
@@ -284,15 +285,20 @@ class WearFile:
             array = group[name]
             array.resize(len(array) + 1, axis=0)
             array[-1] = getattr(cycle, name)
+        write_statistics(self._h5, statistics)
+        self._put_place(place)
+        self._commit()
+
+    def _put_place(self, place: Worn) -> None:
+        group = self._h5["wear"]
         if "place" in group:
             del group["place"]
         _write_place(group.create_group("place"), place)
-        write_statistics(self._h5, statistics)
-        self._place = place
-        self._commit()
+        self._place, self._is_stored = place, True
 
     def reached(self, place: Worn) -> None:
         """Write a checkpoint, if one is due."""
+        self._place, self._is_stored = place, False
         now = time.monotonic()
         if now - self._noted < CHECKPOINT_EVERY:
             return
@@ -311,6 +317,8 @@ class WearFile:
                 self._h5.attrs["complete"] = error is None
                 if error is not None:
                     self._h5.attrs["error"] = error
+                if self._place is not None and not self._is_stored:
+                    self._put_place(self._place)
                 self._commit()
                 self._close()
                 if error is None:

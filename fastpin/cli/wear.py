@@ -1,0 +1,85 @@
+"""``fastpin wear``: a load cycle many times, on a profile that wears."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from typing import Any
+
+from fastpin import casefile, report, solver, storage
+from fastpin.cli.options import literal
+from fastpin.cli.progress import Bar, progress_to
+from fastpin.cli.terminal import (
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    check_outputs,
+    fail,
+    flag,
+    say,
+    write_files,
+    write_text,
+)
+from fastpin.errors import InputError
+from fastpin.model.wear import WEAR_KEYS
+
+CYCLES = "{whole} of {total:,} cycles"
+"""Text of the progress bar."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Follow a life of wear, and print and write the chosen cycles."""
+    case = casefile.read_case(options.case)
+    how: dict[str, Any] = {"cycles": None}
+    if case.wear is not None:
+        how = {name: getattr(case.wear, name) for name in WEAR_KEYS}
+    given = {name: getattr(options, name) for name in ("cycles", "coefficient", "law", "tolerance")}
+    given["at"] = None if options.at is None else [literal(part) for part in options.at.split(",")]
+    given = {name: value for name, value in given.items() if value is not None}
+    if "coefficient" in given:
+        how |= {"pin": None, "plate": None}
+    how |= given
+    for name in ("overwrite", "resume"):
+        if getattr(options, name) and options.output is None:
+            raise InputError(flag(name), "needs --output FILE")
+    if case.wear is None and "coefficient" not in given:
+        raise InputError("--coefficient", "is needed: the case file has no section [wear]")
+    check_outputs({"--json": options.json, "--output": options.output}, result="--output")
+    settings: dict[str, Any] = {"nodes": options.nodes or case.options.nodes, "arc": case.options.arc}
+    settings |= {"overwrite": options.overwrite, "resume": options.resume, "output": options.output}
+    result: solver.WearResult | None = None
+    code, trouble = EXIT_OK, None
+    with Bar(1, CYCLES) as progress_bar:
+        settings |= {"progress": progress_to(progress_bar), "title": case.title}
+        try:
+            result = storage.wear(case.problem, case.history, **how, **settings)
+        except (solver.SolveError, solver.Interrupted) as ended:
+            result, trouble = ended.result, str(ended)  # type: ignore[assignment]
+            code = EXIT_FAILED if isinstance(ended, solver.SolveError) else EXIT_INTERRUPTED
+        except InputError as error:
+            if error.field in given or error.field in ("nodes", "resume"):
+                raise InputError(flag(error.field), error.reason) from None
+            raise
+    return _write(result, options, case.title, code, trouble)
+
+
+def _write(
+    result: solver.WearResult | None, options: argparse.Namespace, title: str, code: int, trouble: str | None
+) -> int:
+    """Write the JSON, then print the table. Printing comes last: the reader of the output may close it early."""
+    if trouble is not None:
+        go_on = options.output is not None and code == EXIT_INTERRUPTED
+        fail(f"{trouble}{'; continue with the same command and --resume' if go_on else ''}", code)
+    text = ""
+    if options.json is not None:
+        text = json.dumps(report.wear.document(result, title, trouble), indent=2, allow_nan=False) + "\n"
+    if text and options.json != "-":
+        code = write_files([(options.json, lambda path: write_text(path, text))]) or code
+    if options.json == "-":
+        sys.stdout.write(text)
+    elif result is not None and len(result):
+        solved = int(result.statistics["solved"])
+        done = f"{result[-1].cycle:,} cycles, {solved:,} of them solved; debris is not modelled"
+        say(*([title, ""] if title else []), *result.summary().split("\n"), "", done)
+    return code
