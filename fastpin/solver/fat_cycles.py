@@ -194,19 +194,19 @@ class FatCycles:
                 piece = run.corner_log.latest
                 dissipation, work = dissipation + times * piece.dissipation, work + times * piece.work
                 if jump:
-                    removal = run.wear(*self._worn_by(piece.slip_tally.sums, jump))
+                    removal = run.wear(*self.worn_by(piece.slip_tally.sums, jump))
                     depth = depth + self._shares * removal.depth
                     dissipation, work = dissipation + removal.dissipation, work + removal.work
                     removed += removal.energy
                     if place.loses_contact:
                         run.set_gap(self._first, depth.sum(axis=0))
+                self._check_depth(depth)
             except SolveError as error:
                 _name_cycle(error, place.cycle + 1)
                 raise
-            self._check_depth(depth)
         return replace(place, depth=depth, removed=removed, restart=self._restart(dissipation, work))
 
-    def _worn_by(self, sums: np.ndarray, jump: int) -> tuple[np.ndarray, np.ndarray | None]:
+    def worn_by(self, sums: np.ndarray, jump: int) -> tuple[np.ndarray, np.ndarray | None]:
         """Depth (n,) by the slip tally of a piece, and the softness (n,) of the implicit way where that is needed."""
         slip, loaded = sums[0], sums[4]
         depth = jump * self._total * loaded

@@ -1,0 +1,68 @@
+"""How bodies wear: the coefficients, the law, the cycles."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+from fastpin.errors import InputError
+from fastpin.model.profile import Profile
+from fastpin.model.profile_terms import Zone
+from fastpin.model.wear import Wear
+from tests.support.wear_cases import WEAR_CASES
+
+PROBLEM = WEAR_CASES["unlike"].problem
+THETA = np.linspace(-3.0, 0.0, 7)
+
+
+def test_one_coefficient_is_shared_in_halves():
+    assert np.array_equal(Wear(2e-3).coefficients(PROBLEM, THETA), np.full((2, 7), 1e-3))
+
+
+def test_bodies_have_coefficients_of_their_own_and_zones():
+    wear = Wear(pin=1.0, plate=Profile.constant(1.0) + Profile((Zone(2.0, -2.0, -1.0),)))
+    pin, plate = wear.coefficients(PROBLEM, THETA)
+    assert set(pin) == {1.0}
+    assert set(plate) == {1.0, 3.0}
+    assert not Wear(plate=1.0).coefficients(PROBLEM, THETA)[0].any()
+
+
+def test_ten_cycles_a_decade_are_chosen():
+    chosen = Wear(1.0, cycles=1e5).chosen
+    assert chosen[:6] == (0, 1, 2, 3, 4, 5)
+    assert chosen[-1] == 100_000
+    assert sum(1000 < each <= 10_000 for each in chosen) == 10
+    assert Wear(1.0, cycles=100, at=[5, 50]).chosen == (0, 5, 50, 100)
+    assert Wear(1.0).chosen == (0, 1)
+
+
+def test_wear_can_be_pickled():
+    wear = Wear(pin=1.0, cycles=7, at=[3])
+    assert pickle.loads(pickle.dumps(wear)) == wear
+
+
+WRONG = {
+    "coefficient: give the wear coefficient, or those of pin and plate": {},
+    "coefficient: is that of both bodies together; give it, or those of pin and plate": {"coefficient": 1, "pin": 1},
+    "pin: must not be negative, not -1": {"pin": -1.0},
+    "cycles: must be a whole number, not 2.5": {"pin": 1, "cycles": 2.5},
+    "cycles: must lie between 1 and 1e+12, not 0": {"pin": 1, "cycles": 0},
+    "tolerance: must lie between 0 and 0.1, not 0.5": {"pin": 1, "tolerance": 0.5},
+    'law: must be "archard" or "energy"': {"pin": 1, "law": "linear"},
+    "at: must be at most 10,000 increasing numbers of cycles": {"pin": 1, "cycles": 9, "at": [3, 2]},
+    "at: must be": {"pin": 1, "cycles": 9, "at": [10]},
+}
+
+
+@pytest.mark.parametrize("message", WRONG)
+def test_wrong_wear_is_refused_in_one_sentence(message):
+    with pytest.raises(InputError) as caught:
+        Wear(**WRONG[message])
+    assert str(caught.value).startswith(message)
+
+
+def test_coefficients_of_zero_are_refused():
+    with pytest.raises(InputError, match="coefficient: must be positive somewhere on pin or plate"):
+        Wear(0.0).coefficients(PROBLEM, THETA)

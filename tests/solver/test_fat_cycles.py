@@ -1,0 +1,241 @@
+"""Lives of wear by single and by fat cycles: the promise of control, stability, limits, and contact that is lost."""
+
+from __future__ import annotations
+
+import functools
+import pickle
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import fastpin
+from fastpin.errors import InputError, InputWarning
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.profile import Profile
+from fastpin.model.profile_terms import Zone
+from fastpin.model.wear import Wear
+from fastpin.solver.errors import SolveError
+from fastpin.solver.fat_cycles import FatCycles
+from fastpin.solver.wear_result import WearResult
+from tests.support.slip_cases import LIKE, UNLIKE
+from tests.support.wear_cases import WEAR_CASES, WearCase, lived, step, wearing
+
+NODES = 41
+
+
+def life(case: WearCase, cycles: int, tolerance: float, tau: float | None = None, **others: object) -> WearResult:
+    """A life of a case, with the coefficient that gives its tau."""
+    given = {"coefficient": (case.tau if tau is None else tau) / cycles, "grid": case.grid(NODES), **others}
+    return fastpin.wear(case.problem, case.history(), cycles=cycles, tolerance=tolerance, **given)
+
+
+@functools.cache
+def every_cycle() -> WearResult:
+    return life(WEAR_CASES["partial slip"], 300, 0.0)
+
+
+def test_fat_cycles_keep_their_promise_at_every_chosen_cycle():
+    direct = every_cycle()
+    fat = life(WEAR_CASES["partial slip"], 300, 0.02)
+    assert direct[-1].solved == 300
+    assert fat[-1].solved < 200
+    assert [each.cycle for each in fat] == [each.cycle for each in direct]
+    for one, other in zip(direct[1:], fat[1:], strict=True):
+        assert np.abs(one.gap_growth - other.gap_growth).max() < 0.02 * one.depth
+
+
+def test_the_volume_is_the_friction_energy_of_the_pieces():
+    case = WEAR_CASES["rotation"]
+    run, worn, dissipation = lived(case, NODES, 5)
+    assert run.system.weights @ worn == pytest.approx(case.tau / 5 / 0.2 * dissipation, rel=1e-14)
+
+
+def test_half_the_coefficient_and_twice_the_cycles_are_nearly_the_same():
+    case, volumes = WEAR_CASES["partial slip"], []
+    for fat in (20, 40, 80, 160):
+        run, worn, _ = lived(case, NODES, fat)
+        volumes.append(float(run.system.weights @ worn))
+    changes = np.abs(np.diff(volumes)) / volumes[-1]
+    assert changes[0] < 1e-2
+    assert np.all(changes[1:] < 0.6 * changes[:-1])
+
+
+def test_the_law_of_energy_is_archard_with_the_coefficient_times_friction():
+    case = WEAR_CASES["partial slip"]
+    energy = life(case, 10, 0.0, law="energy")
+    archard = life(case, 10, 0.0, tau=0.5 * case.tau)
+    assert np.abs(energy[-1].gap_growth - archard[-1].gap_growth).max() < 1e-12 * archard[-1].depth
+
+
+def test_pin_and_plate_share_the_wear_by_their_coefficients():
+    case = WEAR_CASES["partial slip"]
+    zone = Profile.constant(0.3) + Profile((Zone(0.3, -1.5, -1.0),))
+    found = life(case, 10, 0.0, coefficient=None, pin=0.1, plate=zone)
+    last, theta = found[-1], found.theta
+    worn = last.gap_growth > 0.0
+    inside = (theta > -1.5) & (theta < -1.0)
+    assert worn[inside].any()
+    ratio = last.plate_depth[worn] / last.pin_depth[worn]
+    assert np.allclose(ratio, np.where(inside[worn], 6.0, 3.0), rtol=1e-12)
+    assert last.pin_share == pytest.approx(last.volumes[0] / last.volume)
+    assert np.array_equal(found.coefficients[1], np.where(inside, 0.6, 0.3))
+
+
+def test_beyond_the_limit_of_stability_the_pressure_stays_smooth():
+    case = WEAR_CASES["rotation"]
+    explicit, implicit = (life(case, jumps, 0.0, tau=0.1)[-1] for jumps in (80, 5))
+    closed = np.flatnonzero(implicit.pressure > 0.0)
+    assert np.all(np.diff(closed) == 1)  # no node opens between others
+    well_inside = explicit.pressure > 0.5 * explicit.pressure.max()
+    assert np.abs(explicit.pressure - implicit.pressure)[well_inside].max() < 0.1 * explicit.pressure.max()
+    assert implicit.volume == pytest.approx(explicit.volume, rel=0.03)
+
+
+def test_an_explicit_jump_beyond_the_limit_would_open_nodes_in_turn():
+    """The limit is needed: without the implicit way the same jumps make a sawtooth."""
+    case = WEAR_CASES["rotation"]
+    run = wearing(case.problem, case.grid(NODES))
+    for loads in case.first:
+        step(run, loads)
+    for _ in range(4):
+        for loads in case.cycle:
+            rubbed, _ = step(run, loads)
+            run.wear(0.02 * rubbed)
+    assert np.any(np.diff(np.flatnonzero(run.now.closed)) > 1)
+
+
+def test_a_cycle_without_contact_in_it_wears_on():
+    problem = fastpin.Problem.from_load_parameter(LIKE, 0.1, 0.3, "body")
+    history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"P": -1.0, "Q": 0.1}, {"P": 1.0, "Q": 0.1}]).repeated(1)
+    found = fastpin.wear(
+        problem, history, cycles=12, coefficient=0.2, tolerance=0.0, at=[6], grid=Grid.circle(80, -0.5 * np.pi)
+    )
+    top, bottom = (np.abs(found.theta - angle).argmin() for angle in (0.5 * np.pi, -0.5 * np.pi))
+    last = found[-1]
+    beside = np.abs(found.theta - found.theta[top]) < 0.7
+    assert last.gap_growth[beside].max() > 0.2 * last.depth > 0.0
+    assert last.gap_growth[bottom] < last.depth
+    assert max(max(state.residuals.values()) for each in found for state in each.states) < 1e-10
+
+
+def rigid_depth(clearance: float, path: float, friction: float) -> tuple[float, float]:
+    """Depth and largest pressure of rigid bodies that slide one way over a `path`, coefficient times slip."""
+    size = np.sqrt(1.0 + friction**2)
+
+    def angle(depth: float) -> float:
+        phi = np.arccos(clearance / (clearance + depth))
+        return phi + np.sin(phi) * np.cos(phi)
+
+    def slid(depth: float) -> float:
+        return quad(lambda root: 2.0 * root * angle(root * root), 0.0, np.sqrt(depth))[0] * size
+
+    depth = brentq(lambda tried: slid(tried) - path, 1e-6, 50.0)
+    return depth, 1.0 / (angle(depth) * size)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("clearance", [1.0, 10.0])
+def test_gross_sliding_tends_to_rigid_bodies(clearance):
+    problem = fastpin.Problem.from_load_parameter(LIKE, clearance, 0.2, "centre", "fixed")
+    run = wearing(problem, Grid.arc(-0.5 * np.pi - 1.7, -0.5 * np.pi + 1.7, 61))
+    # Slow wear: slip during a wear path does not count.
+    cycles, coefficient, path = FatCycles(run, Wear(1e-3), np.zeros((0, 10))), 1e-3, 8.0
+    step(run, {"P": 1.0})
+    worn, steps = np.zeros(61), 800
+    for number in range(1, steps + 1):
+        step(run, {"rotation": path / coefficient * number / steps})
+        removal = run.wear(*cycles.worn_by(run.corner_log.latest.slip_tally.sums, 1))
+        worn = worn + removal.depth
+    depth, pressure = rigid_depth(clearance, path, 0.2)
+    assert worn.max() == pytest.approx(depth, rel=1e-2)
+    assert run.now.pressure.max() == pytest.approx(pressure, rel=2e-2)
+    deepest = run.system.grid.theta[np.argmax(worn)] + 0.5 * np.pi
+    assert deepest == pytest.approx(-np.arctan(0.2), abs=0.06)  # a node distance
+
+
+def half_plane(nodes: int) -> tuple[float, float, float]:
+    """Relative errors of volume, depth and pressure in the middle against the final state of partial slip."""
+    load_parameter = 2e6
+    a = np.sqrt(1.0 / (np.pi * load_parameter))
+    spacing = a * np.sqrt(0.5) / (nodes + 0.5)  # the edge of stick lies midway between two nodes
+    half = int(np.ceil(1.35 * a / spacing))
+    problem = fastpin.Problem.from_load_parameter(LIKE, load_parameter, 0.5, "centre", "fixed")
+    history = LoadHistory([{"P": 1.0}, {"Q": 0.25}]) + LoadHistory([{"Q": -0.25}, {"Q": 0.25}]).repeated(1)
+    grid = Grid(-0.5 * np.pi + spacing * np.arange(-half, half + 1))
+    last = fastpin.wear(problem, history, cycles=1e7, coefficient=1e-4 * a, tolerance=0.03, grid=grid)[-1]
+    middle = last.states[-1].pressure[half] * np.pi * a / 2.0
+    return (
+        last.volume / (load_parameter * a**3) / 0.072625 - 1.0,
+        last.depth / (load_parameter * a * a) / 0.112733 - 1.0,
+        middle / 1.06066 - 1.0,
+    )
+
+
+@pytest.mark.slow
+def test_partial_slip_tends_to_the_final_state_of_the_half_plane():
+    coarse, fine = half_plane(6), half_plane(12)
+    for one, other, limit in zip(coarse, fine, (0.06, 0.03, 0.004), strict=True):
+        assert 0.0 < other < limit
+        assert other < 0.65 * one
+
+
+def test_too_deep_wear_ends_with_one_sentence_and_keeps_what_was_found():
+    problem = fastpin.Problem(UNLIKE, 0.01, 2e-5, 0.4, "centre", "fixed")
+    history = LoadHistory([{"P": 2e6}]) + LoadHistory([{"rotation": 0.02}, {"rotation": -0.02}]).repeated(1)
+    with pytest.raises(SolveError, match=r"cycle [\d,]+: .* is too large for small strains: it must stay") as caught:
+        fastpin.wear(problem, history, cycles=100, coefficient=1e-9, at=[2], grid=Grid.circle(60))
+    result = caught.value.result
+    assert isinstance(result, WearResult)
+    assert [each.cycle for each in result] in ([0], [0, 2])
+    assert not result.complete
+
+
+def test_a_pin_that_wears_and_slips_far_gives_a_warning():
+    problem = fastpin.Problem(UNLIKE, 0.01, 2e-5, 0.4, "centre", "fixed")
+    history = LoadHistory([{"P": 2e6}]) + LoadHistory([{"rotation": 0.05}, {"rotation": 0.0}]).repeated(1)
+    with pytest.warns(InputWarning, match="pin: the pin slips by .* more than a node distance"):
+        fastpin.wear(problem, history, cycles=1, pin=1e-16, arc=(-3.1, 0.0), nodes=NODES)
+
+
+def test_a_result_is_read_only_and_can_be_pickled():
+    found = every_cycle()
+    with pytest.raises(ValueError, match="read-only"):
+        found[-1].pin_depth[0] = 1.0
+    copy = pickle.loads(pickle.dumps(found))
+    assert np.array_equal(copy[-1].plate_depth, found[-1].plate_depth)
+    assert copy.numbers.tolist() == found.numbers.tolist()
+    assert "300" in found.summary().splitlines()[-1]
+    assert repr(found).startswith("<WearResult: ")
+    assert found.tau[-1] == pytest.approx(7.0)
+
+
+def test_states_lie_over_one_cycle_on_the_worn_profile():
+    last = every_cycle()[-1]
+    loads = [state.load["Q"] for state in last.states]
+    assert loads == [0.275, -0.275, 0.275]
+    steps = [state.step for state in last.states]
+    assert steps == [601, 602, 603]
+    energy = sum(float(last.grid.weights @ state.friction_energy) for state in last.states[1:])
+    assert energy == pytest.approx(last.energy_per_cycle, rel=1e-9)
+
+
+WRONG = {
+    "history: must end with the cycle that wears: repeat its last block": {"history": [{"P": 1.0}]},
+    "keep: has no effect on wear; of the options of a run it takes nodes and arc": {"keep": "cycles"},
+    "grid: wear needs equally spaced nodes": {"grid": Grid(np.array([-3.0, -2.0, -1.6, -1.2, -1.0, 0.0]))},
+    "cycles: must be fewer: the cycles have more than 100,000,000 corners": {"cycles": 1e8},
+    "resume: needs an output": {"resume": True},
+    "overwrite: needs an output": {"overwrite": True},
+}
+
+
+@pytest.mark.parametrize("message", WRONG)
+def test_wrong_input_is_refused_in_one_sentence(message):
+    case = WEAR_CASES["partial slip"]
+    given = {"history": case.history(), "cycles": 10, "coefficient": 1.0, **WRONG[message]}
+    with pytest.raises(InputError) as caught:
+        fastpin.wear(case.problem, **given)
+    assert str(caught.value) == message

@@ -1,0 +1,138 @@
+"""Lives of wear whose numbers are known, and a run that wears step by step."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fastpin.elasticity.system import System
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOADS, complete_load
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.model.profile import NO_GAP, InitialGap, Profile
+from fastpin.model.profile_terms import Harmonic
+from fastpin.solver.solving import MemoryRecorder
+from fastpin.solver.wear import SLIP_OPTIONS
+from fastpin.solver.wear_path import Removal, WearRun
+from tests.support.slip_cases import LIKE, UNLIKE
+
+Loads = dict[str, float]
+
+LOBED = InitialGap(Profile((Harmonic(2, 0.02, 0.01), Harmonic(6, -0.02, 0.0))))
+
+
+class WearCase(NamedTuple):
+    """A life of 40 equal fat cycles of 121 nodes, after one cycle without wear, and its known numbers.
+
+    Attributes
+    ----------
+    half_arc : float
+        Half the width of the arc, rad; 0 for the whole circle.
+    tau : float
+        Wear coefficient times cycles.
+    volume, depth, bottom, dissipation : float
+        Worn volume; its largest depth by the parabola through three nodes; pressure at the bottom; energy dissipated
+        in one more cycle without wear.
+    """
+
+    problem: Problem
+    half_arc: float
+    first: list[Loads]
+    cycle: list[Loads]
+    tau: float
+    volume: float
+    depth: float
+    bottom: float
+    dissipation: float
+
+    def grid(self, nodes: int) -> Grid:
+        """The nodes."""
+        if not self.half_arc:
+            return Grid.circle(nodes)
+        return Grid.arc(-0.5 * np.pi - self.half_arc, -0.5 * np.pi + self.half_arc, nodes)
+
+    def history(self) -> LoadHistory:
+        """What leads to the cycle, and the cycle."""
+        return LoadHistory(self.first) + LoadHistory(self.cycle).repeated(1)
+
+
+def _free(pair: object, load_parameter: float, friction: float, gap: InitialGap = NO_GAP) -> Problem:
+    return Problem.from_load_parameter(pair, load_parameter, friction, "body", gap=gap)  # type: ignore[arg-type]
+
+
+def _fixed(pair: object, load_parameter: float, friction: float) -> Problem:
+    return Problem.from_load_parameter(pair, load_parameter, friction, "centre", "fixed")  # type: ignore[arg-type]
+
+
+WEAR_CASES = {
+    "partial slip": WearCase(
+        _fixed(LIKE, 0.5, 0.5), 1.1, [{"P": 1.0}, {"Q": 0.275}], [{"Q": -0.275}, {"Q": 0.275}], 7.0,
+        8.586109e-03, 0.023384, 0.953130, 3.56622e-04,
+    ),
+    "unlike": WearCase(
+        _free(UNLIKE, 0.1, 0.4), 1.75, [{"P": 1.0}, {"Q": 0.2}], [{"P": 0.5, "Q": -0.2}, {"P": 1.0, "Q": 0.2}], 60.0,
+        1.148111e-03, 0.007857, 0.544414, 2.89809e-06,
+    ),
+    "pulsating": WearCase(
+        _free(LIKE, 0.05, 0.3), 1.75, [{"P": 1.0}], [{"P": 0.3}, {"P": 1.0}], 5.0,
+        2.293537e-02, 0.023579, 0.533245, 1.11081e-03,
+    ),
+    "rotation": WearCase(
+        _fixed(UNLIKE, 0.1, 0.2), 1.9, [{"P": 1.0}, {"rotation": 3.0}], [{"rotation": -3.0}, {"rotation": 3.0}], 0.02,
+        2.722309e-01, 0.151559, 0.638072, 2.75867e00,
+    ),
+    "interference": WearCase(
+        _free(LIKE, -0.05, 0.2), 0.0, [{"P": 1.0}, {"Q": 0.3}], [{"Q": -0.3}, {"Q": 0.3}], 30.0,
+        2.723034e-02, 0.023323, 0.491839, 1.22247e-04,
+    ),
+    "lobed hole": WearCase(
+        _free(LIKE, 0.1, 0.3, LOBED), 0.0, [{"P": 1.0}, {"Q": 0.1}], [{"P": 0.4, "Q": 0.0}, {"P": 1.0, "Q": 0.1}],
+        30.0, 1.337739e-02, 0.027404, 0.397027, 8.19983e-05,
+    ),
+}  # fmt: skip
+"""Lives of wear: their first lines of a table of two independent computations."""
+
+
+def wearing(problem: Problem, grid: Grid) -> WearRun:
+    """A run without load that can wear."""
+    options = SolveOptions(**SLIP_OPTIONS)  # type: ignore[arg-type]
+    return WearRun(LoadHistory([{}]), System.build(problem, grid, 1.0), options, MemoryRecorder())
+
+
+def step(run: WearRun, loads: Loads) -> tuple[np.ndarray, float]:
+    """Follow one step. Returns int N |ds| of each node, and the dissipated energy (dimensionless)."""
+    given = np.array([loads.get(name, np.nan) for name in LOADS])
+    run.step_to(complete_load(given, run.load), kept=False)
+    latest = run.corner_log.latest
+    return latest.slip_tally.sums[4], latest.dissipation
+
+
+def lived(case: WearCase, nodes: int, fat: int, tau: float | None = None) -> tuple[WearRun, np.ndarray, float]:
+    """Live so many equal fat cycles. Returns the run, the worn depth (n,), and the dissipation of all pieces."""
+    run = wearing(case.problem, case.grid(nodes))
+    for loads in (*case.first, *case.cycle):
+        step(run, loads)
+    worn, dissipation, share = np.zeros(nodes), 0.0, (case.tau if tau is None else tau) / fat
+    for _ in range(fat):
+        for loads in case.cycle:
+            rubbed, lost = step(run, loads)
+            worn = worn + run.wear(share * rubbed).depth
+            dissipation += lost
+    return run, worn, dissipation
+
+
+def ready_to_wear(nodes: int = 61) -> tuple[WearRun, np.ndarray]:
+    """A run after the first cycle of partial slip, and a depth (n,) that changes its contact much."""
+    case = WEAR_CASES["partial slip"]
+    run = wearing(case.problem, case.grid(nodes))
+    for loads in (*case.first, *case.cycle):
+        rubbed, _ = step(run, loads)
+    return run, 10.0 * rubbed
+
+
+def parts_of(run: WearRun, depth: np.ndarray, count: int) -> list[Removal]:
+    """Wear a depth in so many equal parts."""
+    return [run.wear(depth / count) for _ in range(count)]
