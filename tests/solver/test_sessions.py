@@ -365,7 +365,7 @@ def test_a_change_may_need_more_nodes_or_the_whole_circle(titanium_in_aluminium)
         ({"friction": -0.1}, "friction: must not be negative"),
         ({"hole_radius": 2.0}, "hole_radius: is the unit of a dimensionless problem"),
         ({"drive": "ux"}, 'Q: the force is a reaction where drive = "ux"; give ux'),
-        ({"friction": 0.1, "replay": "all"}, 'replay: must be "history", "load" or "none"'),
+        ({"friction": 0.1, "replay": "all"}, 'replay: must be "history", "load", "none" or "follow"'),
     ],
 )
 def test_a_wrong_change_names_the_field(problem, change, sentence):
