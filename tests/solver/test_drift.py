@@ -1,0 +1,311 @@
+"""Friction that changes along a step: exact events, limits, and checks by increments and by parts of the step."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from fastpin.casefile.reader import parse_case
+from fastpin.elasticity.system import System
+from fastpin.errors import InputError
+from fastpin.kernels.status import STICK
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import FRICTION_CHANGE, Corner
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.report.summary import printed_loads
+from fastpin.solver.configuration import Configuration, worst_residual
+from fastpin.solver.drift import DriftPath, Moment, _dip
+from fastpin.solver.errors import NoEquilibriumError
+from fastpin.solver.increment import implicit_step
+from fastpin.solver.path import PathStep
+from fastpin.solver.result import Result
+from fastpin.solver.run import Run
+from fastpin.solver.session import Session
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+
+UNLIKE = MaterialPair(Material(116e9, 0.32), Material(69e9, 0.33))
+LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
+ARC = (-0.5 * math.pi - 1.6, -0.5 * math.pi + 1.6)
+T1 = Problem.from_load_parameter(UNLIKE, 0.1, 0.5, "body", "free")
+FIRST: list[Corner] = [{"P": 1.0}, {"Q": 0.2}]
+LAST: Corner = {"P": 0.8, "Q": -0.1, "friction_change": -0.6}
+
+
+def t1(nodes: int = 61, **options: Any) -> Result:
+    return solve(T1, [*FIRST, LAST], nodes=nodes, arc=ARC, **options)
+
+
+@pytest.fixture(scope="module")
+def whole() -> Result:
+    return t1()
+
+
+def difference(one: State, other: State) -> float:
+    """Largest difference of the tractions of two states, in parts of the largest pressure."""
+    peak = max(one.pressure.max(), other.pressure.max())
+    tractions = [np.r_[state.pressure, state.shear] for state in (one, other)]
+    return float(np.abs(tractions[0] - tractions[1]).max() / peak)
+
+
+def configuration_after(system: System, corners: list[Corner]) -> Configuration:
+    run = Run(LoadHistory(corners), system, SolveOptions())
+    run.follow()
+    return run.now
+
+
+def test_loads_and_friction_that_change_together_give_the_reference(whole: Result) -> None:
+    last = whole[-1]
+    assert last.peak_pressure == pytest.approx(0.50786, abs=1.5e-5)
+    assert last.rotation == pytest.approx(0.02135, abs=1e-5)
+    assert last.dissipation - whole[-2].dissipation == pytest.approx(0.002289, abs=5e-6)
+    assert max(max(state.residuals.values()) for state in whole) < 1e-13
+
+
+def test_friction_that_falls_at_constant_load_gives_the_reference() -> None:
+    problem = Problem.from_load_parameter(LIKE, 0.2, 0.6, "centre", "fixed")
+    last = solve(problem, [*FIRST, {"friction_change": 0.25 / 0.6 - 1.0}], nodes=61, arc=ARC)[-1]
+    assert float(last.grid.weights @ last.shear) == pytest.approx(-0.10402, abs=1e-5)
+
+
+def test_a_step_in_parts_is_the_same_step(whole: Result) -> None:
+    corners = [{name: (1.0 - k / 7) * before + k / 7 * LAST[name] for name, before in
+                (("P", 1.0), ("Q", 0.2), ("friction_change", 0.0))} for k in range(1, 8)]  # fmt: skip
+    parts = solve(T1, [*FIRST, *corners], nodes=61, arc=ARC)
+    assert difference(whole[-1], parts[-1]) < 3e-13
+    assert parts[-1].dissipation == pytest.approx(whole[-1].dissipation, rel=1e-9)
+
+
+def test_implicit_increments_tend_to_it_at_first_order() -> None:
+    system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
+    start, exact = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
+    errors = []
+    for count in (50, 400):
+        now = start
+        for part in np.arange(1, count + 1) / count:
+            load = start.load + part * (exact.load - start.load)
+            found = implicit_step(system.under(load), now, load)
+            assert found is not None
+            now = found
+        errors.append(float(np.abs(now.shear - exact.shear).max()))
+    assert errors[1] < 2e-4
+    assert errors[0] / errors[1] > 4.0
+    assert worst_residual(system.under(exact.load), exact) < 1e-13
+
+
+def test_the_increment_method_follows_the_friction(whole: Result) -> None:
+    stepped = t1(method="increment", increments=200)
+    assert difference(whole[-1], stepped[-1]) < 2e-3
+    assert max(stepped[-1].residuals.values()) < 1e-9
+
+
+@pytest.mark.parametrize("after", [{"P": 0.8, "Q": -0.1}, {"P": 1.2, "Q": 0.5}, {"P": 0.3, "Q": 0.1}])
+def test_constant_friction_gives_the_states_of_the_usual_path(after: Corner) -> None:
+    system = System.build(T1, Grid.arc(*ARC, 61), 1.0)
+    start, end = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, after]))
+    found = DriftPath(system, start, end.load, system.friction).follow(1.0)
+    usual = PathStep(system, start, end.load).follow(1.0)
+    for name in ("pressure", "shear", "gap", "slip", "motion"):
+        assert np.abs(getattr(found, name) - getattr(usual, name)).max() < 5e-13, name
+    assert np.array_equal(found.status, usual.status)
+    assert found.dissipation == pytest.approx(usual.dissipation, rel=1e-12)
+    assert found.work == pytest.approx(usual.work, rel=1e-12)
+
+
+def test_in_a_half_plane_a_lower_friction_has_the_state_of_that_friction_from_the_start() -> None:
+    half = 1.4 / math.sqrt(200.0 * math.pi)
+    arc = (-0.5 * math.pi - half, -0.5 * math.pi + half)
+    high, low = (Problem.from_load_parameter(LIKE, 200.0, mu, "centre", "fixed") for mu in (0.6, 0.3))
+    lowered = solve(high, [*FIRST, {"friction_change": -0.5}], nodes=61, arc=arc)
+    assert difference(lowered[-1], solve(low, FIRST, nodes=61, arc=arc)[-1]) < 1e-12
+
+
+def test_growing_friction_changes_nothing_and_all_nodes_stick() -> None:
+    grown = solve(T1, [*FIRST, {"friction_change": 0.7}], nodes=61, arc=ARC)
+    assert difference(grown[-2], grown[-1]) < 1e-12
+    assert grown[-1].dissipation == grown[-2].dissipation
+    assert np.all(grown[-1].status[grown[-1].pressure > 0.0] == STICK)
+
+
+def test_work_is_energy_and_dissipation_at_second_order() -> None:
+    errors = []
+    for nodes in (31, 61):
+        before, after = t1(nodes)[-2:]
+        errors.append(
+            after.work - before.work - (after.energy - before.energy) - (after.dissipation - before.dissipation)
+        )
+    assert abs(errors[1]) < 5e-6
+    assert 3.0 < errors[0] / errors[1] < 6.0
+
+
+def test_a_pin_that_friction_no_longer_holds_is_reported_where_it_is_lost() -> None:
+    problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.4)
+    with pytest.raises(NoEquilibriumError, match=r"step 3, at 62\.\d+ % .*friction_change = -0\.56") as caught:
+        solve(problem, [{"P": 1.0}, {"M": 0.2}, {"friction_change": -0.9}], nodes=61)
+    error = caught.value
+    assert error.result is not None
+    assert len(error.result) == 2
+    assert error.load["friction_change"] == pytest.approx(-0.9 * error.fraction, rel=1e-9)
+    friction = 0.4 * (1.0 + error.load["friction_change"])
+    assert friction / math.hypot(1.0, friction) < 0.2  # at a point it would have been lost before
+
+
+@pytest.mark.parametrize(("parameter", "corners"), [
+    (0.1, [{"P": 1.0, "Q": 0.3, "friction_change": -0.5}, {"P": 0.0, "Q": 0.0, "friction_change": 0.2}, FIRST[0]]),
+    (0.0, [{"P": 1.0, "Q": 0.3, "friction_change": -0.5}, {"Q": -0.3, "friction_change": 0.5}]),
+    (-0.05, [{"P": 1.0, "Q": 0.3, "friction_change": -0.5}, {"P": 0.0, "Q": 0.0, "friction_change": 0.2}]),
+])  # fmt: skip
+def test_first_contacts_neat_fits_and_interference(parameter: float, corners: list[Corner]) -> None:
+    problem = Problem.from_load_parameter(UNLIKE, parameter, 0.4, "centre", "fixed")
+    result = solve(problem, corners, nodes=41, between=2)
+    assert max(max(state.residuals.values()) for state in result) < 1e-12
+    for state in result:
+        bound = state.friction * state.pressure
+        assert np.all(np.abs(state.shear) <= bound + 1e-12 * bound.max())
+        slips = (np.abs(state.status) == 1) & (bound > 0.0)
+        assert np.abs(state.shear)[slips] == pytest.approx(bound[slips], rel=1e-9)
+
+
+def test_states_inside_a_step_have_the_friction_of_their_moment() -> None:
+    states = t1(31, between=3)[-4:]
+    assert [state.most_friction for state in states] == pytest.approx([0.425, 0.35, 0.275, 0.2], rel=1e-12)
+    for state in states:
+        assert state.friction == pytest.approx(state.most_friction, rel=1e-15)
+        assert abs(state.peak_shear) <= state.most_friction * state.peak_pressure * (1.0 + 1e-12)
+
+
+def test_a_history_continues_inside_changes_with_the_same_bits() -> None:
+    corners: list[Corner] = [*FIRST, LAST, {"Q": 0.15}, {"friction_change": 0.1, "Q": -0.1}]
+    grid = Grid.arc(*ARC, 31)
+    whole = solve(T1, corners, grid=grid)
+    for cut in (2, 3, 4):
+        first = solve(T1, corners[:cut], grid=grid)
+        last = solve(T1, corners[cut:], start=first)[-1]
+        for name in ("pressure", "shear", "slip", "gap"):
+            assert np.array_equal(getattr(last, name), getattr(whole[-1], name)), (cut, name)
+
+
+def test_cycles_of_friction_settle_and_repeat() -> None:
+    cycle = LoadHistory([{"Q": 0.2, "friction_change": -0.3}, {"Q": -0.2, "friction_change": 0.0}]).repeated(300)
+    problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "centre", "fixed")
+    result = solve(problem, LoadHistory([{"P": 1.0}]) + cycle, nodes=21, keep="cycles")
+    assert result.statistics["repeated"] > 400
+    assert result.cycles[-1].pressure_change == 0.0
+
+
+@pytest.mark.parametrize(("corners", "words"), [
+    ([{"P": 1.0, "friction_change": -1.0}], "must be more than -1, which would leave no friction, not -1"),
+    ([{"P": 1.0, "friction_change": -1.5}, {"friction_change": 3.0}], "must be more than -1"),
+    ([{"P": 1.0, "friction_change": 1e7}], "1e+07 makes the coefficient of friction 5e+06; it must be at most 1e+06"),
+])  # fmt: skip
+def test_a_change_that_leaves_no_friction_or_too_much_is_refused(corners: list[Corner], words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        solve(T1, corners, nodes=31)
+    assert caught.value.field == "friction_change"
+    assert words in str(caught.value)
+
+
+def test_a_change_without_friction_is_refused() -> None:
+    smooth = Problem.from_load_parameter(UNLIKE, 0.1, 0.0)
+    assert solve(smooth, [{"P": 1.0, "friction_change": 0.0}], nodes=31).complete
+    with pytest.raises(InputError, match=r"friction_change: there is no friction that could change: friction = 0"):
+        solve(smooth, [{"P": 1.0, "friction_change": 0.1}], nodes=31)
+
+
+def test_case_files_give_a_change_and_name_a_wrong_one() -> None:
+    text = '[contact]\nload_parameter = 0.1\nfriction = 0.5\n[pin]\nmaterial = "steel"\n[plate]\nmaterial = "steel"\n'
+    case = parse_case(f"{text}[[load]]\nP = 1\n[[load]]\nfriction_change = [-0.4, 0.2]\nQ = 0.1\n")
+    assert case.history.values()[:, FRICTION_CHANGE].tolist() == [0.0, -0.4, 0.2]
+    with pytest.raises(InputError, match=r"friction_change: must be more than -1"):
+        parse_case(f"{text}[[load]]\nP = 1\n[[load]]\nfriction_change = [-1.2, 2]\n")
+
+
+def test_json_has_a_change_only_where_there_is_one(whole: Result) -> None:
+    assert printed_loads(T1, whole[-1].load)["friction_change"] == -0.6
+    assert "friction_change" not in printed_loads(T1, whole[0].load)
+
+
+def test_two_zeros_between_two_moments_are_noticed() -> None:
+    def moment(time: float, value: float, rate: float) -> Moment:
+        ones = np.ones((4, 1))
+        parts = {"time": time, "functions": (value * ones, rate * ones), "sizes": (ones, ones)}
+        return cast("Moment", SimpleNamespace(**parts))
+
+    begin = moment(0.0, 0.1, -1.0)
+    assert _dip(begin, moment(1.0, 0.1, 1.0), 0.0) == pytest.approx(0.5, abs=0.05)  # falls to -0.15
+    assert _dip(begin, moment(0.1, 0.1, 1.0), 0.0) is None  # falls to 0.075
+    assert _dip(begin, moment(0.1, 0.1, 1.0), 0.08) == pytest.approx(0.05, abs=0.01)  # a wide margin
+    assert _dip(begin, moment(1.0, 0.1, -1.0), 0.0) is None  # it does not turn
+
+
+# -- sessions: any friction at the nodes, followed at constant load ----------------------------------------------------
+
+
+def test_a_session_follows_a_change_as_a_history_does() -> None:
+    session = Session(T1, nodes=31, arc=ARC, slip_sums=True)
+    session.advance(FIRST[0])
+    before = session.advance(FIRST[1])
+    followed = session.change(friction=0.2, replay="follow")
+    assert followed is not None
+    same = solve(T1, [*FIRST, {"friction_change": -0.6}], grid=session.grid, slip_sums=True)[-1]
+    assert difference(followed, same) < 1e-13
+    assert followed.dissipation == pytest.approx(same.dissipation, rel=1e-12)
+    assert followed.friction_energy == pytest.approx(same.friction_energy, rel=1e-10, abs=1e-15)
+    assert (followed.most_friction, followed.step) == (0.2, 2)
+    onward = session.advance({"Q": -0.1})
+    assert (
+        difference(onward, solve(T1, [*FIRST, {"friction_change": -0.6}, {"Q": -0.1}], grid=session.grid)[-1]) < 1e-13
+    )
+    assert session.undo(2) is before
+    assert session.problem.friction == 0.5
+    again = session.change(friction=0.2, replay="follow")
+    assert again is not None
+    assert np.array_equal(again.shear, followed.shear)
+
+
+def test_a_friction_from_the_accumulated_slip_is_followed_cycle_by_cycle() -> None:
+    session = Session(T1, grid=Grid.circle(61), slip_sums=True)
+    session.advance({"P": 1.0, "Q": 0.2})
+    slip = np.zeros(61)
+    for _ in range(3):
+        for push in (-0.2, 0.2):
+            state = session.advance({"Q": push})
+            assert state.slip_distance is not None
+            slip += state.slip_distance
+        friction = 0.2 + 0.3 * np.exp(-slip / 0.02)
+        followed = session.change(friction=(state.theta, friction), replay="follow")
+        assert followed is not None
+        assert followed.friction == pytest.approx(friction, rel=1e-12)
+        assert max(followed.residuals.values()) < 1e-13
+
+
+def test_a_session_that_loses_the_pin_on_the_way_stays_where_it_was() -> None:
+    session = Session(Problem.from_load_parameter(UNLIKE, 0.1, 0.5), nodes=41)
+    before = session.advance({"P": 1.0, "M": 0.3})
+    with pytest.raises(NoEquilibriumError, match=r"at 5\d\.\d+ % of the change of the friction: nothing holds"):
+        session.change(friction=0.1, replay="follow")
+    assert session.state is before
+    assert session.problem.friction == 0.5
+    assert session.advance({"M": 0.1}).step == 1
+
+
+def test_only_friction_can_be_followed() -> None:
+    session = Session(T1, nodes=31)
+    session.advance(FIRST[0])
+    for changes, words in [
+        ({"friction": 0.0}, "friction: can't be followed to or from 0"),
+        ({"friction": 0.2, "clearance": 0.2}, 'replay: "follow" is for a change of the friction alone'),
+    ]:
+        with pytest.raises(InputError) as caught:
+            session.change(replay="follow", **changes)
+        assert words in str(caught.value)
+    session.change(friction=0.2, replay="follow")
+    with pytest.raises(InputError, match=r"result: a change of the friction was followed"):
+        session.result()
