@@ -28,6 +28,7 @@ from fastpin.solver.path import PathStep
 from fastpin.solver.result import Result
 from fastpin.solver.run import Run
 from fastpin.solver.session import Session
+from fastpin.solver.settling import settle
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 
@@ -230,6 +231,70 @@ def test_case_files_give_a_change_and_name_a_wrong_one() -> None:
 def test_json_has_a_change_only_where_there_is_one(whole: Result) -> None:
     assert printed_loads(T1, whole[-1].load)["friction_change"] == -0.6
     assert "friction_change" not in printed_loads(T1, whole[0].load)
+
+
+def test_the_rates_of_a_moment_are_its_derivatives() -> None:
+    system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
+    start, end = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
+    path = DriftPath(system, start, end.load, system.under(end.load).friction)
+    path.follow(0.4)
+    before, here, after = (Moment(path, 0.4 + part, path.now.status, path.now.slip) for part in (-1e-4, 0.0, 1e-4))
+    for values, rates in (("solution", "rates"), ("rates", "bends")):
+        for name in ("pressure", "shear", "gap", "slip", "motion"):
+            slope = (getattr(getattr(after, values), name) - getattr(getattr(before, values), name)) / 2e-4
+            found = getattr(getattr(here, rates), name)
+            assert np.abs(slope - found).max() < 1e-6 * np.abs(found).max(), (rates, name)
+
+
+def test_lemkes_method_lets_nodes_slip_where_their_limit_falls() -> None:
+    system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
+    start = configuration_after(system, FIRST)
+    at_limit = np.abs(start.status) == 1
+    held, falling = (settle(system, start, np.zeros_like(start.load), rate * system.friction) for rate in (1.0, -1.0))
+    assert held is not None
+    assert falling is not None
+    assert np.all(held[start.closed] == STICK)
+    assert np.array_equal(falling[at_limit], start.status[at_limit])
+
+
+def test_a_first_contact_has_the_friction_of_its_load() -> None:
+    corners: list[Corner] = [{"friction_change": -0.8}, {"P": 1.0, "M": 0.3}]
+    problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.5)
+    assert solve(problem, [{"P": 1.0, "M": 0.3}], nodes=31).complete
+    with pytest.raises(NoEquilibriumError, match=r"more than friction can carry \(0\.0995\)"):
+        solve(problem, corners, nodes=31)
+
+
+def test_a_neat_fit_is_followed_while_the_friction_changes() -> None:
+    problem = Problem.from_load_parameter(UNLIKE, 0.0, 0.4, "centre", "fixed")
+    whole = solve(problem, [{"P": 1.0, "Q": 0.3, "friction_change": -0.8}], grid=Grid.circle(61))
+    parts = [{"P": k / 8, "Q": 0.3 * k / 8, "friction_change": -0.1 * k} for k in range(1, 9)]
+    assert difference(whole[-1], solve(problem, parts, grid=Grid.circle(61))[-1]) < 1e-4
+    assert whole.statistics["events"] > 5
+
+
+def test_energies_between_far_events_are_exact() -> None:
+    problem = Problem.from_load_parameter(LIKE, 0.2, 0.6, "centre", "fixed")
+    first, last = {"P": 1.0, "Q": 0.9}, {"P": 1.0, "Q": 1.2, "friction_change": 1.0}
+    found = []
+    for count in (1, 32):
+        corners = [{name: first[name] + k / count * (last[name] - first[name]) for name in first} | {
+            "friction_change": k / count} for k in range(1, count + 1)]  # fmt: skip
+        found.append(solve(problem, [first, *corners], grid=Grid.circle(41))[-1])
+    assert found[0].dissipation == pytest.approx(found[1].dissipation, rel=1e-9)
+    assert found[0].work == pytest.approx(found[1].work, rel=1e-9)
+
+
+def test_a_stretch_is_halved_until_cubics_describe_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
+    start, end = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
+    counts = []
+    for most in (1e-3, 1e-9):
+        monkeypatch.setattr("fastpin.solver.drift.MOST_BEND", most)
+        path = DriftPath(system, start, end.load, system.under(end.load).friction)
+        path.follow(1.0)
+        counts.append(path.rebuilds)
+    assert counts[0] < 0.9 * counts[1]
 
 
 def test_two_zeros_between_two_moments_are_noticed() -> None:
