@@ -21,7 +21,8 @@ from fastpin.errors import FastpinError
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
-from fastpin.model.profile import Crown, Flat, Harmonic, InitialGap
+from fastpin.model.profile import InitialGap
+from fastpin.model.profile_terms import Crown, Flat, Harmonic
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

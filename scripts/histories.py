@@ -26,7 +26,8 @@ from fastpin.model.loads import Corner
 from fastpin.model.lug import Lug, Part, PartLoad
 from fastpin.model.materials import Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
-from fastpin.model.profile import Crown, Flat, Harmonic, InitialGap, Profile, Samples, Term
+from fastpin.model.profile import InitialGap, Profile
+from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples, Term
 
 NODES = 81
 """Nodes of the general class."""

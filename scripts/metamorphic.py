@@ -25,7 +25,8 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, ROTATION, SXX, SXY, SYY, UX, UY, M, P, Q
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.model.profile import Crown, Flat, Harmonic, InitialGap, Profile, Samples, Term
+from fastpin.model.profile import InitialGap, Profile
+from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples, Term
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from scripts.histories import generate

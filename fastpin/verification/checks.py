@@ -18,7 +18,7 @@ from fastpin.model.checks import check_callable
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
-from fastpin.model.profile import Harmonic
+from fastpin.model.profile_terms import Harmonic
 from fastpin.states.state import State
 from fastpin.verification import body_cases, body_rows, closed_forms, gap_rows
 from fastpin.verification.comparisons import (

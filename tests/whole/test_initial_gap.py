@@ -19,7 +19,8 @@ from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
-from fastpin.model.profile import Crown, Flat, Harmonic, InitialGap, Profile, Samples
+from fastpin.model.profile import InitialGap, Profile
+from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples
 from fastpin.solver.driven import can_float
 from fastpin.solver.errors import ArcError
 from fastpin.solver.rest import hole_gap, rest_position
