@@ -136,14 +136,13 @@ def at_rest(
         resting.origin = rest.copy()
     resting.load = before + begins * (after - before)
     put_at_rest(system, resting, resting.load, rest, rest_gap)
-    touches_all_round = np.ptp(resting.gap) <= (_rounding(system) if system.problem.gap else 0.0)
-    if lowest is None or touches_all_round:
-        nearness = resting.gap
-        if touches_all_round:  # a neat fit: the load decides which nodes close first
-            nearness = system.load_displacement(after - before, slice(system.grid.size))
-            if size > 0.0:
-                nearness = nearness - np.cos(system.grid.theta - angle)
+    if np.ptp(resting.gap) <= (_rounding(system) if system.problem.gap else 0.0):  # the load decides in a neat fit
+        nearness = system.load_displacement(after - before, slice(system.grid.size))
+        if size > 0.0:
+            nearness = nearness - np.cos(system.grid.theta - angle)
         lowest = _lowest_places(system, nearness)
+    elif lowest is None:
+        lowest = _lowest_places(system, resting.gap)
     if not system.grid.closed and not 0 < lowest[0] < system.grid.size - 1:
         raise ArcError("the pin rests on the hole outside the arc; give a wider one, or none")
     offsets = np.arange(-FIRST_BESIDE, FIRST_BESIDE + 1)
@@ -299,14 +298,7 @@ def _first_patch(
     patches = len(runs(system.grid, resting.closed))
     least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
-    is_neat = not system.concentric_gap.any()
-    if system.problem.gap and begins == 0.0:  # it may be neat beside the middle
-        is_neat = bool(resting.gap.max() <= _rounding(system))
-    self_similar = (
-        is_neat
-        and not np.delete(before, [ROTATION, FRICTION_CHANGE]).any()
-        and before[FRICTION_CHANGE] == after[FRICTION_CHANGE]
-    )  # everything grows in proportion
+    self_similar = _is_self_similar(system, resting, way)
     left = (1.0 - begins) * (after - before)
     conforming = np.ptp(resting.gap) <= _rounding(system)  # the hole closes on the pin all round
     part = 1.0 if self_similar else CONFORMING_PART if conforming else _hertz_part(system, resting, left)
@@ -347,6 +339,16 @@ def _first_patch(
     found.dissipation += dissipated
     found.work += elastic_energy(system, found) + dissipated
     return found, fraction
+
+
+def _is_self_similar(system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray]) -> bool:
+    """Whether everything grows in proportion to the load, as in a neat fit without loads before."""
+    begins, before, after = way
+    is_neat = not system.concentric_gap.any()
+    if system.problem.gap and begins == 0.0:  # it may be neat beside the middle
+        is_neat = bool(resting.gap.max() <= _rounding(system))
+    is_first = not np.delete(before, [ROTATION, FRICTION_CHANGE]).any()
+    return is_neat and is_first and bool(before[FRICTION_CHANGE] == after[FRICTION_CHANGE])
 
 
 def _one_step(

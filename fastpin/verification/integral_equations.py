@@ -87,15 +87,13 @@ def residuals(
     InputError
         If an array does not have one number per node or `force` is not positive.
     """
-    unit = positive("force", force)
-    pair, radius = problem.surfaces, problem.hole_radius
+    pair, radius, unit = problem.surfaces, problem.hole_radius, positive("force", force)
     length = unit * pair.beta_star
     N = _nodal("pressure", pressure, grid) * radius / unit
     T = _nodal("shear", shear, grid) * radius / unit
     s = _nodal("total_slip", total_slip, grid) / length
     C_omega = number("rotation", rotation) * radius / length
-    clearance = problem.assembled_clearance / length
-    gap, gap_slope, _ = problem.gap_at(grid.theta) / length
+    opened, along = _at_rest(problem, grid.theta, rest) / length
     stresses = {SXX: sxx, SYY: syy, SXY: sxy}
     remote = {place: number(LOADS[place], stress) * radius / unit for place, stress in stresses.items()}
 
@@ -115,13 +113,9 @@ def residuals(
     cauchy = cauchy_matrix(grid)
     cot_N, cot_T = _principal_value(cauchy, N), _principal_value(cauchy, T)
 
-    opened, along = clearance * (1.0 + sin), clearance * cos  # the resting pin: its gap, and the derivative
-    if rest is not None:
-        x, y = numbers("rest", rest) / length
-        opened, along = clearance - x * cos - y * sin, x * sin - y * cos
-    left_46 = -(opened + gap) - _derivative(s, grid)
+    left_46 = -opened - _derivative(s, grid)
     right_46 = cot_T - math.pi * alpha * N - gamma * S_T + plate * N_total + gamma * C_N
-    left_47 = C_omega - s + along + gap_slope
+    left_47 = C_omega - s + along
     right_47 = -T_total - gamma_prime * C_T + math.pi * alpha * T + cot_N - gamma_prime * S_N
     bodies = body_terms(problem)
     if bodies is None:
@@ -130,6 +124,15 @@ def residuals(
         remote |= {Q: float(N_cos + T_sin), P: float(T_cos - N_sin)}
         added = _traction_terms(bodies, grid, np.array([N, T])) + _load_terms(problem, bodies, theta, remote)
     return left_46 - right_46 / (4.0 * math.pi) + added[0], left_47 - right_47 / (4.0 * math.pi) + added[1]
+
+
+def _at_rest(problem: Problem, theta: np.ndarray, rest: tuple[float, float] | None) -> np.ndarray:
+    """The gap of the rigid pin at `rest`, m, at the angles `theta` (n,), and its derivative, shape (2, n)."""
+    x, y = (0.0, -problem.assembled_clearance) if rest is None else numbers("rest", rest)
+    gap, slope, _ = problem.gap_at(theta)
+    cos, sin = np.cos(theta), np.sin(theta)
+    found: np.ndarray = np.array([problem.assembled_clearance - x * cos - y * sin + gap, x * sin - y * cos + slope])
+    return found
 
 
 def _pin_constants(problem: Problem) -> tuple[float, float]:
