@@ -147,14 +147,14 @@ class Harmonic(Term):
     @classmethod
     def from_bottom(cls, order: int, cosine: float, sine: float) -> Harmonic:
         """The wave cosine cos n x + sine sin n x of the angle x from the bottom of the hole."""
-        turned = ((cosine, sine), (-sine, cosine), (-cosine, -sine), (sine, -cosine))[order % 4]
+        turned = ((cosine, sine), (sine, -cosine), (-cosine, -sine), (-sine, cosine))[order % 4]
         return cls(order, turned[0] + 0.0, turned[1] + 0.0)  # -0 becomes 0
 
     @property
     def at_bottom(self) -> tuple[float, float]:
         """The amplitudes (cosine, sine) as a wave of the angle from the bottom of the hole."""
         one, other = self.cosine, self.sine
-        turned = ((one, other), (other, -one), (-one, -other), (-other, one))[self.order % 4]
+        turned = ((one, other), (-other, one), (-one, -other), (other, -one))[self.order % 4]
         return turned[0] + 0.0, turned[1] + 0.0
 
     def toml(self) -> dict[str, Any]:
