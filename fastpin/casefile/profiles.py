@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,6 +25,9 @@ from fastpin.model.synonyms import closest
 
 GAP_KEYS = ("hole", "pin")
 """Keys of the section [gap]."""
+
+PROFILES = (("contact", "friction"), ("gap", "hole"), ("gap", "pin"))
+"""Section and key of each profile."""
 
 IN_RADIANS = 2e-4
 """Relative distance from a multiple of pi/12 within which an angle is in rad by mistake: 1.5708 is meant as 90."""
@@ -113,6 +116,9 @@ WORDS = {
     "angles": Word(("angles", "values"), {}, _samples),
 }
 """The kinds of terms by their first keys."""
+
+WORD_KEYS = tuple(dict.fromkeys(key for word in WORDS.values() for key in word.keys))
+"""All keys of the tables of terms."""
 
 _FIRST = ("depth", "height", "value", "order")
 """Fields of terms whose key is the name of the kind."""
@@ -231,3 +237,33 @@ def read_gap(section: Section, folder: Path, radius: float | None, dimensionless
         except InputError as error:
             section.report(f"{key}: {error.reason}", key)
     return InitialGap(**found) if any(profile.terms for profile in found.values()) else NO_GAP
+
+
+def varied(profile: Any, parts: Sequence[str], value: Any) -> Any:
+    """A profile of a case file with another value of a key: `parts` are the key, or the number of a term and the key.
+
+    A term of another kind gives way. Without a number the profile is one term.
+    """
+    if len(parts) == 2:
+        terms, place = list(profile), int(parts[0]) - 1
+        terms[place] = varied(terms[place], parts[1:], value)
+        return terms
+    (key,) = parts
+    is_other = not isinstance(profile, dict) or (key in WORDS and key not in profile)
+    return {**({} if is_other else profile), key: value}
+
+
+def part_fault(tables: Mapping[str, Any], names: Sequence[str]) -> str:
+    """Why the field `names` of a sweep is no part of a profile in the tables of a case; empty if it is one."""
+    words, section = names[2:], tables.get(names[0])
+    profile = section.get(names[1]) if isinstance(section, dict) else None
+    count = len(profile) if isinstance(profile, list) else 0
+    if len(words) == 2 and words[0] not in map(str, range(1, count + 1)):
+        return f"the {names[1]} of the case has {count or 'no'} terms in a list, counted from 1"
+    if len(words) == 1 and count:
+        example = f"{names[0]}.{names[1]}.1.axis"
+        return f"the {names[1]} of the case is a list; write the number of the term, such as {example}"
+    if len(words) > 2 or words[-1] not in WORD_KEYS:
+        hint = closest(words[-1], WORD_KEYS) or f"; the keys are {', '.join(WORD_KEYS)}"
+        return f'there is no key "{words[-1]}" in a profile{hint}'
+    return ""

@@ -14,4 +14,6 @@ from .materials import MaterialPair as MaterialPair
 from .options import SolveOptions as SolveOptions
 from .points import Points as Points
 from .problem import Problem as Problem
+from .profile import InitialGap as InitialGap
+from .profile import Profile as Profile
 from .wear import Wear as Wear

@@ -33,9 +33,29 @@ _KIND = {
 """The kind of every field of a case that has a unit, apart from the loads."""
 
 
+_PROFILE_WORDS = {
+    "ellipse": "oval",
+    "lobes": "number of lobes",
+    "size": "size of the lobes",
+    "axis": "direction (deg)",
+    "centre": "place (deg)",
+    "half_width": "half width (deg)",
+    "start": "start (deg)",
+    "stop": "stop (deg)",
+}
+"""Words for keys of profiles whose names are no words, or that are in degrees."""
+
+_GAP_LENGTHS = ("hole", "pin", "ellipse", "size", "flat", "crown", "constant", "cosine", "sine")
+"""Keys of gaps that are lengths."""
+
+
 def field_words(field: str) -> str:
     """Return words for a field of a case: "modulus of the pin" for "pin.E", "moment M in load 2" for "load.2.M"."""
     section, *between, key = field.split(".")
+    if between and section in ("gap", "contact"):
+        owner = "friction" if section == "contact" else between[0]
+        term = f", term {between[1]}" if len(between) > 1 else ""
+        return f"{_PROFILE_WORDS.get(key, key)} of the {owner}{term}"
     if section == "load":
         load = LOAD[key].short if key in LOAD else key.replace("_", " ")
         number, *part = between or [""]  # the part is mean, amplitude or phase of a harmonic block
@@ -48,4 +68,6 @@ def field_words(field: str) -> str:
 def field_kind(field: str) -> str:
     """Return the kind of a varied field; empty if it has no unit."""
     section, key = field.split(".")[0], field.rsplit(".", 1)[-1]
+    if section == "gap":
+        return "displacement" if key in _GAP_LENGTHS else ""
     return LOAD_KIND.get(key, "") if section == "load" else _KIND.get(field, "")

@@ -20,6 +20,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from fastpin.casefile.profiles import PROFILES, part_fault
 from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, InputWarning
@@ -395,6 +396,9 @@ def _fields(
         if isinstance(value, dict) and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES):
             yield from _fields(source, base, value, here, names)
             continue
+        if isinstance(value, dict) and names[:2] in PROFILES and not set(value) <= set(_RANGE_KEYS):
+            yield from _fields(source, base, value, here, names)  # the keys of a term
+            continue
         fault = _field_fault(names, base)
         if fault:
             source.report(fault, *here)
@@ -416,6 +420,9 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
         blocks = base.load_blocks if base else math.inf
         if str(int(names[1])) != names[1] or not 1 <= int(names[1]) <= blocks:
             return f'"{name}": the case has {blocks or "no"} [[load]] blocks, counted from 1'
+    elif names[:2] in PROFILES and len(names) > 2:
+        fault = part_fault(base.text.root.table if base else {}, names)
+        return f'"{name}": {fault}' if base and fault else None
     elif len(names) != 2:
         return f'"{name}": a field is written section.key, such as contact.friction'
     if names[2:3] in LOAD_TABLES and (len(names) == 3 or names[3] not in LOADS):
@@ -516,6 +523,12 @@ def _locate_fault(
     """Return the place of a run's fault in the plan, and its message there."""
     parts = [str(part + 1) if isinstance(part, int) else part for part in place]
     name = ".".join(parts)
+    if place in PROFILES:
+        whole = f"{parts[0]}.{message}"
+        field, _, reason = whole.partition(": ")
+        own = field if field in values else next((each for each in values if each.startswith(f"{name}.")), "")
+        if own or name in values:
+            return places[own or name], f"{own}: {reason}" if own else whole
     if name in values:
         return places[name], f"{name}: {message.removeprefix(f'{parts[-1]}: ')}"
     line = base.text.line(*place)

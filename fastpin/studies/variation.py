@@ -14,6 +14,7 @@ from typing import Any
 
 from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
 from fastpin.casefile.material_files import known_materials
+from fastpin.casefile.profiles import PROFILES, varied
 from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
@@ -107,7 +108,9 @@ def with_values(
     for name, value in values.items():
         section, *rest = name.split(".")
         table = new["load"][int(rest.pop(0)) - 1] if section == "load" else new.setdefault(section, {})
-        if isinstance(table, dict) and len(rest) == 2:  # for example the amplitude of one load of a block
+        if isinstance(table, dict) and (section, rest[0]) in PROFILES and len(rest) > 1:
+            table[rest[0]] = varied(table.get(rest[0]), rest[1:], value)
+        elif isinstance(table, dict) and len(rest) == 2:  # for example the amplitude of one load of a block
             inner = table.get(rest[0])
             table[rest[0]] = {**inner, rest[1]: value} if isinstance(inner, dict) else {rest[1]: value}
         elif isinstance(table, dict):
@@ -118,8 +121,15 @@ def with_values(
 def reads_files(table: Any) -> bool:
     """Whether the tables of a case name a CSV file, or the file of a plate or of materials, which may change later."""
     if isinstance(table, dict):
-        return bool({"csv", "file", "materials"} & set(table)) or any(map(reads_files, table.values()))
+        profiles = [each for _, key in PROFILES for each in _terms(table.get(key))]
+        if {"csv", "file", "materials"} & set(table) or any(isinstance(each, str) for each in profiles):
+            return True
+        return any(map(reads_files, table.values()))
     return isinstance(table, list) and any(map(reads_files, table))
+
+
+def _terms(profile: Any) -> list[Any]:
+    return profile if isinstance(profile, list) else [profile]
 
 
 def conflict(values: dict[str, Any]) -> tuple[str, str] | None:

@@ -15,6 +15,7 @@ import pytest
 
 import fastpin
 from fastpin.casefile.lug import LUG_EXAMPLE, LUG_KEYS, parse_lug
+from fastpin.casefile.profiles import WORD_KEYS
 from fastpin.casefile.reader import EXAMPLE, KEYS, parse_case
 from fastpin.cli.main import main
 from fastpin.cli.options import parser
@@ -239,7 +240,7 @@ def test_every_name_with_synonyms_is_a_name_of_fastpin() -> None:
     allowed |= set(parser().format_help().split()) | {"workers", "output", "plot", "table"}
     allowed |= {"fatigue_strength", "fatigue_ductility", "strength_exponent", "ductility_exponent", "yield_strength"}
     allowed |= {"path", "increment", "spring", "fixed", "free", "centre", "body", "held"}
-    allowed |= {*fastpin.MATERIALS, "materials"}
+    allowed |= {*fastpin.MATERIALS, "materials", *WORD_KEYS}
     names = {name for word in synonyms.words() for name in synonyms.meant(word)}
     assert names - allowed == {"thickness"} - allowed
     assert {"friction", "hole_radius", "P", "nodes"} <= names
