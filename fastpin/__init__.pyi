@@ -37,7 +37,7 @@ from .storage.recording import record as record
 from .storage.recording import resume as resume
 from .storage.store import load as load
 from .storage.store import save as save
-from .storage.wear import load_wear as load_wear
-from .storage.wear import wear as wear
+from .storage.wear_files import load_wear as load_wear
+from .storage.wear_files import wear as wear
 from .studies.convergence import converge as converge
 from .version import __version__ as __version__

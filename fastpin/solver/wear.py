@@ -176,8 +176,10 @@ class WearTask:
                 arcs = itertools.islice(before, 1, None)
             first_wide_enough(arcs, on_grid)
 
-    def go_on(self, recorder: WearRecorder, place: Worn, grid: Grid) -> None:
+    def go_on(self, recorder: WearRecorder, place: Worn, grid: Grid, stored: int) -> None:
         """Go on from a place of an earlier run on `grid`, to the same bits. A wider arc begins anew.
+
+        `stored` is the last chosen cycle that the recorder has; -1 for none.
 
         Raises
         ------
@@ -193,7 +195,7 @@ class WearTask:
             life = self._life(grid, place.restart.force, watch)
             life.at(place, len(self.approach))
             try:
-                self._live(life, place, recorder)
+                self._live(life, place, recorder, stored)
             except ArcError:
                 is_given = self.grid is not None or self.options.arc is not None
                 if is_given:
@@ -209,10 +211,9 @@ class WearTask:
         run = WearRun(self.history, system, options, kept, watch)
         return FatCycles(run, self.wear, self.cycle)
 
-    def _live(self, life: FatCycles, place: Worn, recorder: WearRecorder) -> None:
-        """Follow all cycles from a place on."""
-        chosen = [each for each in self.wear.chosen if each > place.cycle or each == place.cycle == 0]
-        for target in chosen:
+    def _live(self, life: FatCycles, place: Worn, recorder: WearRecorder, stored: int = -1) -> None:
+        """Follow all cycles from a place on. The recorder has the chosen cycles up to the cycle `stored`."""
+        for target in (each for each in self.wear.chosen if each > stored):
             while place.cycle < target:
                 place = life.next(place, target)
                 recorder.reached(place)

@@ -16,5 +16,5 @@ from .store import load as load
 from .store import load_points as load_points
 from .store import places_between as places_between
 from .store import save as save
-from .wear import load_wear as load_wear
-from .wear import wear as wear
+from .wear_files import load_wear as load_wear
+from .wear_files import wear as wear

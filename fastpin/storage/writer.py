@@ -427,6 +427,8 @@ def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Rest
             with reading(path):
                 stored = hdf5.Group(h5)
                 check_format(stored, str(path))
+                if "wear" in stored:
+                    raise InputError(str(path), "belongs to a life of wear: continue it with wear and its case")
                 if "run" not in h5.attrs:
                     raise InputError(str(path), "was not written by a run: there is nothing to continue")
                 if stored.attrs["complete"]:

@@ -90,8 +90,8 @@ def test_beyond_the_limit_of_stability_the_pressure_stays_smooth():
     closed = np.flatnonzero(implicit.pressure > 0.0)
     assert np.all(np.diff(closed) == 1)  # no node opens between others
     well_inside = explicit.pressure > 0.5 * explicit.pressure.max()
-    assert np.abs(explicit.pressure - implicit.pressure)[well_inside].max() < 0.1 * explicit.pressure.max()
-    assert implicit.volume == pytest.approx(explicit.volume, rel=0.03)
+    assert np.abs(explicit.pressure - implicit.pressure)[well_inside].max() < 0.15 * explicit.pressure.max()
+    assert implicit.volume == pytest.approx(explicit.volume, rel=0.05)
 
 
 def test_an_explicit_jump_beyond_the_limit_would_open_nodes_in_turn():

@@ -173,7 +173,7 @@ def _resumed(path: Path, task: WearTask) -> WearResult:
         if place is None:
             task.follow(writer)
         else:
-            task.go_on(writer, place, grid)
+            task.go_on(writer, place, grid, writer.stored)
     return load_wear(path)
 
 
@@ -255,6 +255,12 @@ class WearFile:
         except (OSError, KeyError, ValueError, TypeError, IndexError):
             log.warning("%s can't be read: continuing from an earlier cycle", checkpoint_of(self.path))
         return place
+
+    @property
+    def stored(self) -> int:
+        """The last chosen cycle in the file; -1 without one."""
+        cycles = self._h5["wear/cycle"]
+        return int(cycles[-1]) if len(cycles) else -1
 
     def begin(self, grid: Grid, force: float) -> None:
         """Begin a new file."""

@@ -1,0 +1,143 @@
+"""The command wear."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator
+
+import fastpin
+from fastpin.casefile import parse_case
+from fastpin.casefile.writer import case_text
+from fastpin.cli.main import main
+from fastpin.report import json_schema, wear
+
+CASE = """
+title = "Worn pin"
+[pin]
+material = "Ti-6Al-4V"
+[plate]
+material = "aluminium"
+[contact]
+hole_radius = 0.01
+clearance = 2e-5
+friction = 0.4
+pin_load = "body"
+[[load]]
+P = 2e6
+[[load]]
+P = [1e6, 2e6]
+Q = [-4e5, 4e5]
+repeat = 12
+[wear]
+pin = 1e-12
+plate = [{ constant = 1e-12 }, { zone = 1e-12, start = -20, stop = 20 }]
+tolerance = 0
+[solve]
+nodes = 31
+arc = [-3.1, 0.0]
+"""
+
+
+@pytest.fixture(autouse=True)
+def _inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CASE)
+
+
+def test_the_command_prints_the_chosen_cycles(capsys):
+    assert main(["wear", "case.toml", "--json", "life.json"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("Worn pin\n")
+    assert "12 cycles, 12 of them solved; debris is not modelled" in text
+    document = json.loads(Path("life.json").read_text())
+    assert not list(Draft202012Validator(json_schema("wear")).iter_errors(document))
+    case = fastpin.read_case("case.toml")
+    assert case.wear is not None
+    given = {"pin": case.wear.pin, "plate": case.wear.plate, "tolerance": 0.0}
+    found = fastpin.wear(case.problem, case.history, nodes=31, arc=(-3.1, 0.0), **given)
+    assert document["cycles"][-1]["pin_depth"] == found[-1].pin_depth.tolist()
+    assert document["cycles"][-1]["cycle"] == 12
+    assert max(document["plate_coefficient"]) == 2e-12
+
+
+def test_options_take_the_place_of_the_case(capsys):
+    words = ["--cycles", "20", "--coefficient", "1e-13", "--at", "3,9", "--law", "energy", "--tolerance", "0.05"]
+    assert main(["wear", "case.toml", *words, "--nodes", "41", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert [each["cycle"] for each in document["cycles"]] == [0, 3, 9, 20]
+    assert document["law"] == "energy"
+    assert len(document["angles"]) == 41
+    assert set(document["pin_coefficient"]) == {5e-14}
+
+
+def test_a_file_is_begun_continued_and_kept(capsys):
+    assert main(["wear", "case.toml", "-o", "life.h5"]) == 0
+    first = capsys.readouterr().out
+    assert main(["wear", "case.toml", "-o", "life.h5"]) == 2
+    assert "exists already; overwrite=True (--overwrite) replaces it" in capsys.readouterr().err
+    assert main(["wear", "case.toml", "-o", "life.h5", "--resume"]) == 2
+    assert "holds a finished life of wear" in capsys.readouterr().err
+    assert main(["wear", "case.toml", "-o", "life.h5", "--overwrite"]) == 0
+    assert capsys.readouterr().out == first
+    assert main(["show", "life.h5"]) == 0
+    assert main(["resume", "life.h5"]) == 2
+    assert "belongs to a life of wear" in capsys.readouterr().err
+
+
+FAULTS = {
+    "--cycles: must be a whole number, not 2.5": ["--cycles", "2.5"],
+    "--coefficient: must not be negative, not -1": ["--coefficient", "-1"],
+    "--resume: needs --output FILE": ["--resume"],
+    "--overwrite: needs --output FILE": ["--overwrite"],
+    '--law: must be "archard" or "energy", not "x"': ["--law", "x"],
+}
+
+
+@pytest.mark.parametrize("message", FAULTS)
+def test_wrong_options_are_told_in_one_sentence(message, capsys):
+    assert main(["wear", "case.toml", *FAULTS[message]]) == 2
+    assert capsys.readouterr().err.splitlines() == [f"fastpin: {message}"]
+
+
+def test_a_case_without_wear_needs_a_coefficient(capsys):
+    Path("plain.toml").write_text(CASE.replace("[wear]", "#").replace("\npin = 1e", "\n#").replace("\nplate = [", "\n#")
+                                  .replace("\ntolerance", "\n#"))  # fmt: skip
+    assert main(["wear", "plain.toml"]) == 2
+    assert "--coefficient: is needed: the case file has no section [wear]" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("pin = 1e-12", "pin = -1", "pin: must not be negative, not -1"),
+        ("tolerance = 0", "tolerance = 2", "tolerance: must lie between 0 and 0.1, not 2"),
+        ("tolerance = 0", "cycle = 2", 'unknown key "cycle" in [wear]'),
+        ("pin = 1e-12", 'pin = "one"', "pin: "),
+    ],
+)
+def test_faults_of_the_section_are_told_with_their_lines(old, new, message, capsys):
+    Path("case.toml").write_text(CASE.replace(old, new))
+    assert main(["wear", "case.toml"]) == 2
+    error = capsys.readouterr().err
+    line = 1 + CASE[: CASE.index(old)].count("\n")
+    assert f"case.toml, line {line}: " in error
+    assert message in error
+
+
+def test_the_section_comes_back_from_the_writer():
+    case = parse_case(CASE)
+    again = parse_case(case_text(case))
+    assert again.wear is not None
+    assert case.wear is not None
+    assert again.wear.cycles == case.wear.cycles == 12
+    theta = np.linspace(-3.0, 0.0, 50)
+    assert np.array_equal(*(each.wear.coefficients(case.problem, theta) for each in (case, again)))
+
+
+def test_without_a_cycle_there_is_a_document_all_the_same():
+    document = wear.document(None, "no cycle", "interrupted")
+    assert not list(Draft202012Validator(json_schema("wear")).iter_errors(document))

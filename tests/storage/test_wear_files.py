@@ -1,0 +1,167 @@
+"""Lives of wear in files: the same bits as in memory, after interrupts and kills too."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+import fastpin
+from fastpin.errors import InputError
+from fastpin.solver.errors import Interrupted
+from fastpin.solver.wear_result import WearResult
+from fastpin.storage import wear_files
+from tests.support.interrupts import StopAt
+from tests.support.wear_cases import WEAR_CASES
+
+CASE = WEAR_CASES["unlike"]
+GIVEN: dict[str, Any] = {"cycles": 60, "coefficient": 1.0, "tolerance": 0.02, "grid": CASE.grid(31)}
+PARTS = ("pressure", "shear", "gap", "slip", "status", "slip_distance", "dissipation", "work", "energy", "step")
+
+
+def life(path: Path | None = None, **others: Any) -> WearResult:
+    return fastpin.wear(CASE.problem, CASE.history(), output=path, **{**GIVEN, **others})
+
+
+def assert_same_life(one: WearResult, other: WearResult) -> None:
+    assert [each.cycle for each in one] == [each.cycle for each in other]
+    assert one.complete == other.complete
+    for first, second in zip(one, other, strict=True):
+        for name in ("next_jump", "solved", "dissipation", "removed"):
+            assert getattr(first, name) == getattr(second, name)
+        for name in ("pin_depth", "plate_depth"):
+            assert np.array_equal(getattr(first, name), getattr(second, name))
+        for state, again in zip(first.states, second.states, strict=True):
+            for name in PARTS:
+                assert np.array_equal(getattr(state, name), getattr(again, name)), name
+
+
+def test_a_file_holds_the_life_to_the_last_bit(tmp_path):
+    path = tmp_path / "life.h5"
+    written, kept = life(path, title="one life"), life()
+    assert_same_life(written, kept)
+    read = fastpin.load_wear(path)
+    assert_same_life(read, kept)
+    assert read.law == "archard"
+    assert np.array_equal(read.coefficients, kept.coefficients)
+    assert read.statistics["solved"] == kept[-1].solved
+    # It is a result, too: its states are those over one cycle after each chosen cycle.
+    states = fastpin.load(path)
+    assert len(states) == 3 * len(kept)
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["life.h5"]
+
+
+def test_an_interrupted_life_goes_on_to_the_same_bits(tmp_path):
+    path, corners = tmp_path / "life.h5", [5, 12, 13, 30, 47]
+    for number, corner in enumerate(corners):
+        with pytest.raises(Interrupted) as caught:
+            life(path, resume=number > 0, progress=StopAt(corner))
+        found = caught.value.result
+        assert isinstance(found, WearResult)
+        assert not found.complete
+        assert found[-1].cycle <= corner
+    assert_same_life(life(path, resume=True), life())
+
+
+def test_a_life_goes_on_from_its_checkpoint(tmp_path, monkeypatch):
+    monkeypatch.setattr(wear_files, "CHECKPOINT_EVERY", 0.0)
+    path = tmp_path / "life.h5"
+
+    def stop(done: float, total: int) -> None:
+        if done >= 46.0:
+            raise RuntimeError("killed")
+
+    with pytest.raises(RuntimeError):
+        life(path, at=[2], progress=stop)
+    begun: list[float] = []
+    found = life(path, at=[2], resume=True, progress=lambda done, total: begun.append(done))
+    assert begun[0] > 30
+    assert_same_life(found, life(at=[2]))
+
+
+def test_a_life_of_another_kind_is_not_continued(tmp_path):
+    path = tmp_path / "life.h5"
+    with pytest.raises(Interrupted):
+        life(path, progress=StopAt(5))
+    for name, value in {"coefficient": 2.0, "tolerance": 0.01, "law": "energy", "at": [7]}.items():
+        with pytest.raises(InputError, match=f"resume: .* was begun with another {name}"):
+            life(path, resume=True, **{name: value})
+    with pytest.raises(InputError, match="was begun with another history"):
+        life(path, resume=True, cycles=70)
+    with pytest.raises(InputError, match="holds an unfinished run: resume it"):
+        life(path)
+    with pytest.raises(InputError, match="belongs to a life of wear"):
+        fastpin.resume(path)
+    life(path, resume=True)
+    with pytest.raises(InputError, match="holds a finished life of wear: there is nothing to continue"):
+        life(path, resume=True)
+    with pytest.raises(InputError, match="exists already"):
+        life(path)
+
+
+def test_other_files_hold_no_life(tmp_path):
+    path = tmp_path / "run.h5"
+    fastpin.record(CASE.problem, [{"P": 1.0}], path, nodes=31)
+    with pytest.raises(InputError, match="holds no wear: it is the result of a run"):
+        fastpin.load_wear(path)
+    with pytest.raises(InputError, match="holds no wear: it is the result of a run"):
+        life(path, resume=True)
+
+
+@pytest.mark.parametrize("part", ["pin_depth", "cycle", "coefficients"])
+def test_a_damaged_file_is_told_in_one_sentence(tmp_path, part):
+    path = tmp_path / "life.h5"
+    life(path, cycles=2)
+    with h5py.File(path, "r+") as file:
+        if part == "cycle":
+            del file["wear/cycle"]
+        else:
+            file[f"wear/{part}"][0, 3] = np.nan
+    with pytest.raises(InputError, match="is damaged"):
+        fastpin.load_wear(path)
+
+
+KILLED = """
+import sys
+sys.path.insert(0, {root!r})
+from pathlib import Path
+from fastpin.storage import wear_files
+from tests.storage.test_wear_files import life
+wear_files.CHECKPOINT_EVERY = 0.02
+path = Path({path!r})
+life(path, cycles=3000, tolerance=0.005, resume=path.exists() and path.stat().st_size > 0)
+"""
+
+
+@pytest.mark.slow
+def test_a_life_that_is_killed_thirty_times_has_the_same_bits(tmp_path):
+    path, root = tmp_path / "life.h5", str(Path(__file__).parents[2])
+    program = KILLED.format(root=root, path=str(path))
+    chance, kills = random.Random(5), 0
+    while kills < 30:
+        process = subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.PIPE)
+        try:
+            process.wait(timeout=1.0 + 0.8 * chance.random() + 0.03 * kills)
+        except subprocess.TimeoutExpired:
+            os.kill(process.pid, signal.SIGKILL)
+            process.wait()
+            kills += 1
+        else:
+            assert process.stderr is not None
+            error = process.stderr.read().decode()
+            assert process.returncode == 0 or "begun" in error, error
+            break
+        time.sleep(0.01)
+    if not fastpin.load_wear(path).complete:
+        life(path, cycles=3000, tolerance=0.005, resume=True)
+    assert kills >= 10
+    assert_same_life(fastpin.load_wear(path), life(cycles=3000, tolerance=0.005))
