@@ -9,7 +9,6 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, items, not_negative, number, whole_number
-from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.profile import Profile, ProfileLike
 
 LAWS = ("archard", "energy")
@@ -23,6 +22,9 @@ MOST_CHOSEN = 10_000
 
 A_DECADE = 10
 """Cycles that are chosen in each decade, unless others are given."""
+
+LOOKED_AT = 1441
+"""Angles at which a coefficient is checked, four a degree."""
 
 LARGEST_TOLERANCE = 0.1
 """Largest tolerance of a fat cycle."""
@@ -82,8 +84,8 @@ class Wear:
                 raise InputError("at", f"must be at most {MOST_CHOSEN:,} increasing numbers of cycles")
             object.__setattr__(self, "at", tuple(chosen))
 
-    def coefficients(self, problem: Problem, theta: np.ndarray) -> np.ndarray:
-        """Coefficients of pin and plate, 1/Pa, at the angles `theta` (n,), rad, shape (2, n).
+    def coefficients(self, radius: float, theta: np.ndarray) -> np.ndarray:
+        """Coefficients of pin and plate, 1/Pa, at the angles `theta` (n,), rad, shape (2, n). `radius`: of the hole, m.
 
         Raises
         ------
@@ -93,7 +95,7 @@ class Wear:
         found = np.zeros((2, theta.size))
         for place, name, share in ((0, "pin", 1.0), (1, "plate", 1.0), (slice(None), "coefficient", 0.5)):
             if isinstance(profile := getattr(self, name), Profile):
-                found[place] += share * profile.at(theta, problem.hole_radius)
+                found[place] += share * profile.at(theta, radius)
         if not found.max() > 0.0:
             raise InputError("coefficient", "must be positive somewhere on pin or plate")
         positive: np.ndarray = np.maximum(found, 0.0)  # a spline may pass below zero in between

@@ -95,7 +95,7 @@ class FatCycles:
         self.run, self._wear, self._cycle = run, wear, cycle
         self._first = system
         unit = system.scales.traction
-        self._coefficients = unit * wear.coefficients(system.problem, system.grid.theta)
+        self._coefficients = unit * wear.coefficients(system.problem.hole_radius, system.grid.theta)
         total = self._coefficients.sum(axis=0)
         self._total = total * (system.friction if wear.law == "energy" else 1.0)
         self._shares = np.divide(self._coefficients, total, out=np.zeros_like(self._coefficients), where=total > 0.0)

@@ -104,8 +104,12 @@ class WearTask:
             raise InputError("history", "must end with the cycle that wears: repeat its last block")
         if self.grid is not None and not self.grid.uniform:
             raise InputError("grid", "wear needs equally spaced nodes")
-        self.wear.coefficients(self.problem, np.linspace(-np.pi, np.pi, LOOKED_AT))
+        self.coefficients(np.linspace(-np.pi, np.pi, LOOKED_AT))
         _ = self.stored_history
+
+    def coefficients(self, theta: np.ndarray) -> np.ndarray:
+        """Wear coefficients of pin and plate, 1/Pa, at the angles `theta` (n,), rad, shape (2, n)."""
+        return self.wear.coefficients(self.problem.hole_radius, theta)
 
     @property
     def stored_history(self) -> LoadHistory:
@@ -124,7 +128,7 @@ class WearTask:
 
     def result(self, grid: Grid, cycles: Sequence[WornCycle], statistics: dict[str, float]) -> WearResult:
         """The result of the chosen cycles on a grid."""
-        coefficients = self.wear.coefficients(self.problem, grid.theta)
+        coefficients = self.coefficients(grid.theta)
         complete = bool(cycles) and cycles[-1].cycle == self.wear.cycles
         law, tolerance = self.wear.law, self.wear.tolerance
         return WearResult(
@@ -233,7 +237,7 @@ class WearTask:
 
     def _warn(self, cycle: WornCycle) -> None:
         """Warn of a pin that wears although it slips by more than a node distance: its profile turns with it."""
-        if self.problem.dimensionless or not self.wear.coefficients(self.problem, cycle.theta)[0].any():
+        if self.problem.dimensionless or not self.coefficients(cycle.theta)[0].any():
             return
         slips = [state.slip_distance for state in cycle.states[1:]]
         slip = max(float(each.max()) for each in slips if each is not None)

@@ -275,7 +275,7 @@ class WearFile:
         self._h5.attrs["run"] = self._name
         group = self._h5.create_group("wear")
         group.attrs.update(law=task.wear.law, tolerance=task.wear.tolerance, chosen=np.array(task.wear.chosen))
-        group["coefficients"] = task.wear.coefficients(task.problem, grid.theta)
+        group["coefficients"] = task.coefficients(grid.theta)
         for name in DEPTHS:
             group.create_dataset(name, (0, grid.size), maxshape=(None, grid.size), chunks=(1, grid.size), dtype=float)
         for name, kind in NUMBERS.items():
@@ -409,7 +409,7 @@ def _check_same(path: Path, file: hdf5.Group, task: WearTask) -> None:
     same = {
         "problem": read_problem(file) == task.problem,
         "history": _same_history(read_history(file), task.stored_history),
-        "coefficient": np.array_equal(group["coefficients"][()], task.wear.coefficients(task.problem, grid.theta)),
+        "coefficient": np.array_equal(group["coefficients"][()], task.coefficients(grid.theta)),
         "law": text_of(group.attrs["law"]) == task.wear.law,
         "at": np.array_equal(group.attrs["chosen"], task.wear.chosen),
         "tolerance": float(group.attrs["tolerance"]) == task.wear.tolerance,

@@ -11,22 +11,20 @@ from fastpin.errors import InputError
 from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import Zone
 from fastpin.model.wear import Wear
-from tests.support.wear_cases import WEAR_CASES
 
-PROBLEM = WEAR_CASES["unlike"].problem
 THETA = np.linspace(-3.0, 0.0, 7)
 
 
 def test_one_coefficient_is_shared_in_halves():
-    assert np.array_equal(Wear(2e-3).coefficients(PROBLEM, THETA), np.full((2, 7), 1e-3))
+    assert np.array_equal(Wear(2e-3).coefficients(1.0, THETA), np.full((2, 7), 1e-3))
 
 
 def test_bodies_have_coefficients_of_their_own_and_zones():
     wear = Wear(pin=1.0, plate=Profile.constant(1.0) + Profile((Zone(2.0, -2.0, -1.0),)))
-    pin, plate = wear.coefficients(PROBLEM, THETA)
+    pin, plate = wear.coefficients(1.0, THETA)
     assert set(pin) == {1.0}
     assert set(plate) == {1.0, 3.0}
-    assert not Wear(plate=1.0).coefficients(PROBLEM, THETA)[0].any()
+    assert not Wear(plate=1.0).coefficients(1.0, THETA)[0].any()
 
 
 def test_ten_cycles_a_decade_are_chosen():
@@ -65,4 +63,4 @@ def test_wrong_wear_is_refused_in_one_sentence(message):
 
 def test_coefficients_of_zero_are_refused():
     with pytest.raises(InputError, match="coefficient: must be positive somewhere on pin or plate"):
-        Wear(0.0).coefficients(PROBLEM, THETA)
+        Wear(0.0).coefficients(1.0, THETA)

@@ -81,6 +81,7 @@ MOST_PUBLIC_NAMES = 41
 
 UPWARD = {
     "states/state.py": "State shows itself in notebooks",
+    "solver/wear_result.py": "WearResult words itself as a table",
     "solver/result.py": "Result plots, reports, saves and shows itself, and has its fatigue computed",
 }
 """Files that call public faces, of fastpin or of other folders, inside functions, and why."""
@@ -96,6 +97,7 @@ MANY_PARAMETERS: dict[str, str] = {
     "solver/solving.py solve": "the options are spelt out for help and completion",
     "studies/convergence.py converge": "the choices of a study are spelt out for help and completion",
     "storage/recording.py record": "the arguments of solve, and three of the file",
+    "storage/wear_files.py wear": "the arguments of solve, those of wear, and four of the file",
     "figures/tractions.py plot_tractions": "the arguments of all figures, and two of its own",
     "figures/stress.py plot_stress_profile": "the arguments of all figures, and three of its own",
     "verification/integral_equations.py residuals": "the quantities of the equations (46), (47)",
