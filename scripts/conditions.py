@@ -225,7 +225,7 @@ def integrals_of(states: Sequence[State]) -> Integrals:
 class _Checked:
     """One state with its recomputed displacements."""
 
-    def __init__(self, integrals: Integrals, state: State) -> None:
+    def __init__(self, integrals: Integrals, state: State, grown: np.ndarray | float) -> None:
         self.state, self.problem, self._integrals = state, state.problem, integrals
         self.elastic = integrals.elastic(state)
         self.loads = integrals.loads(state)
@@ -233,7 +233,7 @@ class _Checked:
         radius = self.problem.hole_radius
         # Gap and slip from the first resting position of the pin. The place of that position is not known.
         initial = initial_gap(self.problem.gap, state.theta, radius)
-        resting = self.problem.assembled_clearance + initial
+        resting = self.problem.assembled_clearance + initial + grown
         self.gap = resting - state.dx * cos - state.dy * sin + self.elastic[0] + self.loads[0]
         self.slip = radius * state.rotation + state.dy * cos - state.dx * sin + self.elastic[1] + self.loads[1]
         self.touches = bool(np.any(state.status != OPEN))
@@ -291,8 +291,8 @@ class _Checked:
         return abs(energy - state.energy) / max(size * self.length, 1e-300)
 
 
-def check_states(states: Sequence[State]) -> list[dict[str, float]]:
-    """Largest relative violation of each condition at each state.
+def check_states(states: Sequence[State], grown: Sequence[np.ndarray] | None = None) -> list[dict[str, float]]:
+    """Largest relative violation of each condition at each state. `grown` is the growth (n,) of the gap at each, m.
 
     "gap" and "slip" compare the fields of the states with the recomputed displacements. The first resting position of
     the pin is fitted once for all states. The slip may differ by its reference, which changes only where contact was
@@ -301,7 +301,8 @@ def check_states(states: Sequence[State]) -> list[dict[str, float]]:
     if not states:
         return []
     integrals = integrals_of(states)
-    checked = [_Checked(integrals, state) for state in states]
+    growths = [0.0] * len(states) if grown is None else grown
+    checked = [_Checked(integrals, state, growth) for state, growth in zip(states, growths, strict=True)]
     found = [dict(one.conditions) for one in checked]
     _check_gaps(checked, found)
     _check_slips(checked, found)

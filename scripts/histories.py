@@ -22,12 +22,12 @@ from fastpin.bodies.ring import SUPPORTS
 from fastpin.bodies.tube import TUBE_LOADS
 from fastpin.elasticity.plates import plate_compliance
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import Corner
+from fastpin.model.loads import LOADS, Corner
 from fastpin.model.lug import Lug, Part, PartLoad
 from fastpin.model.materials import Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, Profile
-from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples, Term
+from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples, Term, Zone
 
 NODES = 81
 """Nodes of the general class."""
@@ -35,11 +35,12 @@ NODES = 81
 
 @dataclass(frozen=True)
 class RandomCase:
-    """A random problem and history, and the options of :func:`fastpin.solve` for it."""
+    """A random problem and history, and the options of :func:`fastpin.solve` for it, or of :func:`fastpin.wear`."""
 
     problem: Problem
     history: LoadHistory
     options: dict[str, Any] = field(default_factory=lambda: {"nodes": NODES})
+    wears: bool = False
 
 
 def random_case(seed: int) -> tuple[Problem, LoadHistory]:
@@ -319,6 +320,31 @@ def gap(rng: np.random.Generator, seed: int) -> RandomCase:
     return RandomCase(problem, LoadHistory(corners), {"nodes": int(rng.integers(81, 202))})
 
 
+def wear(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Short lives of wear: everyday values, all fits, held pins, initial gaps; both laws, zones, fat cycles.
+
+    Some cycles lose contact. The worn depth goes up to the size of the clearance.
+    """
+    kind = [general, fits, fixed, gap][int(rng.integers(4))]
+    case = kind(rng, seed)
+    problem, names = case.problem, list(case.history.largest)
+    corners = case.history.values()[:, [LOADS.index(name) for name in names]]
+    while len(corners) < 2:
+        corners = np.vstack([corners, 0.5 * corners[-1:]])
+    turn = LoadHistory.from_array(corners[1:4], names)
+    size = 10.0 ** rng.uniform(-3.0, 0.5) * (1.0 if problem.dimensionless else 1e-3 * problem.surfaces.beta_star)
+    options: dict[str, Any] = {"nodes": int(rng.integers(41, 82)), "law": rng.choice(["archard", "energy"]).item()}
+    options |= {"cycles": int(rng.integers(2, 7)), "tolerance": 0.0}
+    if rng.random() < 0.25:
+        options |= {"cycles": int(rng.integers(8, 40)), "tolerance": 0.05}
+    if rng.random() < 0.5 or problem.frictionless:
+        options |= {"coefficient": size, "law": "archard" if problem.frictionless else options["law"]}
+    else:
+        start = rng.uniform(-math.pi, math.pi)
+        options |= {"pin": size * rng.random(), "plate": Profile((Harmonic(0, size), Zone(size, start, start + 1.0)))}
+    return RandomCase(problem, LoadHistory.from_array(corners[:1], names) + turn.repeated(1), options, wears=True)
+
+
 def _is_held(problem: Problem) -> bool:
     """Whether a ring round the plate is held, so that there is no remote stress."""
     outside = problem.plate_body.lug
@@ -414,6 +440,7 @@ GENERATORS: dict[str, Callable[[np.random.Generator, int], RandomCase]] = {
     function.__name__: function
     for function in (
         general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering, bodies, gap, drift,
+        wear,
     )
 }  # fmt: skip
 """The classes of random cases, by name."""

@@ -23,6 +23,8 @@ from tqdm import tqdm
 from fastpin.errors import FastpinError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
+from fastpin.solver.wear_result import WearResult
+from fastpin.storage.wear_files import wear
 from scripts.conditions import TOLERANCE, check_direction, check_dissipation, check_states
 from scripts.histories import GENERATORS, RandomCase, generate
 
@@ -87,17 +89,42 @@ def examine(kind: str, seed: int, dense: bool = False) -> Outcome:
     """Solve a case and check all its states."""
     case, outcome = generate(kind, seed), Outcome(kind, seed)
     began = time.perf_counter()
-    result: Result | None = None
+    result: Result | WearResult | None = None
     try:
         with_stops = {"between": BETWEEN} if dense else {}
-        result = solve(case.problem, case.history, **case.options, **with_stops)
+        if case.wears:
+            result = wear(case.problem, case.history, **case.options)
+        else:
+            result = solve(case.problem, case.history, **case.options, **with_stops)
     except FastpinError as error:
         outcome.ending, outcome.message = ending_of(error), str(error)
         result = getattr(error, "result", None)
     outcome.seconds = time.perf_counter() - began
-    if result is not None and result.states:
+    if isinstance(result, WearResult):
+        _check_wear(outcome, result)
+    elif result is not None and result.states:
         _check(outcome, case, result, dense)
     return outcome
+
+
+def _check_wear(outcome: Outcome, result: WearResult) -> None:
+    """Note the largest violation of each condition at the states on worn profiles.
+
+    The sums of work and dissipation leave out the material that has gone.
+    """
+    outcome.nodes, outcome.jumps = result.grid.size, result.statistics.get("jumps", 0.0)
+    pairs = [(state, each.gap_growth) for each in result for state in each.states]
+    outcome.states = len(pairs)
+    found = check_states([state for state, _ in pairs], [grown for _, grown in pairs])
+    if not all(state.in_contact for state, _ in pairs):  # a new contact between two chosen cycles has a slip of its own
+        parts = [check_states(each.states, [each.gap_growth] * len(each.states)) for each in result]
+        for conditions, alone in zip(found, (one for part in parts for one in part), strict=True):
+            conditions.pop("slip", None)
+            conditions |= {name: value for name, value in alone.items() if name == "slip"}
+    for place, conditions in enumerate(found):
+        for name, value in conditions.items():
+            if name != "balance" and (name not in outcome.worst or not value <= outcome.worst[name][0]):
+                outcome.worst[name] = value, place
 
 
 def _check(outcome: Outcome, case: RandomCase, result: Result, dense: bool) -> None:

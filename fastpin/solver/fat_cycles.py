@@ -174,7 +174,8 @@ class FatCycles:
         except SolveError as error:
             _name_cycle(error, place.cycle + 1)
             raise
-        states = tuple(recorder.states)  # type: ignore[attr-defined]
+        # A pin that loses contact is followed in a problem with the worn gap.
+        states = tuple(replace(each, problem=self._first.problem) for each in recorder.states)  # type: ignore[attr-defined]
         recorder.states.clear()  # type: ignore[attr-defined]
         run.go_back(place.restart)
         return states
