@@ -25,3 +25,6 @@ from .lives import miner as miner
 from .lives import smith_watson_topper_life as smith_watson_topper_life
 from .wear import archard_depth as archard_depth
 from .wear import ruiz as ruiz
+from .worn import WornFatigue as WornFatigue
+from .worn import WornSpot as WornSpot
+from .worn import worn_fatigue as worn_fatigue

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import overload
+from pathlib import Path
+from typing import Any, overload
 
 import numpy as np
 
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
+from fastpin.model.points import Body
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.states.state import State
@@ -155,6 +157,46 @@ class WearResult(ReadOnly, Sequence[WornCycle]):
         import fastpin
 
         return fastpin.report.wear.table(self)
+
+    def fatigue(self, criterion: Any = "smith-watson-topper", body: Body = "plate", **options: Any) -> Any:
+        """Damage of the material over the life: it goes with the material that wears off.
+
+        Parameters
+        ----------
+        criterion, body, **options
+            See :func:`fastpin.damage.worn_fatigue`.
+
+        Returns
+        -------
+        fastpin.damage.WornFatigue
+
+        Raises
+        ------
+        InputError
+            See :func:`fastpin.damage.worn_fatigue`.
+        """
+        from fastpin.damage import worn_fatigue
+
+        return worn_fatigue(self, criterion, body, **options)
+
+    def plot(self, path: str | Path | None = None, kind: str = "scar", **options: Any) -> Any:
+        """Draw the worn profiles, or another kind of figure of wear, and return the matplotlib figure.
+
+        Parameters
+        ----------
+        path, **options
+            See :func:`fastpin.plot_tractions`, and the options of the kind, such as ``body="pin"``.
+        kind : {"scar", "wear", "damage"}
+            Profile and pressure, the numbers over the cycles, or the damage of :meth:`fatigue`.
+
+        Raises
+        ------
+        InputError
+            See :func:`fastpin.plot_tractions` and :meth:`fatigue`.
+        """
+        import fastpin
+
+        return fastpin.figures.plotting.plot_result(self, kind, path, **options)
 
     def __repr__(self) -> str:
         whole = "complete" if self.complete else "incomplete"

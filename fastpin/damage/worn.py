@@ -1,0 +1,296 @@
+"""Fatigue of a surface that wears: damage belongs to the material, and goes with it.
+
+A material point lies at an angle theta and at a depth z under the first surface. After n cycles the depth w(theta, n)
+is worn off, and the point lies z - w under the present surface. It is gone once w exceeds z. Until then it sums up
+
+    D(theta, z) = int dn / N_f(theta, z - w)
+
+with the life N_f of a criterion on the present profile. A crack starts where a sum reaches 1 before the point is gone.
+The competition of wear and cracks: Madge, Leen, McColl and Shipway, Wear 262 (2007) 1159 and 263 (2007) 679.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fastpin.damage.criteria import Criterion
+from fastpin.damage.hot_spots import edge_angles, fatigue
+from fastpin.errors import InputError
+from fastpin.model.checks import numbers
+from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.points import Body, Points, far_rim, near_rim, owner_of
+from fastpin.model.problem import Problem
+from fastpin.model.read_only import ReadOnly
+from fastpin.reading.stress import check_body
+from fastpin.states.state import State
+
+WORN_DEPTHS, DEPTHS = 8, 16
+"""Steps of the depths unless given: inside the material that is worn off, and below it."""
+
+
+class StoredCycle(Protocol):
+    """A chosen cycle of a life of wear, see :class:`fastpin.solver.WornCycle`."""
+
+    @property
+    def cycle(self) -> int:
+        """Cycles that are done."""
+
+    @property
+    def pin_depth(self) -> np.ndarray:
+        """Depth worn off the pin at the nodes, m."""
+
+    @property
+    def plate_depth(self) -> np.ndarray:
+        """Depth worn off the edge of the hole at the nodes, m."""
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """The states over one cycle on this profile."""
+
+
+class WornSpot(NamedTuple):
+    """A material point, and its damage after some cycles.
+
+    Attributes
+    ----------
+    cycle : float
+        Cycles that are done; infinite if a crack was not seen.
+    theta : float
+        Angle, rad; NaN without a place.
+    depth : float
+        Depth under the first surface, m; NaN without a place.
+    damage : float
+    """
+
+    cycle: float
+    theta: float
+    depth: float
+    damage: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WornFatigue(ReadOnly):
+    """Damage of the material points of one body over a life of wear.
+
+    Attributes
+    ----------
+    problem : Problem
+    criterion, body : str
+        See :class:`fastpin.damage.Fatigue`.
+    theta : ndarray, shape (m,)
+        Angles of the material points, rad.
+    depth : ndarray, shape (d,)
+        Their depths under the first surface, m.
+    cycles : ndarray, shape (k,)
+        Cycles that were done at the stored profiles.
+    worn : ndarray, shape (k, m)
+        Depth worn off the body, m.
+    rate : ndarray, shape (k, d, m)
+        1/N_f, a cycle. A point that is gone has the rate of the present surface at its angle.
+    damage : ndarray, shape (k, d, m)
+        Sum D up to each stored cycle. That of material that is gone stays.
+    broken : ndarray, shape (d, m)
+        Cycles after which the sum is 1; infinite where it never is.
+    """
+
+    problem: Problem
+    criterion: str
+    body: str
+    theta: np.ndarray
+    depth: np.ndarray
+    cycles: np.ndarray
+    worn: np.ndarray
+    rate: np.ndarray
+    damage: np.ndarray
+    broken: np.ndarray
+
+    def __repr__(self) -> str:
+        return f"<WornFatigue of the {self.body}, {self.criterion}: {self.words}>"
+
+    @property
+    def crack(self) -> WornSpot:
+        """Where and after how many cycles the first crack starts; without a place if none does."""
+        life = float(self.broken.min())
+        if math.isinf(life):
+            return WornSpot(math.inf, math.nan, math.nan, math.nan)
+        return self._spot(life, self.broken == life, np.ones_like(self.broken))
+
+    @property
+    def life(self) -> float:
+        """Cycles until the first crack starts; infinite if none does within the cycles of the wear."""
+        return self.crack.cycle
+
+    @property
+    def first_life(self) -> float:
+        """Life by the criterion on the first stored profile alone, as if nothing wore on."""
+        most = float(self.rate[0].max())
+        return 1.0 / most if most else math.inf
+
+    @property
+    def is_gone(self) -> np.ndarray:
+        """Whether each material point is worn off at each stored cycle, shape (k, d, m)."""
+        gone: np.ndarray = self.worn[:, None] > self.depth[:, None]
+        return gone
+
+    @property
+    def wear_wins(self) -> bool:
+        """Whether no crack starts, and the material with the largest damage of all is worn off."""
+        last = self.damage[-1]
+        most = last == last.max()
+        return bool(math.isinf(self.life) and last.any() and self.is_gone[-1][most].all())
+
+    @property
+    def hot_spots(self) -> tuple[WornSpot, ...]:
+        """At each stored cycle the material with the largest damage of all that is still there."""
+        there = np.where(self.is_gone, -1.0, self.damage)
+        return tuple(
+            self._spot(float(cycle), values == values.max(), values)
+            for cycle, values in zip(self.cycles.tolist(), there, strict=True)
+        )
+
+    @property
+    def words(self) -> str:
+        """The end of the race in words."""
+        if math.isfinite(self.life):
+            return f"a crack starts after {self.life:.4g} cycles"
+        done = f"no crack within {self.cycles[-1]:,} cycles"
+        largest = f"largest damage {self.hot_spots[-1].damage:.3g}"
+        return f"{done}: wear takes the most damaged material away, {largest}" if self.wear_wins else f"{done}, {largest}"
+
+    @property
+    def every_second(self) -> WornFatigue:
+        """The same from every second stored cycle, the first and the last one included."""
+        count = self.cycles.size
+        kept = np.unique(np.r_[np.arange(0, count, 2), count - 1])
+        damage, broken = _summed(self.cycles[kept], self.worn[kept], self.depth, self.rate[kept])
+        return replace(
+            self, cycles=self.cycles[kept], worn=self.worn[kept], rate=self.rate[kept], damage=damage, broken=broken
+        )
+
+    @property
+    def error(self) -> float:
+        """Relative difference to :attr:`every_second`, of the life, or of the largest damage without a crack.
+
+        NaN if less than three cycles are stored, infinite if a crack starts in one of both only.
+        """
+        other = self.every_second
+        if self.cycles.size < 3:
+            return math.nan
+        if math.isfinite(self.life):
+            return abs(other.life / self.life - 1.0)
+        if math.isfinite(other.life):
+            return math.inf
+        mine, theirs = (float(each.damage[-1].max()) for each in (self, other))
+        return abs(theirs / mine - 1.0) if mine else 0.0
+
+    def _spot(self, cycle: float, chosen: np.ndarray, values: np.ndarray) -> WornSpot:
+        """The first of the chosen points (d, m), with its damage."""
+        at = np.unravel_index(int(np.argmax(chosen)), chosen.shape)
+        return WornSpot(cycle, float(self.theta[at[1]]), float(self.depth[at[0]]), float(values[at]))
+
+
+def worn_fatigue(
+    cycles: Sequence[StoredCycle],
+    criterion: Criterion = "smith-watson-topper",
+    body: Body = "plate",
+    *,
+    theta: ArrayLike | None = None,
+    depth: ArrayLike | None = None,
+    constants: FatigueConstants | None = None,
+) -> WornFatigue:
+    """Sum up the damage of material points over a life of wear.
+
+    The criterion is evaluated at each stored cycle, over the states of one cycle on its profile. Between two stored
+    cycles the rate 1/N_f of a material point, and the worn depth at its angle, vary linearly with the number of cycles.
+    :attr:`WornFatigue.error` compares with every second stored cycle.
+
+    Parameters
+    ----------
+    cycles : sequence of WornCycle
+        A life of wear, with its cycle 0.
+    criterion, body, constants
+        See :func:`fatigue`. The criterion needs a life. The seat of a bush does not wear.
+    theta : array_like, shape (m,), optional
+        Angles of the material points, rad. Unless given: the nodes, the ends of the zones at cycle 0, and each degree.
+    depth : array_like, shape (d,), optional
+        Their depths under the first surface, m, increasing. Unless given, they lie inside the material that is worn
+        off, and below it down to the half width of the contact.
+
+    Raises
+    ------
+    InputError
+        See :func:`fatigue`; also if there is no cycle 0 or no other one, a cycle has no states, or the material has no
+        constants for a life.
+    """
+    stored = list(cycles)
+    if len(stored) < 2 or stored[0].cycle != 0:
+        raise InputError("cycles", "must be the chosen cycles of a life of wear, cycle 0 and later ones")
+    problem = stored[0].states[0].problem
+    check_body(problem, body)
+    angles = edge_angles(stored[0].states) if theta is None else np.atleast_1d(numbers("theta", theta))
+    worn = np.array([_worn_depth(each, body, angles) for each in stored])
+    depths = _depths(stored, body, float(worn.max())) if depth is None else np.atleast_1d(numbers("depth", depth, 0.0))
+    for name, array in (("theta", angles), ("depth", depths)):
+        if array.ndim != 1 or not array.size:
+            raise InputError(name, "must be a list of numbers")
+    rates = []
+    for each, gone in zip(stored, worn, strict=True):
+        points = Points.at_depth(np.maximum(depths[:, None] - gone, 0.0), angles)
+        life = fatigue(each.states, criterion, body, points=points, constants=constants).life
+        if life is None:
+            owner = owner_of(problem, body)
+            raise InputError("criterion", f"the {owner}'s material has no constants for a life by {criterion}")
+        rates.append(1.0 / life)
+    done, rate = np.array([each.cycle for each in stored]), np.array(rates)
+    damage, broken = _summed(done, worn, depths, rate)
+    return WornFatigue(problem, criterion, body, angles, depths, done, worn, rate, damage, broken)
+
+
+def _worn_depth(cycle: StoredCycle, body: Body, theta: np.ndarray) -> np.ndarray:
+    """Depth worn off a body at some angles, m: linear between the nodes, and 0 beyond an arc."""
+    if body == "seat":
+        return np.zeros(theta.shape)
+    nodes, values = cycle.states[0].theta, cycle.pin_depth if body == "pin" else cycle.plate_depth
+    turn = 2.0 * np.pi
+    if cycle.states[0].grid.closed:
+        return np.interp(theta, nodes, values, period=turn)
+    return np.interp(nodes[0] + np.mod(theta - nodes[0], turn), nodes, values, right=0.0)
+
+
+def _depths(cycles: Sequence[StoredCycle], body: Body, worn: float) -> np.ndarray:
+    """Depths for a body of which at most the depth `worn` is removed, m."""
+    problem = cycles[0].states[0].problem
+    widths = [stop - start for each in cycles for state in each.states for start, stop in state.contact]
+    below = max(0.5 * min(max(widths, default=0.0), np.pi) * problem.hole_radius, 2.0 * worn)
+    far = far_rim(problem, body)
+    if far is not None:
+        below = min(below, abs(far - near_rim(problem, body)) * problem.hole_radius)
+    first = np.linspace(0.0, worn, WORN_DEPTHS + 1)
+    return np.unique(np.r_[first, worn + (below - worn) * np.linspace(0.0, 1.0, DEPTHS + 1) ** 2])
+
+
+def _summed(
+    cycles: np.ndarray, worn: np.ndarray, depth: np.ndarray, rate: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The sums of damage (k, d, m) of rates (k, d, m) that are linear in between, and the cycles (d, m) to the sum 1.
+
+    A point counts until the depth worn (k, m), linear in between too, reaches its own depth (d,).
+    """
+    damage, broken = np.zeros(rate.shape), np.full(rate.shape[1:], np.inf)
+    for k in range(cycles.size - 1):
+        span, start, slope = float(cycles[k + 1] - cycles[k]), rate[k], rate[k + 1] - rate[k]
+        left, grown = depth[:, None] - worn[k], np.broadcast_to(worn[k + 1] - worn[k], start.shape)
+        part = np.divide(left, grown, out=np.ones(start.shape), where=grown > np.maximum(left, 0.0))
+        part = np.where(left < 0.0, 0.0, np.clip(part, 0.0, 1.0))
+        damage[k + 1] = damage[k] + span * part * (start + 0.5 * slope * part)
+        breaks = (damage[k] < 1.0) & (damage[k + 1] >= 1.0)
+        missing = ((1.0 - damage[k]) / span)[breaks]  # start x + slope x^2/2 = missing
+        root = np.sqrt(np.maximum(start[breaks] ** 2 + 2.0 * slope[breaks] * missing, 0.0))
+        broken[breaks] = cycles[k] + span * np.minimum(2.0 * missing / (start[breaks] + root), 1.0)
+    return damage, broken
