@@ -161,7 +161,9 @@ class WornFatigue(ReadOnly):
             return f"a crack starts after {self.life:.4g} cycles"
         done = f"no crack within {self.cycles[-1]:,} cycles"
         largest = f"largest damage {self.hot_spots[-1].damage:.3g}"
-        return f"{done}: wear takes the most damaged material away, {largest}" if self.wear_wins else f"{done}, {largest}"
+        return (
+            f"{done}: wear takes the most damaged material away, {largest}" if self.wear_wins else f"{done}, {largest}"
+        )
 
     @property
     def every_second(self) -> WornFatigue:
@@ -220,7 +222,7 @@ def worn_fatigue(
         Angles of the material points, rad. Unless given: the nodes, the ends of the zones at cycle 0, and each degree.
     depth : array_like, shape (d,), optional
         Their depths under the first surface, m, increasing. Unless given, they lie inside the material that is worn
-        off, and below it down to the half width of the contact.
+        off, and below it down to the half width of the contact, or half a wall.
 
     Raises
     ------
@@ -233,12 +235,12 @@ def worn_fatigue(
         raise InputError("cycles", "must be the chosen cycles of a life of wear, cycle 0 and later ones")
     problem = stored[0].states[0].problem
     check_body(problem, body)
-    angles = edge_angles(stored[0].states) if theta is None else np.atleast_1d(numbers("theta", theta))
+    angles = edge_angles(stored[0].states) if theta is None else _listed("theta", numbers("theta", theta))
     worn = np.array([_worn_depth(each, body, angles) for each in stored])
-    depths = _depths(stored, body, float(worn.max())) if depth is None else np.atleast_1d(numbers("depth", depth, 0.0))
-    for name, array in (("theta", angles), ("depth", depths)):
-        if array.ndim != 1 or not array.size:
-            raise InputError(name, "must be a list of numbers")
+    if depth is None:
+        depths = _depths(stored, body, float(worn.max()))
+    else:
+        depths = _listed("depth", numbers("depth", depth, 0.0))
     rates = []
     for each, gone in zip(stored, worn, strict=True):
         points = Points.at_depth(np.maximum(depths[:, None] - gone, 0.0), angles)
@@ -250,6 +252,12 @@ def worn_fatigue(
     done, rate = np.array([each.cycle for each in stored]), np.array(rates)
     damage, broken = _summed(done, worn, depths, rate)
     return WornFatigue(problem, criterion, body, angles, depths, done, worn, rate, damage, broken)
+
+
+def _listed(field: str, values: np.ndarray) -> np.ndarray:
+    if values.ndim != 1 or not values.size:
+        raise InputError(field, f"must be a list of numbers, not of the shape {values.shape}")
+    return values
 
 
 def _worn_depth(cycle: StoredCycle, body: Body, theta: np.ndarray) -> np.ndarray:
@@ -270,14 +278,12 @@ def _depths(cycles: Sequence[StoredCycle], body: Body, worn: float) -> np.ndarra
     below = max(0.5 * min(max(widths, default=0.0), np.pi) * problem.hole_radius, 2.0 * worn)
     far = far_rim(problem, body)
     if far is not None:
-        below = min(below, abs(far - near_rim(problem, body)) * problem.hole_radius)
+        below = min(below, 0.5 * abs(far - near_rim(problem, body)) * problem.hole_radius)  # not the force in the pin
     first = np.linspace(0.0, worn, WORN_DEPTHS + 1)
     return np.unique(np.r_[first, worn + (below - worn) * np.linspace(0.0, 1.0, DEPTHS + 1) ** 2])
 
 
-def _summed(
-    cycles: np.ndarray, worn: np.ndarray, depth: np.ndarray, rate: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _summed(cycles: np.ndarray, worn: np.ndarray, depth: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The sums of damage (k, d, m) of rates (k, d, m) that are linear in between, and the cycles (d, m) to the sum 1.
 
     A point counts until the depth worn (k, m), linear in between too, reaches its own depth (d,).

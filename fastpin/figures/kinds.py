@@ -47,7 +47,7 @@ KIND_OPTIONS = {
     "extent": KindOption("map: outer radius (default 2)", "RADII", "number"),
     "angle": KindOption("profile: place (default: the largest hoop stress)", "DEG", "number"),
     "depth": KindOption("profile: largest depth, in radii; fatigue: depth of the points, m", "D", "number"),
-    "criterion": KindOption("fatigue: smith-watson-topper (default), fatemi-socie, findley, ..."),
+    "criterion": KindOption("fatigue, damage: smith-watson-topper (default), fatemi-socie, findley, ..."),
 }
 """Options of figures, in the order of the help. Each is a keyword of the functions of the kinds that have it."""
 
@@ -88,6 +88,9 @@ KINDS = {
     "cycles": Kind("cycles", "changes in each cycle", ("csv",)),
     "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv",)),
     "loops": Kind("load_cycle", "hysteresis loops of the last cycle, or of several", ("csv", "cycle", "abscissa")),
+    "scar": Kind("scar", "wear: worn profile and pressure after some cycles", ("csv",)),
+    "wear": Kind("scar", "wear: volume, depth, dissipation and pressure over the cycles", ("csv",)),
+    "damage": Kind("scar", "wear: damage of the material, which goes with it", ("csv", "body", "criterion")),
     "fatigue": Kind("fatigue", "a criterion along the edge over the last cycle", ("csv", "body", "criterion", "depth")),
 }
 """The kinds of figures by their names on the command line."""

@@ -16,6 +16,7 @@ from fastpin.figures.sheet import WIDTH, Look, Plot
 from fastpin.figures.subjects import InMemory, Subject
 from fastpin.model.checks import choice
 from fastpin.solver.result import Result
+from fastpin.solver.wear_result import WearResult
 
 
 def plot_of(kind: str, subject: Subject, **options: Any) -> Plot:
@@ -32,7 +33,7 @@ def plot_of(kind: str, subject: Subject, **options: Any) -> Plot:
 
 
 def plot_result(
-    result: Result,
+    result: Result | WearResult,
     kind: str,
     path: str | Path | None = None,
     title: str = "",
@@ -41,7 +42,7 @@ def plot_result(
     ax: Axes | None = None,
     **options: Any,
 ) -> Figure:
-    """Draw a figure of a result, see :meth:`fastpin.Result.plot`."""
+    """Draw a figure of a result, see :meth:`fastpin.Result.plot`, or of a life of wear."""
     choice("kind", kind, [name for name, each in KINDS.items() if each.ending == "png"])
     look = Look(path, title, WIDTH if width is None else width, dpi, ax)
     for name in options:

@@ -10,16 +10,18 @@ from fastpin.errors import InputError
 from fastpin.figures.states import DrawnStates, drawn_states, stored_states
 from fastpin.model.checks import instance
 from fastpin.solver.result import Result
+from fastpin.solver.wear_result import WearResult
 from fastpin.states.choice import NO_CYCLE, StateChoice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.store import load, places_between
+from fastpin.storage.wear import load_wear
 
 
 class InMemory:
-    """A result, a sequence of states of one problem and on one grid, or one state."""
+    """A result, a sequence of states of one problem and on one grid, one state, or a life of wear."""
 
-    def __init__(self, result: Sequence[State] | State) -> None:
+    def __init__(self, result: Sequence[State] | State | WearResult) -> None:
         self._result = result
 
     @property
@@ -29,7 +31,7 @@ class InMemory:
 
     def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
         """Return the states of a figure, see :func:`fastpin.figures.states.drawn_states`."""
-        return drawn_states(self._result, states, **how)
+        return drawn_states(self._result, states, **how)  # type: ignore[arg-type]
 
     def result(self) -> Result:
         """Return the result."""
@@ -38,6 +40,10 @@ class InMemory:
     def part(self, cycle: Cycle) -> Result:
         """Return the result."""
         return self.result()
+
+    def wear(self) -> WearResult:
+        """Return the life of wear."""
+        return instance("result", self._result, WearResult, "a WearResult")
 
 
 class InFile:
@@ -62,6 +68,10 @@ class InFile:
     def part(self, cycle: Cycle) -> Result:
         """Return the result with the states of one cycle only."""
         return load(self._path, states=places_between(self._path, *span_of(cycle)))
+
+    def wear(self) -> WearResult:
+        """Return the life of wear."""
+        return load_wear(self._path)
 
 
 Subject = InMemory | InFile

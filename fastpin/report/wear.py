@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.damage import WornFatigue
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units
+from fastpin.report.curves import Curve
 from fastpin.report.summary import json_ready, unit_names
 from fastpin.report.table import Column
 from fastpin.report.table import table as text_table
@@ -32,6 +34,56 @@ def table(result: WearResult) -> str:
     columns.append(("of the pin", "%", shares))
     columns.append(("solved", "", [f"{each.solved:,}" for each in result]))
     return text_table(columns)
+
+
+def scar_curves(result: WearResult) -> list[Curve]:
+    """Return the profiles and the pressures after all stored cycles, a curve each, in the order of the angles."""
+    unit = units(result.problem)
+    length, traction = unit["displacement"], unit["traction"]
+    angles = np.array([from_bottom(angle) for angle in result.theta.tolist()])
+    order = np.argsort(angles)
+    curves = []
+    for each in result:
+        columns = {
+            "angle [deg]": angles,
+            f"pin depth [{length.name}]": length.factor * each.pin_depth,
+            f"plate depth [{length.name}]": length.factor * each.plate_depth,
+            f"pressure [{traction.name}]": traction.factor * each.pressure,
+        }
+        curves.append(Curve({"cycle": each.cycle}, {name: values[order] for name, values in columns.items()}))
+    return curves
+
+
+def cycles_curve(result: WearResult) -> Curve:
+    """Return the numbers of all stored cycles."""
+    unit = units(result.problem)
+    volume, length, energy, traction = (
+        unit[kind] for kind in ("work per stress", "displacement", "energy", "traction")
+    )
+    columns = {
+        "cycle": [float(each.cycle) for each in result],
+        f"pin volume [{volume.name}]": [volume.factor * each.volumes[0] for each in result],
+        f"plate volume [{volume.name}]": [volume.factor * each.volumes[1] for each in result],
+        f"depth [{length.name}]": [length.factor * each.depth for each in result],
+        f"energy of a cycle [{energy.name}]": [energy.factor * each.energy_per_cycle for each in result],
+        f"largest pressure [{traction.name}]": [traction.factor * each.largest_pressure for each in result],
+    }
+    return Curve({}, {name: np.array(values) for name, values in columns.items()})
+
+
+def damage_curve(found: WornFatigue) -> Curve:
+    """Return the damage of all material points after the last cycle, and whether they are gone."""
+    length = units(found.problem)["length"]
+    shape = found.damage[-1].shape
+    angles = np.array([from_bottom(angle) for angle in found.theta.tolist()])
+    columns = {
+        "angle [deg]": np.broadcast_to(angles, shape),
+        f"depth [{length.name}]": np.broadcast_to(length.factor * found.depth[:, None], shape),
+        "damage": found.damage[-1],
+        "worn off": found.is_gone[-1].astype(float),
+        "cycles to damage 1": np.where(np.isfinite(found.broken), found.broken, np.nan),
+    }
+    return Curve({"body": found.body}, {name: np.ravel(values) for name, values in columns.items()})
 
 
 def document(result: WearResult | None, title: str = "", error: str | None = None) -> dict[str, Any]:

@@ -96,6 +96,11 @@ class WornCycle(ReadOnly):
         """Pressure at the nodes at the beginning of the next cycle, Pa, shape (n,)."""
         return self.states[0].pressure
 
+    @property
+    def largest_pressure(self) -> float:
+        """Largest pressure at a node over one cycle on this profile, Pa."""
+        return max(float(state.pressure.max()) for state in self.states)
+
     def __repr__(self) -> str:
         return f"<WornCycle: after {self.cycle:,} cycles, depth {self.depth:.4g}, volume {self.volume:.4g}>"
 
