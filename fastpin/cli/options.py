@@ -343,7 +343,7 @@ def add_sweep(commands: Any) -> None:
     sweep.add_argument(
         "--value",
         metavar="NAME",
-        help=f"outcome or key figure to plot (default: the first outcome, or else {DEFAULT_KEY_FIGURE})",
+        help=f"outcome or key figure to plot, or several: a,b,c (default: the first outcome, or {DEFAULT_KEY_FIGURE})",
     )
     sweep.add_argument("--x", metavar="FIELD", help="field along the figure's x axis")
     sweep.add_argument("--y", metavar="FIELD", help="field along the figure's y axis (for a map)")

@@ -128,14 +128,16 @@ def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None
     check_outputs({"--table": options.table, "--plot": options.plot})
     if options.plot is not None:
         try:
-            report.sweep.check_axes(plan, _value(options, plan), options.x, options.y)
+            for value in _values(options, plan):
+                report.sweep.check_axes(plan, value, options.x, options.y)
         except InputError as error:
             raise InputError(f"--{error.field}", error.reason) from None
 
 
-def _value(options: argparse.Namespace, plan: studies.plan.Plan) -> str:
-    """Return the number that a figure shows: by default the first outcome of the plan, or else a key figure."""
-    return str(options.value or next(iter(plan.outcomes), DEFAULT_KEY_FIGURE))
+def _values(options: argparse.Namespace, plan: studies.plan.Plan) -> list[str]:
+    """Return the numbers that a figure shows: by default the first outcome of the plan, or else a key figure."""
+    given = str(options.value or next(iter(plan.outcomes), DEFAULT_KEY_FIGURE))
+    return [name.strip() for name in given.split(",")]
 
 
 def _print_summary(
@@ -172,10 +174,13 @@ def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Pa
     if options.table not in (None, "-"):
         report.sweep.write_csv(plan, rows, Path(options.table))
     if options.plot is not None:
-        chart = report.sweep.chart(plan, rows, _value(options, plan), options.x, options.y)
-        figures.plot_sweep(chart, options.plot)
-        if chart.missing:
-            say(f"note: {chart.missing} of {len(rows)} points have no value in the figure", file=sys.stderr)
+        values = _values(options, plan)
+        charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]
+        figures.plot_sweep(charts if len(charts) > 1 else charts[0], options.plot)
+        for value, chart in zip(values, charts, strict=True):
+            if chart.missing:
+                part = f" of {value}" if len(charts) > 1 else ""
+                say(f"note: {chart.missing} of {len(rows)} points have no value{part} in the figure", file=sys.stderr)
     return rows
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis as MatplotlibAxis
@@ -22,10 +24,10 @@ from matplotlib.transforms import Bbox
 
 from fastpin.errors import InputError
 from fastpin.figures.class_map import class_patches, draw_classes
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import SMALL, Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
 from fastpin.figures.words import caption, shown_unit
-from fastpin.model.checks import instance
+from fastpin.model.checks import instance, instances
 from fastpin.report.sweep import Axis, Chart
 
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
@@ -34,6 +36,9 @@ _UNSURE: Any = {
     "linestyle": "none",
 }  # fmt: skip
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
+SIDE_BY_SIDE, PANEL = 7.6, 2.9
+"""Width of a figure of several charts, and the height of a row, inches."""
+
 MOST_COLUMNS = 3
 """Most maps side by side."""
 
@@ -76,7 +81,7 @@ PLAIN = 1e-3, 1e5
 
 
 def plot_sweep(
-    chart: Chart,
+    chart: Chart | Sequence[Chart],
     path: str | Path | None = None,
     title: str | None = None,
     width: float | None = None,
@@ -95,16 +100,47 @@ def plot_sweep(
     scale. Of more than :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
 
     The chart is made by :func:`fastpin.report.sweep.chart`. It gives the title and the width unless these are given.
-    Only curves or a single map go into `ax`.
+    Only curves or a single map go into `ax`. Several charts, of curves or of a single map each, stand side by side.
 
     See :func:`fastpin.plot_tractions` for the other arguments.
     """
+    if not isinstance(chart, Chart):
+        each = instances("chart", chart, Chart, "a Chart, or a list of charts")
+        return _side_by_side(
+            Look(path, each[0].title if title is None else title, width or SIDE_BY_SIDE, dpi, ax), each
+        )
     plot = sweep_of(chart)
     maps = 0 if chart.y is None else len(chart.parts)
     if ax is not None and maps > 1:
         raise InputError("ax", f"holds one map, but the chart has {maps}")
     look = Look(path, chart.title if title is None else title, plot.width if width is None else width, dpi, ax)
     return look.drawn(plot)
+
+
+def _side_by_side(look: Look, charts: Sequence[Chart]) -> Figure:
+    """Draw each of several charts into a panel of one figure, two in a row."""
+    if look.ax is not None:
+        raise InputError("ax", "holds one chart; give a list of charts no axes")
+    for chart in charts:
+        if chart.y is not None and len(chart.parts) > 1:
+            raise InputError("chart", f"{chart.label} has {len(chart.parts)} maps; side by side each chart has one")
+    columns = min(len(charts), 2)
+
+    def draw(look: Look) -> Sheet:
+        sheet = look.sheet([PANEL] * -(-len(charts) // columns), columns, 0.5)
+        for panel in sheet.axes.flat[len(charts) :]:
+            panel.set_visible(False)
+        for panel, chart in zip(sheet.axes.flat, charts, strict=False):
+            with mpl.rc_context(SMALL):
+                sweep_of(replace(chart, problem=None)).draw(Look(ax=panel))
+            above = panel.get_title()
+            panel.set_title(
+                "\n".join(filter(None, [above, "" if chart.classes else _shown(chart.label)])), fontsize=8.0
+            )
+        sheet.head(look.title, caption=_fixed_parameters(charts[0]))
+        return sheet
+
+    return look.drawn(Plot(draw))
 
 
 def sweep_of(chart: Chart) -> Plot:

@@ -20,6 +20,7 @@ from fastpin.model.read_only import ReadOnly
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
+from fastpin.solver.wear_result import WearResult
 from fastpin.states.choice import StateChoice, loaded_span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
@@ -231,6 +232,24 @@ class Result(Sequence[State]):
 
         states = cycle_states(self, self.cycles[-1]) if self.cycles else self.states
         return fatigue(states, criterion, body, **options)
+
+    def wear(self, **how: Any) -> WearResult:
+        """Follow the last cycle of the history many times on a profile that wears.
+
+        Parameters
+        ----------
+        **how
+            See :func:`fastpin.wear`, such as ``coefficient=1e-15, cycles=1e5``. The nodes are as many as here.
+
+        Raises
+        ------
+        InputError, SolveError
+            See :func:`fastpin.wear`.
+        """
+        import fastpin
+
+        life: WearResult = fastpin.wear(self.problem, self.history, **({"nodes": self.grid.size} | how))
+        return life
 
     def report(self, path: str | Path, **options: Any) -> None:
         """Write a report of the result, an HTML page or a PDF: case, loads, margins, key figures, figures, checks.

@@ -19,19 +19,24 @@ from pathlib import Path
 from typing import Any
 
 from fastpin.casefile.toml_text import CaseText, Section, read_text
+from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
+from fastpin.model.points import BODIES
 from fastpin.model.synonyms import closest
+from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     SPANS,
     TAKES,
+    WEAR_QUANTITIES,
     FunctionOfFile,
     StudyOutcome,
     bar_of_taken,
     digest,
     of_last_cycle,
+    of_wear,
     taken,
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
@@ -39,7 +44,12 @@ from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
 Outcomes = dict[str, StudyOutcome]
 """Outcomes by the names that the user chose."""
 
-KEYS = {"quantity": ("quantity", "take", "over"), "cycle": ("cycle",), "function": ("function", "classes")}
+KEYS = {
+    "quantity": ("quantity", "take", "over"),
+    "cycle": ("cycle",),
+    "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
+    "function": ("function", "classes"),
+}
 """The first key of an outcome says what is read. The others may stand beside it."""
 
 LONGEST_NAME = 64
@@ -200,7 +210,7 @@ def _of_table(name: str, section: Section, folder: Path) -> Outcomes:
     if first[0] == "function":
         outcome = _of_function(name, section, folder)
     else:
-        outcome = _of_cycle(name, section) if first[0] == "cycle" else _of_quantity(name, section)
+        outcome = {"cycle": _of_cycle, "wear": _of_wear, "quantity": _of_quantity}[first[0]](name, section)
     return {} if outcome is None else {name: outcome}
 
 
@@ -239,6 +249,32 @@ def _of_cycle(name: str, section: Section) -> StudyOutcome | None:
         return None
     kind, classes = CYCLE_QUANTITIES[quantity].kind, dict(CYCLE_QUANTITIES[quantity].classes)
     return StudyOutcome(kind, "", json.dumps({"cycle": quantity}), partial(of_last_cycle, quantity), classes)
+
+
+def _of_wear(name: str, section: Section) -> StudyOutcome | None:
+    """Read a number of the last cycle, followed on a profile that wears."""
+    quantity = _choice(name, section, "wear", tuple(WEAR_QUANTITIES))
+    with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.life is not None)
+    criterion = _choice(name, section, "criterion", with_life)
+    body: Any = _choice(name, section, "body", BODIES)
+    given = {key: section.value(key) for key in WEAR_KEYS if key in section}
+    if quantity is None or criterion is None or body is None or None in given.values():
+        return None
+    for key in ("criterion", "body"):
+        if key in section and quantity != "life":
+            section.report(f"{name}: {key}: has an effect on the life only", key)
+    if "cycles" not in given:
+        section.report(f"{name}: cycles is missing; a life of wear has a number of cycles, such as cycles = 1e5")
+        return None
+    try:
+        Wear(**given)
+    except InputError as error:
+        section.report(f"{name}: {error}", error.field if error.field in section else "wear")
+        return None
+    how = json.dumps(given, sort_keys=True)
+    definition = {"wear": quantity, "how": given, "criterion": criterion, "body": body}
+    read = partial(of_wear, quantity, how, criterion, body)
+    return StudyOutcome(WEAR_QUANTITIES[quantity].kind, "", json.dumps(definition, sort_keys=True), read)
 
 
 def _of_function(name: str, section: Section, folder: Path) -> StudyOutcome | None:

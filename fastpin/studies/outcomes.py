@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import json
 import math
 import pickle
 import sys
@@ -25,6 +26,7 @@ from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
+from fastpin.model.doubts import doubts_given
 from fastpin.model.points import Body, owner_of
 from fastpin.model.units import DEGREE, Unit
 from fastpin.states.choice import missing_corners, span_of, states_between
@@ -36,6 +38,7 @@ from fastpin.states.state import State
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.damage.hot_spots import HotSpot
     from fastpin.solver.result import Result
+    from fastpin.solver.wear_result import WearResult
 
 TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
 """Ways to take one number from the values of a quantity, see :func:`taken`."""
@@ -48,6 +51,8 @@ ROUNDING = 1e-9
 """Largest slip range without slip, in parts of the natural size of displacements."""
 
 _PACKAGE = Path(__file__).parents[1]
+
+_WORN_LIVES: WeakKeyDictionary[Result, dict[str, WearResult]] = WeakKeyDictionary()
 
 _HOT_SPOTS: WeakKeyDictionary[Result, dict[tuple[str, Body], HotSpot]] = WeakKeyDictionary()
 
@@ -106,6 +111,36 @@ The first four are those of :class:`fastpin.states.cycles.Cycle`. The next four 
 :class:`fastpin.states.LoadCycle`. "regime" is :attr:`fastpin.states.LoadCycle.regime`. The others belong to the hot
 spot on the edge of the plate, see :func:`fastpin.damage.fatigue`. Names that end with "_seat", such as
 "smith_watson_topper_life_seat", belong to the plate round a bush, at the seat of the bush.
+"""
+
+
+class WearQuantity(NamedTuple):
+    """A number of a life of wear.
+
+    Attributes
+    ----------
+    kind : str
+        See :class:`CycleQuantity`.
+    of : callable
+        ``of(life, criterion, body)`` gives its value for a :class:`fastpin.solver.WearResult`.
+    """
+
+    kind: str
+    of: Callable[[WearResult, str, Body], float]
+
+
+WEAR_QUANTITIES: dict[str, WearQuantity] = {
+    "volume": WearQuantity("work per stress", lambda life, *_: life[-1].volume),
+    "depth": WearQuantity("displacement", lambda life, *_: life[-1].depth),
+    "pin_share": WearQuantity("", lambda life, *_: life[-1].pin_share),
+    "dissipation": WearQuantity("energy", lambda life, *_: life[-1].energy_per_cycle),
+    "pressure": WearQuantity("traction", lambda life, *_: life[-1].largest_pressure),
+    "life": WearQuantity("life", lambda life, criterion, body: _finite(life.fatigue(criterion, body).life)),
+}
+"""The quantities of the last cycle of a result that is followed on a profile that wears, by name.
+
+All but the life belong to the end of the wear: the last profile, and one cycle on it. "life" is the number of cycles
+until a crack starts, see :func:`fastpin.damage.worn_fatigue`.
 """
 
 
@@ -335,6 +370,18 @@ def of_last_cycle(quantity: str, result: Result) -> float:
     return CYCLE_QUANTITIES[quantity].of(result)
 
 
+def of_wear(quantity: str, how: str, criterion: str, body: Body, result: Result) -> float:
+    """The value of a name in :data:`WEAR_QUANTITIES`; NaN without a crack.
+
+    `how` is the wear as JSON: the fields of :class:`fastpin.model.Wear`. A life is kept while the result lives.
+    """
+    lives = _WORN_LIVES.setdefault(result, {})
+    if how not in lives:
+        with doubts_given():
+            lives[how] = result.wear(**json.loads(how))
+    return WEAR_QUANTITIES[quantity].of(lives[how], criterion, body)
+
+
 @dataclass(frozen=True)
 class FunctionOfFile:
     """A function of a Python file with this text. Workers need not see the file.
@@ -457,6 +504,10 @@ def _life(result: Result, criterion: str, body: Body) -> float:
         raise FastpinError(
             f"the {owner_of(result.problem, body)}'s material has no constants for a life by {criterion}"
         )
+    return _finite(life)
+
+
+def _finite(life: float) -> float:
     return life if math.isfinite(life) else math.nan
 
 

@@ -414,6 +414,10 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     if section not in KEYS:
         hint = closest(section, tuple(KEYS)) or f"; sections are {', '.join(KEYS)}"
         return f'"{name}": there is no section [{section}] in a case file{hint}'
+    if section == "wear":
+        return (
+            f'"{name}": no run of a sweep wears; an outcome such as {{ wear = "depth", ... }} has its own {names[-1]}'
+        )
     if section == "load":
         if not 3 <= len(names) <= 4 or not names[1].isdecimal():
             return f'"{name}": a load is written load.N.key, such as load.2.Q in the second [[load]] block'
