@@ -15,7 +15,7 @@ from fastpin.states.choice import NO_CYCLE, StateChoice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.store import load, places_between
-from fastpin.storage.wear import load_wear
+from fastpin.storage.wear_files import load_wear
 
 
 class InMemory:
