@@ -19,7 +19,7 @@ from fastpin.model.checks import any_text, as_toml, number, whole_number
 from fastpin.model.load_units import Basis
 from fastpin.model.problem import checked_gap
 from fastpin.model.profile import MOST_TERMS, NO_GAP, InitialGap, Profile
-from fastpin.model.profile_csv import Quantity, read_samples
+from fastpin.model.profile_csv import ProfileKind, read_samples
 from fastpin.model.profile_terms import MOST_ORDER, Crown, Flat, Harmonic, Zone
 from fastpin.model.synonyms import closest
 
@@ -127,7 +127,7 @@ _FIRST = ("depth", "height", "value", "order")
 class _Reader:
     """Reads the profiles of a section, and reports their faults to it."""
 
-    def __init__(self, section: Section, folder: Path, quantity: Quantity, basis: Basis) -> None:
+    def __init__(self, section: Section, folder: Path, quantity: ProfileKind, basis: Basis) -> None:
         self._section, self._folder, self._quantity, self._basis = section, folder, quantity, basis
 
     def profile(self, key: str) -> Profile | None:

@@ -16,7 +16,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
 from fastpin.model.checks import as_toml, check_callable, choice, instances, number, number_array, whole_number
-from fastpin.model.profile_csv import QUANTITIES, read_samples
+from fastpin.model.profile_csv import PROFILE_KINDS, read_samples
 from fastpin.model.profile_terms import (
     MOST_ANGLE,
     MOST_ORDER,
@@ -25,9 +25,9 @@ from fastpin.model.profile_terms import (
     Crown,
     Flat,
     Harmonic,
-    InWords,
     Samples,
     Term,
+    ValueInWords,
     Zone,
 )
 from fastpin.model.synonyms import explains_keywords
@@ -143,7 +143,7 @@ class Profile:
         InputError
             If the samples do not go round the hole, see :meth:`samples`.
         """
-        return cls.samples(*read_samples(path, choice("quantity", quantity, QUANTITIES)))  # type: ignore[arg-type]
+        return cls.samples(*read_samples(path, choice("quantity", quantity, PROFILE_KINDS)))  # type: ignore[arg-type]
 
     @classmethod
     def of(cls, place: str, value: ProfileLike) -> Profile:
@@ -198,7 +198,7 @@ class Profile:
         """The tables of its terms, as case files and JSON hold them. Angles are in degrees from the bottom."""
         return [term.toml() for term in self.terms]
 
-    def words(self, text: InWords) -> str:
+    def words(self, text: ValueInWords) -> str:
         """Words that describe it. `text` words a value."""
         described = [term.words(text) for term in self.terms[:MOST_DESCRIBED]]
         if len(self.terms) > MOST_DESCRIBED:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from io import StringIO
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -16,11 +16,12 @@ from fastpin.model.csv_columns import title_and_unit
 from fastpin.model.inputs import open_input
 from fastpin.model.load_units import Basis, LoadUnit, load_unit
 
-Quantity = Literal["gap", "friction", "wear"]
+ProfileKind = Literal["gap", "friction", "wear"]
 """What the values of a file are."""
 
-QUANTITIES = ("gap", "friction", "wear")
-"""The names of quantities."""
+PROFILE_KINDS = get_args(ProfileKind)
+"""The words of :data:`ProfileKind`."""
+
 
 MOST_BYTES = 2_000_000
 """Most bytes of a file. 20,000 samples with all digits have 0.9 MB."""
@@ -33,7 +34,7 @@ MOST_FAULTS = 20
 
 
 def read_samples(
-    path: str | Path, quantity: Quantity = "gap", basis: Basis = "per metre"
+    path: str | Path, quantity: ProfileKind = "gap", basis: Basis = "per metre"
 ) -> tuple[np.ndarray, np.ndarray]:
     """Read angles, rad, and values, shape (n,) each, from a CSV file with two columns.
 
@@ -59,7 +60,7 @@ def read_samples(
     return _samples(text, str(place), quantity, basis)
 
 
-def _samples(text: str, name: str, quantity: Quantity, basis: Basis) -> tuple[np.ndarray, np.ndarray]:
+def _samples(text: str, name: str, quantity: ProfileKind, basis: Basis) -> tuple[np.ndarray, np.ndarray]:
     lines = [
         (line_number, line)
         for line_number, line in enumerate(text.splitlines(), start=1)
@@ -93,7 +94,7 @@ def _samples(text: str, name: str, quantity: Quantity, basis: Basis) -> tuple[np
     return angle_at(degrees), numbers[:, 1] * (10.0**value.power * value.factor if value else 1.0)
 
 
-def _units(cells: list[str], quantity: Quantity, basis: Basis) -> dict[str, LoadUnit | None]:
+def _units(cells: list[str], quantity: ProfileKind, basis: Basis) -> dict[str, LoadUnit | None]:
     """The units of the two columns by their titles. The unit of angles is None for degrees."""
     if len(cells) != 2:
         raise InputError("", f"a profile has two columns, an angle and a value, not {len(cells)}")

@@ -40,7 +40,7 @@ Angles in the wrong unit are refused in this way, too.
 MOST_ANGLE = 4.0 * math.pi
 """Largest angle, rad. One beyond two turns is in degrees by mistake."""
 
-InWords = Callable[[float], str]
+ValueInWords = Callable[[float], str]
 """The text of a value, with its unit if it has one."""
 
 
@@ -82,7 +82,7 @@ class Term(ABC):
         """
 
     @abstractmethod
-    def words(self, text: InWords) -> str:
+    def words(self, text: ValueInWords) -> str:
         """Words that describe it. `text` words a value."""
 
     def entries(self) -> dict[str, Any]:
@@ -163,7 +163,7 @@ class Harmonic(Term):
         cosine, sine = self.at_bottom
         return {"harmonic": self.order, "cosine": cosine, "sine": sine}
 
-    def words(self, text: InWords) -> str:
+    def words(self, text: ValueInWords) -> str:
         if self.order == 0:
             return text(self.cosine)
         cosine, sine = self.at_bottom
@@ -208,7 +208,7 @@ class Flat(Term):
         half = math.acos(max(1.0 - self.depth / radius, 0.0))
         return self.centre + np.array([-half, 0.0, half])
 
-    def words(self, text: InWords) -> str:
+    def words(self, text: ValueInWords) -> str:
         return f"flat {text(self.depth)} deep at {from_bottom(self.centre):.4g} deg"
 
 
@@ -246,7 +246,7 @@ class Crown(Term):
     def angles_of_note(self, radius: float) -> np.ndarray:
         return self.centre + np.linspace(-self.half_width, self.half_width, WAVE + 1)
 
-    def words(self, text: InWords) -> str:
+    def words(self, text: ValueInWords) -> str:
         at, wide = from_bottom(self.centre), math.degrees(self.half_width)
         return f"crown of {text(self.height)} at {at:.4g} deg, half width {wide:.4g} deg"
 
@@ -283,7 +283,7 @@ class Zone(Term):
         value = np.where(inside, self.value, 0.0)
         return np.array([value, np.zeros_like(value), np.zeros_like(value)])
 
-    def words(self, text: InWords) -> str:
+    def words(self, text: ValueInWords) -> str:
         first = from_bottom(self.start)
         return f"{text(self.value)} more from {first:.4g} to {first + math.degrees(self.stop - self.start):.4g} deg"
 
@@ -347,7 +347,7 @@ class Samples(Term):
     def toml(self) -> dict[str, Any]:
         return {"angles": tuple(map(degrees_at, self.angles)), "values": self.heights}
 
-    def words(self, text: InWords) -> str:
+    def words(self, text: ValueInWords) -> str:
         return f"{len(self.angles):,} samples from {text(min(self.heights))} to {text(max(self.heights))}"
 
 

@@ -58,7 +58,7 @@ BOTH_ENDS = (slice(None), slice(None, None, -1))
 
 
 @dataclass(frozen=True, eq=False)
-class Zone:
+class StickZone:
     """A stick zone of a patch. Pairs belong to its start and its stop.
 
     Attributes
@@ -99,7 +99,7 @@ class Patch:
         The edges, and the open nodes beyond, rad. All round they are the same place.
     exponents : (float, float) or None
         Of the pressure at the edges, (T21); None all round.
-    stick : tuple of Zone
+    stick : tuple of StickZone
         Its stick zones, in order.
     friction : ndarray, shape (n,)
         Coefficient of friction at its nodes.
@@ -113,7 +113,7 @@ class Patch:
     edges: tuple[float, float]
     outside: tuple[float, float]
     exponents: tuple[float, float] | None
-    stick: tuple[Zone, ...]
+    stick: tuple[StickZone, ...]
     friction: np.ndarray
     beta: float
 
@@ -187,7 +187,7 @@ def _pressure_laws(patch: Patch) -> tuple[Law | None, ...]:
     )
 
 
-def _with_hidden_slip(patch: Patch, zone: Zone, pressure: tuple[Law | None, ...]) -> Zone:
+def _with_hidden_slip(patch: Patch, zone: StickZone, pressure: tuple[Law | None, ...]) -> StickZone:
     """A stick zone with the slip zone at an edge that is narrower than the node distance.
 
     There all nodes stick, and T at the edge would exceed mu N.
@@ -379,7 +379,7 @@ def _patches(
         )  # fmt: skip
 
 
-def _zones(nodes: ShearNodes, stick: list[tuple[np.ndarray, Interval]], run: np.ndarray) -> tuple[Zone, ...]:
+def _zones(nodes: ShearNodes, stick: list[tuple[np.ndarray, Interval]], run: np.ndarray) -> tuple[StickZone, ...]:
     """The stick zones in the contact of the nodes `run`, in their order there. They may cross the first node."""
     places = np.full(nodes.grid.size, -1)
     places[run] = np.arange(run.size)
@@ -388,5 +388,5 @@ def _zones(nodes: ShearNodes, stick: list[tuple[np.ndarray, Interval]], run: np.
         if places[inside[0]] >= 0:
             signs, exponents = signs_beside(nodes.shear, inside), stick_exponents(nodes.shear, nodes.tilt, inside)
             shear_laws = tuple(nodes.shear_laws(inside, most))
-            zones.append(Zone(ends, places[inside], signs, exponents, nodes.old_borders(inside), shear_laws))
+            zones.append(StickZone(ends, places[inside], signs, exponents, nodes.old_borders(inside), shear_laws))
     return tuple(sorted(zones, key=lambda zone: int(zone.nodes[0])))

@@ -165,7 +165,7 @@ class Run:
             now = replace(first, dissipation=0.0, work=0.0)
             start = Restart(0, load, system.scales.force, now, first.dissipation, first.work, Repeats(), {}, {})
         self.corner_log = CornerLog(history, start.marks)
-        counts = options.slip_sums and recorder is not None
+        counts = (options.slip_sums or self.wears) and recorder is not None
         self._no_slip = SlipTally.empty(system.grid.size, self.wears) if counts else NOT_COUNTED
         self.statistics = dict.fromkeys(COUNTED, 0.0)
         self.stepper = _stepper(system, options, self.statistics, strict)

@@ -30,8 +30,8 @@ from fastpin.solver.wear_result import WearResult, WornCycle
 
 log = logging.getLogger(__name__)
 
-SLIP_OPTIONS = {"slip_sums": True, "keep": "every 100000000", "between": 0}
-"""Options of the run: slip is counted over each step, and states are kept where they are asked for."""
+KEPT_ON_DEMAND = {"keep": "every 100000000", "between": 0}
+"""Options of the run: states are kept where they are asked for."""
 
 
 class WearRecorder(Protocol):
@@ -47,7 +47,7 @@ class WearRecorder(Protocol):
         """Note a place from which the life can go on later."""
 
 
-class InMemory:
+class CyclesInMemory:
     """A recorder of the chosen cycles in memory."""
 
     def __init__(self) -> None:
@@ -210,7 +210,7 @@ class WearTask:
 
     def _life(self, grid: Grid, force: float, watch: RunProgress) -> FatCycles:
         system = build_system(self.problem, grid, force)
-        options = self.options.changed(arc=None, **SLIP_OPTIONS)
+        options = self.options.changed(arc=None, **KEPT_ON_DEMAND)
         kept = MemoryRecorder()
         run = WearRun(self.history, system, options, kept, watch)
         return FatCycles(run, self.wear, self.cycle)

@@ -32,7 +32,7 @@ from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.fat_cycles import Worn
 from fastpin.solver.run import RunProgress
 from fastpin.solver.task import as_history, deferred_interrupts
-from fastpin.solver.wear import InMemory, WearTask
+from fastpin.solver.wear import CyclesInMemory, WearTask
 from fastpin.solver.wear_result import WearResult, WornCycle
 from fastpin.storage import hdf5
 from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of, reading, text_of
@@ -153,7 +153,7 @@ def wear(
 
 
 def _in_memory(task: WearTask) -> WearResult:
-    kept = InMemory()
+    kept = CyclesInMemory()
     try:
         task.follow(kept)
     except (SolveError, Interrupted) as ended:

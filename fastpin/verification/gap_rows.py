@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.bodies.ring import Ring
-from fastpin.bodies.tube import Tube
 from fastpin.elasticity.system import System
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
@@ -16,6 +14,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.solver.result import Result
+from fastpin.verification.body_cases import RING, STUCK
 from fastpin.verification.comparisons import all_round_difference
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.rows import Checks, Solving, angle_check, difference_check, relative_check
@@ -35,7 +34,7 @@ FRETTED = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2, "P": 0.5}]
 
 def waves(pair: MaterialPair, friction: float, hollow: bool, solving: Solving) -> Checks:
     """An unloaded interference fit that slides freely, or sticks all round."""
-    bodies: dict[str, Any] = {"pin_body": Tube(0.5), "plate_body": Ring(2.0)} if hollow else {}
+    bodies: dict[str, Any] = {"pin_body": STUCK.pin_body, "plate_body": RING.plate_body} if hollow else {}
     problem = Problem.from_load_parameter(pair, -0.3, friction, gap=WAVES, **bodies)
     (state,) = solving(problem, [{"P": 0.0}], nodes=201)
     yield difference_check("tractions", all_round_difference(state), "N0")

@@ -34,6 +34,7 @@ COMMANDS = {
     "compliance": ["compliance", "lug.toml"],
     "benchmarks": ["benchmarks", "kirsch"],
     "verify": ["verify"],
+    "wear": ["wear", "case.toml", "--cycles", "2", "--coefficient", "1e-13"],
     "paper": ["paper", "--figure", "3"],
 }
 """Each command with its input."""
@@ -51,6 +52,7 @@ TEXTS: dict[str, dict[str, str]] = {
     "compliance": {"--output": ".json", "--plot": ".png"},
     "benchmarks": {"--json": ".json"},
     "verify": {"--json": ".json"},
+    "wear": {"--json": ".json"},
 }
 """The options of texts and figures, with the ending of their files."""
 
@@ -58,7 +60,7 @@ ENDINGS = [(name, option, ending) for name, found in TEXTS.items() for option, e
 ENDINGS.append(("report", "--output", ".pdf"))
 """Commands, their options and the endings of their files."""
 
-RESULTS = {"run": {"--output"}}
+RESULTS = {"run": {"--output"}, "wear": {"--output"}}
 DIRECTORIES = {"sweep": {"--output"}, "merge": {"--output"}, "paper": {"--output"}, "benchmarks": {"--output"}}
 INPUTS = {
     "run": {"--start"},
@@ -166,8 +168,9 @@ def test_no_text_or_figure_replaces_another_kind(
         ("link", "is no result, and a result replaces results only"),
     ],
 )
+@pytest.mark.parametrize("command", RESULTS)
 def test_a_result_replaces_results_only(
-    kind: str, words: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
+    command: str, kind: str, words: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = Path("case.toml" if kind == "input" else "keep.h5")
     if kind == "text":
@@ -176,10 +179,10 @@ def test_a_result_replaces_results_only(
         Path("notes.txt").write_text("notes")
         path.symlink_to("notes.txt")
     elif kind != "input":
-        KINDS[kind][0](path, samples, "run")
+        KINDS[kind][0](path, samples, command)
     before = contents(folder)
     with locked(path) if kind == "running" else nothing(path):
-        assert main(["run", "case.toml", "--nodes", "41", "-o", str(path), "--overwrite"]) == 2
+        assert main([*COMMANDS[command], "--nodes", "41", "-o", str(path), "--overwrite"]) == 2
     assert words in capsys.readouterr().err
     assert contents(folder) == before
 

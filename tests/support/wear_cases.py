@@ -15,7 +15,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.profile import NO_GAP, InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.solver.solving import MemoryRecorder
-from fastpin.solver.wear import SLIP_OPTIONS
+from fastpin.solver.wear import KEPT_ON_DEMAND
 from fastpin.solver.wear_path import Removal, WearRun
 from tests.support.slip_cases import LIKE, UNLIKE
 
@@ -98,7 +98,7 @@ WEAR_CASES = {
 
 def wearing(problem: Problem, grid: Grid) -> WearRun:
     """A run without load that can wear."""
-    options = SolveOptions(**SLIP_OPTIONS)  # type: ignore[arg-type]
+    options = SolveOptions(**KEPT_ON_DEMAND)  # type: ignore[arg-type]
     return WearRun(LoadHistory([{}]), System.build(problem, grid, 1.0), options, MemoryRecorder())
 
 
