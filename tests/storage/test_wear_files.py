@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import random
-import signal
 import subprocess
 import sys
 import time
@@ -144,24 +142,31 @@ life(path, cycles=3000, tolerance=0.005, resume=path.exists() and path.stat().st
 
 @pytest.mark.slow
 def test_a_life_that_is_killed_thirty_times_has_the_same_bits(tmp_path):
+    """Each process dies some hundredths of a second after it has written one or two more checkpoints."""
     path, root = tmp_path / "life.h5", str(Path(__file__).parents[2])
+    checkpoint = wear_files.checkpoint_of(path)
     program = KILLED.format(root=root, path=str(path))
     chance, kills = random.Random(5), 0
-    while kills < 30:
-        process = subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.PIPE)
+
+    def written():
         try:
-            process.wait(timeout=1.0 + 0.8 * chance.random() + 0.03 * kills)
-        except subprocess.TimeoutExpired:
-            os.kill(process.pid, signal.SIGKILL)
-            process.wait()
-            kills += 1
-        else:
-            assert process.stderr is not None
-            error = process.stderr.read().decode()
-            assert process.returncode == 0 or "begun" in error, error
-            break
-        time.sleep(0.01)
-    if not fastpin.load_wear(path).complete:
-        life(path, cycles=3000, tolerance=0.005, resume=True)
-    assert kills >= 10
+            return checkpoint.stat().st_mtime_ns
+        except FileNotFoundError:
+            return 0
+
+    while kills < 30:
+        with subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.PIPE, text=True) as process:
+            for _ in range(chance.randint(1, 2)):
+                before = written()
+                while process.poll() is None and written() == before:
+                    time.sleep(0.002)
+            time.sleep(0.03 * chance.random())
+            if process.poll() is None:
+                process.kill()
+                kills += 1
+            else:
+                assert process.returncode == 0, process.communicate()[1]
+                break
+    assert kills == 30
+    life(path, cycles=3000, tolerance=0.005, resume=True)
     assert_same_life(fastpin.load_wear(path), life(cycles=3000, tolerance=0.005))
