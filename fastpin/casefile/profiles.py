@@ -56,12 +56,8 @@ def _angle(field: str, value: object) -> float:
     return float(angle_at(_degrees(field, value)))
 
 
-def _span(field: str, value: object) -> float:
-    """Check a difference of angles in degrees, and return it in rad."""
-    return _degrees(field, value) * DEGREE
-
-
 def _degrees(field: str, value: object) -> float:
+    """Check an angle in degrees."""
     degrees = number(field, value, -360.0, 360.0)
     parts = degrees / (15.0 * DEGREE)
     if 1.0 <= abs(round(parts)) <= 24 and abs(parts - round(parts)) <= IN_RADIANS * abs(parts) and degrees % 1.0:
@@ -106,7 +102,7 @@ WORDS = {
     "crown": Word(
         ("crown", "centre", "half_width"),
         {},
-        lambda height, at, wide: Profile((Crown(height, _angle("centre", at), _span("half_width", wide)),)),
+        lambda height, at, wide: Profile((Crown(height, _angle("centre", at), DEGREE * _degrees("half_width", wide)),)),
     ),
     "zone": Word(
         ("zone", "start", "stop"),

@@ -25,7 +25,6 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import PER_THICKNESS
-from fastpin.model.wear import WEAR_KEYS, Wear
 
 PER_LINE = 8
 """Numbers of a list of loads on one line. Lines stay shorter than 200 letters."""
@@ -42,6 +41,7 @@ def case_text(case: Case) -> str:
         If `case` is no Case, or the plate is a compliance, which has a file of its own.
     """
     instance("case", case, Case, "a Case")
+    wear = {} if case.wear is None else case.wear.toml()
     blocks = [
         *([[f"title = {_value(case.title)}"]] if case.title else []),
         ["[about]", *(f"{name} = {_value(value)}" for name, value in case.about.given().items())],
@@ -51,7 +51,7 @@ def case_text(case: Case) -> str:
         ["[gap]", *(f"{name} = {_value(profile.toml())}" for name, profile in case.problem.gap.given.items())],
         *_bodies(case.problem),
         ["[[load]]", *_loads(case.history, case.problem.thickness)],
-        ["[wear]", *_wear(case.wear)],
+        ["[wear]", *(f"{name} = {_value(value)}" for name, value in wear.items())],
         ["[solve]", *_options(case.options)],
     ]
     return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
@@ -71,13 +71,6 @@ def _material(material: Material) -> Iterator[str]:
     if material.fatigue is not None:
         constants = ", ".join(f"{name} = {_value(value)}" for name, value in material.fatigue.given().items())
         yield f"fatigue = {{ {constants} }}"
-
-
-def _wear(wear: Wear | None) -> Iterator[str]:
-    for name in WEAR_KEYS if wear is not None else ():
-        value = getattr(wear, name)
-        if value is not None:
-            yield f"{name} = {_value(value.toml() if isinstance(value, Profile) else value)}"
 
 
 def _contact(problem: Problem) -> Iterator[str]:

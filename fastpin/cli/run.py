@@ -298,7 +298,7 @@ class RunReport:
             writers.append((options.json, lambda path: write_text(path, text)))
         if result is not None and len(result):
             writers.append((options.plot, lambda path: self._plot(options, path)))
-            writers.append((options.record, partial(_write_record, case, result, error)))
+            writers.append((options.record, lambda path: write_text(path, live.record_page(case, result, error or ""))))
         if result is not None and result.cycles:
             writers.append((options.cycles, partial(figures.plot_cycles, result, title=case.title)))
         elif options.cycles is not None:
@@ -384,10 +384,6 @@ class RunReport:
             say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
         say(*(f"note: {note}" for note in note_lines(case, result)))
         say(solver_line(result))
-
-
-def _write_record(case: Case, result: solver.Result, error: str | None, path: Path) -> None:
-    write_text(path, live.record_page(case, result, error or ""))
 
 
 def _reached(result: solver.Result) -> int:

@@ -91,14 +91,12 @@ class Term(ABC):
 
     def toml(self) -> dict[str, Any]:
         """The keys and values of its table in a case file. Its kind is the key of its first field."""
-        found = {name: self._in_degrees(name, value) for name, value in self.entries().items() if name != "kind"}
+        found = self.entries()
+        found |= {name: degrees_at(found[name]) for name in self.places}
+        found |= {name: degrees_of(found[name]) for name in self.spans}
+        kind = found.pop("kind")
         first = next(iter(found))
-        return {self.kind: found.pop(first), **found}
-
-    def _in_degrees(self, name: str, value: Any) -> Any:
-        if name in self.spans:
-            return degrees_of(value)
-        return degrees_at(value) if name in self.places else value
+        return {kind: found.pop(first), **found}
 
     def _check_angles(self) -> None:
         for name in (*self.places, *self.spans):

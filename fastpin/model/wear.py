@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -100,6 +101,11 @@ class Wear:
             raise InputError("coefficient", "must be positive somewhere on pin or plate")
         positive: np.ndarray = np.maximum(found, 0.0)  # a spline may pass below zero in between
         return positive
+
+    def toml(self) -> dict[str, Any]:
+        """The keys and values of the section [wear] of a case file."""
+        found = {each.name: getattr(self, each.name) for each in fields(self) if getattr(self, each.name) is not None}
+        return {name: value.toml() if isinstance(value, Profile) else value for name, value in found.items()}
 
     @property
     def chosen(self) -> tuple[int, ...]:

@@ -177,7 +177,8 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     without rows.
     """
     file.attrs["format"] = FORMAT
-    file.attrs["format_version"] = _version(problem)
+    with_bodies = WITH_BODIES if problem.has_bodies else FORMAT_VERSION
+    file.attrs["format_version"] = WITH_PROFILES if problem.profiles else with_bodies
     file.attrs["complete"] = False
     file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
     file.attrs["platform"] = platform.platform()
@@ -215,12 +216,6 @@ def versions() -> dict[str, str]:
     """Return the versions of fastpin, Python and the libraries, by name."""
     libraries = {name: metadata.version(name) for name in ("numpy", "scipy", "numba", "h5py")}
     return {"fastpin": __version__, "python": platform.python_version(), **libraries}
-
-
-def _version(problem: Problem) -> int:
-    if problem.profiles:
-        return WITH_PROFILES
-    return WITH_BODIES if problem.has_bodies else FORMAT_VERSION
 
 
 def _write_problem(group: h5py.Group, problem: Problem) -> None:

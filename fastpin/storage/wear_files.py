@@ -12,7 +12,6 @@ import time
 import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -451,4 +450,4 @@ def _read_place(group: hdf5.Group, nodes: int) -> Worn:
     check_finite("depth", depth)
     numbers = {name: as_python(group.attrs[name]) for name in ("cycle", "jump", "solved", "removed", "pause")}
     restart = read_restart(group["restart"], nodes)
-    return Worn(**numbers, depth=depth, restart=replace(restart), loses_contact=bool(group.attrs["loses_contact"]))
+    return Worn(**numbers, depth=depth, restart=restart, loses_contact=bool(group.attrs["loses_contact"]))

@@ -121,15 +121,12 @@ def with_values(
 def reads_files(table: Any) -> bool:
     """Whether the tables of a case name a CSV file, or the file of a plate or of materials, which may change later."""
     if isinstance(table, dict):
-        profiles = [each for _, key in PROFILES for each in _terms(table.get(key))]
-        if {"csv", "file", "materials"} & set(table) or any(isinstance(each, str) for each in profiles):
+        profiles = [table.get(key) for _, key in PROFILES]
+        terms = [term for each in profiles for term in (each if isinstance(each, list) else [each])]
+        if {"csv", "file", "materials"} & set(table) or any(isinstance(term, str) for term in terms):
             return True
         return any(map(reads_files, table.values()))
     return isinstance(table, list) and any(map(reads_files, table))
-
-
-def _terms(profile: Any) -> list[Any]:
-    return profile if isinstance(profile, list) else [profile]
 
 
 def conflict(values: dict[str, Any]) -> tuple[str, str] | None:
