@@ -87,17 +87,7 @@ def settle(
     nodes = np.concatenate([first, second, third, third])
     factor = np.r_[sense, np.ones(second.size + third.size), -np.ones(third.size)]
     rows = np.concatenate([n + first, second, n + third, n + third])
-    is_gap = rows < n
-    positions = np.searchsorted(unknowns.rows, np.asarray(rows))
-    answers = unknowns.held_columns(positions)[0][: unknowns.count] * factor
-    rates = unknowns.rates(load_rate)[: unknowns.count]
-    normal = np.searchsorted(unknowns.rows, nodes)
-    part = np.where(is_gap, 1.0, mu[nodes])
-    reserve = part[:, None] * answers[normal]
-    known = part * rates[normal]
-    shears = np.flatnonzero(~is_gap)
-    reserve[shears] += factor[shears, None] * answers[positions[shears]]
-    known[shears] += factor[shears] * rates[positions[shears]]
+    reserve, known = _rate_problem(system, unknowns, load_rate, nodes, rows, factor)
     if growth is not None:
         known[: first.size] += growth[first] * now.pressure[first]
     # Rates of tractions and of displacements have different sizes. Scaled, the covering vector of ones has a meaning.
@@ -114,6 +104,33 @@ def settle(
     found[second] = np.where(opens, OPEN, status[second])
     found[third] = np.select([opens[rubbing], forth, back], [OPEN, SLIP_POSITIVE, SLIP_NEGATIVE], STICK)
     return found
+
+
+def _rate_problem(
+    system: System,
+    unknowns: DenseUnknowns,
+    load_rate: np.ndarray,
+    nodes: np.ndarray,
+    rows: np.ndarray,
+    factor: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Matrix (k, k) and vector (k,) of the complementarity problem for rates.
+
+    Each variable is `factor` (k,) times the rate of a gap or slip: of its node in `nodes` (k,), in its row of `rows`.
+    Its reserve is a pressure, or mu N less the shear in the sense of the slip.
+    """
+    is_gap = rows < system.grid.size
+    positions = np.searchsorted(unknowns.rows, rows)
+    answers = unknowns.held_columns(positions)[0][: unknowns.count] * factor
+    rates = unknowns.rates(load_rate)[: unknowns.count]
+    normal = np.searchsorted(unknowns.rows, nodes)
+    part = np.where(is_gap, 1.0, system.friction[nodes])
+    reserve = part[:, None] * answers[normal]
+    known = part * rates[normal]
+    shears = np.flatnonzero(~is_gap)
+    reserve[shears] += factor[shears, None] * answers[positions[shears]]
+    known[shears] += factor[shears] * rates[positions[shears]]
+    return reserve, known
 
 
 class FiniteStep:
