@@ -277,8 +277,8 @@ class Section:
             self.report(f"[{self.name}]: {key} is missing{hint}")
 
     def means(self, *keys: str) -> bool:
-        """Whether a word of this table is another word for one of the keys."""
-        return any(name in keys for word in self.table for name in meant(word))
+        """Whether a word of this table is one of the keys, or another word for one."""
+        return any(name in keys for word in self.table for name in (word, *meant(word)))
 
     def value(self, key: str) -> Any:
         """The parsed value of a key; None if it is missing or faulty."""

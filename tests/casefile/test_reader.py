@@ -266,6 +266,12 @@ def test_moment_on_a_body_loaded_pin_names_the_line_that_gives_it() -> None:
     assert message.startswith("M: ")
 
 
+@pytest.mark.parametrize("name", [name for name in LOADS if name not in ("ux", "uy", "rotation")])
+def test_each_load_is_a_load_alone(name: str) -> None:
+    case = parse_case(GOOD.replace("P = 1e6", f"P = 1e6\n[[load]]\n{name} = 0.1"))
+    assert case.history.values()[1, LOADS.index(name)] == 0.1
+
+
 def test_two_loads_that_can_not_act() -> None:
     text = replaced("friction = 0.3", 'friction = 0.3\npin_load = "body"') + "M = 1\nrotation = 0.1\n"
     assert [(line, message.split(":")[0]) for line, message in faults(text)] == [(12, "M"), (13, "rotation")]
