@@ -45,6 +45,10 @@ KEYWORDS: dict[str, tuple[str, ...]] = {
     "Session.change": PROBLEM_FIELDS,
     "SolveOptions.changed": ("nodes", "method", "arc", "between", "keep"),
     "Result.plot": LOOK_FIELDS,
+    "WearResult.plot": LOOK_FIELDS,
+    "Result.wear": ("coefficient", "law", "at", "tolerance", "output"),
+    "WearResult.fatigue": ("theta", "depth", "constants"),
+    "wear": ("nodes", "arc"),
     "Result.fatigue": ("points", "depth", "constants"),
     "Result.report": ("title", "about", "case", "convergence", "progress"),
     "Look.sheet": ("sharex",),
@@ -107,6 +111,10 @@ class Valid:
         convergence = fastpin.converge(problem, history, (51, 101, 201))
         study = convergence.studies[0]
         fatigue = damage.fatigue(result, "smith-watson-topper")
+        steel = fastpin.Problem(pair, 0.01, 1e-5, 0.4)
+        cycle_in_newtons = fastpin.LoadHistory([{"P": 1e6}]) + fastpin.LoadHistory([{"Q": 2e5}, {"Q": 0.0}]).repeated(2)
+        life = fastpin.wear(steel, cycle_in_newtons, coefficient=1e-14, nodes=NODES)
+        worn = damage.worn_fatigue(life)
         lug = casefile.parse_lug(LUG).lug
         compliance = bodies.Compliance(0.3, "strain", 1.0, MATRIX)
         grid = result.grid
@@ -124,6 +132,8 @@ class Valid:
             elasticity.PlateResult(compliance, 0.0, 0.0, 0.0, 100), benchmarks.Row("peak", "1", "0.5", 0.5),
             Curve({"mu": 0.4}, {"angle (deg)": np.zeros(3)}), model.About("a project", revision="B"),
             fastpin.Session, verification.solve_sliding(_sliding_problem(pair), {"P": 1.0, "Q": 1.0}),
+            model.Profile.ellipse(1e-5), model.InitialGap(pin=model.Profile.lobes(3, 1e-5)), model.Wear(1e-14), life,
+            life[-1], worn, worn.crack,
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
@@ -137,7 +147,7 @@ class Valid:
             "Session": session.copy,
             "Outcome": lambda: benchmarks.Outcome([benchmarks.Row("peak", "1", "0.5", 0.5)]),
         }
-        self._by_target = self._targets(result)
+        self._by_target = self._targets(result) | {"worn_fatigue.cycles": _always(life)}
         self._by_annotation = self._annotations(result)
 
     def _write_files(self, result: fastpin.Result, case: fastpin.Case) -> None:
@@ -147,6 +157,7 @@ class Valid:
             "plan.toml": PLAN,
             "lug.toml": LUG,
             "loads.csv": "P, Q\n1.0, 0\n1.0, 0.2\n",
+            "rim.csv": "angle, gap\n0, 0\n90, 1e-5\n180, 2e-5\n270, 1e-5\n",
             "outcomes.toml": '[outcomes]\nwork = {quantity = "work"}\n',
             "materials.toml": '["own steel"]\nE = 2e11\nnu = 0.3\n',
             "lug.json": bodies.Compliance(0.3, "strain", 1.0, MATRIX).to_text(),
@@ -154,6 +165,7 @@ class Valid:
         for name, text in texts.items():
             Path(name).write_text(text, encoding="utf-8")
         fastpin.save(result, "result.h5")
+        fastpin.wear(result.problem, result.history, cycles=1, coefficient=1.0, nodes=NODES, output="wear.h5")
         with contextlib.suppress(KeyboardInterrupt):
             fastpin.record(result.problem, result.history, "unfinished.h5", nodes=NODES, arc=(-3.1, 0.0), progress=half)
 
@@ -262,6 +274,20 @@ class Valid:
             "solve.nodes": NODES,
             "converge.nodes": (51, 101, 201),
             "is_being_written.path": Path("result.h5"),
+            "InitialGap.of.value": model.Profile.ellipse(1e-5),
+            "Profile.constant.value": 0.4,
+            "Profile.of.value": 0.4,
+            "Profile.samples.angles": [-3.0, -1.0, 0.0, 2.0],
+            "Profile.samples.values": [0.1, 0.2, 0.3, 0.2],
+            "Profile.from_csv.path": "rim.csv",
+            "Profile.words.text": "{:g}".format,
+            "Profile.zone.value": 0.4,
+            "Wear.coefficient": 1e-14,
+            "load_wear.path": "wear.h5",
+            "wear.coefficient": 1e-3,
+            "wear.cycles": 2,
+            "wear.history": result.history,
+            "wear.nodes": NODES,
             "benchmarks.Outcome.rows": [benchmarks.Row("peak", "1", "0.5", 0.5)],
         }
         return {name: _always(value) for name, value in values.items()}
@@ -269,18 +295,19 @@ class Valid:
 
 BY_NAME: dict[str, Any] = {
     "E": 2e11, "a": 0.3, "alpha": 0.25, "amplitude": 1e8, "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0,
-    "body": "plate", "corners": [[1.0] * 9], "count": 3, "counts": [1.0, 2.0], "criterion": "smith-watson-topper",
-    "depth": 0.01, "directory": "sweep", "ductility_exponent": -0.6, "factor": 2.0, "fatigue_ductility": 0.5,
-    "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0, "half_width": 1.0,
-    "history": HISTORY, "host": "127.0.0.1", "index": 1, "k": 0.3, "knee_amplitude": 1e8, "knee_cycles": 1e6, "last": 3,
-    "limit_range": 2e8, "lives": [1e5, 1e6], "load_parameter": 0.1, "load_ratio": 0.5, "mu_over_beta": 2.0,
-    "name": "sxx", "nodes": NODES, "nu": 0.3, "nu_pin": 0.3, "parameter": [1e6], "path": "result.h5",
-    "paths": [[[0.0, 1.0], [1.0, 0.0]]], "peak_pressure": 2.0, "phi": [0.0, 0.5],
-    "places": [(-3.0, 0.1), (-1.5, 0.05), (0.0, 0.1)], "plane": "strain", "purpose": "fatigue", "radius": 2.0,
-    "share": np.array([0.0, 0.5]), "shear_ductility_exponent": -0.6, "shear_fatigue_ductility": 0.5,
-    "shear_fatigue_strength": 5e8, "shear_modulus": 8e10, "shear_strength_exponent": -0.1, "slip_range": [1e-6],
-    "slope": 5.0, "sources": ["part"], "start": -3.0, "stop": 0.0, "strength_exponent": -0.1, "sxx": 1.0, "sxy": 0.1,
-    "syy": 0.0, "theta": [-1.5, -1.0], "thickness": 0.01, "threshold_range": 5e6, "torsion_limit": 1.2e8,
+    "body": "plate", "centre": -1.5, "corners": [[1.0] * 10], "count": 3, "counts": [1.0, 2.0],
+    "criterion": "smith-watson-topper", "depth": 0.01, "directory": "sweep", "ductility_exponent": -0.6, "factor": 2.0,
+    "fatigue_ductility": 0.5, "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0,
+    "half_width": 1.0, "height": 1e-5, "high": 0.5, "history": HISTORY, "host": "127.0.0.1", "index": 1, "k": 0.3,
+    "knee_amplitude": 1e8, "knee_cycles": 1e6, "last": 3, "limit_range": 2e8, "lives": [1e5, 1e6],
+    "load_parameter": 0.1, "load_ratio": 0.5, "low": -0.5, "mu_over_beta": 2.0, "name": "sxx", "nodes": NODES,
+    "nu": 0.3, "nu_pin": 0.3, "order": 2, "parameter": [1e6], "path": "result.h5", "paths": [[[0.0, 1.0], [1.0, 0.0]]],
+    "peak_pressure": 2.0, "phi": [0.0, 0.5], "place": "gap", "places": [(-3.0, 0.1), (-1.5, 0.05), (0.0, 0.1)],
+    "plane": "strain", "purpose": "fatigue", "radius": 2.0, "share": np.array([0.0, 0.5]),
+    "shear_ductility_exponent": -0.6, "shear_fatigue_ductility": 0.5, "shear_fatigue_strength": 5e8,
+    "shear_modulus": 8e10, "shear_strength_exponent": -0.1, "size": 1e-5, "slip_range": [1e-6], "slope": 5.0,
+    "sources": ["part"], "start": -3.0, "stop": 0.0, "strength_exponent": -0.1, "sxx": 1.0, "sxy": 0.1, "syy": 0.0,
+    "theta": [-1.5, -1.0], "thickness": 0.01, "threshold_range": 5e6, "torsion_limit": 1.2e8,
     "values": [0.0, 1.0, -1.0], "wear_coefficient": 1e-14, "x": [0.0, 0.5], "y": [0.0, 0.5], "yield_strength": 4e8,
 }  # fmt: skip
 """Valid values by the name of a parameter."""

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from fastpin.damage.criteria import Criterion
 from fastpin.damage.hot_spots import edge_angles, fatigue
 from fastpin.errors import InputError
-from fastpin.model.checks import numbers
+from fastpin.model.checks import instances, numbers
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import Body, Points, far_rim, near_rim, owner_of
 from fastpin.model.problem import Problem
@@ -34,6 +34,7 @@ WORN_DEPTHS, DEPTHS = 8, 16
 """Steps of the depths unless given: inside the material that is worn off, and below it."""
 
 
+@runtime_checkable
 class StoredCycle(Protocol):
     """A chosen cycle of a life of wear, see :class:`fastpin.solver.WornCycle`."""
 
@@ -230,7 +231,7 @@ def worn_fatigue(
         See :func:`fatigue`; also if there is no cycle 0 or no other one, a cycle has no states, or the material has no
         constants for a life.
     """
-    stored = list(cycles)
+    stored = instances("cycles", cycles, StoredCycle, "the chosen cycles of a life of wear")
     if len(stored) < 2 or stored[0].cycle != 0:
         raise InputError("cycles", "must be the chosen cycles of a life of wear, cycle 0 and later ones")
     problem = stored[0].states[0].problem

@@ -20,8 +20,10 @@ from fastpin.model.checks import (
     instance,
     not_negative,
     number,
+    number_array,
     positive,
     true_or_false,
+    whole_number,
 )
 from fastpin.model.fields import FIELDS
 from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
@@ -384,6 +386,7 @@ class Problem:
     def friction_words(self, digits: int = 6) -> str:
         """The coefficient of friction as text, to so many significant digits: its range if it varies."""
         least, most = self._friction_limits
+        whole_number("digits", digits, 1, 17)
         if not isinstance(self.friction, Profile):
             return f"{most:.{digits}g}"
         return f"{least:.{digits}g} to {most:.{digits}g} along the rim"
@@ -416,11 +419,12 @@ class Problem:
     def friction_at(self, theta: np.ndarray) -> np.ndarray:
         """Coefficient of friction at the angles `theta` (...), rad, shape (...)."""
         if not isinstance(self.friction, Profile):
-            return np.full(np.shape(theta), self.friction)
+            return np.full(number_array("theta", theta).shape, self.friction)
         return np.maximum(self.friction.at(theta, self.hole_radius), 0.0)  # a spline may pass below zero in between
 
     def check_friction_change(self, low: float, high: float) -> None:
         """Raise :class:`InputError` if the friction can't change by parts from `low` to `high`."""
+        low, high = number("friction_change", low), number("friction_change", high)
         if low == high == 0.0:
             return
         if self.frictionless:

@@ -15,13 +15,22 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
-from fastpin.model.checks import as_toml, check_callable, choice, instances, number, number_array, whole_number
+from fastpin.model.checks import (
+    check_callable,
+    choice,
+    instances,
+    number,
+    number_array,
+    positive,
+    shortened,
+    string,
+    whole_number,
+)
 from fastpin.model.profile_csv import PROFILE_KINDS, read_samples
 from fastpin.model.profile_terms import (
     MOST_ANGLE,
     MOST_ORDER,
     MOST_SAMPLES,
-    TERMS,
     Crown,
     Flat,
     Harmonic,
@@ -152,6 +161,7 @@ class Profile:
         A function takes angles (n,), rad, and returns values (n,). It is sampled at :data:`CALLED` angles. Samples are
         a pair of angles and values. `place` names the value in the input, for the message.
         """
+        string("place", place)
         if isinstance(value, Profile):
             return value
         if isinstance(value, Term):
@@ -159,7 +169,12 @@ class Profile:
         if callable(value):
             check_callable(place, value, 1)
             theta = angle_at(np.arange(CALLED + 1) * (360.0 / CALLED) - 90.0)
-            heights = number_array(place, value(theta))
+            try:
+                heights = number_array(place, value(theta))
+            except InputError:
+                raise
+            except Exception as error:  # The function is anyone's. Often it takes one angle only.
+                raise InputError(place, f"failed for an array of angles: {shortened(str(error))}") from error
             if heights.shape != theta.shape:
                 shape = f"must return an array of the shape {theta.shape} of its angles, not {heights.shape}"
                 raise InputError(place, shape)
@@ -172,24 +187,6 @@ class Profile:
         height = number(place, value)
         return cls.constant(height) if height else cls()
 
-    @classmethod
-    def from_entries(cls, entries: Sequence[dict[str, Any]]) -> Profile:
-        """The profile of the :meth:`entries` of its terms.
-
-        Raises
-        ------
-        ValueError
-            If a kind is unknown.
-        InputError
-            If a value is out of range.
-        """
-        terms = []
-        for each in entries:
-            if each.get("kind") not in TERMS:
-                raise ValueError(f"the kind {as_toml(each.get('kind'))} of a profile is unknown")
-            terms.append(TERMS[each["kind"]](**{name: value for name, value in each.items() if name != "kind"}))
-        return cls(tuple(terms))
-
     def entries(self) -> list[dict[str, Any]]:
         """The entries of its terms, as ids and HDF5 files hold them. Angles are in rad from +x."""
         return [term.entries() for term in self.terms]
@@ -200,6 +197,7 @@ class Profile:
 
     def words(self, text: ValueInWords) -> str:
         """Words that describe it. `text` words a value."""
+        check_callable("text", text, 1)
         described = [term.words(text) for term in self.terms[:MOST_DESCRIBED]]
         if len(self.terms) > MOST_DESCRIBED:
             described.append(f"and {len(self.terms) - MOST_DESCRIBED} more terms")
@@ -230,7 +228,8 @@ class Profile:
 
         `radius` is the radius of the hole, m.
         """
-        theta = np.linspace(-math.pi, math.pi, count)
+        theta = np.linspace(-math.pi, math.pi, whole_number("count", count, 0, MOST_SAMPLES))
+        radius = positive("radius", radius)
         return np.concatenate([theta, *(term.angles_of_note(radius) for term in self.terms)])
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
@@ -238,7 +237,7 @@ class Profile:
 
         `radius` is the radius of the hole, m.
         """
-        theta = np.asarray(theta, dtype=float)
+        theta, radius = number_array("theta", theta), positive("radius", radius)
         total = np.zeros((3, *theta.shape))
         for term in self.terms:
             total += term.values(theta, radius)

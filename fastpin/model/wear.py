@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, items, not_negative, number, whole_number
+from fastpin.model.checks import choice, items, not_negative, number, numbers, whole_number
 from fastpin.model.profile import Profile, ProfileLike
 
 LAWS = ("archard", "energy")
@@ -93,6 +93,9 @@ class Wear:
         InputError
             If they are 0 all round.
         """
+        theta = numbers("theta", theta)
+        if theta.ndim != 1 or not theta.size:
+            raise InputError("theta", f"must be a list of angles, not of the shape {theta.shape}")
         found = np.zeros((2, theta.size))
         for place, name, share in ((0, "pin", 1.0), (1, "plate", 1.0), (slice(None), "coefficient", 0.5)):
             if isinstance(profile := getattr(self, name), Profile):

@@ -8,9 +8,10 @@ from typing import Any
 import h5py
 import numpy as np
 
+from fastpin.model.checks import as_toml
 from fastpin.model.fields import FIELDS
 from fastpin.model.profile import MOST_TERMS, InitialGap, Profile
-from fastpin.model.profile_terms import MOST_SAMPLES
+from fastpin.model.profile_terms import MOST_SAMPLES, TERMS, Term
 from fastpin.storage.damage import as_python, dataset_of
 
 Entries = Sequence[Mapping[str, Any]]
@@ -55,14 +56,17 @@ def read_profiles(group: h5py.Group) -> dict[str, Any]:
 def _read(group: h5py.Group) -> Profile:
     if len(group) > MOST_TERMS:
         raise ValueError(f"{group.name[1:]} has {len(group)} terms, more than {MOST_TERMS}")
-    return Profile.from_entries([_term(group[str(number)]) for number in range(len(group))])
+    return Profile(tuple(_term(group[str(number)]) for number in range(len(group))))
 
 
-def _term(group: h5py.Group) -> dict[str, Any]:
+def _term(group: h5py.Group) -> Term:
     term = {name: as_python(value) for name, value in group.attrs.items()}
+    kind = term.pop("kind", None)
+    if kind not in TERMS:
+        raise ValueError(f"the kind {as_toml(kind)} of a profile is unknown")
     for name in group:
         array = dataset_of(group, name, float)
         if array.ndim != 1 or array.shape[0] > MOST_SAMPLES:
             raise ValueError(f"{group.name[1:]}/{name} is no row of at most {MOST_SAMPLES:,} numbers")
         term[name] = array[()]
-    return term
+    return TERMS[kind](**term)
