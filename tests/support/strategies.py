@@ -13,9 +13,12 @@ import numpy as np
 from hypothesis import strategies as st
 
 import fastpin
+from fastpin.model.angles import DEGREE, angle_at
 from fastpin.model.history import Block
 from fastpin.model.loads import LOADS
 from fastpin.model.options import MOST_BETWEEN, SolveOptions
+from fastpin.model.profile import InitialGap, Profile
+from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples, Term, Zone
 
 Tables = dict[str, dict[str, Any]]
 """Sections of a case file, without its loads."""
@@ -49,10 +52,56 @@ def pairs(draw: st.DrawFn) -> fastpin.MaterialPair:
     return fastpin.MaterialPair(pin, plate, draw(st.sampled_from(["strain", "stress"])))
 
 
+angles = between(-180.0, 180.0).map(angle_at)
+"""Angles round the hole, rad, that degrees from its bottom give exactly."""
+
+spans = between(1.0, 179.0).map(lambda degrees: degrees * DEGREE)
+"""Differences of angles, rad, that degrees give exactly."""
+
+
+def zones(most: float) -> st.SearchStrategy[Term]:
+    """Zones in which a quantity that is positive elsewhere is larger by up to `most`."""
+    degrees = between(-180.0, 180.0), between(1.0, 170.0)
+    return st.builds(
+        lambda value, at, more: Zone(value, angle_at(at), angle_at(at + more)), between(0.0, most), *degrees
+    )
+
+
+@st.composite
+def samples(draw: st.DrawFn, least: float, most: float) -> Samples:
+    """Samples round the hole, each from `least` to `most`."""
+    heights = draw(st.lists(between(least, most), min_size=4, max_size=9))
+    first = draw(between(-180.0, 0.0))
+    return Samples([angle_at(first + k * 360.0 / len(heights)) for k in range(len(heights))], heights)
+
+
+@st.composite
+def gaps(draw: st.DrawFn, size: float, has_lengths: bool) -> InitialGap:
+    """Initial gaps of hole and pin of the order of `size`. A flat needs lengths."""
+    waves = st.builds(Harmonic, st.integers(0, 30), between(-size, size), between(-size, size))
+    crowns = st.builds(Crown, between(-size, size), angles, spans)
+    kinds = [waves, waves, crowns, samples(-size, size)]
+    if has_lengths:
+        kinds.append(st.builds(Flat, between(1e-3 * size, size), angles))
+    profiles = st.lists(st.one_of(kinds), max_size=3).map(lambda terms: Profile(tuple(terms)))
+    return InitialGap(draw(profiles), draw(profiles))
+
+
+@st.composite
+def frictions(draw: st.DrawFn) -> float | Profile:
+    """No friction, a coefficient, or one that varies along the rim."""
+    if draw(st.booleans()):
+        return draw(st.just(0.0) | between(0.0, 1.5))
+    part = draw(between(0.1, 0.5))
+    waves = st.builds(Harmonic, st.integers(1, 12), between(-0.3 * part, 0.3 * part), between(-0.3 * part, 0.3 * part))
+    more = draw(st.lists(waves, max_size=1)) + draw(st.lists(zones(1.0) | samples(0.9, 1.0), max_size=2))
+    return Profile((Harmonic(0, part), *more))
+
+
 @st.composite
 def problems(draw: st.DrawFn) -> fastpin.Problem:
     """Problems in SI units, and dimensionless ones."""
-    pair, friction = draw(pairs()), draw(st.just(0.0) | between(0.0, 1.5))
+    pair, friction = draw(pairs()), draw(frictions())
     pin_load = draw(st.sampled_from(["centre", "body"]))
     rotation = "free" if pin_load == "body" else draw(st.sampled_from(["free", "fixed", "spring"]))
     drive = draw(st.sampled_from(["force", "force", "ux", "uy", "both"]))
@@ -64,7 +113,9 @@ def problems(draw: st.DrawFn) -> fastpin.Problem:
         "hub_stiffness": draw(scale(-3, 3)) * radius**2 / unit if rotation == "spring" else None,
         "gauge_radius": draw(between(1.0, 100.0)) * radius if drive != "force" and draw(st.booleans()) else None,
     }
-    kind = {"pin_load": pin_load, "rotation": rotation, "drive": drive}
+    kind: dict[str, Any] = {"pin_load": pin_load, "rotation": rotation, "drive": drive}
+    if draw(st.booleans()):
+        kind["gap"] = draw(gaps(1.0 if whole else 0.01 * radius, not whole))
     if whole:
         return fastpin.Problem.from_load_parameter(pair, draw(between(least, 3.0)), friction, **kind, **sizes)
     return fastpin.Problem(pair, radius, draw(between(least, 0.01)) * radius, friction, **kind, **sizes)
@@ -75,7 +126,7 @@ def corners(draw: st.DrawFn, problem: fastpin.Problem, most: int = 5) -> list[di
     """Corners of loads that a problem can carry, of the size that strains it by some thousandths."""
     natural = problem.natural_loads()
     kinds = fastpin.model.loads.LOAD_KIND
-    refused = {"M", "rotation"}
+    refused = {"M", "rotation", *(["friction_change"] if problem.frictionless else [])}
     for is_driven, force, displacement in zip(problem.driven, ("Q", "P"), ("ux", "uy"), strict=True):
         refused.add(force if is_driven else displacement)
     names = [name for name in LOADS if name not in refused]
@@ -126,9 +177,21 @@ def cases(draw: st.DrawFn) -> fastpin.Case:
     )
     problem = dataclasses.replace(problem, pair=fastpin.MaterialPair(pin, plate, problem.pair.plane))
     history = draw(histories(problem))
-    chosen = draw(options(problem.clearance < 0.0))
+    chosen = draw(options(problem.is_gripped))
     about = fastpin.model.About(*(draw(words) for _ in range(4)))
-    return fastpin.Case(problem, history, chosen, draw(words), about)
+    return fastpin.Case(problem, history, chosen, draw(words), about, draw(st.none() | wears()))
+
+
+@st.composite
+def wears(draw: st.DrawFn) -> fastpin.model.Wear:
+    """Lives of wear by any law, with a number or a profile for a coefficient."""
+    coefficient = scale(-20, 0) | zones(1e-12).map(lambda zone: Profile((Harmonic(0, 1e-13), zone)))
+    given: dict[str, Any] = {"coefficient": draw(coefficient)}
+    if draw(st.booleans()):
+        given = {"pin": draw(st.none() | coefficient), "plate": draw(coefficient)}
+    given |= {"cycles": draw(st.integers(1, 10**9)), "law": draw(st.sampled_from(["archard", "energy"]))}
+    given["at"] = draw(st.none() | st.lists(st.integers(1, given["cycles"]), max_size=3, unique=True).map(sorted))
+    return fastpin.model.Wear(**given, tolerance=draw(between(0.0, 0.1)))
 
 
 def tables_of(case: fastpin.Case) -> Tables:
@@ -139,7 +202,7 @@ def tables_of(case: fastpin.Case) -> Tables:
         name: {"rigid": True} if body.is_rigid else {"E": body.E, "nu": body.nu} for name, body in bodies.items()
     }
     tables["about"] = case.about.given()
-    contact: dict[str, Any] = {"plane": problem.pair.plane, "friction": problem.friction}
+    contact: dict[str, Any] = {"plane": problem.pair.plane, "friction": written(problem.friction)}
     contact |= {"pin_load": problem.pin_load, "rotation": problem.rotation}
     if problem.dimensionless:
         contact["load_parameter"] = problem.clearance
@@ -148,14 +211,25 @@ def tables_of(case: fastpin.Case) -> Tables:
     given = {name: getattr(problem, name) for name in ("drive", "hub_radius", "hub_stiffness", "gauge_radius")}
     contact |= {name: value for name, value in given.items() if value is not None}
     tables["contact"] = contact
+    tables["gap"] = {name: written(profile) for name, profile in problem.gap.given.items()}
+    if case.wear is not None:
+        given = {field.name: getattr(case.wear, field.name) for field in dataclasses.fields(case.wear)}
+        tables["wear"] = {name: written(value) for name, value in given.items() if value is not None}
     tables["solve"] = {name: value for name, value in case.options.keywords().items() if value is not None}
     return tables
+
+
+def written(value: Any) -> Any:
+    """A value of a case file. A profile is its list of tables."""
+    return value.toml() if isinstance(value, Profile) else value
 
 
 def text_of(case: fastpin.Case, tables: Tables | None = None) -> str:
     """The text of the case file of a case. Other `tables` may replace its sections."""
     parts = [f"title = {as_toml(case.title)}\n"]
     for name, table in (tables_of(case) if tables is None else tables).items():
+        if name == "gap" and not table:
+            continue
         parts.append(f"[{name}]\n" + "".join(f"{key} = {as_toml(value)}\n" for key, value in table.items()))
     for block in case.history.blocks:
         parts += _load_blocks(block)
