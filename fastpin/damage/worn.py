@@ -231,7 +231,7 @@ def worn_fatigue(
         See :func:`fatigue`; also if there is no cycle 0 or no other one, a cycle has no states, or the material has no
         constants for a life.
     """
-    stored = instances("cycles", cycles, StoredCycle, "the chosen cycles of a life of wear")
+    stored = instances("cycles", cycles, StoredCycle, "the cycles of a life of wear")  # type: ignore[type-abstract]
     if len(stored) < 2 or stored[0].cycle != 0:
         raise InputError("cycles", "must be the chosen cycles of a life of wear, cycle 0 and later ones")
     problem = stored[0].states[0].problem
