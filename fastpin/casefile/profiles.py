@@ -84,7 +84,9 @@ def _harmonic(order: object, cosine: object, sine: object) -> Profile:
 def _samples(angles: object, values: object) -> Profile:
     if not isinstance(angles, list):
         raise InputError("angles", f"must be a list of angles, not {as_toml(angles)}")
-    return Profile.samples([_angle("angles", angle) for angle in angles], values)  # type: ignore[arg-type]
+    # Samples in rad do not go round the hole and are refused. One of many angles may look like rad.
+    degrees = [number("angles", angle, -360.0, 360.0) for angle in angles]
+    return Profile.samples([angle_at(angle) for angle in degrees], values)  # type: ignore[arg-type]
 
 
 WORDS = {

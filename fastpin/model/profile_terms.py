@@ -113,7 +113,7 @@ class Harmonic(Term):
     Parameters
     ----------
     order : int
-        The number n of waves, 0 to :data:`MOST_ORDER`. Order 0 is a constant.
+        The number n of waves, 0 to :data:`MOST_ORDER`. Order 0 is a constant, without a sine.
     cosine, sine : float
         Amplitudes, in the unit of the profile.
     """
@@ -128,6 +128,8 @@ class Harmonic(Term):
         object.__setattr__(self, "order", whole_number("order", self.order, 0, MOST_ORDER))
         for name in ("cosine", "sine"):
             object.__setattr__(self, name, number(name, getattr(self, name)))
+        if self.order == 0:
+            object.__setattr__(self, "sine", 0.0)
 
     @property
     def wave(self) -> tuple[int, complex] | None:

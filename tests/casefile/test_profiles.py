@@ -12,7 +12,7 @@ import pytest
 from fastpin.casefile.reader import parse_case
 from fastpin.casefile.writer import case_text
 from fastpin.errors import CaseFileError
-from fastpin.model.angles import BOTTOM
+from fastpin.model.angles import BOTTOM, angle_at
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.studies.identity import canonical
@@ -160,6 +160,13 @@ GAPS: dict[str, str] = {
 @pytest.mark.parametrize("gap", GAPS)
 def test_a_wrong_gap_is_explained(gap: str) -> None:
     assert faults(gap=gap) == [GAPS[gap]]
+
+
+def test_one_of_many_samples_may_look_like_an_angle_in_rad() -> None:
+    case = parse_case(
+        f"{PRESSED}\n[gap]\npin = {{ angles = [0, 1.5708, 90, 180, 270], values = [0, 0, 1e-6, 0, 0] }}\n"
+    )
+    assert case.problem.gap.pin.terms[0].angles[1] == angle_at(1.5708)
 
 
 FRICTIONS: dict[str, str] = {

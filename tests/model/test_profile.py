@@ -40,3 +40,7 @@ def test_arguments_of_methods_are_checked(call, field: str) -> None:
 def test_values_are_those_of_lists_and_of_whole_numbers() -> None:
     profile = Profile.ellipse(2.0)
     assert profile.values([0, 1], 1).tolist() == profile.values(np.array([0.0, 1.0]), 1.0).tolist()
+
+
+def test_a_constant_has_no_sine() -> None:
+    assert Profile.harmonic(0, 1.0, 0.5) == Profile.constant(1.0)
