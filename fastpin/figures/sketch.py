@@ -18,14 +18,13 @@ from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.stick_slip import zone_look, zone_patch
 from fastpin.figures.subjects import Subject
-from fastpin.figures.words import caption, point_text, short_load, shown_unit
+from fastpin.figures.words import caption, point_text, range_text
 from fastpin.kernels.status import STICK
 from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, instance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
-from fastpin.model.units import units
 from fastpin.report.case import ROUNDING, edge_body
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
@@ -251,7 +250,7 @@ def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange], 
     for name, span in ranges.items():
         if _size(span) <= ROUNDING * largest[LOAD_KIND[name]]:
             continue
-        words = _words(problem, name, span)
+        words = range_text(problem, name, span)
         if name in ("P", "Q"):
             _draw_force(panel, name, span, words, scale)
         elif name == "M":
@@ -265,15 +264,6 @@ def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange], 
 
 def _size(span: LoadRange) -> float:
     return max(abs(span[0]), abs(span[1]))
-
-
-def _words(problem: Problem, name: str, span: LoadRange) -> str:
-    """The value of a load, or the range of its values, with the unit."""
-    if span[0] == span[1]:
-        return f"{name} = {short_load(problem, name, span[0])}"
-    factor, unit = units(problem)[LOAD_KIND[name]].scale(span)
-    low, high = (f"{factor * value:.3g}".replace("-", "−") for value in span)
-    return f"{name}: {low} to {high}\N{NO-BREAK SPACE}{shown_unit(unit)}"
 
 
 def _arrow(panel: Axes, tail: complex, head: complex, span: LoadRange, colour: str) -> None:

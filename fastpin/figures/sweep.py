@@ -73,6 +73,8 @@ CAPTION_WORDS = {
     "contact.friction": ("friction",),
     "contact.hole_radius": ("hole radius",),
     "contact.clearance": ("clearance", "interference", "neat fit"),
+    "gap.hole": ("initial gap of the hole",),
+    "gap.pin": ("initial gap of the pin",),
 }
 """Words with which the parts of a caption begin that belong to a field."""
 
@@ -391,7 +393,7 @@ def _fixed_parameters(chart: Chart) -> str:
     if any(field.split(".")[0] in BODY_SECTIONS or field in BODY_FIELDS for field in chart.varied):
         parts = parts[next(k for k, part in enumerate(parts) if part.startswith("plane ")) :]
     for field, words in CAPTION_WORDS.items():
-        if field in chart.varied:
+        if any(name == field or name.startswith(f"{field}.") for name in chart.varied):
             parts = [part for part in parts if not part.startswith(words)]
     return " ".join(parts).rstrip(",;")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from fastpin.model.checks import shortened
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
+from fastpin.model.profile import Profile
 from fastpin.model.units import PASCAL, Unit, acting_loads, units
 from fastpin.report.case import ROUNDING
 from fastpin.states.quantities import load_point
@@ -35,7 +36,7 @@ CHARACTER = 0.0072
 
 def shown_unit(unit: str) -> str:
     """A unit as figures show it: with the letters for micro and beta."""
-    unit = unit.replace("beta*", "β*").replace("^2", "²")
+    unit = unit.replace("beta*", "β*").replace("^2", "²").replace("^3", "³")
     return f"µ{unit[1:]}" if unit[:1] == "u" and len(unit) > 1 else unit
 
 
@@ -90,6 +91,11 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
     parts = [f"pin: {_material(pair.pin, problem)}{pin_body}; plate: {_material(pair.plate, problem)}"]
     parts[0] += f"{plate_body}; plane {pair.plane}"
     parts.append(f"friction coefficient {problem.friction_words(DIGITS)}")
+    if isinstance(problem.friction, Profile):
+        parts[-1] += f": {_profile_words(problem.friction, lambda value: f'{value:.{DIGITS}g}')}"
+    for name, profile in problem.gap.given.items():
+        words = _profile_words(profile, lambda gap: short(gap, unit["displacement"]))
+        parts.append(f"initial gap of the {name}: {words}")
     if not problem.dimensionless:
         parts.append(f"hole radius {short(problem.hole_radius, unit['length'])}")
         word = "clearance" if problem.clearance > 0.0 else "interference"
@@ -103,6 +109,11 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
         ends = list(dict.fromkeys([parameters[0], parameters[-1]]))
         parts.append(f"load parameter {' to '.join(ends)}".replace("-", "−"))
     return ", ".join(parts)
+
+
+def _profile_words(profile: Profile, text: Callable[[float], str]) -> str:
+    """The terms of a profile as one part of a caption, which parts at commas and semicolons."""
+    return profile.words(text).replace("; and", " and").replace("; ", " + ").replace(", ", ",\N{NO-BREAK SPACE}")
 
 
 def wrapped(text: str, width: float, size: float = CAPTION_SIZE) -> list[str]:
@@ -125,6 +136,15 @@ def wrapped_parts(text: str, width: float, size: float = CAPTION_SIZE) -> list[s
 def short_load(problem: Problem, name: str, value: float) -> str:
     """A load with its unit as a caption shows it; forces and moments are in N and N m if there is a thickness."""
     return short(value, units(problem)[LOAD_KIND[name]])
+
+
+def range_text(problem: Problem, name: str, span: tuple[float, float]) -> str:
+    """A load, or the range of its values, with its unit."""
+    if span[0] == span[1]:
+        return f"{name} = {short_load(problem, name, span[0])}"
+    factor, unit = units(problem)[LOAD_KIND[name]].scale(span)
+    low, high = (f"{factor * value:.{DIGITS}g}".replace("-", "−") for value in span)
+    return f"{name}: {low} to {high}\N{NO-BREAK SPACE}{shown_unit(unit)}"
 
 
 def loads_text(problem: Problem, load: Mapping[str, float]) -> str:

@@ -34,8 +34,11 @@ _SI = {
 PER_THICKNESS = {"force": "N", "moment": "N m", "stiffness": "N m/rad", "energy": "J", "work per stress": "m^3"}
 """The kinds that are per thickness in Python, and their units in printed texts of a problem with a thickness."""
 
-_WITH_PREFIX = frozenset({*_SI.values(), *PER_THICKNESS.values(), "s"} - {"", "cycles", "m^2", "m^3"})
+_WITH_PREFIX = frozenset({*_SI.values(), *PER_THICKNESS.values(), "s"} - {"", "cycles", "1/Pa"})
 """Units that may get an SI prefix."""
+
+_POWERS = {"m^2": 2, "m^3": 3}
+"""Powers of units, to which a prefix is raised too: 1 mm^2 is 1e-6 m^2."""
 
 _DIMENSIONLESS = {
     "force": "F",
@@ -120,9 +123,11 @@ def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
     largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     if unit not in _WITH_PREFIX or largest == 0.0:
         return 1.0, unit
-    exponent = 3 * math.floor(math.log10(largest * (1.0 + 1e-12)) / 3.0)
+    power = _POWERS.get(unit, 1)
+    # From 1 to 1,000, or as near to that as a square or a cube allows.
+    exponent = 3 * math.floor((math.log10(largest * (1.0 + 1e-12)) - 1.5) / (3.0 * power) + 0.5)
     exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))
-    return 10.0**-exponent, _PREFIXES[exponent] + unit
+    return 10.0 ** (-exponent * power), _PREFIXES[exponent] + unit
 
 
 def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:

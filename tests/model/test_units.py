@@ -20,6 +20,10 @@ from tests.support.samples import PAIR
         ([float("nan"), 1e3], "m", (1e-3, "km")),
         ([1e-9], "F/R", (1.0, "F/R")),
         ([1e30], "Pa", (1e-9, "GPa")),
+        ([3.8e-9], "m^2", (1e12, "um^2")),
+        ([2e-7, 1e-9], "m^2", (1e6, "mm^2")),
+        ([5e-11], "m^3", (1e9, "mm^3")),
+        ([2e-14], "1/Pa", (1.0, "1/Pa")),
     ],
 )
 def test_scaled(values: list[float], unit: str, expected: tuple[float, str]) -> None:
@@ -40,7 +44,7 @@ def test_a_thickness_comes_as_a_factor_and_a_unit() -> None:
     }
     assert (plain["force"].text(5e5), thick["force"].text(5e5)) == ("500 kN/m", "5 kN")
     assert thick["force"].scale([5e5]) == (pytest.approx(1e-5), "kN")
-    assert thick["work per stress"].text(1e-4) == "1e-06 m^3"  # a prefix would count in its cube
+    assert (plain["work per stress"].text(1e-8), thick["work per stress"].text(1e-8)) == ("10000 um^2", "0.1 mm^3")
 
 
 def test_a_unit_without_its_factor_is_found() -> None:
