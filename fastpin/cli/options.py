@@ -206,12 +206,16 @@ def add_wear(commands: Any) -> None:
 
 def add_plot(commands: Any) -> None:
     """Add ``plot``."""
-    plot = _command(commands, "plot", "plot", "run", "draw a stored result: stresses, slip, loops, fatigue")
+    plot = _command(commands, "plot", "plot", "run", "draw a stored result: stresses, slip, loops, fatigue, wear")
     plot.add_argument(
-        "result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE); for a sketch also a case file (TOML)"
+        "result",
+        metavar="FILE",
+        type=Path,
+        help="HDF5 file (run or wear -o FILE); for a sketch also a case file (TOML)",
     )
     words = "; ".join(f"{name}: {kind.words}" if kind.words else name for name, kind in KINDS.items())
-    plot.add_argument("kind", choices=tuple(KINDS), help=words)
+    defaults = "default: tractions; scar of a life of wear, sketch of a case file"
+    plot.add_argument("kind", nargs="?", choices=tuple(KINDS), help=f"{words} ({defaults})")
     plot.add_argument(
         "-o",
         "--output",
@@ -220,6 +224,12 @@ def add_plot(commands: Any) -> None:
         help="the figure (png, pdf or svg; default KIND.png), or the animation (gif, or mp4 by ffmpeg)",
     )
     plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
+    plot.add_argument(
+        "--after",
+        metavar="N",
+        type=literal,
+        help="of a life of wear: show one cycle on the profile after N cycles (default: the last one stored)",
+    )
     for name, option in KIND_OPTIONS.items():
         if option.type == "flag":
             plot.add_argument(f"--{name}", action="store_const", const=True, help=option.words)

@@ -15,6 +15,8 @@ from fastpin.figures.kinds import KINDS, kinds_with
 
 def run(options: argparse.Namespace) -> int:
     """Draw one kind of figure of a stored result."""
+    if options.kind is None:
+        options.kind = _usual_kind(options.result)
     kind = KINDS[options.kind]
     is_case = options.kind == "sketch" and options.result.suffix.lower() == ".toml"
     _check(options, is_case)
@@ -40,6 +42,13 @@ def run(options: argparse.Namespace) -> int:
     return code
 
 
+def _usual_kind(path: Path) -> str:
+    """Return the kind that is drawn unless the user names one."""
+    if path.suffix.lower() == ".toml":
+        return "sketch"
+    return "scar" if storage.holds_wear(path) else "tractions"
+
+
 def _check(options: argparse.Namespace, is_case: bool) -> None:
     """Refuse options that have no effect on this kind of figure."""
     if options.result.suffix.lower() == ".toml" and not is_case:
@@ -48,6 +57,8 @@ def _check(options: argparse.Namespace, is_case: bool) -> None:
         )
     if is_case and options.states is not None:
         raise InputError("--states", "chooses a state of a result; a case file has none")
+    if is_case and options.after is not None:
+        raise InputError("--after", "chooses a profile of a life of wear; a case file has none")
     known = KINDS[options.kind].options
     for name in sorted({name for kind in KINDS.values() for name in kind.options}):
         if getattr(options, name) is not None and name not in known:
@@ -61,8 +72,10 @@ def _plot(options: argparse.Namespace) -> figures.sheet.Plot:
         for name in KINDS[options.kind].options
         if (value := getattr(options, name)) is not None and name != "csv"
     }
+    if options.after is not None:
+        given["after"] = options.after
     try:
-        plot = figures.plotting.plot_of(options.kind, figures.subjects.InFile(options.result), **given)
+        plot = figures.plotting.plot_of(options.kind, figures.subjects.stored_subject(options.result), **given)
     except InputError as error:
         raise InputError(flag(error.field) if error.field in given else error.field, error.reason) from None
     say(*plot.notes)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fastpin import casefile, figures, live, report, solver, storage
+from fastpin.cli import wear
 from fastpin.cli.options import literal
 from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration, progress_to
 from fastpin.cli.terminal import (
@@ -88,7 +89,9 @@ def resume(options: argparse.Namespace) -> int:
 
 
 def show(options: argparse.Namespace) -> int:
-    """Print and draw a stored result."""
+    """Print and draw a stored result, or print a stored life of wear."""
+    if storage.holds_wear(options.output):
+        return wear.show(options)
     case = _stored_case(options)
     code = _write_stored(case, options, None)
     if options.json != "-":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from pathlib import Path
 from typing import Any
 
 from fastpin import casefile, report, solver, storage
@@ -61,25 +62,37 @@ def run(options: argparse.Namespace) -> int:
             if error.field in given or error.field in ("nodes", "resume"):
                 raise InputError(flag(error.field), error.reason) from None
             raise
-    return _write(result, options, case.title, code, trouble)
-
-
-def _write(
-    result: solver.WearResult | None, options: argparse.Namespace, title: str, code: int, trouble: str | None
-) -> int:
-    """Write the JSON, then print the table. Printing comes last: the reader of the output may close it early."""
     if trouble is not None:
         go_on = options.output is not None and code == EXIT_INTERRUPTED
         fail(f"{trouble}{'; continue with the same command and --resume' if go_on else ''}", code)
-    text = ""
+    return _write(result, options, case.title, trouble) or code
+
+
+def show(options: argparse.Namespace) -> int:
+    """Print the chosen cycles of a stored life of wear."""
+    path: Path = options.output
+    for name in ("plot", "states", "cycles", "record", "cycle_csv"):
+        if getattr(options, name) is not None:
+            raise InputError(flag(name), f"is for the result of a run; fastpin plot {path} draws this life of wear")
+    check_outputs({"--json": options.json})
+    life, title, error = storage.load_wear(path), storage.stored_case(path).title, storage.stored_error(path)
+    code = _write(life, options, title, error)
+    if not life.complete and options.json != "-":
+        why, how = f": {error}" if error else "", report.notes.way_on(path, error)
+        say(f"note: the life is unfinished{why}{f'; {how}' if how else ''}")
+    return code
+
+
+def _write(result: solver.WearResult | None, options: argparse.Namespace, title: str, trouble: str | None) -> int:
+    """Write the JSON, then print the table. Printing comes last: the reader of the output may close it early."""
+    text, code = "", EXIT_OK
     if options.json is not None:
         text = json.dumps(report.wear.document(result, title, trouble), indent=2, allow_nan=False) + "\n"
     if text and options.json != "-":
-        code = write_files([(options.json, lambda path: write_text(path, text))]) or code
+        code = write_files([(options.json, lambda path: write_text(path, text))])
     if options.json == "-":
         sys.stdout.write(text)
-    elif result is not None and len(result):
-        solved = int(result.statistics["solved"])
-        done = f"{result[-1].cycle:,} cycles, {solved:,} of them solved; debris is not modelled"
-        say(*([title, ""] if title else []), *result.summary().split("\n"), "", done)
+    elif result is not None:
+        rows = [*result.summary().split("\n"), ""] if len(result) else []
+        say(*([title, ""] if title else []), *rows, report.wear.reached_line(result))
     return code

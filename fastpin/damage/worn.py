@@ -27,6 +27,7 @@ from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import Body, Points, far_rim, near_rim, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.wear import cycles_text
 from fastpin.reading.stress import check_body
 from fastpin.states.state import State
 
@@ -159,8 +160,8 @@ class WornFatigue(ReadOnly):
     def words(self) -> str:
         """The end of the race in words."""
         if math.isfinite(self.life):
-            return f"a crack starts after {self.life:.4g} cycles"
-        done = f"no crack within {self.cycles[-1]:,} cycles"
+            return f"a crack starts after {cycles_text(float(f'{self.life:.4g}'))}"
+        done = f"no crack within {cycles_text(int(self.cycles[-1]))}"
         largest = f"largest damage {self.hot_spots[-1].damage:.3g}"
         return (
             f"{done}: wear takes the most damaged material away, {largest}" if self.wear_wins else f"{done}, {largest}"

@@ -66,12 +66,19 @@ class Kind(NamedTuple):
         Names of :data:`KIND_OPTIONS`, and "csv" if the figure has numbers.
     ending : str
         The ending of the file, unless the user names one.
+    sources : tuple of str
+        What the figure may show: "result" is the result of a run, "life" a life of wear.
     """
 
     file: str
     words: str
     options: tuple[str, ...]
     ending: str = "png"
+    sources: tuple[str, ...] = ("result", "life")
+
+
+SOURCES = {"result": "the result of a run", "life": "a life of wear"}
+"""Words for what a figure may show."""
 
 
 KINDS = {
@@ -85,13 +92,15 @@ KINDS = {
     "map": Kind(
         "stress", "one component of the stress in both bodies", ("states", "csv", "body", "component", "extent")
     ),
-    "cycles": Kind("cycles", "changes in each cycle", ("csv",)),
+    "cycles": Kind("cycles", "changes in each cycle", ("csv",), sources=("result",)),
     "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv",)),
     "loops": Kind("load_cycle", "hysteresis loops of the last cycle, or of several", ("csv", "cycle", "abscissa")),
-    "scar": Kind("scar", "wear: worn profile and pressure after some cycles", ("csv",)),
-    "wear": Kind("scar", "wear: volume, depth, dissipation and pressure over the cycles", ("csv",)),
-    "damage": Kind("scar", "wear: damage of the material, which goes with it", ("csv", "body", "criterion")),
     "fatigue": Kind("fatigue", "a criterion along the edge over the last cycle", ("csv", "body", "criterion", "depth")),
+    "scar": Kind("scar", "a life of wear: worn profile and pressure after some cycles", ("csv",), sources=("life",)),
+    "wear": Kind(
+        "scar", "a life of wear: volume, depth, dissipation, pressure over the cycles", ("csv",), sources=("life",)
+    ),
+    "damage": Kind("damage", "a life of wear: damage of the material", ("csv", "body", "criterion"), sources=("life",)),
 }
 """The kinds of figures by their names on the command line."""
 

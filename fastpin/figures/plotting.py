@@ -11,25 +11,48 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
-from fastpin.figures.kinds import KINDS, kinds_with
+from fastpin.figures.kinds import KINDS, SOURCES, kinds_with
 from fastpin.figures.sheet import WIDTH, Look, Plot
-from fastpin.figures.subjects import InMemory, Subject
+from fastpin.figures.subjects import InMemory, Subject, with_stored_cycles
 from fastpin.model.checks import choice
+from fastpin.model.wear import cycles_text
 from fastpin.solver.result import Result
 from fastpin.solver.wear_result import WearResult
 
 
-def plot_of(kind: str, subject: Subject, **options: Any) -> Plot:
+def plot_of(kind: str, subject: Subject, after: float | None = None, **options: Any) -> Plot:
     """Return the figure of a kind of :data:`fastpin.figures.kinds.KINDS`. The options are keywords of its function.
+
+    Of a life of wear the figure shows one cycle on the profile `after` so many cycles. Without `after`, and without a
+    choice of states among those on all profiles, it is the last profile.
 
     Raises
     ------
     InputError
         If an option is out of range, or the result can't be drawn in this way.
     """
+    sources = KINDS[kind].sources
+    if subject.source not in sources:
+        raise InputError("kind", f"{kind} shows {SOURCES[sources[0]]}, but this is {SOURCES[subject.source]}")
+    if after is not None:
+        if "result" not in sources:
+            raise InputError("after", f"has no effect on {kind}, which shows the whole life of wear")
+        if subject.source != "life":
+            raise InputError("after", f"chooses a profile of a life of wear, but this is {SOURCES[subject.source]}")
+    on_profile = ""
+    if subject.source == "life" and "result" in sources and (after is not None or "states" not in options):
+        life = with_stored_cycles(subject)
+        after = life[-1].cycle if after is None else after
+        subject, on_profile = InMemory(Result.of_life(life, after)), f"after {cycles_text(after)}"
     module = importlib.import_module(f"fastpin.figures.{KINDS[kind].file}")
     plot: Plot = getattr(module, f"{kind.replace('-', '_')}_plot")(subject, **options)
-    return plot
+    if not on_profile:
+        return plot
+
+    def draw(look: Look) -> Any:
+        return plot.draw(replace(look, title=", ".join(filter(None, [look.title, on_profile]))))
+
+    return replace(plot, draw=draw, notes=[f"the figure shows a cycle {on_profile}", *plot.notes])
 
 
 def plot_result(

@@ -15,14 +15,23 @@ from fastpin.states.choice import NO_CYCLE, StateChoice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.store import load, places_between
-from fastpin.storage.wear_files import load_wear
+from fastpin.storage.wear_files import holds_wear, load_wear
 
 
 class InMemory:
-    """A result, a sequence of states of one problem and on one grid, one state, or a life of wear."""
+    """A result, a sequence of states of one problem and on one grid, one state, or a life of wear.
+
+    The states of a life are those over one cycle on each stored profile.
+    """
 
     def __init__(self, result: Sequence[State] | State | WearResult) -> None:
-        self._result = result
+        self._life = result if isinstance(result, WearResult) else None
+        self._result = Result.of_life(result) if isinstance(result, WearResult) else result
+
+    @property
+    def source(self) -> str:
+        """A key of :data:`fastpin.figures.kinds.SOURCES`."""
+        return "result" if self._life is None else "life"
 
     @property
     def cycles(self) -> Sequence[Cycle]:
@@ -31,7 +40,7 @@ class InMemory:
 
     def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
         """Return the states of a figure, see :func:`fastpin.figures.states.drawn_states`."""
-        return drawn_states(self._result, states, **how)  # type: ignore[arg-type]
+        return drawn_states(self._result, states, **how)
 
     def result(self) -> Result:
         """Return the result."""
@@ -43,11 +52,13 @@ class InMemory:
 
     def wear(self) -> WearResult:
         """Return the life of wear."""
-        return instance("result", self._result, WearResult, "a WearResult")
+        return instance("result", self._life, WearResult, "a WearResult")
 
 
 class InFile:
-    """A stored result. Only the states that a figure shows are read."""
+    """The stored result of a run. Only the states that a figure shows are read."""
+
+    source = "result"
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -70,12 +81,25 @@ class InFile:
         return load(self._path, states=places_between(self._path, *span_of(cycle)))
 
     def wear(self) -> WearResult:
-        """Return the life of wear."""
+        """Raise :class:`InputError`: there is no life of wear."""
         return load_wear(self._path)
 
 
 Subject = InMemory | InFile
 """A result, or states, of which figures are made. States alone have no result."""
+
+
+def stored_subject(path: Path) -> Subject:
+    """Return the result of a run, or the life of wear, in a file."""
+    return InMemory(load_wear(path)) if holds_wear(path) else InFile(path)
+
+
+def with_stored_cycles(subject: Subject) -> WearResult:
+    """Return the life of wear of a subject. Without a stored cycle raise :class:`InputError`."""
+    life = subject.wear()
+    if not len(life):
+        raise InputError("result", "has no stored cycle: the life of wear ended before its first one")
+    return life
 
 
 def with_cycles(subject: Subject) -> Result:

@@ -120,6 +120,11 @@ class Wear:
         return tuple(sorted({0, *(each for each in some if each < self.cycles), self.cycles}))
 
 
+def cycles_text(count: float) -> str:
+    """A number of cycles as text: "1 cycle", "100,000 cycles"."""
+    return f"{count:,.15g} cycle{'s' * (count != 1)}"
+
+
 def _whole_cycles(value: object) -> int:
     """A number of cycles; 1e5 is one too."""
     plain = number("cycles", value, 1, MOST_CYCLES)

@@ -40,7 +40,10 @@ def way_on(path: Path | None, error: str | None) -> str:
     """
     if path is None or error not in (None, str(Interrupted())):
         return ""
-    return "its run goes on" if storage.is_being_written(path) else f"continue with: fastpin resume {path}"
+    if storage.is_being_written(path):
+        return "its run goes on"
+    command = f"wear CASE -o {path} --resume" if storage.holds_wear(path) else f"resume {path}"
+    return f"continue with: fastpin {command}"
 
 
 def solver_line(result: Result) -> str:

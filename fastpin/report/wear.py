@@ -9,6 +9,8 @@ import numpy as np
 from fastpin.damage import WornFatigue
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units
+from fastpin.model.wear import cycles_text
+from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve
 from fastpin.report.summary import json_ready, unit_names
 from fastpin.report.table import Column
@@ -16,16 +18,30 @@ from fastpin.report.table import table as text_table
 from fastpin.solver.wear_result import WearResult, WornCycle
 from fastpin.version import __version__
 
+DEBRIS = "debris is not modelled"
+"""A limit of the model that every report names."""
+
+LAW_WORDS = {
+    "archard": "depth = coefficient times int p |ds|, with the pressure p and the slip s",
+    "energy": "depth = coefficient times the energy that friction dissipates per area",
+}
+"""Words for the laws of wear."""
+
 
 def table(result: WearResult) -> str:
-    """Return the chosen cycles as a table."""
+    """Return the chosen cycles as a table. A long table lacks its middle."""
+    return text_table(cycle_columns(result))
+
+
+def cycle_columns(result: WearResult) -> list[Column]:
+    """Return the columns of the table of all chosen cycles."""
     unit = units(result.problem)
     columns: list[Column] = [("cycle", "", [f"{each.cycle:,}" for each in result])]
     kinds = {
         "depth": ("displacement", [each.depth for each in result]),
         "volume": ("work per stress", [each.volume for each in result]),
         "energy/cycle": ("energy", [each.energy_per_cycle for each in result]),
-        "peak p": ("traction", [float(each.pressure.max()) for each in result]),
+        "largest p": ("traction", [each.largest_pressure for each in result]),
     }
     for name, (kind, values) in kinds.items():
         factor, label = unit[kind].scale(values)
@@ -33,11 +49,50 @@ def table(result: WearResult) -> str:
     shares = ["-" if np.isnan(each.pin_share) else f"{100.0 * each.pin_share:.3g}" for each in result]
     columns.append(("of the pin", "%", shares))
     columns.append(("solved", "", [f"{each.solved:,}" for each in result]))
-    return text_table(columns)
+    return columns
+
+
+def coefficient_words(result: WearResult) -> dict[str, str]:
+    """Return the wear coefficients in words, of each body at the contact that wears."""
+    unit = units(result.problem)["wear coefficient"]
+    found = {}
+    for body, values in zip(("pin", edge_body(result.problem, "plate")), result.coefficients, strict=True):
+        if not values.any():
+            continue
+        least, most = (unit.text(float(value), 4) for value in (values.min(), values.max()))
+        found[body] = most if least == most else f"{least.partition(' ')[0]} to {most} along the rim"
+    return found
+
+
+def law_rows(result: WearResult) -> list[tuple[str, str]]:
+    """Return the law of wear, its coefficients, the cycles and the control of their error: rows of (subject, text)."""
+    tolerance = f"{result.tolerance:g} of the largest depth" if result.tolerance else "none: every cycle is solved"
+    return [
+        ("law", f"{result.law}: {LAW_WORDS[result.law]}"),
+        *((f"wear coefficient of the {body}", words) for body, words in coefficient_words(result).items()),
+        ("cycles", f"{result.all_cycles:,}"),
+        ("largest error by fat cycles", tolerance),
+    ]
+
+
+def followed_words(result: WearResult) -> str:
+    """Return words on how many cycles were followed; an unfinished life says so."""
+    if result.complete:
+        return cycles_text(result[-1].cycle)
+    return f"unfinished: {result[-1].cycle if len(result) else 0:,} of {cycles_text(result.all_cycles)}"
+
+
+def reached_line(result: WearResult) -> str:
+    """Return a line of text: how many cycles were followed, and how many of them were solved."""
+    solved = f", {result[-1].solved:,} of them solved" if len(result) else ""
+    return f"{followed_words(result)}{solved}; {DEBRIS}"
 
 
 def scar_curves(result: WearResult) -> list[Curve]:
-    """Return the profiles and the pressures after all stored cycles, a curve each, in the order of the angles."""
+    """Return the profiles after all stored cycles, a curve each, in the order of the angles.
+
+    The pressure is that on the profile at the end of one more cycle.
+    """
     unit = units(result.problem)
     length, traction = unit["displacement"], unit["traction"]
     angles = np.array([from_bottom(angle) for angle in result.theta.tolist()])
@@ -48,7 +103,7 @@ def scar_curves(result: WearResult) -> list[Curve]:
             "angle [deg]": angles,
             f"pin depth [{length.name}]": length.factor * each.pin_depth,
             f"plate depth [{length.name}]": length.factor * each.plate_depth,
-            f"pressure [{traction.name}]": traction.factor * each.pressure,
+            f"pressure [{traction.name}]": traction.factor * each.states[-1].pressure,
         }
         curves.append(Curve({"cycle": each.cycle}, {name: values[order] for name, values in columns.items()}))
     return curves

@@ -118,6 +118,23 @@ class Result(Sequence[State]):
     cycles: tuple[Cycle, ...] = ()
     coarse: Result | None = None
 
+    @classmethod
+    def of_life(cls, life: WearResult, after: float | None = None) -> Result:
+        """The states of a life of wear, over one cycle on each stored profile, or on that `after` so many cycles.
+
+        The cycles of the result are these cycles.
+
+        Raises
+        ------
+        InputError
+            If no profile is stored there.
+        """
+        chosen = life.cycles if after is None else (life.after(after),)
+        return cls(
+            [state for each in chosen for state in each.states], life.problem, life.history, life.grid, "path",
+            life.statistics, life.complete, cycles=tuple(each.changes for each in chosen),
+        )  # fmt: skip
+
     def cycle(self, place: int = -1, *, first: int | None = None, last: int | None = None) -> LoadCycle:
         """The quantities over a cycle: ranges of slip and tractions, friction energy, loops of the loads.
 

@@ -9,11 +9,15 @@ from typing import Any, overload
 
 import numpy as np
 
+from fastpin.errors import InputError
+from fastpin.model.checks import number
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.points import Body
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.wear import cycles_text
+from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 
 
@@ -101,6 +105,17 @@ class WornCycle(ReadOnly):
         """Largest pressure at a node over one cycle on this profile, Pa."""
         return max(float(state.pressure.max()) for state in self.states)
 
+    @property
+    def changes(self) -> Cycle:
+        """The changes of the contact over one cycle on this profile."""
+        first, last = self.states[0], self.states[-1]
+        peak = float(last.pressure.max()) or 1.0
+        pressure, shear = (
+            float(np.abs(getattr(last, name) - getattr(first, name)).max()) / peak for name in ("pressure", "shear")
+        )
+        turned, length = last.rotation - first.rotation, len(self.states) - 1
+        return Cycle(last.step, length, self.cycle + 1, pressure, shear, self.energy_per_cycle, turned, solved=True)
+
     def __repr__(self) -> str:
         return f"<WornCycle: after {self.cycle:,} cycles, depth {self.depth:.4g}, volume {self.volume:.4g}>"
 
@@ -157,6 +172,27 @@ class WearResult(ReadOnly, Sequence[WornCycle]):
         tau: np.ndarray = self.numbers * float(self.coefficients.sum(axis=0).max())
         return tau
 
+    @property
+    def all_cycles(self) -> int:
+        """Cycles that were to be followed."""
+        return self.history.blocks[-1].count - 1
+
+    def after(self, cycles: float) -> WornCycle:
+        """The contact after so many cycles, which must be chosen ones.
+
+        Raises
+        ------
+        InputError
+            If no profile is stored there.
+        """
+        wanted = number("after", cycles, 0.0)
+        found = next((each for each in self.cycles if each.cycle == wanted), None)
+        if found is None:
+            near = sorted(self.cycles, key=lambda each: abs(each.cycle - wanted))[:2]
+            stored = " and ".join(f"{number:,}" for number in sorted(each.cycle for each in near)) or "none"
+            raise InputError("after", f"no profile is stored after {cycles_text(wanted)}; the nearest: {stored}")
+        return found
+
     def summary(self) -> str:
         """The chosen cycles as a table."""
         import fastpin
@@ -191,13 +227,15 @@ class WearResult(ReadOnly, Sequence[WornCycle]):
         ----------
         path, **options
             See :func:`fastpin.plot_tractions`, and the options of the kind, such as ``body="pin"``.
-        kind : {"scar", "wear", "damage"}
-            Profile and pressure, the numbers over the cycles, or the damage of :meth:`fatigue`.
+        kind : str
+            "scar": profile and pressure. "wear": the numbers over the cycles. "damage": the damage of :meth:`fatigue`.
+            Other kinds of ``fastpin plot``, such as "tractions" or "loops", show one cycle on the last profile. The
+            option ``after=1000`` chooses the profile after so many cycles.
 
         Raises
         ------
         InputError
-            See :func:`fastpin.plot_tractions` and :meth:`fatigue`.
+            See :func:`fastpin.plot_tractions`, :meth:`after` and :meth:`fatigue`.
         """
         import fastpin
 

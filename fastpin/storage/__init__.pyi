@@ -16,5 +16,6 @@ from .store import load as load
 from .store import load_points as load_points
 from .store import places_between as places_between
 from .store import save as save
+from .wear_files import holds_wear as holds_wear
 from .wear_files import load_wear as load_wear
 from .wear_files import wear as wear

@@ -354,6 +354,18 @@ class WearFile:
             file.release()
 
 
+def holds_wear(path: Path) -> bool:
+    """Whether a result is that of a life of wear.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(path) as file:
+        return "wear" in file
+
+
 def load_wear(path: str | Path) -> WearResult:
     """Read the result of a life of wear. It may be finished, unfinished or killed.
 

@@ -9,9 +9,12 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, InputError, LoadHistory, MaterialPair, Problem, figures, load, record, storage
+from fastpin import MATERIALS, InputError, LoadHistory, MaterialPair, Problem, figures, load, load_wear, record, storage
 from fastpin.cli.main import main
 from fastpin.figures.kinds import KIND_OPTIONS, KINDS
+from tests.support.drawing import draw_roughly
+from tests.support.lives import sample_life
+from tests.support.samples import JOINT
 
 
 @pytest.fixture(scope="module")
@@ -22,6 +25,19 @@ def stored(tmp_path_factory):
     cycle = LoadHistory([{"Q": 1e5, "sxx": 60e6}, {"Q": -1e5, "sxx": 6e6}])
     record(problem, LoadHistory([{"P": 6e5}]) + cycle.repeated(2), path, nodes=101, between=1, slip_sums=True)
     return path
+
+
+@pytest.fixture(scope="module")
+def life(tmp_path_factory):
+    path = tmp_path_factory.mktemp("plot") / "life.h5"
+    sample_life(path)
+    return path
+
+
+@pytest.fixture
+def of_kind(stored, life):
+    """The file of a kind of figure: a result, or a life of wear if the kind shows no result."""
+    return {name: stored if "result" in kind.sources else life for name, kind in KINDS.items()}
 
 
 EXTREMES = functools.cache(storage.marked_extremes)
@@ -54,15 +70,18 @@ def test_the_function_of_each_kind_has_its_options():
     assert used == set(KIND_OPTIONS)
 
 
-BARE = ("load point", "cycle", "corner", "length", "number", "pressure_change", "shear_change")
+BARE = (
+    "load point", "cycle", "corner", "length", "number", "pressure_change", "shear_change", "damage", "worn off",
+    "cycles to damage 1",
+)  # fmt: skip
 """Columns of numbers without a unit."""
 
 
 @pytest.mark.usefixtures("coarse")
 @pytest.mark.parametrize("kind", [name for name, kind in KINDS.items() if "csv" in kind.options])
-def test_a_figure_and_its_numbers_with_units(stored, kind, tmp_path, capsys):
+def test_a_figure_and_its_numbers_with_units(of_kind, kind, tmp_path, capsys):
     figure, numbers = tmp_path / f"{kind}.svg", tmp_path / f"{kind}.csv"
-    assert main(["plot", str(stored), kind, "-o", str(figure), "--csv", str(numbers)]) == 0
+    assert main(["plot", str(of_kind[kind]), kind, "-o", str(figure), "--csv", str(numbers)]) == 0
     assert figure.read_text(encoding="utf-8").startswith("<?xml")
     assert capsys.readouterr().out.splitlines()[-1] == f"wrote {figure} and {numbers}"
     rows = read_rows(numbers)
@@ -77,17 +96,57 @@ def test_a_figure_and_its_numbers_with_units(stored, kind, tmp_path, capsys):
 def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, tmp_path):
     result = load(stored)
     with mpl.rc_context({"svg.hashsalt": "fastpin"}):
-        for name in [name for name, kind in KINDS.items() if kind.ending == "png"]:
+        for name in [name for name, kind in KINDS.items() if kind.ending == "png" and "result" in kind.sources]:
             result.plot(tmp_path / "memory.svg", kind=name)
             assert main(["plot", str(stored), name, "-o", str(tmp_path / "file.svg")]) == 0
             assert (tmp_path / "memory.svg").read_bytes() == (tmp_path / "file.svg").read_bytes(), name
+
+
+@pytest.mark.usefixtures("coarse")
+def test_all_kinds_but_that_of_cycles_show_a_life_of_wear(life, tmp_path, monkeypatch, capsys):
+    draw_roughly(monkeypatch)
+    for name, kind in KINDS.items():
+        code = main(["plot", str(life), name, "-o", str(tmp_path / f"a.{kind.ending}")])
+        assert code == (0 if "life" in kind.sources else 2), name
+        shows_a_profile = "the figure shows a cycle after 60 cycles\n" in capsys.readouterr().out
+        assert shows_a_profile == (kind.sources == ("result", "life")), name
+
+
+def test_a_profile_of_a_life_is_chosen_by_its_cycles(life, tmp_path, capsys):
+    numbers = tmp_path / "a.csv"
+    arguments = ["plot", str(life), "tractions", "-o", str(tmp_path / "a.svg"), "--csv", str(numbers)]
+    found = load_wear(life)
+    for number in (0, 20):
+        assert main([*arguments, "--after", str(number)]) == 0
+        assert f"the figure shows a cycle after {number} cycles\n" in capsys.readouterr().out
+        points = [state.step + state.fraction for state in found.after(number).states]
+        assert {float(row["load point"]) for row in read_rows(numbers)} == {*points}
+    assert main([*arguments, "--states", "6-7"]) == 0  # states on any profile
+    assert {float(row["load point"]) for row in read_rows(numbers)} == {6.0, 7.0}
+    with mpl.rc_context({"svg.hashsalt": "fastpin"}):
+        found.plot(tmp_path / "memory.svg", kind="tractions", after=20)
+        assert main(["plot", str(life), "tractions", "--after", "2e1", "-o", str(tmp_path / "file.svg")]) == 0
+    memory, file = ((tmp_path / name).read_text() for name in ("memory.svg", "file.svg"))
+    assert "<!-- after 20 cycles" in memory
+    assert "<!-- Worn lug, after 20 cycles" in file
+
+
+def test_the_usual_kind_is_that_of_the_file(stored, life, tmp_path, monkeypatch, capsys):
+    draw_roughly(monkeypatch)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "case.toml").write_text(f"{JOINT}\n[[load]]\nP = 1e6\n")
+    for source, name in ((stored, "tractions"), (life, "scar"), ("case.toml", "sketch")):
+        assert main(["plot", str(source)]) == 0
+        assert capsys.readouterr().out.splitlines()[-1] == f"wrote {name}.png"
 
 
 def test_kinds_and_options_of_a_result_in_memory_are_checked(stored):
     result = load(stored)
     with pytest.raises(InputError, match=r'^kind: must be "tractions", "polar", .* not "animation"$'):
         result.plot(kind="animation")
-    with pytest.raises(InputError, match=r"^body: has no effect on loops; it is for hoop, profile, map, fatigue$"):
+    with pytest.raises(
+        InputError, match=r"^body: has no effect on loops; it is for hoop, profile, map, fatigue, damage$"
+    ):
         result.plot(kind="loops", body="pin")
 
 
@@ -192,12 +251,31 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         (["map", "--component", "x"], "--component: must be "),
         (["profile", "--body", "both"], '--body: must be "plate", "pin" or "seat"'),
         (["fatigue", "--criterion", "crossland"], "crossland needs bending_limit, torsion_limit of the plate"),
+        (["scar"], "kind: scar shows a life of wear, but this is the result of a run"),
+        (["hoop", "--after", "3"], "--after: chooses a profile of a life of wear, but this is the result of a run"),
         (["hoop", "-o", "hoop.txt"], "--output: must be the name of a figure, which ends in .png, .pdf or .svg, not"),
     ],
 )
 def test_wrong_options(stored, arguments, message, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["plot", str(stored), *arguments]) == 2
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["cycles"], "kind: cycles shows the result of a run, but this is a life of wear"),
+        (["scar", "--after", "20"], "--after: has no effect on scar, which shows the whole life of wear"),
+        (["hoop", "--after", "7"], "--after: no profile is stored after 7 cycles; the nearest: 0 and 2"),
+        (["hoop", "--after", "x"], '--after: must be a number, not "x"'),
+        (["damage", "--criterion", "findley"], "fatigue: findley needs bending_limit, torsion_limit of the plate"),
+    ],
+)
+def test_wrong_options_of_a_life_of_wear(life, arguments, message, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["plot", str(life), *arguments]) == 2
     assert message in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 

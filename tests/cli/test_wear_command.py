@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
@@ -14,6 +15,7 @@ from fastpin.casefile import parse_case
 from fastpin.casefile.writer import case_text
 from fastpin.cli.main import main
 from fastpin.report import json_schema, wear
+from fastpin.solver.errors import Interrupted
 
 CASE = """
 title = "Worn pin"
@@ -83,9 +85,36 @@ def test_a_file_is_begun_continued_and_kept(capsys):
     assert "holds a finished life of wear" in capsys.readouterr().err
     assert main(["wear", "case.toml", "-o", "life.h5", "--overwrite"]) == 0
     assert capsys.readouterr().out == first
-    assert main(["show", "life.h5"]) == 0
     assert main(["resume", "life.h5"]) == 2
     assert "belongs to a life of wear" in capsys.readouterr().err
+
+
+def test_a_stored_life_is_shown(capsys):
+    assert main(["wear", "case.toml", "-o", "life.h5", "--json", "life.json"]) == 0
+    printed = capsys.readouterr().out
+    assert main(["show", "life.h5", "--json", "shown.json"]) == 0
+    assert capsys.readouterr().out == printed
+    assert Path("shown.json").read_text() == Path("life.json").read_text()
+    for option in ("--plot", "--cycles=a.png"):
+        assert main(["show", "life.h5", option]) == 2
+        words = f"{option.partition('=')[0]}: is for the result of a run; fastpin plot life.h5 draws this life of wear"
+        assert capsys.readouterr().err == f"fastpin: {words}\n"
+
+
+def test_an_unfinished_life_says_so(capsys):
+    Path("case.toml").write_text(CASE.replace("plate = [{ constant = 1e-12 }, {", "plate = [{ constant = 1e-5 }, {"))
+    assert main(["wear", "case.toml", "-o", "life.h5"]) == 1
+    error = capsys.readouterr().err.removeprefix("fastpin: ").strip()
+    assert main(["show", "life.h5"]) == 0
+    *_, reached, note = capsys.readouterr().out.splitlines()
+    assert reached == "unfinished: 1 of 12 cycles, 1 of them solved; debris is not modelled"
+    assert note == f"note: the life is unfinished: {error}"
+    assert main(["show", "life.h5", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["error"] == error
+    with h5py.File("life.h5", "r+") as file:
+        file.attrs["error"] = str(Interrupted())
+    assert main(["show", "life.h5"]) == 0
+    assert capsys.readouterr().out.endswith("; continue with: fastpin wear CASE -o life.h5 --resume\n")
 
 
 FAULTS = {
