@@ -58,6 +58,16 @@ def test_a_file_holds_the_life_to_the_last_bit(tmp_path):
     assert sorted(each.name for each in tmp_path.iterdir()) == ["life.h5"]
 
 
+def test_a_history_may_be_its_cycle_alone(tmp_path):
+    path = tmp_path / "life.h5"
+    history = fastpin.LoadHistory([{"P": 1.0}, {"P": 0.5}]).repeated(2)
+    written = fastpin.wear(CASE.problem, history, output=path, **GIVEN)
+    assert_same_life(written, fastpin.wear(CASE.problem, history, **GIVEN))
+    assert [state.step for state in written[0].states] == [-1, 0, 1]
+    assert not written[0].states[0].in_contact
+    assert [state.step for state in written[-1].states] == [119, 120, 121]
+
+
 def test_an_interrupted_life_goes_on_to_the_same_bits(tmp_path):
     path, corners = tmp_path / "life.h5", [5, 12, 13, 30, 47]
     for number, corner in enumerate(corners):
