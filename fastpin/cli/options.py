@@ -176,7 +176,9 @@ def add_stored_commands(commands: Any) -> None:
     resume.add_argument("output", metavar="FILE", type=Path, help="HDF5 file of the run (run -o FILE)")
     _add_outputs(resume)
     show = _command(commands, "show", "run", "show", "print and draw a stored result")
-    show.add_argument("output", metavar="FILE", type=Path, help="HDF5 file (run -o FILE); the run may still be going")
+    show.add_argument(
+        "output", metavar="FILE", type=Path, help="HDF5 file (run or wear -o FILE); the run may still be going"
+    )
     _add_outputs(show)
 
 
@@ -253,7 +255,7 @@ def add_report(commands: Any) -> None:
         "source",
         metavar="FILE_OR_DIR",
         type=Path,
-        help="HDF5 file (run -o FILE); case file (TOML), which is solved first; or directory of a sweep",
+        help="HDF5 file (run or wear -o FILE); case file (TOML), which is solved first; or directory of a sweep",
     )
     report.add_argument(
         "-o",

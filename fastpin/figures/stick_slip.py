@@ -24,7 +24,7 @@ from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Status
 from fastpin.model.problem import Problem
 from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
-from fastpin.states.quantities import load_point
+from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 
 MOST_COLUMNS = 200
@@ -106,9 +106,9 @@ def plot_stick_slip(
 def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
     """Return the map of stick and slip, see :func:`plot_stick_slip`. The caption says if states are left out."""
     drawn = subject.states(states, most=MOST_COLUMNS, whole=True)
-    first, last = load_point(drawn[0]), load_point(drawn[-1])
+    first, last = (point_name(load_point(drawn[place])) for place in (0, -1))
     part = (
-        f"Only {len(drawn):,} of {drawn.total:,} states, load points {first:.5g} to {last:.5g}: stick"
+        f"Only {len(drawn):,} of {drawn.total:,} states, load points {first} to {last}: stick"
         if len(drawn) < drawn.total
         else "Stick"
     )
@@ -119,7 +119,7 @@ def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
     return Plot(
         lambda look: _draw(look, drawn) if len(drawn) <= MOST_COLUMNS else _draw_long(look, drawn),
         lambda path: write_csv([Curve({}, _zone_columns(drawn))], path),
-        f"Map of the zones that stick and slip, over angle and load point, from load point {first:.5g} to {last:.5g}.",
+        f"Map of the zones that stick and slip, over angle and load point, from load point {first} to {last}.",
         f"{part} and slip over the angle round the hole and the load point. White is open.",
         notes,
     )

@@ -29,7 +29,7 @@ from fastpin.report.curves import Curve, write_csv
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
-from fastpin.states.quantities import load_point
+from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 
 FIELD_WIDTH = 5.2
@@ -213,7 +213,7 @@ def map_plot(
     state = drawn[-1]
     curves = field_curves(state, component, body, extent)
     words = COMPONENTS[component]
-    point = f"load point {load_point(state):.4g}: {named_loads(state.problem, state.load)}"
+    point = f"load point {point_name(load_point(state))}: {named_loads(state.problem, state.load)}"
     return Plot(
         lambda look: _draw_field(look, state, curves, component),
         partial(write_csv, curves),

@@ -15,7 +15,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import PASCAL, Unit, acting_loads, units
 from fastpin.report.case import ROUNDING
-from fastpin.states.quantities import load_point
+from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 
 ANGLE = "angle from the bottom of the hole, counter-clockwise (deg)"
@@ -58,7 +58,7 @@ def point_text(state: State) -> str:
 
 def points_text(states: Sequence[State]) -> str:
     """The load points of states as text, for readers who can't see their curves."""
-    return ", ".join(f"{load_point(state):.4g}" for state in states)
+    return ", ".join(point_name(load_point(state)) for state in states)
 
 
 def load_text(states: Sequence[State], index: int, name: str) -> str:

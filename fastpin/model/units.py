@@ -37,8 +37,8 @@ PER_THICKNESS = {"force": "N", "moment": "N m", "stiffness": "N m/rad", "energy"
 _WITH_PREFIX = frozenset({*_SI.values(), *PER_THICKNESS.values(), "s"} - {"", "cycles", "1/Pa"})
 """Units that may get an SI prefix."""
 
-_POWERS = {"m^2": 2, "m^3": 3}
-"""Powers of units, to which a prefix is raised too: 1 mm^2 is 1e-6 m^2."""
+_POWERS = {"m^2": (2, -2), "m^3": (3, -5)}
+"""The power of a unit, to which a prefix is raised too: 1 mm^2 is 1e-6 m^2. Then the lowest decade of values in it."""
 
 _DIMENSIONLESS = {
     "force": "F",
@@ -123,9 +123,8 @@ def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
     largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     if unit not in _WITH_PREFIX or largest == 0.0:
         return 1.0, unit
-    power = _POWERS.get(unit, 1)
-    # From 1 to 1,000, or as near to that as a square or a cube allows.
-    exponent = 3 * math.floor((math.log10(largest * (1.0 + 1e-12)) - 1.5) / (3.0 * power) + 0.5)
+    power, lowest = _POWERS.get(unit, (1, 0))
+    exponent = 3 * math.floor((math.log10(largest * (1.0 + 1e-12)) - lowest) / (3.0 * power))
     exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))
     return 10.0 ** (-exponent * power), _PREFIXES[exponent] + unit
 

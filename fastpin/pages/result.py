@@ -10,14 +10,16 @@ from pathlib import Path
 from fastpin.casefile.reader import parse_case
 from fastpin.casefile.toml_text import read_text
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.case import About, Case
+from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.album import Album
 from fastpin.pages.content import Page
 from fastpin.pages.sections import SECTIONS, PageParts
-from fastpin.pages.source import Source, now
+from fastpin.pages.source import Source, now, with_count
+from fastpin.pages.wear import WEAR_SECTIONS
 from fastpin.pages.writing import check_page, write_page
 from fastpin.solver.result import Result
+from fastpin.solver.wear_result import WearResult
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical
 from fastpin.version import __version__
@@ -27,7 +29,7 @@ PageProgress = Callable[[float, float], None]
 
 
 def write_report(
-    result: Result | str | Path,
+    result: Result | WearResult | str | Path,
     path: str | Path,
     *,
     title: str = "",
@@ -36,15 +38,15 @@ def write_report(
     convergence: Convergence | None = None,
     progress: PageProgress | None = None,
 ) -> None:
-    """Write the report of a result: one HTML page or a PDF, with all figures inside. It needs no other file.
+    """Write the report of a result or of a life of wear: one HTML page or a PDF, with all figures inside.
 
-    Of a long history the page shows the last cycle and the ends of the table. A section that lacks its data says how
-    to get them.
+    It needs no other file. Of a long history the page shows the last cycle and the ends of the table. A section that
+    lacks its data says how to get them.
 
     Parameters
     ----------
-    result : Result or path
-        A result, or the file of one. The run of the file may be finished, unfinished or going on.
+    result : Result, WearResult or path
+        A result, a life of wear, or the file of one. The run of the file may be finished, unfinished or going on.
     path : path
         The report. Its name ends in .html, .htm or .pdf; a PDF needs the extra ``fastpin[pdf]``. An existing file is
         overwritten, whole or not at all.
@@ -56,7 +58,7 @@ def write_report(
         The case file of the result. Its text is shown on the page. Unless given, it is the file beside a stored result
         that has its name with .toml, if that is a case file of the same problem and loads.
     convergence : Convergence, optional
-        A study of the case, which is shown on the page.
+        A study of the case, which is shown on the page of a result.
     progress : callable, optional
         Called as ``progress(done, all)`` with numbers of sections.
 
@@ -77,14 +79,18 @@ def write_report(
         instance("convergence", convergence, Convergence, "a Convergence")
     if isinstance(result, Result):
         source = Source.of_result(result, title)
+    elif isinstance(result, WearResult):
+        source = Source.of_life(result, title)
     else:
         file = file_path("result", result)
         source = Source.of_file(file)
         if case is None:
             with contextlib.suppress(InputError, CaseFileError):  # the file is another case, or none
-                source = replace(source, case_text=_case_text(file.with_suffix(".toml"), source.case))
+                source = replace(source, case_text=_case_text(file.with_suffix(".toml"), source))
+    if source.life is not None and convergence is not None:
+        raise InputError("convergence", "has no effect on the report of a life of wear")
     if case is not None:
-        source = replace(source, case_text=_case_text(case, source.case))
+        source = replace(source, case_text=_case_text(case, source))
     named = replace(source.case, title=title or source.case.title, about=merged(source.case.about, about))
     write_source(replace(source, case=named), target, convergence, progress)
 
@@ -98,13 +104,15 @@ def write_source(
     """Write the page of a source, see :func:`write_report`."""
     report = progress or (lambda done, total: None)
     page, sections = PageParts(source, Album(), convergence), []
-    for number, make in enumerate(SECTIONS):
-        report(number, len(SECTIONS))
+    makers = SECTIONS if source.life is None else WEAR_SECTIONS
+    for number, make in enumerate(makers):
+        report(number, len(makers))
         sections.append(make(page))
-    report(len(SECTIONS), len(SECTIONS))
-    lead = "Frictional contact of an elastic pin in the hole of an elastic plate."
+    report(len(makers), len(makers))
+    what = "Frictional contact" if source.life is None else "Wear in the frictional contact"
+    lead = f"{what} of an elastic pin in the hole of an elastic plate."
     made = f"Made by fastpin {__version__} on {now()}."
-    title = source.case.title or "Report of a result"
+    title = source.case.title or ("Report of a result" if source.life is None else "Report of a life of wear")
     write_page(Page(title, lead, sections, made, source.case.about), path)
 
 
@@ -113,11 +121,17 @@ def merged(stored: About, given: About | None) -> About:
     return replace(stored, **given.given()) if given is not None else stored
 
 
-def _case_text(path: str | Path, case: Case) -> str:
-    """Return the text of a case file, which must have the problem and the loads of a case."""
+def _case_text(path: str | Path, source: Source) -> str:
+    """Return the text of a case file, which must have the problem and the loads of a source.
+
+    The cycle of a life of wear may have any number of repeats in the case file.
+    """
     file = file_path("case", path)
     text = read_text(file)
-    given, stored = (canonical(each) for each in (parse_case(text, str(file), file.parent), case))
+    case = parse_case(text, str(file), file.parent)
+    if source.life is not None:
+        case = replace(case, history=with_count(case.history, source.life.all_cycles))
+    given, stored = (canonical(each) for each in (case, source.case))
     for name in given.keys() | stored.keys():
         if name != "solve" and given.get(name) != stored.get(name):
             raise InputError("case", f"{file} is not the case of this result: {name.replace('_', ' ')} differs")

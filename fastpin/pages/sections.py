@@ -39,10 +39,11 @@ from fastpin.report.margins import HEADS, fatigue_margins, margin_rows, static_m
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, state_columns
 from fastpin.report.table import MAX_ROWS, Column
+from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.extremes import yield_doubts
 from fastpin.states.load_cycle import LoadCycle
-from fastpin.states.quantities import QUANTITIES, load_point, size
+from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
 from fastpin.states.state import State
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical, run_id
@@ -63,6 +64,9 @@ MOST_CHARACTERS = 20_000
 
 MOST_BLOCKS = 4
 """Most blocks of cycles that the overview describes, a sentence each."""
+
+ANGLES = "Angles are in degrees from the bottom of the hole, counter-clockwise positive, towards +x."
+"""The convention of angles."""
 
 NO_STATE = "There is no state: the run ended before its first corner, or its states were not kept."
 """In place of a section that needs states."""
@@ -88,16 +92,11 @@ def overview(page: PageParts) -> PageSection:
     """Return the most important sentences on the result."""
     source, problem = page.source, page.source.case.problem
     cycle = source.cycle
-    warnings = [*doubts(problem, source.case.history, source.case.options)]
-    warnings += pressure_doubts(problem, source.case.history, [np.array([source.pressure])])
-    warnings += yield_doubts(problem, source.case.history, lambda: source.found, source.read)
-    parts: list[SectionPart] = [_status(source)]
-    parts += [Text(f"Warning: {warning}.", "note") for warning in warnings]
-    parts += [Text(f"Note: {note}.", "note") for note in note_lines(source.case, source.result)]
+    parts: list[SectionPart] = [_status(source), *warnings_and_notes(source)]
     if source.peaks:
         largest = max(source.peaks, key=lambda state: state.peak_pressure)
-        pressure = units(problem)["traction"].text(largest.peak_pressure, 5)
-        sentences = [f"largest contact pressure in all kept states: {pressure}, load point {load_point(largest):.5g}"]
+        pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
+        sentences = [f"largest contact pressure in all kept states: {pressure}, load point {point}"]
         sentences += [hoop_line(problem, source.peaks, body) for body in EDGES]
         sentences += [*bush_line(problem, source.peaks).splitlines()]
         lines = cycle_lines(problem, source.result.cycles, source.peaks)
@@ -106,12 +105,23 @@ def overview(page: PageParts) -> PageSection:
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
         known = [] if isinstance(source.fatigue, str) else source.fatigue
         sentences += [hot_spot_line(found, source.peaks) for found in known]
-        parts.append(Items([_sentence(line) for line in sentences if line]))
-    parts.append(Text("Angles are in degrees from the bottom of the hole, counter-clockwise positive, towards +x."))
+        parts.append(Items([sentence(line) for line in sentences if line]))
+    parts.append(Text(ANGLES))
     return PageSection("overview", "Overview", parts)
 
 
-def _sentence(line: str) -> str:
+def warnings_and_notes(source: Source) -> list[Text]:
+    """Return the doubts about a result, and what a reader of it must know."""
+    problem, history = source.case.problem, source.case.history
+    warnings = [*doubts(problem, history, source.case.options)]
+    warnings += pressure_doubts(problem, history, [np.array([source.pressure])])
+    warnings += yield_doubts(problem, history, lambda: source.found, source.read)
+    warnings += [] if source.life is None else source.life.doubts
+    notes = note_lines(source.case, source.result)
+    return [Text(f"Warning: {each}.", "note") for each in warnings] + [Text(f"Note: {each}.", "note") for each in notes]
+
+
+def sentence(line: str) -> str:
     """Return a line of a report as a sentence."""
     return f"{line[0].upper()}{line[1:]}."
 
@@ -124,7 +134,7 @@ def _status(source: Source) -> Text:
         return Text(f"Complete: {which} of the load history {were} followed; {_count(source)}.")
     why = f" The reason: {source.error}." if source.error else ""
     line = way_on(source.path, source.error)
-    how = f" {_sentence(line)}" if line else ""
+    how = f" {sentence(line)}" if line else ""
     return Text(f"Unfinished: corner {source.reached:,} of {corners:,}; {_count(source)}.{why}{how}", "note")
 
 
@@ -167,7 +177,7 @@ def case(page: PageParts) -> PageSection:
         "case",
         "Case",
         [
-            *_drawn(lambda: page.album.figure(sketch_of(found))),
+            *drawn_or_reason(lambda: page.album.figure(sketch_of(found))),
             Facts("The problem", rows, ("subject", "in words")),
             Facts("Options of the solver", solver, ("option", "value", "meaning")),
         ],
@@ -249,7 +259,7 @@ def key_figures(page: PageParts) -> PageSection:
     columns: list[Column] = [("quantity", "", [row[0] for row in shown]), ("unit", "", [row[1] for row in shown])]
     for place, state in enumerate(drawn):
         values = ["-" if row[2][place] == "nan" else row[2][place] for row in shown]
-        columns.append((f"{state.step + state.fraction:.5g}", "", values))
+        columns.append((point_name(load_point(state)), "", values))
     parts.append(Table("All quantities, by load point", columns))
     if states[0].error_bars is None:
         how = (
@@ -287,12 +297,12 @@ def zones(page: PageParts) -> PageSection:
     columns = [(heads[k], units_[k], [row[k] for row in rows]) for k in range(len(heads))]
     parts: list[SectionPart] = [Table("Zones of contact, stick and slip", columns)]
     if len(page.source.mapped) > 1:
-        parts = [*_drawn(lambda: page.album.figure(stick_slip_plot(InMemory(page.source.mapped)))), *parts]
+        parts = [*drawn_or_reason(lambda: page.album.figure(stick_slip_plot(InMemory(page.source.mapped)))), *parts]
     return PageSection("zones", "Stick and slip", parts)
 
 
 def _zone_rows(state: State) -> list[tuple[str, ...]]:
-    point = f"{state.step + state.fraction:.5g}"
+    point = point_name(load_point(state))
     found = [("contact", start, stop, "") for start, stop in state.contact]
     found += [("stick", start, stop, "") for start, stop in state.stick]
     found += [("slip", start, stop, _DIRECTIONS[int(sign)]) for start, stop, sign in state.slip_zones]
@@ -321,19 +331,23 @@ def hysteresis(page: PageParts) -> PageSection:
         if source.last_cycle is None:
             words = "The history has no repeated block; its last part begins and ends with the same loads"
             parts.append(Text(f"{words}: corners {cycle.first:,} to {cycle.last:,}."))
-        parts += _drawn(lambda: page.album.figure(loops_of([cycle])))
+        parts += drawn_or_reason(lambda: page.album.figure(loops_of([cycle])))
         if len(cycle.states) <= STRAIGHT:
             parts.append(Text("Loops need states between the corners, such as between = 20 in [solve].", "missing"))
-        if _slips(cycle):
-            parts += _drawn(lambda: page.album.figure(slip_of(cycle)))
-        else:
-            parts.append(Text(_sentence(NO_SLIP.format(cycle))))
+        parts += slip_parts(page, cycle)
     if source.result.cycles:
-        parts += _drawn(lambda: page.album.figure(cycles_of(source.result)))
+        parts += drawn_or_reason(lambda: page.album.figure(cycles_of(source.result)))
         lines = cycle_lines(source.case.problem, source.result.cycles, source.peaks)
         if len(lines) > MOST_BLOCKS:
-            parts.append(Items([_sentence(line) for line in lines]))
+            parts.append(Items([sentence(line) for line in lines]))
     return PageSection("hysteresis", "Hysteresis and slip", parts)
+
+
+def slip_parts(page: PageParts, cycle: LoadCycle) -> list[SectionPart]:
+    """Return the figure of slip and friction energy over a cycle, or that nothing slips."""
+    if not _slips(cycle):
+        return [Text(sentence(NO_SLIP.format(cycle)))]
+    return drawn_or_reason(lambda: page.album.figure(slip_of(cycle)))
 
 
 def _slips(cycle: LoadCycle) -> bool:
@@ -342,7 +356,7 @@ def _slips(cycle: LoadCycle) -> bool:
     return cycle.largest_slip_range > ROUNDING * natural
 
 
-def _drawn(draw: Callable[[], SectionPart]) -> list[SectionPart]:
+def drawn_or_reason(draw: Callable[[], SectionPart]) -> list[SectionPart]:
     """Return a picture, or the reason why there is none."""
     try:
         return [draw()]
@@ -355,15 +369,15 @@ def stresses(page: PageParts) -> PageSection:
     drawn, problem = page.source.drawn, page.source.case.problem
     if not drawn:
         return PageSection("stresses", "Stresses", [Text(NO_STATE, "missing")])
-    parts = _drawn(lambda: page.album.figure(hoop_plot(InMemory(drawn))))
+    parts = drawn_or_reason(lambda: page.album.figure(hoop_plot(InMemory(drawn))))
     peaks = page.source.peaks
     lines = [hoop_line(problem, peaks, body) for body in EDGES]
-    parts += [Text(_sentence(line)) for line in lines if line]
+    parts += [Text(sentence(line)) for line in lines if line]
     if problem.surfaces.plate.is_rigid:
         largest = max(peaks, key=lambda state: state.peak_pressure)
     else:
         largest = max(peaks, key=lambda state: state.peak_hoop_stress().value)
-    parts += _drawn(lambda: page.album.figure(map_plot(InMemory(largest))))
+    parts += drawn_or_reason(lambda: page.album.figure(map_plot(InMemory(largest))))
     return PageSection("stresses", "Stresses", parts)
 
 
@@ -374,7 +388,7 @@ def fatigue(page: PageParts) -> PageSection:
         return PageSection("fatigue", "Fatigue", [Text(found, "missing")])
     parts: list[SectionPart] = [page.album.figure(fatigue_of(found))]
     for one in found:
-        parts.append(Text(_sentence(hot_spot_line(one, page.source.peaks))))
+        parts.append(Text(sentence(hot_spot_line(one, page.source.peaks))))
         if one.life is None:
             words = f"There is no life: the material of the {edge_body(one.problem, one.body).split(' at ')[0]}"
             words += " lacks constants for it. The key fatigue of a case file gives them; see docs/fatigue.md."
@@ -415,7 +429,7 @@ def checks(page: PageParts) -> PageSection:
         parts.append(Facts(words, rows, heads))
     else:
         parts.append(Text(NO_STATE, "missing"))
-    parts.append(Text(_sentence(solver_line(source.result))))
+    parts.append(Text(sentence(solver_line(source.result))))
     return PageSection("checks", "Checks", parts)
 
 
@@ -424,7 +438,10 @@ def provenance(page: PageParts) -> PageSection:
     source = page.source
     document = canonical(source.case)
     rows, listing = [*source.origin], "Input of the run (JSON, SI units)"
-    if source.knows_options:
+    if source.life is not None:
+        document |= {"solve": {"nodes": source.life.grid.size}, "wear": wear_input(source.life)}
+        listing = "Input of the life of wear (JSON, SI units)"
+    elif source.knows_options:
         rows.append(("id of the input", run_id(document)))
     else:
         del document["solve"]

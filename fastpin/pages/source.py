@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,16 +14,19 @@ from typing import Any
 import numpy as np
 
 from fastpin import storage
-from fastpin.damage import Fatigue, fatigue
+from fastpin.damage import Fatigue, WornFatigue, fatigue, worn_fatigue
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
 from fastpin.model.case import Case
+from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
+from fastpin.model.points import elastic_bodies
 from fastpin.report.case import edge_body
 from fastpin.report.cycle import MOST_STOPS, fatigue_bodies
 from fastpin.report.states import stored_rows
 from fastpin.solver.result import Result
+from fastpin.solver.wear_result import WearResult
 from fastpin.states.choice import even_choice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places
@@ -40,6 +44,9 @@ MOST_DRAWN = 6
 
 MOST_MAPPED = 60
 """States of the map of a history that is too long to be mapped whole: its first cycles."""
+
+MOST_SUMMED = 60
+"""Most stored cycles of a life of wear from which damage is summed up: each takes some 0.15 s."""
 
 MOST_CORNERS = 100_000
 """Most corners in which a closed part without repeated blocks is looked for."""
@@ -77,6 +84,8 @@ class Source:
         The text of the case file; empty if it is not known.
     knows_options : bool
         Whether the options of the case are those of the run. Otherwise only the nodes and the method are.
+    life : WearResult or None
+        The life of wear. The result then has its states, over one cycle on each stored profile.
     """
 
     case: Case
@@ -91,19 +100,18 @@ class Source:
     path: Path | None = None
     case_text: str = field(default="", repr=False)
     knows_options: bool = True
+    life: WearResult | None = None
 
     @classmethod
     def of_file(cls, path: Path) -> Source:
-        """Return a stored result as a source. Its run may still be going on.
+        """Return a stored result or life of wear as a source. Its run may still be going on.
 
         Raises
         ------
         InputError
             See :func:`fastpin.load`.
         """
-        stored, result, points = storage.stored_case(path), storage.load(path, states=[]), storage.load_points(path)
-        case = replace(stored, options=_as_given(stored.options))
-        known = storage.provenance(path)
+        stored, known, error = storage.stored_case(path), storage.provenance(path), storage.stored_error(path)
         origin = [("solved by", _named_versions(known))]
         origin += [(words, known[name]) for name, words in _PLACES.items() if name in known]
         content = packed_result(path)
@@ -111,12 +119,17 @@ class Source:
             origin += [("file", path.name), ("SHA-256 of the file", _digest(path))]
         else:
             origin += [("run in the index", path.stem), ("SHA-256 of the result", hashlib.sha256(content).hexdigest())]
+        if storage.holds_wear(path):
+            source = cls.of_life(storage.load_wear(path), stored.title)
+            case = replace(source.case, about=stored.about, options=stored.options)
+            return replace(source, case=case, origin=origin, error=error, path=path)
+        result, points = storage.load(path, states=[]), storage.load_points(path)
+        case = replace(stored, options=_as_given(stored.options))
 
         def read(places: Sequence[int]) -> list[State]:
             return storage.load(path, states=list(places)).states
 
         largest = storage.largest_residuals(path), storage.largest_pressure(path)
-        error = storage.stored_error(path)
 
         def extremes() -> Found:
             return storage.marked_extremes(path)
@@ -151,6 +164,14 @@ class Source:
 
         return cls(case, result, points, read, extremes, origin, residuals, pressure, error, knows_options=known)
 
+    @classmethod
+    def of_life(cls, life: WearResult, title: str = "") -> Source:
+        """Return a life of wear in memory as a source."""
+        history = with_count(life.history, life.all_cycles)
+        options = SolveOptions(nodes=life.grid.size)
+        source = cls.of_result(Result.of_life(life), case=Case(life.problem, history, options, title))
+        return replace(source, life=life, knows_options=False)
+
     @cached_property
     def initial(self) -> np.ndarray:
         """The load before the first corner, shape (loads,): not zero if the result continues another one.
@@ -158,7 +179,7 @@ class Source:
         A load that the history gives from its first corner on counts as zero: nothing else depends on it.
         """
         found = np.zeros(len(LOADS))
-        if self.points.size:
+        if self.points.size and self.life is None:
             (state,), problem = self.read([0]), self.case.problem
             before = self.case.history[: state.step + 1].blocks
             given = np.any([~np.isnan(block.given).all(axis=0) for block in before], axis=0)
@@ -214,7 +235,13 @@ class Source:
 
     @cached_property
     def mapped(self) -> DrawnStates:
-        """States in a row for the map of stick and slip: all of them, or the first ones of a very long history."""
+        """States in a row for the map of stick and slip: all of them, or the first ones of a very long history.
+
+        Of a life of wear they are those of the last profile.
+        """
+        if self.life is not None:
+            of_profile = self.life[-1].states if len(self.life) else ()
+            return DrawnStates(of_profile, len(of_profile))
         states = self.read(range(self.points.size if self.points.size <= MOST_JOINED else MOST_MAPPED))
         return DrawnStates(states, self.points.size, self.result.cycles)
 
@@ -264,6 +291,18 @@ class Source:
         except InputError as error:
             return f"There is no fatigue: {error.field} {error.reason}."
 
+    @cached_property
+    def worn(self) -> list[WornFatigue]:
+        """Damage over a life of wear, of each body whose material has constants for a life."""
+        found: list[WornFatigue] = []
+        if self.life is None or len(self.life) < 2:
+            return found
+        cycles = [self.life[place] for place in even_choice(range(len(self.life)), MOST_SUMMED)]
+        for body in elastic_bodies(self.life.problem):
+            with contextlib.suppress(InputError):  # there are no such constants
+                found.append(worn_fatigue(cycles, CRITERION, body))
+        return found
+
     @property
     def last_cycle(self) -> Cycle | None:
         """The changes over the last cycle of repeated blocks; None without one."""
@@ -276,6 +315,12 @@ class Source:
         loads = self.case.history.values(self.initial)[: self.reached]
         same = np.flatnonzero((loads[:-2] == loads[-1]).all(axis=1))
         return int(same[-1]) + 1 if same.size else 0
+
+
+def with_count(history: LoadHistory, count: int) -> LoadHistory:
+    """Return a history whose last block is run through so many times."""
+    *before, last = history.blocks
+    return LoadHistory.of_blocks([*before, replace(last, count=count)])
 
 
 _PLACES = {"created": "begun", "host": "machine", "platform": "system", "run": "name of the run"}

@@ -21,6 +21,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.case import edge_body
 from fastpin.states.extremes import Found
+from fastpin.states.quantities import point_name
 from fastpin.states.state import State
 from fastpin.states.yielding import PREFIX, circles, place_words, strength_of, von_mises_peak
 
@@ -167,7 +168,7 @@ def margin_rows(problem: Problem, found: Sequence[Margin]) -> list[tuple[str, ..
             shown(row, row.value),
             shown(row, row.allowable),
             verdict(row.margin),
-            "-" if math.isnan(row.load_point) else f"{row.load_point:.5g}",
+            "-" if math.isnan(row.load_point) else point_name(row.load_point),
             row.remark,
         )
         for row in found

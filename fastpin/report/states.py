@@ -32,7 +32,7 @@ from fastpin.report.table import (
     with_rows,
 )
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
-from fastpin.states.quantities import QUANTITIES, load_point, sizes
+from fastpin.states.quantities import QUANTITIES, load_point, point_name, sizes
 from fastpin.states.regimes import Regime
 from fastpin.states.state import State
 
@@ -74,7 +74,7 @@ class TableRows:
     @property
     def names(self) -> list[str]:
         """The load points of all rows as text."""
-        return [_number(point) for point in self.points]
+        return [point_name(point) for point in self.points]
 
     @property
     def gaps(self) -> dict[int, str]:
@@ -383,12 +383,7 @@ def _block_line(problem: Problem, cycles: list[Cycle], natural: Mapping[str, flo
 
 
 def _point(state: State) -> str:
-    return _number(load_point(state))
-
-
-def _number(point: float) -> str:
-    """A load point as text."""
-    return f"{point:.3f}".rstrip("0").rstrip(".")
+    return point_name(load_point(state))
 
 
 def _angle(angle: float | None) -> str:

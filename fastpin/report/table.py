@@ -126,9 +126,12 @@ def table(columns: Sequence[Column], hidden: int = 0) -> str:
     """
     names = columns[0][2]
     lines = cut_lines(len(names), hidden)
-    rows = printed_rows(lines)
-    shown = [(name, unit, [cells[row] for row in rows]) for name, unit, cells in columns]
-    return table_of_lines(shown, lines, names)
+    return table_of_lines(columns_at(columns, printed_rows(lines)), lines, names)
+
+
+def columns_at(columns: Sequence[Column], rows: Sequence[int]) -> list[Column]:
+    """Return columns with the cells of these rows only."""
+    return [(name, unit, [cells[row] for row in rows]) for name, unit, cells in columns]
 
 
 def table_of_lines(columns: Sequence[Column], lines: Sequence[TableLine], names: Sequence[str]) -> str:

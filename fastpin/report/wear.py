@@ -13,8 +13,7 @@ from fastpin.model.wear import cycles_text
 from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve
 from fastpin.report.summary import json_ready, unit_names
-from fastpin.report.table import Column
-from fastpin.report.table import table as text_table
+from fastpin.report.table import Column, TableLine, columns_at, cut_lines, printed_rows, table_of_lines, with_rows
 from fastpin.solver.wear_result import WearResult, WornCycle
 from fastpin.version import __version__
 
@@ -29,8 +28,16 @@ LAW_WORDS = {
 
 
 def table(result: WearResult) -> str:
-    """Return the chosen cycles as a table. A long table lacks its middle."""
-    return text_table(cycle_columns(result))
+    """Return the chosen cycles as a table. A long table lacks its middle, but for the extremes."""
+    columns, lines = cycle_columns(result), cycle_lines(result)
+    return table_of_lines(columns_at(columns, printed_rows(lines)), lines, columns[0][2])
+
+
+def cycle_lines(result: WearResult) -> list[TableLine]:
+    """Return the lines of the table of the chosen cycles, with those of the largest pressure and dissipation."""
+    pressures, energies = [each.largest_pressure for each in result], [each.energy_per_cycle for each in result]
+    extremes = {int(np.argmax(values)) for values in (pressures, energies) if values}
+    return with_rows(cut_lines(len(result)), extremes)
 
 
 def cycle_columns(result: WearResult) -> list[Column]:
@@ -62,6 +69,16 @@ def coefficient_words(result: WearResult) -> dict[str, str]:
         least, most = (unit.text(float(value), 4) for value in (values.min(), values.max()))
         found[body] = most if least == most else f"{least.partition(' ')[0]} to {most} along the rim"
     return found
+
+
+def wear_input(result: WearResult) -> dict[str, Any]:
+    """Return what a life of wear depends on beside its problem and its loads, JSON-ready, in SI units.
+
+    A coefficient that is the same at all nodes is one number.
+    """
+    pin, plate = (row.tolist() if np.ptp(row) else float(row[0]) for row in result.coefficients)
+    control = {"cycles": result.all_cycles, "tolerance": result.tolerance}
+    return {"law": result.law, "pin": pin, "plate": plate, **control}
 
 
 def law_rows(result: WearResult) -> list[tuple[str, str]]:

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from fastpin.elasticity.large import build_system
-from fastpin.errors import InputError, InputWarning
+from fastpin.errors import InputError
 from fastpin.model.doubts import warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import MAX_CORNERS, LoadHistory
@@ -26,7 +26,7 @@ from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import MemoryRecorder
 from fastpin.solver.task import Task, deferred_interrupts, one_blas_thread
 from fastpin.solver.wear_path import WearRun
-from fastpin.solver.wear_result import WearResult, WornCycle
+from fastpin.solver.wear_result import WearResult, WornCycle, slip_doubts
 
 log = logging.getLogger(__name__)
 
@@ -225,7 +225,7 @@ class WearTask:
                     self.progress(place.cycle, self.wear.cycles)
             cycle = self._worn_cycle(life, place)
             if place.cycle == 0:
-                self._warn(cycle)
+                warn_of(slip_doubts(self.coefficients(cycle.theta), cycle), 2)
             recorder.add(cycle, place, {**place.restart.statistics, "solved": place.solved})
 
     def _worn_cycle(self, life: FatCycles, place: Worn) -> WornCycle:
@@ -234,16 +234,3 @@ class WearTask:
         dissipation, removed = place.restart.dissipation * scales.energy, place.removed * scales.energy
         states = life.states(place)
         return WornCycle(place.cycle, place.jump, place.solved, pin, plate, dissipation, removed, states)
-
-    def _warn(self, cycle: WornCycle) -> None:
-        """Warn of a pin that wears although it slips by more than a node distance: its profile turns with it."""
-        if self.problem.dimensionless or not self.coefficients(cycle.theta)[0].any():
-            return
-        slips = [state.slip_distance for state in cycle.states[1:]]
-        slip = max(float(each.max()) for each in slips if each is not None)
-        distance = float(cycle.grid.weights.min()) * self.problem.hole_radius
-        if slip > distance:
-            words = (
-                f"the pin slips by {slip:.2g} m in a piece of the cycle, more than a node distance, {distance:.2g} m"
-            )
-            warn_of([InputWarning("pin", f"{words}; its wear is kept where the pin touched first")], 2)

@@ -9,7 +9,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, InputWarning
 from fastpin.model.checks import number
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
@@ -193,6 +193,11 @@ class WearResult(ReadOnly, Sequence[WornCycle]):
             raise InputError("after", f"no profile is stored after {cycles_text(wanted)}; the nearest: {stored}")
         return found
 
+    @property
+    def doubts(self) -> list[InputWarning]:
+        """Warnings: a pin that wears although its profile turns with it."""
+        return slip_doubts(self.coefficients, self.cycles[0]) if self.cycles else []
+
     def summary(self) -> str:
         """The chosen cycles as a table."""
         import fastpin
@@ -241,6 +246,23 @@ class WearResult(ReadOnly, Sequence[WornCycle]):
 
         return fastpin.figures.plotting.plot_result(self, kind, path, **options)
 
+    def report(self, path: str | Path, **options: Any) -> None:
+        """Write a report of the life, an HTML page or a PDF: law, numbers, worn profile, damage, contact, checks.
+
+        Parameters
+        ----------
+        path, **options
+            See :func:`fastpin.pages.write_report`.
+
+        Raises
+        ------
+        InputError
+            See :func:`fastpin.pages.write_report`.
+        """
+        from fastpin.pages import write_report
+
+        write_report(self, path, **options)
+
     def __repr__(self) -> str:
         whole = "complete" if self.complete else "incomplete"
         head = f"<WearResult: {len(self.cycles)} chosen cycles, {self.grid.size} nodes, {whole}"
@@ -260,3 +282,20 @@ class WearResult(ReadOnly, Sequence[WornCycle]):
 
     def __iter__(self) -> Iterator[WornCycle]:
         return iter(self.cycles)
+
+
+def slip_doubts(coefficients: np.ndarray, cycle: WornCycle) -> list[InputWarning]:
+    """Return a warning if the pin wears, and slips by more than a node distance in a piece of the cycle.
+
+    `coefficients` are those of pin and plate at the nodes, 1/Pa, shape (2, n). The profile of the pin turns with it.
+    """
+    problem = cycle.states[0].problem
+    if problem.dimensionless or not coefficients[0].any():
+        return []
+    slips = [state.slip_distance for state in cycle.states[1:]]
+    slip = max((float(each.max()) for each in slips if each is not None), default=0.0)
+    distance = float(cycle.grid.weights.min()) * problem.hole_radius
+    if slip <= distance:
+        return []
+    words = f"the pin slips by {slip:.2g} m in a piece of the cycle, more than a node distance, {distance:.2g} m"
+    return [InputWarning("pin", f"{words}; its wear is kept where the pin touched first")]

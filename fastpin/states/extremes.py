@@ -23,7 +23,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.reading.marks import Marks
-from fastpin.states.quantities import QUANTITIES, Quantity, load_point, of_bush
+from fastpin.states.quantities import QUANTITIES, Quantity, load_point, of_bush, point_name
 from fastpin.states.reading_bounds import NUMBERS, Bounds, StateBlock
 from fastpin.states.state import State
 from fastpin.states.yielding import OWNERS, PREFIX, place_words, strength_of, von_mises_peak, yielding_owners
@@ -217,7 +217,7 @@ def yield_doubts(
         extreme = found.get((PREFIX + owner, "largest"))
         if extreme is not None:
             peak = von_mises_peak(read([extreme.place])[0], owner)
-            where = f"{place_words(problem, peak)}, load point {extreme.load_point:.5g}"
+            where = f"{place_words(problem, peak)}, load point {point_name(extreme.load_point)}"
             doubts.append(yield_doubt(problem, peak.circle.edge, peak.value, where))
     return [doubt for doubt in doubts if doubt is not None]
 

@@ -291,3 +291,8 @@ def bar_in_degrees(name: str, bar: float) -> float:
 def load_point(state: State) -> float:
     """The place of a state in the history: step + fraction, 1 at the first corner, 1.5 halfway to the second one."""
     return state.step + state.fraction
+
+
+def point_name(point: float) -> str:
+    """A load point as text, with at most three decimals."""
+    return f"{point:.3f}".rstrip("0").rstrip(".")

@@ -44,7 +44,7 @@ def test_a_thickness_comes_as_a_factor_and_a_unit() -> None:
     }
     assert (plain["force"].text(5e5), thick["force"].text(5e5)) == ("500 kN/m", "5 kN")
     assert thick["force"].scale([5e5]) == (pytest.approx(1e-5), "kN")
-    assert (plain["work per stress"].text(1e-8), thick["work per stress"].text(1e-8)) == ("10000 um^2", "0.1 mm^3")
+    assert (plain["work per stress"].text(1e-8), thick["work per stress"].text(1e-8)) == ("0.01 mm^2", "0.1 mm^3")
 
 
 def test_a_unit_without_its_factor_is_found() -> None:

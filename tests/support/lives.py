@@ -26,7 +26,7 @@ JOINT = Problem(
 HISTORY = LoadHistory([{"P": 2e6}]) + LoadHistory([{"Q": 8e5}, {"Q": -8e5}]).repeated(2)
 
 
-def sample_life(path: Path | None = None, **changes: Any) -> WearResult:
+def sample_life(path: Path | None = None, problem: Problem = JOINT, **changes: Any) -> WearResult:
     """A life of 60 cycles with the profiles after 0, 2, 20 and 60 cycles, perhaps written to a file."""
-    given = {"cycles": 60, "at": [2, 20], "pin": 2e-14, "plate": 8e-14, "nodes": 41, "arc": (-3.0, -0.1)}
-    return fastpin.wear(JOINT, HISTORY, output=path, **{"title": "Worn lug", **given, **changes})
+    given = {"cycles": 60, "at": [2, 20], "pin": 2e-12, "plate": 8e-12, "nodes": 41, "arc": (-3.0, -0.1)}
+    return fastpin.wear(problem, HISTORY, output=path, **{"title": "Worn lug", **given, **changes})
