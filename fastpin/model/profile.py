@@ -208,6 +208,11 @@ class Profile:
             return NotImplemented
         return Profile((*self.terms, *other.terms))
 
+    def scaled(self, factor: float) -> Profile:
+        """The same profile with its values multiplied by a factor. A flat takes a positive one."""
+        factor = number("factor", factor)
+        return Profile(tuple(term.scaled(factor) for term in self.terms))
+
     @property
     def has_jumps(self) -> bool:
         """Whether the quantity jumps somewhere."""

@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -51,8 +51,8 @@ class Term(ABC):
     ----------
     kind : str
         Its name in files.
-    places, spans : tuple of str
-        The fields that are angles round the hole, and differences of angles, rad.
+    places, spans, sizes : tuple of str
+        The fields that are angles round the hole, differences of angles, rad, and values in the unit of the profile.
     jumps : bool
         Whether it jumps somewhere.
     needs_lengths : bool
@@ -62,6 +62,7 @@ class Term(ABC):
     kind: ClassVar[str]
     places: ClassVar[tuple[str, ...]] = ()
     spans: ClassVar[tuple[str, ...]] = ()
+    sizes: ClassVar[tuple[str, ...]] = ()
     jumps: ClassVar[bool] = False
     needs_lengths: ClassVar[bool] = False
 
@@ -84,6 +85,10 @@ class Term(ABC):
     @abstractmethod
     def words(self, text: ValueInWords) -> str:
         """Words that describe it. `text` words a value."""
+
+    def scaled(self, factor: float) -> Self:
+        """The same term with its sizes multiplied by a factor."""
+        return replace(self, **{name: np.multiply(getattr(self, name), factor) for name in self.sizes})  # type: ignore[type-var]
 
     def entries(self) -> dict[str, Any]:
         """The kind, and the fields by name, as ids and HDF5 files hold them."""
@@ -122,7 +127,7 @@ class Harmonic(Term):
     cosine: float = 0.0
     sine: float = 0.0
 
-    kind = "harmonic"
+    kind, sizes = "harmonic", ("cosine", "sine")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "order", whole_number("order", self.order, 0, MOST_ORDER))
@@ -167,7 +172,7 @@ class Harmonic(Term):
         if self.order == 0:
             return text(self.cosine)
         cosine, sine = self.at_bottom
-        size, at = math.hypot(cosine, sine), math.degrees(math.atan2(sine, cosine)) / self.order
+        size, at = math.hypot(cosine, sine), round(math.degrees(math.atan2(sine, cosine)) / self.order, 9)
         if self.order == 1:
             return f"eccentricity {text(size)} at {at + 0.0:.4g} deg"
         if self.order == 2:
@@ -190,7 +195,7 @@ class Flat(Term):
     depth: float
     centre: float
 
-    kind, places, needs_lengths = "flat", ("centre",), True
+    kind, places, sizes, needs_lengths = "flat", ("centre",), ("depth",), True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "depth", positive("depth", self.depth))
@@ -230,7 +235,7 @@ class Crown(Term):
     centre: float
     half_width: float
 
-    kind, places, spans = "crown", ("centre",), ("half_width",)
+    kind, places, spans, sizes = "crown", ("centre",), ("half_width",), ("height",)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "height", number("height", self.height))
@@ -267,7 +272,7 @@ class Zone(Term):
     start: float
     stop: float
 
-    kind, places, jumps = "zone", ("start", "stop"), True
+    kind, places, sizes, jumps = "zone", ("start", "stop"), ("value",), True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "value", number("value", self.value))
@@ -304,7 +309,7 @@ class Samples(Term):
     angles: Sequence[float] | np.ndarray
     heights: Sequence[float] | np.ndarray
 
-    kind = "samples"
+    kind, sizes = "samples", ("heights",)
 
     def __post_init__(self) -> None:
         angles, heights = _samples("angles", self.angles), _samples("heights", self.heights)

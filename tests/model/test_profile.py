@@ -12,6 +12,17 @@ from fastpin.errors import InputError
 from fastpin.model.profile import Profile
 from fastpin.model.wear import Wear
 
+THETA = np.linspace(-np.pi, np.pi, 41)
+
+PROFILES = [
+    Profile.constant(0.3),
+    Profile.lobes(3, 0.1, 0.4),
+    Profile.crown(-0.2, 0.5, 0.3),
+    Profile.zone(0.3, -1.0, 0.5),
+    Profile.samples([-2.0, -1.0, 0.0, 1.0, 2.5], [0.1, 0.2, 0.1, 0.4, 0.3]),
+    Profile.constant(0.2) + Profile.zone(0.1, 0.0, 1.0) + Profile.harmonic(2, 0.1, -0.05),
+]
+
 
 def test_a_function_of_one_angle_is_named_with_its_failure() -> None:
     with pytest.raises(InputError, match=r"gap\.hole: failed for an array of angles: ") as raised:
@@ -44,3 +55,22 @@ def test_values_are_those_of_lists_and_of_whole_numbers() -> None:
 
 def test_a_constant_has_no_sine() -> None:
     assert Profile.harmonic(0, 1.0, 0.5) == Profile.constant(1.0)
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=repr)
+@pytest.mark.parametrize("factor", [0.0, -1.0, 2.5])
+def test_a_scaled_profile_has_scaled_values(profile: Profile, factor: float) -> None:
+    found = profile.scaled(factor)
+    assert np.allclose(found.values(THETA, 1.0), factor * profile.values(THETA, 1.0), rtol=1e-14, atol=1e-15)
+    assert [type(term) for term in found.terms] == [type(term) for term in profile.terms]
+
+
+def test_a_scaled_flat_has_another_depth() -> None:
+    assert Profile.flat(0.1, 0.0).scaled(0.5) == Profile.flat(0.05, 0.0)
+    with pytest.raises(InputError, match="depth: must be positive, not -0.1"):
+        Profile.flat(0.1, 0.0).scaled(-1.0)
+
+
+def test_a_factor_is_a_number() -> None:
+    with pytest.raises(InputError, match="factor: must be a number"):
+        Profile.constant(0.3).scaled("2")  # type: ignore[arg-type]
