@@ -21,13 +21,16 @@ from fastpin.kernels.status import OPEN
 from fastpin.live.controls import ControlScales, changed_fields, load_controls, problem_controls, vector_axes
 from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import ALONE, MOST_UNDONE, Limits, Message, refusal
+from fastpin.model.angles import angle_at
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.profile import CALLED
 from fastpin.model.units import FIXED_PREFIXES, units
+from fastpin.report.case import profile_words
 from fastpin.solver.errors import ConvergenceError, SolveError
 from fastpin.solver.session import ALL_ROUND, Session
 from fastpin.states.state import State
@@ -55,6 +58,9 @@ tables."""
 
 NO_GESTURE = -1
 """Number for changes without a gesture. The gestures of a page are not negative."""
+
+AROUND = angle_at(np.arange(CALLED) * (360.0 / CALLED) - 180.0)
+"""Angles at which the page gets the profiles along the rim, rad: from -180 degrees from the bottom on."""
 
 UNKNOWN = (object(), object())
 """Initial entry of what a page knows. It equals nothing."""
@@ -180,7 +186,7 @@ class LiveContact:
             self._remember(mark, gesture)
 
     def _obey_change(self, changes: dict[str, Any], follow: str, gesture: int) -> Iterator[None]:
-        fields = changed_fields(self.session.problem, changes)
+        fields = changed_fields(self.session.problem, changes, self._scales)
         session = self.session.copy()
         session.change(replay="none", **fields)
         if session.grid is not None and follow == "load" and session.grid.size != self._nodes:
@@ -419,7 +425,7 @@ def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer
         "units": {kind: asdict(unit) for kind, unit in units(problem).items()},
         "prefixes": {} if problem.dimensionless else FIXED_PREFIXES,
         "dimensionless": problem.dimensionless,
-        "friction": problem.friction,
+        "friction": problem.most_friction,
         "radius": problem.hole_radius,
         "clearance": problem.assembled_clearance,
         "yielded": scales.force * problem.surfaces.beta_star,
@@ -427,6 +433,8 @@ def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer
         "plate": problem.plate_body.kind,
         "bush": None if bush is None else bush.outer_radius,
         "rim": lug.outer_radius if math.isfinite(lug.outer_radius) else None,
+        "profiles": {name: packed(each.at(AROUND, problem.hole_radius)) for name, each in problem.profiles.items()},
+        "profile_words": profile_words(problem),
         "doubts": [str(doubt) for doubt in doubts(problem, None, SolveOptions())],
         "axes": vector_axes(problem, scales),
         "loads": load_controls(problem, scales),

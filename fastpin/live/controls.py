@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -10,14 +11,17 @@ from typing import Any
 from fastpin.bodies.body import Control, PlateBody
 from fastpin.bodies.kinds import PIN_CONTROLS, PLATE_CONTROLS, SOLID_PIN, TITLES, changed_pin, changed_plate
 from fastpin.errors import InputError
-from fastpin.model.checks import choice
+from fastpin.model.angles import angle_at, degrees_from_bottom
+from fastpin.model.checks import choice, not_negative, number
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.model.profile import InitialGap, Profile
+from fastpin.model.profile_terms import Term
 from fastpin.model.synonyms import closest
-from fastpin.model.units import PASCAL, Unit, units
+from fastpin.model.units import DEGREE, PASCAL, Unit, units
 
 OWN = "other"
 """The choice of a material that is not in :data:`fastpin.MATERIALS`: its E and nu are given."""
@@ -38,7 +42,17 @@ USUAL_CHANGE = 0.5
 """End of the slider of a change of the friction."""
 
 MISFITS = 1.5
-"""End of the slider of the clearance, in parts of the clearance or of the displacement under the usual force."""
+"""End of the sliders of clearance and initial gap, in parts of the larger of them, or of the displacement under the
+usual force."""
+
+GAPS = ("hole", "pin")
+"""The bodies whose initial gaps have controls."""
+
+FORMS = {"0": "no lobes", "2": "oval"} | {str(count): f"{count} lobes" for count in (3, 4, 5, 6, 8, 12)}
+"""The forms of hole and pin that can be chosen: their numbers of lobes, and words."""
+
+FRICTION_ALONG = {"case": "as in the case", "uniform": "uniform"}
+"""The choices of the friction along the rim, where that of the case varies."""
 
 
 class ControlScales:
@@ -54,6 +68,10 @@ class ControlScales:
         A usual change of the friction.
     stress : float
         Bearing stress of the force or largest remote stress, whichever is larger, Pa.
+    misfit : float
+        Clearance or displacement under the force, whichever is larger, m.
+    gap : float
+        Clearance or initial gap, whichever is larger, m; the displacement under the force if there is neither.
     """
 
     def __init__(self, problem: Problem, history: LoadHistory) -> None:
@@ -66,7 +84,21 @@ class ControlScales:
         self.moment = max(largest["M"], max(problem.most_friction, 0.1) * self.force * problem.hole_radius)
         self.rotation = max(largest["rotation"], yielded / problem.hole_radius)
         self.ratio = USUAL_CHANGE
+        largest_gap = max(abs(each - problem.assembled_clearance) for each in problem.clearances)
         self.misfit = max(abs(problem.clearance), yielded)
+        self.gap = max(abs(problem.clearance), largest_gap) or yielded
+        self._friction, self._most_friction = problem.friction, problem.most_friction
+
+    @property
+    def has_varying_friction(self) -> bool:
+        """Whether the friction of the case varies along the rim."""
+        return isinstance(self._friction, Profile) and self._most_friction > 0.0
+
+    def varying_friction(self, most: float) -> Profile:
+        """The friction of the case along the rim, scaled to a largest coefficient."""
+        if not self.has_varying_friction:
+            raise InputError("most_friction", "the friction of the case is the same all round")
+        return Profile.of("friction", self._friction).scaled(not_negative("friction", most) / self._most_friction)
 
     def of_load(self, name: str) -> float:
         """The size of a load."""
@@ -92,9 +124,10 @@ def problem_controls(problem: Problem, scales: ControlScales) -> list[dict[str, 
     unit = units(problem) | {"modulus": Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL}
     misfit = MISFITS * scales.misfit
     return [
-        _slider("contact", "friction", problem.most_friction, NUMBER, 0.0, MOST_FRICTION),
+        *_friction(problem, scales),
         _slider("contact", "clearance", problem.clearance, unit["displacement"], -misfit, misfit),
         _chooser("contact", "plane", problem.pair.plane, PLANES),
+        *(control for body in GAPS for control in _gap(problem, body, unit["displacement"], MISFITS * scales.gap)),
         *_material("pin", problem.pair.pin, unit["modulus"]),
         *_pin(problem, unit),
         *_material("plate", problem.pair.plate, unit["modulus"]),
@@ -102,7 +135,7 @@ def problem_controls(problem: Problem, scales: ControlScales) -> list[dict[str, 
     ]
 
 
-def changed_fields(problem: Problem, changes: Mapping[str, Any]) -> dict[str, Any]:
+def changed_fields(problem: Problem, changes: Mapping[str, Any], scales: ControlScales) -> dict[str, Any]:
     """The fields of the problem that changes of controls mean.
 
     Parameters
@@ -110,6 +143,8 @@ def changed_fields(problem: Problem, changes: Mapping[str, Any]) -> dict[str, An
     problem : Problem
     changes : mapping
         New values by the names of controls.
+    scales : ControlScales
+        Those of the case.
 
     Returns
     -------
@@ -128,6 +163,12 @@ def changed_fields(problem: Problem, changes: Mapping[str, Any]) -> dict[str, An
     for name in ("friction", "clearance", "pin_load", "rotation"):
         if name in changes:
             fields[name] = changes[name]
+    if changes.keys() & {"most_friction", "friction_along"}:
+        fields["friction"] = _changed_friction(problem, changes, scales)
+    if changes.keys() & set(GAP_CONTROLS):
+        fields["gap"] = InitialGap(
+            **{body: _changed_profile(getattr(problem.gap, body), body, changes, 0.5 * scales.gap) for body in GAPS}
+        )
     if changes.keys() & {"plane", *_names_of_material("pin"), *_names_of_material("plate")}:
         fields["pair"] = MaterialPair(
             _changed_material(problem.pair.pin, "pin", changes),
@@ -147,8 +188,14 @@ def _names_of_material(body: str) -> tuple[str, ...]:
     return f"{body}_material", f"{body}_E", f"{body}_nu"
 
 
+GAP_CONTROLS = tuple(f"{body}_{name}" for body in GAPS for name in ("lobes", "amplitude", "axis"))
+"""Names of the controls of initial gaps."""
+
 NAMES = (
     "friction",
+    "most_friction",
+    "friction_along",
+    *GAP_CONTROLS,
     "clearance",
     "plane",
     "pin_load",
@@ -168,6 +215,64 @@ def _slider(group: str, name: str, value: float | None, unit: Unit, least: float
 def _chooser(group: str, name: str, value: str, choices: Mapping[str, str] | tuple[str, ...]) -> dict[str, Any]:
     names = dict(choices) if isinstance(choices, Mapping) else {word: word for word in choices}
     return {"group": group, "name": name, "value": value, "choices": names}
+
+
+def _friction(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:
+    """The controls of the friction: its coefficient, or the largest one and whether it varies along the rim."""
+    varies = isinstance(problem.friction, Profile)
+    name = "most_friction" if varies else "friction"
+    found = [_slider("contact", name, problem.most_friction, NUMBER, 0.0, MOST_FRICTION)]
+    if scales.has_varying_friction:
+        found.append(_chooser("contact", "friction_along", "case" if varies else "uniform", FRICTION_ALONG))
+    return found
+
+
+def _changed_friction(problem: Problem, changes: Mapping[str, Any], scales: ControlScales) -> float | Profile:
+    most = changes.get("most_friction", problem.most_friction)
+    if choice("friction_along", changes.get("friction_along", "case"), tuple(FRICTION_ALONG)) == "uniform":
+        return most
+    return scales.varying_friction(most)
+
+
+def _lobes(profile: Profile) -> tuple[int, float, float, tuple[Term, ...]]:
+    """The lobes that the page controls: the first wave of a profile with two of them or more.
+
+    Their number, their amplitude, m, the angle of the one next to the bottom, degrees from there, and the other terms
+    of the profile. Without such a wave the number is 0.
+    """
+    for place, term in enumerate(profile.terms):
+        count, amplitude = term.wave or (0, 0j)
+        if count > 1:
+            angle = degrees_from_bottom(-cmath.phase(amplitude) / count)
+            rest = (*profile.terms[:place], *profile.terms[place + 1 :])
+            return count, abs(amplitude), angle - round(angle * count / 360.0) * 360.0 / count, rest
+    return 0, 0.0, 0.0, profile.terms
+
+
+def _forms(count: int) -> dict[str, str]:
+    """The forms that can be chosen, with that of so many lobes."""
+    return FORMS | ({} if str(count) in FORMS else {str(count): f"{count} lobes"})
+
+
+def _gap(problem: Problem, body: str, unit: Unit, most: float) -> list[dict[str, Any]]:
+    """The controls of the initial gap of a body. The sliders of its lobes do not reach 0, where lobes are gone."""
+    count, amplitude, angle, _ = _lobes(getattr(problem.gap, body))
+    found = [_chooser("gap", f"{body}_lobes", str(count), _forms(count))]
+    if count:
+        found.append(_slider("gap", f"{body}_amplitude", amplitude, unit, 0.01 * most, most))
+        found.append(_slider("gap", f"{body}_axis", angle, DEGREE, -180.0 / count, 180.0 / count))
+    return found
+
+
+def _changed_profile(profile: Profile, body: str, changes: Mapping[str, Any], usual: float) -> Profile:
+    """The profile of a body after changes of its lobes. Its other terms stay. New lobes have the `usual` amplitude."""
+    before, present, angle, rest = _lobes(profile)
+    lobes, amplitude, axis = (f"{body}_{name}" for name in ("lobes", "amplitude", "axis"))
+    count = int(choice(lobes, changes.get(lobes, str(before)), tuple(_forms(before))))
+    height = number(amplitude, changes.get(amplitude, present if before else usual))
+    angle = number(axis, changes.get(axis, angle), -360.0, 360.0)
+    new = Profile.lobes(count, height, angle_at(angle)).terms if count and height else ()
+    return Profile((*new, *rest))
 
 
 def _material(body: str, material: Material, unit: Unit) -> list[dict[str, Any]]:

@@ -79,12 +79,18 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
 
 def profile_rows(problem: Problem) -> list[tuple[str, str]]:
     """Return the rows that describe the profiles along the rim; none for a round hole and pin and uniform friction."""
-    gap, angle = units(problem)["displacement"], "angles in degrees from the bottom"
+    angle = "angles in degrees from the bottom"
+    return [(name, f"{words} ({angle})" if "deg" in words else words) for name, words in profile_words(problem)]
+
+
+def profile_words(problem: Problem) -> list[tuple[str, str]]:
+    """Return names and words of the given profiles along the rim. Angles are in degrees from the bottom of the hole."""
+    gap = units(problem)["displacement"]
     found = [(f"{name} profile", profile.words(gap.text)) for name, profile in problem.gap.given.items()]
     friction = problem.profiles.get("contact.friction")
     if friction is not None:
         found.append(("friction", friction.words(lambda value: f"{value:.4g}")))
-    return [(name, f"{words} ({angle})" if "deg" in words else words) for name, words in found]
+    return found
 
 
 def edge_body(problem: Problem, body: str) -> str:

@@ -556,6 +556,65 @@ def test_texts_of_the_drawing_do_not_overlap(chrome: webdriver.Chrome, width: in
         assert help_box[1] < note[0]
 
 
+OUTLINE = """
+const drawn = [], pen = fastpin.drawing.context, line = pen.lineTo, {x, y, radius} = fastpin.drawing.frame();
+pen.lineTo = function (px, py) { drawn.push([px, py]); line.call(pen, px, py); };
+fastpin.drawing.draw();
+delete pen.lineTo;
+return drawn.slice(0, 721).map(([px, py]) => Math.hypot(px - x, py - y) / radius);
+"""
+"""Draws once more. The answer has the distances of the hole's edge from the centre, in hole radii: each half degree
+from the top on."""
+
+
+def test_lobes_are_chosen_by_words_and_drawn_enlarged(tab: Tab) -> None:
+    assert tab.run(OUTLINE) == pytest.approx([1.0] * 721)
+    tab.set("hole_lobes", "2")
+    tab.settle()
+    tab.set("hole_amplitude", "8")
+    tab.settle()
+    tab.set("hole_axis slider", "30", "input")
+    tab.settle()
+    gap = tab.live.session.problem.gap
+    theta = np.radians(np.arange(-180.0, 180.5, 0.5) - 90.0)
+    assert np.allclose(
+        gap.values(theta, 0.01)[0], 8e-6 * np.cos(2.0 * (theta + np.radians(60.0))), rtol=0.0, atol=1e-18
+    )
+    (times,) = re.findall(
+        r"gaps enlarged (\S+) times", tab.run("return document.getElementById('scale-note').textContent")
+    )
+    enlarged = 1.0 + float(times) / 0.01 * gap.values(theta, 0.01)[0]
+    assert tab.run(OUTLINE) == pytest.approx(enlarged.tolist(), abs=1e-3)  # the words have two digits
+    assert "hole profile: oval of 8 um" in tab.run("return document.getElementById('profiles').textContent")
+    assert tab.run("return fastpin.history.latest.peak_pressure") == solved(tab.live)[-1].peak_pressure
+    tab.set("hole_lobes", "0")
+    tab.settle()
+    assert tab.run(OUTLINE) == pytest.approx([1.0] * 721)
+    assert not tab.run("return document.querySelector(`[data-key='hole_amplitude']`)")
+    assert tab.trouble() == []
+
+
+def test_bounds_of_the_shear_follow_friction_along_the_rim_and_its_change(chrome: webdriver.Chrome) -> None:
+    varied = "friction = [{ constant = 0.2 }, { zone = 0.2, start = -10, stop = 180 }]"
+    with served(lambda: contact(FREE.replace("friction = 0.3", varied), 61)) as running:
+        tab = Tab(chrome, running)
+        for change in (0.0, 0.5):
+            tab.set("friction_change", str(change))
+            tab.settle()
+            angle, _, upper, lower, _ = tab.curve("shear")
+            pressure = tab.curve("pressure")[2]
+            state, apart = tab.live.session.state, np.abs(angle + 10.0) > 0.25  # the page has four values a degree
+            bound = state.friction_at(np.radians(angle - 90.0)) * pressure
+            assert np.allclose(upper[apart], bound[apart], rtol=1e-5, equal_nan=True)
+            assert np.array_equal(lower, -upper, equal_nan=True)
+            assert np.nanmax(upper / pressure) == pytest.approx(0.4 * (1.0 + change))
+        tab.set("most_friction slider", "0.1", "input")
+        tab.settle()
+        assert tab.live.session.problem.most_friction == pytest.approx(0.1)
+        assert tab.live.session.problem.least_friction == pytest.approx(0.05)
+        assert tab.trouble() == []
+
+
 @pytest.mark.parametrize(
     ("key", "value", "field", "found"),
     [

@@ -18,6 +18,7 @@ from fastpin.live import contact as contact_module
 from fastpin.live.contact import LiveContact
 from fastpin.live.pictures import CURVE_ERROR
 from fastpin.live.protocol import ALONE, CLASS, Limits
+from fastpin.model import InitialGap, Profile
 from fastpin.states.curves import traction_patches
 from fastpin.states.state import State
 from fastpin.verification.body_cases import ring_compliance
@@ -172,8 +173,11 @@ def test_bodies_and_materials_can_be_changed() -> None:
 
 
 def test_every_control_can_be_sent_back_unchanged() -> None:
-    for changes in ({}, {"pin_bore": 4e-3}, {"plate_body": "ring"}, {"plate_body": "bushing"}):
-        page = Page(contact(nodes=21))
+    for text, changes in [
+        (None, {}), (None, {"pin_bore": 4e-3}), (None, {"plate_body": "ring"}), (None, {"plate_body": "bushing"}),
+        (OVAL, {}), (OVAL, {"friction_along": "uniform", "pin_lobes": "5"}),
+    ]:  # fmt: skip
+        page = Page(contact(text, nodes=21))
         if changes:
             page.tell("change", changes=changes)
         before = page.live.session.problem
@@ -183,6 +187,112 @@ def test_every_control_can_be_sent_back_unchanged() -> None:
         problem = page.live.session.problem
         assert (problem.pair.pin.E, problem.pair.plate.E) == (before.pair.pin.E, before.pair.plate.E)
         assert (problem.pin_body, problem.plate_body) == (before.pin_body, before.plate_body)
+        theta = np.linspace(-np.pi, np.pi, 73)
+        assert np.array_equal(problem.friction_at(theta), before.friction_at(theta))
+        assert np.allclose(problem.gap_at(theta)[0], before.gap_at(theta)[0], rtol=0.0, atol=1e-20)
+
+
+VARIED = FREE.replace("friction = 0.3\n", "friction = [{ constant = 0.2 }, { zone = 0.2, start = -30, stop = 30 }]\n")
+"""A case whose friction varies along the rim."""
+
+OVAL = VARIED.replace(
+    "[[load]]",
+    "[gap]\nhole = [{ crown = 1e-6, centre = 0, half_width = 20 }, { ellipse = 4e-6, axis = 30 }]\n"
+    "pin = [{ flat = 1e-6, centre = 90 }]\n[[load]]",
+    1,
+)
+"""The same with initial gaps of hole and pin."""
+
+
+def controls_of(page: Page) -> dict[str, dict]:
+    """The controls of the page by their names."""
+    return {control["name"]: control for control in page.latest["case"]["controls"]}
+
+
+def around(page: Page, name: str) -> np.ndarray:
+    """The values of a profile along the rim that the page has."""
+    return floats(page.latest["case"]["profiles"][name])
+
+
+def test_friction_that_varies_is_scaled_by_its_slider_and_keeps_its_shape() -> None:
+    page = Page(contact(VARIED))
+    json.dumps(page.latest, allow_nan=False)
+    given = page.live.session.problem.friction
+    assert controls_of(page)["most_friction"]["value"] == 0.4
+    assert "friction" not in controls_of(page)
+    for most in (0.6, 0.0, 0.2):  # the shape comes back after 0
+        page.tell("change", changes={"most_friction": most})
+        assert page.live.session.problem.friction == given.scaled(most / 0.4)
+        assert page.latest["case"]["friction"] == pytest.approx(most)
+    values = around(page, "contact.friction")
+    assert values.size == 1440
+    assert (values[0], values[720]) == pytest.approx((0.1, 0.2))  # at the top and at the bottom
+    session = page.live.session
+    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+    assert_shown(page.pictures[-1], result[-1])
+    assert np.all(np.abs(session.state.shear) <= session.state.friction * session.state.pressure * (1.0 + 1e-12))
+
+
+def test_friction_that_varies_can_be_made_uniform_and_be_brought_back() -> None:
+    page = Page(contact(VARIED))
+    given = page.live.session.problem.friction
+    page.tell("change", changes={"friction_along": "uniform"})
+    assert (page.live.session.problem.friction, page.latest["case"]["profiles"]) == (0.4, {})
+    page.tell("change", changes={"friction": 0.2})
+    page.tell("change", changes={"friction_along": "case"}, gesture=9)
+    assert page.live.session.problem.friction == given.scaled(0.5)
+    page.tell("undo")
+    assert page.live.session.problem.friction == 0.2
+
+
+def test_a_uniform_friction_has_one_slider() -> None:
+    page = Page(contact())
+    assert not controls_of(page).keys() & {"most_friction", "friction_along"}
+    answer = page.tell("change", changes={"most_friction": 0.2})
+    assert answer["sentence"] == "most_friction: the friction of the case is the same all round"
+
+
+def test_hole_and_pin_get_lobes_by_words() -> None:
+    page = Page(contact())
+    assert [controls_of(page)[f"{body}_lobes"]["value"] for body in ("hole", "pin")] == ["0", "0"]
+    page.tell("change", changes={"hole_lobes": "2"})
+    usual = page.live.session.problem.clearance
+    assert controls_of(page)["hole_amplitude"]["value"] == pytest.approx(0.5 * usual)
+    page.tell("change", changes={"hole_axis": 30.0, "hole_amplitude": 4e-6})
+    page.tell("change", changes={"pin_lobes": "3"})
+    page.tell("change", changes={"pin_amplitude": 2e-6})
+    gap = InitialGap(Profile.ellipse(4e-6, np.radians(-60.0)), Profile.lobes(3, 2e-6, np.radians(-90.0)))
+    theta = np.linspace(-np.pi, np.pi, 73)
+    session = page.live.session
+    assert np.allclose(session.problem.gap_at(theta)[0], gap.values(theta, 0.01)[0], rtol=0.0, atol=1e-20)
+    assert around(page, "gap.hole")[720 + 4 * 30] == pytest.approx(4e-6, rel=1e-6)  # 30 degrees from the bottom
+    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+    assert_shown(page.pictures[-1], result[-1])
+    page.tell("change", changes={"hole_lobes": "6"})
+    assert controls_of(page)["hole_axis"]["value"] == pytest.approx(-30.0)  # that of the lobe next to the bottom
+    assert controls_of(page)["hole_amplitude"]["value"] == pytest.approx(4e-6)
+    page.tell("change", changes={"hole_lobes": "0", "pin_amplitude": 0.0}, gesture=9)
+    assert not page.live.session.problem.gap
+    page.tell("undo")
+    assert len(page.live.session.problem.gap.given) == 2
+
+
+def test_lobes_of_the_case_are_controlled_and_its_other_terms_stay() -> None:
+    page = Page(contact(OVAL))
+    assert page.latest["sentence"] == ""
+    assert [name for name, _ in page.latest["case"]["profile_words"]] == ["hole profile", "pin profile", "friction"]
+    found = controls_of(page)
+    assert found["hole_lobes"]["value"] == "2"
+    assert (found["hole_amplitude"]["value"], found["hole_axis"]["value"]) == pytest.approx((4e-6, 30.0))
+    crown, flat = page.live.session.problem.gap.hole.terms[0], page.live.session.problem.gap.pin.terms[0]
+    page.tell("change", changes={"hole_amplitude": 6e-6})
+    assert crown in page.live.session.problem.gap.hole.terms
+    page.tell("change", changes={"hole_lobes": "0"})
+    assert page.live.session.problem.gap == InitialGap(Profile((crown,)), Profile((flat,)))
+    page.tell("change", changes={"pin_lobes": "2"})
+    assert flat in page.live.session.problem.gap.pin.terms
+    case = casefile.parse_case(page.live.case_text())
+    assert case.problem == page.live.session.problem
 
 
 @pytest.mark.parametrize(
@@ -196,6 +306,11 @@ def test_every_control_can_be_sent_back_unchanged() -> None:
         ("change", {"changes": {"colour": 1}}, "colour: is no control of the page"),
         ("change", {"changes": {"pin_material": "wood"}}, "pin_material: must be"),
         ("change", {"changes": {"plane": []}}, "plane: must be"),
+        ("change", {"changes": {"hole_lobes": "7"}}, "hole_lobes: must be"),
+        ("change", {"changes": {"hole_lobes": "2", "hole_amplitude": "1"}}, "hole_amplitude: must be a number"),
+        ("change", {"changes": {"hole_lobes": "2", "hole_amplitude": 1.0}}, "gap.hole: is too large for small strains"),
+        ("change", {"changes": {"pin_lobes": "2", "pin_axis": 1e3}}, "pin_axis: must lie between"),
+        ("change", {"changes": {"friction_along": "wavy"}}, "friction_along: must be"),
         ("change", {"changes": {"outer_radius": 1.0}}, "outer_radius: an infinite plate has no outer radius"),
         ("change", {"changes": {"pin_bore": 0.0099}}, "bore_radius: must be at most"),
     ],

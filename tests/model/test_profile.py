@@ -67,7 +67,7 @@ def test_a_scaled_profile_has_scaled_values(profile: Profile, factor: float) -> 
 
 def test_a_scaled_flat_has_another_depth() -> None:
     assert Profile.flat(0.1, 0.0).scaled(0.5) == Profile.flat(0.05, 0.0)
-    with pytest.raises(InputError, match="depth: must be positive, not -0.1"):
+    with pytest.raises(InputError, match=r"depth: must be positive, not -0\.1"):
         Profile.flat(0.1, 0.0).scaled(-1.0)
 
 

@@ -132,16 +132,16 @@ export class RoundCharts {
   }
 
   show() {
-    const { shown, reference, case: given } = this.history;
-    const unit = given.units.traction, mu = given.friction;
+    const { shown, reference, profiles, case: given } = this.history;
+    const unit = given.units.traction;
     const both = [shown, reference].filter(Boolean);
     const largest = (of) => Math.max(0, ...both.map(of));
     this.peaks.pressure = peak(this.peaks.pressure, largest((one) => one.peak_pressure));
-    this.peaks.shear = peak(this.peaks.shear, largest((one) => Math.max(Math.abs(one.peak_shear), mu * one.peak_pressure)));
+    this.peaks.shear = peak(this.peaks.shear, largest((one) => Math.max(Math.abs(one.peak_shear), profiles.mostShear(one))));
     this.follower.follow(both.flatMap((one) => one.contact));
     this.showButton();
     const scale = scaled(this.peaks.pressure, unit);
-    this.fill(scale.factor, mu);
+    this.fill(scale.factor);
     this.fillHoop(both, unit);
     for (const name of ["pressure", "shear"]) this.label(name, scale.unit);
   }
@@ -151,14 +151,15 @@ export class RoundCharts {
   }
 
   // The curves of pressure and shear. They end at the edges of the contact.
-  fill(factor, mu) {
-    const { shown, reference } = this.history;
+  fill(factor) {
+    const { shown, reference, profiles } = this.history;
     const { x, values } = together([shown, reference].map((one) => (one ? partsOf(one.curves) : [])), this.window);
-    const along = (number, name, by = factor) => values(number, name).map((value) => (value === null ? null : by * value));
+    const along = (number, name) => values(number, name).map((value) => (value === null ? null : factor * value));
+    const pressure = along(0, "pressure"), bound = (sign) => pressure.map((value, k) => (value === null ? null : sign * profiles.friction(x[k], shown.load) * value));
     for (const name of ["pressure", "shear"]) {
-      const top = factor * this.peaks[name] || 1, bounds = name === "shear" ? [mu, -mu] : [];
+      const top = factor * this.peaks[name] || 1, bounds = name === "shear" ? [bound(1), bound(-1)] : [];
       this.ranges[name] = [name === "shear" ? -top : 0, top];
-      this.put(name, x, [along(1, name), ...bounds.map((bound) => along(0, "pressure", factor * bound)), along(0, name)]);
+      this.put(name, x, [along(1, name), ...bounds, along(0, name)]);
     }
   }
 

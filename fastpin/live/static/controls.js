@@ -3,14 +3,15 @@
 import { newGesture } from "live/lead";
 import { digits, inBaseUnit, numberText, scaled } from "live/units";
 
-const GROUPS = { loads: "Loads", contact: "Contact", pin: "Pin", plate: "Plate", bush: "Bush", solver: "Solver" };
+const GROUPS = { loads: "Loads", contact: "Contact", gap: "Initial gap", pin: "Pin", plate: "Plate", bush: "Bush", solver: "Solver" };
 const NAMES = {
   P: "P, down", Q: "Q, right", M: "M, moment", ux: "ux, right", uy: "uy, up", rotation: "rotation",
-  sxx: "σxx remote", syy: "σyy remote", sxy: "σxy remote", friction: "friction μ", clearance: "clearance",
+  sxx: "σxx remote", syy: "σyy remote", sxy: "σxy remote", friction_change: "change of μ", friction: "friction μ",
+  most_friction: "largest μ", friction_along: "μ along the rim", hole_lobes: "hole", pin_lobes: "pin", clearance: "clearance",
   plane: "plane", pin_load: "force acts", pin_bore: "bore radius", bore_load: "force in bore", plate_body: "plate",
   outer_radius: "outer radius", support: "rim", interference: "press fit",
 };
-const LABELS = { material: "material", E: "modulus E", nu: "Poisson ν" };
+const LABELS = { material: "material", E: "modulus E", nu: "Poisson ν", amplitude: "amplitude", axis: "widest gap at" };
 const WORDS = { centre: "at its centre", body: "as body force", strain: "plane strain", stress: "plane stress" };
 const LOAD_ENDS = 1.5; // ends of the sliders of loads, in parts of the usual load
 

@@ -10,6 +10,7 @@ const GAP = 0.05; // width in which a usual clearance is drawn, in hole radii
 const ARROWS = 8; // degrees between two arrows of the shear
 const SHRINKS = [1, 2, 5, 10, 20, 50, 100, 1000, 1e4, 1e5, 1e6]; // how much smaller the arrow of a large load is drawn
 const BORDER = 14; // pixels that its handle keeps from the border
+const DEEPEST = 0.4; // largest gap that is drawn enlarged, in hole radii
 const LABEL = 0.77; // place of the angles, in hole radii from the centre
 const LONG = 0.17; // length of the largest arrow of the shear, in hole radii
 
@@ -72,8 +73,9 @@ export class Drawing {
     pen.setTransform(scale, 0, 0, scale, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.lineJoin = "round";
-    const frame = this.frame(), picture = this.history.shown;
+    const frame = { ...this.frame(), ...this.enlarged() }, picture = this.history.shown;
     if (picture) this.fit(picture.load, frame);
+    this.remark(frame.times);
     this.bodies(pen, frame);
     this.pin(pen, frame, picture);
     if (picture) {
@@ -90,8 +92,18 @@ export class Drawing {
     this.loads(pen, frame, picture);
   }
 
-  bodies(pen, { x, y, radius, width, height }) {
-    const { case: given } = this.history;
+  // How much gaps are enlarged, and the radius of the hole's edge at an angle, in hole radii.
+  enlarged() {
+    const { case: given, profiles } = this.history;
+    const usual = Math.max(Math.abs(given.clearance), profiles.widest, 0.3 * given.yielded);
+    const times = Math.max((GAP * given.radius) / usual, 1);
+    const part = (gap) => (gap * times) / given.radius;
+    const edge = (degrees) => 1 + Math.max(-DEEPEST, Math.min(DEEPEST, part(profiles.gap("hole", degrees))));
+    return { times, edge, part };
+  }
+
+  bodies(pen, frame) {
+    const { case: given } = this.history, { x, y, radius, width, height, edge } = frame;
     const circle = (size, colour) => {
       pen.beginPath();
       pen.arc(x, y, size, 0, 2 * Math.PI);
@@ -112,36 +124,32 @@ export class Drawing {
       pen.lineWidth = 1;
       pen.stroke();
     }
-    circle(radius, "#ffffff");
+    pen.beginPath();
+    trace(pen, frame, edge, -180, 180);
+    pen.closePath();
+    pen.fillStyle = "#ffffff";
+    pen.fill();
     pen.strokeStyle = "#8d8a83";
     pen.lineWidth = 1;
     pen.stroke();
   }
 
   // The pin: the hole less its gap, which is enlarged.
-  pin(pen, { x, y, radius }, picture) {
-    const { case: given } = this.history;
-    const usual = Math.max(Math.abs(given.clearance), 0.3 * given.yielded);
-    const times = Math.max((GAP * given.radius) / usual, 1); // how much gaps are enlarged
-    this.remark(given, times);
-    const most = times > 1 ? 0.4 : 0.95; // of the radius
-    const width = (gap) => radius * (1 - Math.min((gap * times) / given.radius, most));
+  pin(pen, frame, picture) {
+    const { case: given, profiles } = this.history, { x, y, radius, times, edge, part } = frame;
+    const most = times > 1 ? DEEPEST : 0.95; // of the radius
+    const size = (angle, gap) => edge(angle) - Math.min(part(gap), most);
+    const free = (angle) => given.clearance + profiles.gap("hole", angle) + profiles.gap("pin", angle);
     pen.beginPath();
     if (picture) {
-      const { nodes } = picture;
-      nodes.theta.forEach((angle, k) => {
-        const size = width(picture.gap[k]);
-        pen.lineTo(x + size * Math.cos(angle), y - size * Math.sin(angle));
-      });
+      const { nodes } = picture, { degrees } = nodes;
+      degrees.forEach((angle, k) => pen.lineTo(...spot(frame, angle, size(angle, picture.gap[k]))));
       if (!nodes.whole) {
-        const [first, turn, gapAt] = rigidGap(picture, given.clearance);
-        for (let k = 1; k < 180; k++) {
-          const angle = first + (turn * k) / 180, size = width(Math.max(gapAt(angle), 0));
-          pen.lineTo(x + size * Math.cos(angle), y - size * Math.sin(angle));
-        }
+        const gapAt = rigidGap(picture, free), [start, stop] = [degrees[0] + 360, degrees.at(-1)];
+        trace(pen, frame, (angle) => size(angle, Math.max(gapAt(angle), 0)), stop, start);
       }
     } else {
-      pen.arc(x, y, width(Math.max(given.clearance, 0)), 0, 2 * Math.PI);
+      trace(pen, frame, (angle) => size(angle, Math.max(free(angle), 0)), -180, 180);
     }
     pen.closePath();
     pen.fillStyle = "#c3ced8";
@@ -170,23 +178,20 @@ export class Drawing {
   }
 
   // How gaps and the load are drawn.
-  remark(given, times) {
-    const gaps = times === 1 ? "gaps to scale" : given.dimensionless ? "gaps enlarged" : `gaps enlarged ${digits(times, 2)} times`;
+  remark(times) {
+    const gaps = times === 1 ? "gaps to scale" : this.history.case.dimensionless ? "gaps enlarged" : `gaps enlarged ${digits(times, 2)} times`;
     this.note.textContent = this.shrink === 1 ? gaps : `${gaps}; arrow of the load at 1/${this.shrink}`;
   }
 
-  pressure(pen, { x, y, radius }, picture, fill, stroke) {
+  pressure(pen, frame, picture, fill, stroke) {
     for (const { degrees, pressure } of partsOf(picture.curves)) {
       pen.beginPath();
-      degrees.forEach((angle, k) => {
-        const size = radius * (1 + (HIGH * pressure[k]) / this.most), turned = onCircle(angle);
-        pen.lineTo(x + size * Math.cos(turned), y - size * Math.sin(turned));
-      });
+      degrees.forEach((angle, k) => pen.lineTo(...spot(frame, angle, frame.edge(angle) + (HIGH * pressure[k]) / this.most)));
       pen.strokeStyle = stroke;
       pen.lineWidth = 1.5;
       pen.stroke();
       if (fill) {
-        pen.arc(x, y, radius, -onCircle(degrees.at(-1)), -onCircle(degrees[0]));
+        trace(pen, frame, frame.edge, degrees.at(-1), degrees[0]);
         pen.fillStyle = fill;
         pen.fill();
       }
@@ -194,11 +199,11 @@ export class Drawing {
   }
 
   // A band along the edge of the hole in the colours of stick and slip.
-  zones(pen, { x, y, radius }, picture) {
-    pen.lineWidth = Math.max(5, 0.028 * radius);
+  zones(pen, frame, picture) {
+    pen.lineWidth = Math.max(5, 0.028 * frame.radius);
     for (const [start, stop, status] of picture.zones) {
       pen.beginPath();
-      pen.arc(x, y, radius, -onCircle(stop), -onCircle(start));
+      trace(pen, frame, frame.edge, start, stop);
       pen.strokeStyle = ofStatus(status);
       pen.stroke();
     }
@@ -317,13 +322,28 @@ export function peak(before, value) {
   return value > before || value < before / 3 ? value * 1.15 : before;
 }
 
-// Beyond an arc of nodes the pin is drawn as rigid. The answer has the end of the arc, the angle to its beginning, and
-// the gap: that of a circle which has the gaps of both ends.
-function rigidGap({ nodes: { theta }, gap }, clearance) {
-  const [start, stop] = [theta[0], theta.at(-1)], [one, other] = [clearance - gap[0], clearance - gap.at(-1)];
-  const part = Math.sin(stop - start);
-  const right = (one * Math.sin(stop) - other * Math.sin(start)) / part, up = (other * Math.cos(start) - one * Math.cos(stop)) / part;
-  return [stop, 2 * Math.PI - (stop - start), (angle) => clearance - right * Math.cos(angle) - up * Math.sin(angle)];
+// Beyond an arc of nodes the pin is drawn as rigid. The answer is its gap at an angle: that of a pin which has the gaps of
+// both ends, where `free` is the gap of a concentric pin.
+function rigidGap({ nodes: { degrees }, gap }, free) {
+  const [start, stop] = [degrees[0], degrees.at(-1)], [first, last] = [start, stop].map(onCircle);
+  const [one, other] = [free(start) - gap[0], free(stop) - gap.at(-1)], part = Math.sin(last - first);
+  const right = (one * Math.sin(last) - other * Math.sin(first)) / part, up = (other * Math.cos(first) - one * Math.cos(last)) / part;
+  return (angle) => free(angle) - right * Math.cos(onCircle(angle)) - up * Math.sin(onCircle(angle));
+}
+
+// The place on the canvas at an angle and a distance from the centre in hole radii.
+function spot({ x, y, radius }, degrees, size) {
+  const angle = onCircle(degrees);
+  return [x + radius * size * Math.cos(angle), y - radius * size * Math.sin(angle)];
+}
+
+// Go on with a path along a curve: from one angle to another, with the distance from the centre at each.
+function trace(pen, frame, size, start, stop) {
+  const steps = Math.max(Math.ceil(2 * Math.abs(stop - start)), 2);
+  for (let k = 0; k <= steps; k++) {
+    const angle = start + ((stop - start) * k) / steps;
+    pen.lineTo(...spot(frame, angle, size(angle)));
+  }
 }
 
 // An angle from the bottom, in degrees, as the angle from the right, in rad.

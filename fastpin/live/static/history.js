@@ -1,6 +1,7 @@
 // What the page knows: the problem, the pictures of the history, the reference, and which picture is shown.
 
 import { floats, statuses } from "live/arrays";
+import { Profiles } from "live/profiles";
 
 export const OPEN = 2, SLIDES = 3; // statuses: open, and closed without friction; 0 sticks, +1 and -1 slip
 
@@ -9,6 +10,7 @@ export class History {
     this.pictures = [];
     this.grids = new Map();
     this.case = null;
+    this.profiles = null; // initial gaps and friction of the case
     this.reference = null;
     this.undos = 0;
     this.redos = 0;
@@ -21,7 +23,10 @@ export class History {
       if (!this.grids.has(name)) this.grids.set(name, grid(floats(text)));
     }
     const isNew = answer.case !== undefined;
-    if (isNew) this.case = answer.case;
+    if (isNew) {
+      this.case = answer.case;
+      this.profiles = new Profiles(answer.case);
+    }
     const added = answer.add.map((picture) => this.unpacked(picture));
     this.pictures = this.pictures.slice(answer.drop ?? 0).slice(0, answer.keep ?? 0).concat(added);
     if (answer.reference !== undefined) this.reference = answer.reference && this.unpacked(answer.reference);
@@ -63,8 +68,9 @@ function unpackedAll(arrays) {
   return Object.fromEntries(Object.entries(arrays).map(([name, text]) => [name, floats(text)]));
 }
 
-// The nodes of a grid: their angles in rad, and whether they stand all round.
+// The nodes of a grid: their angles in degrees from the bottom, and whether they stand all round.
 function grid(theta) {
+  const degrees = Array.from(theta, (angle) => (180 * angle) / Math.PI + 90);
   const whole = theta.length > 4 && 2 * Math.PI - (theta.at(-1) - theta[0]) < 1.5 * (theta[1] - theta[0]);
-  return { theta, whole };
+  return { degrees, whole };
 }

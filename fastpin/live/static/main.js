@@ -114,6 +114,7 @@ function news(answer) {
       at("hoop-body").textContent = history.case.plate === "bushing" ? "bush" : "plate";
       at("title").textContent = history.case.title ? `· ${history.case.title}` : "";
       document.title = `fastpin live${history.case.title ? ` · ${history.case.title}` : ""}`;
+      at("profiles").textContent = history.case.profile_words.map(([name, words]) => `${name}: ${words}`).join("; ");
       listUnits();
       controls?.make();
     } else controls?.show();
