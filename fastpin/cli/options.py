@@ -203,6 +203,7 @@ def add_wear(commands: Any) -> None:
     wear.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
     wear.add_argument("--resume", action="store_true", help="with -o: continue the file of a life that ended early")
     _add_json(wear, "write the chosen cycles as JSON")
+    wear.add_argument("--record", metavar="FILE", type=Path, help="write a page (html) with a slider of the cycles")
     wear.add_argument("-v", "--verbose", action="count", default=0, help="log each grid; -vv: more")
 
 

@@ -219,8 +219,6 @@ def _start(options: argparse.Namespace) -> solver.Result | None:
 def _check_outputs(options: argparse.Namespace) -> None:
     """Check before the work that all output files can be written. Only ``run`` has an output that is a result."""
     names = ("json", "plot", "cycles", "cycle_csv", "record", *(("output",) if "overwrite" in options else ()))
-    if options.record is not None and options.record.suffix.lower() not in (".html", ".htm"):
-        raise InputError("--record", f'must be the name of a page, which ends in .html, not "{options.record.name}"')
     check_outputs({flag(name): getattr(options, name) for name in names}, result="--output")
 
 

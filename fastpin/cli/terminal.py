@@ -58,8 +58,8 @@ def check_outputs(
     Raises
     ------
     InputError
-        If a file can't be written or must not be replaced, is a case file, has the wrong suffix of a figure, or is
-        named twice.
+        If a file can't be written or must not be replaced, is a case file, has the wrong suffix of a figure or a
+        recording, or is named twice.
     """
     chosen = {name: Path(path) for name, path in names.items() if path is not None and path != "-"}
     seen: dict[Path, str] = {}
@@ -70,6 +70,8 @@ def check_outputs(
             )
         if name in figures:
             check_figure(name, path)
+        if name == "--record" and path.suffix.lower() not in (".html", ".htm"):
+            raise InputError(name, f'must be the name of a page, which ends in .html, not "{path.name}"')
         try:
             check_writable(path, result=name == result)
         except InputError as error:

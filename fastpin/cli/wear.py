@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from fastpin import casefile, report, solver, storage
+from fastpin import casefile, live, report, solver, storage
 from fastpin.cli.options import literal
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import (
@@ -46,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
             raise InputError(flag(name), "needs --output FILE")
     if case.wear is None and "coefficient" not in given:
         raise InputError("--coefficient", "is needed: the case file has no section [wear]")
-    check_outputs({"--json": options.json, "--output": options.output}, result="--output")
+    check_outputs({flag(name): getattr(options, name) for name in ("json", "record", "output")}, result="--output")
     settings: dict[str, Any] = {"nodes": options.nodes or case.options.nodes, "arc": case.options.arc}
     settings |= {"overwrite": options.overwrite, "resume": options.resume, "output": options.output}
     result: solver.WearResult | None = None
@@ -71,10 +72,10 @@ def run(options: argparse.Namespace) -> int:
 def show(options: argparse.Namespace) -> int:
     """Print the chosen cycles of a stored life of wear."""
     path: Path = options.output
-    for name in ("plot", "states", "cycles", "record", "cycle_csv"):
+    for name in ("plot", "states", "cycles", "cycle_csv"):
         if getattr(options, name) is not None:
             raise InputError(flag(name), f"is for the result of a run; fastpin plot {path} draws this life of wear")
-    check_outputs({"--json": options.json})
+    check_outputs({"--json": options.json, "--record": options.record})
     life, title, error = storage.load_wear(path), storage.stored_case(path).title, storage.stored_error(path)
     code = _write(life, options, title, error)
     if not life.complete and options.json != "-":
@@ -85,11 +86,15 @@ def show(options: argparse.Namespace) -> int:
 
 def _write(result: solver.WearResult | None, options: argparse.Namespace, title: str, trouble: str | None) -> int:
     """Write the JSON, then print the table. Printing comes last: the reader of the output may close it early."""
-    text, code = "", EXIT_OK
+    text = ""
     if options.json is not None:
         text = json.dumps(report.wear.document(result, title, trouble), indent=2, allow_nan=False) + "\n"
-    if text and options.json != "-":
-        code = write_files([(options.json, lambda path: write_text(path, text))])
+    writers: list[tuple[Any, Callable[[Path], object]]] = []
+    if options.json != "-":
+        writers.append((options.json, lambda path: write_text(path, text)))
+    if result is not None and len(result):
+        writers.append((options.record, lambda path: write_text(path, live.record_life(result, title, trouble or ""))))
+    code = write_files(writers)
     if options.json == "-":
         sys.stdout.write(text)
     elif result is not None:

@@ -17,9 +17,12 @@ from fastpin.states.state import State
 from fastpin.version import __version__
 
 
-def recorded_places(count: int) -> list[int]:
-    """The places of the states that a recording shows, out of `count`: an even choice with the first and the last."""
-    chosen = min(whole_number("count", count, 0, MAX_CORNERS), MOST_PICTURES)
+def recorded_places(count: int, most: int = MOST_PICTURES) -> list[int]:
+    """The places of the states that a recording shows, out of `count`: an even choice with the first and the last.
+
+    There are at most `most` of them, and two at least.
+    """
+    chosen = min(whole_number("count", count, 0, MAX_CORNERS), max(most, 2))
     return [round(k * (count - 1) / max(chosen - 1, 1)) for k in range(chosen)]
 
 

@@ -16,6 +16,7 @@ from fastpin.casefile.writer import case_text
 from fastpin.cli.main import main
 from fastpin.report import json_schema, wear
 from fastpin.solver.errors import Interrupted
+from tests.support.live_pages import recorded
 
 CASE = """
 title = "Worn pin"
@@ -117,7 +118,24 @@ def test_an_unfinished_life_says_so(capsys):
     assert capsys.readouterr().out.endswith("; continue with: fastpin wear CASE -o life.h5 --resume\n")
 
 
+def test_a_page_of_the_life_is_written_at_once_or_from_its_file(capsys):
+    assert main(["wear", "case.toml", "-o", "life.h5", "--record", "page.html"]) == 0
+    assert main(["show", "life.h5", "--record", "other.html"]) == 0
+    page = Path("page.html").read_text()
+    assert Path("other.html").read_text() == page
+    found = recorded(page)
+    assert [each["cycle"] for each in found["life"]["cycles"]] == [0, 1, 2, 3, 4, 5, 6, 8, 10, 12]
+    assert (found["case"]["title"], found["sentence"]) == ("Worn pin", "")
+    capsys.readouterr()
+    assert main(["live", "life.h5"]) == 2
+    assert (
+        "is a stored result (HDF5), not text; fastpin show prints it, with --record as a page"
+        in capsys.readouterr().err
+    )
+
+
 FAULTS = {
+    '--record: must be the name of a page, which ends in .html, not "page.pdf"': ["--record", "page.pdf"],
     "--cycles: must be a whole number, not 2.5": ["--cycles", "2.5"],
     "--coefficient: must not be negative, not -1": ["--coefficient", "-1"],
     "--resume: needs --output FILE": ["--resume"],

@@ -29,12 +29,15 @@ from selenium.webdriver.common.keys import Keys
 import fastpin
 from fastpin import casefile
 from fastpin.live.contact import LiveContact
+from fastpin.live.life import record_life
 from fastpin.live.pictures import CURVE_ERROR
 from fastpin.live.protocol import CLASS
 from fastpin.live.recording import record_page
 from fastpin.live.server import Server
+from fastpin.solver import WearResult
 from fastpin.states.curves import traction_patches
 from tests.support.live_pages import FREE, contact, served
+from tests.support.lives import fretting
 
 BROWSER, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
 if not os.environ.get("FASTPIN_BROWSER"):
@@ -822,6 +825,77 @@ def test_the_recording_of_a_run_is_replayed(chrome: webdriver.Chrome, tmp_path: 
     file = tmp_path / "page.html"
     file.write_text(record_page(case, list(result)), encoding="utf-8")
     assert_replays(chrome, file, len(result))
+
+
+SLIDE = """
+const slider = document.getElementById('cycles'); slider.value = arguments[0];
+slider.dispatchEvent(new Event('input'));
+return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(Number(slider.value)))));
+"""
+"""Moves the slider of cycles as a user does. The answer is the place to which it snaps."""
+
+
+def life_of(chrome: webdriver.Chrome, folder: Path, life: WearResult) -> Tab:
+    """Open the recording of a life of wear from a file."""
+    file = folder / "life.html"
+    file.write_text(record_life(life, "Fretting"), encoding="utf-8")
+    tab = Tab(chrome, None)
+    chrome.get_log("browser")
+    chrome.get(file.as_uri())
+    tab.wait("return window.fastpin?.times.length > 0")
+    return tab
+
+
+def test_the_slider_of_cycles_moves_through_a_life_of_wear(chrome: webdriver.Chrome, tmp_path: Path) -> None:
+    life = fretting()
+    tab = life_of(chrome, tmp_path, life)
+    words, numbers, unit_words = (
+        f"return document.getElementById('{name}').textContent" for name in ("cycle", "numbers", "worn-unit")
+    )
+    assert tab.run(words) == "after 3,000 cycles"
+    places = tab.run("return fastpin.history.life.scale.places")
+    assert places[0] == 0.0
+    assert places[1:] == pytest.approx(0.08 + 0.92 * np.log10(life.numbers[1:] / 3.0) / 3.0)
+    for k in (0, 4, 2):
+        near = places[k] + (0.02 if k < 4 else -0.02)
+        assert tab.run(SLIDE, near) == pytest.approx(places[k])  # only stored cycles are shown
+        cycle = life[k]
+        assert tab.run(words) == f"after {cycle.cycle:,} cycles"
+        worn = tab.curve("worn")
+        unit = {"[pm]": 1e-12, "[nm]": 1e-9, "[µm]": 1e-6}[tab.run(unit_words)]
+        assert unit * np.nanmax(worn[-1]) == pytest.approx(cycle.depth, rel=1e-6)
+        assert np.allclose(worn[2] + worn[3], worn[4], equal_nan=True)  # pin and hole
+        angle, _, pressure = tab.curve("pressure")
+        ((degrees, drawn, _),) = [points.T for points in traction_patches(cycle.states[-1])]
+        assert np.allclose(pressure, 1e-6 * np.interp(angle, degrees, drawn), rtol=0.0, atol=5.0 * CURVE_ERROR * 160.0)
+        text = tab.run(numbers)
+        assert f"cycles{cycle.cycle:,}worn volume" in text
+        assert f"largest pressure{1e-6 * cycle.largest_pressure:#.4g} MPa" in text
+        assert tab.run("return fastpin.map.columns.length") == k + 1
+    assert np.nanmax(tab.curve("damage")[-1]) == pytest.approx(life.fatigue().hot_spots[2].damage, rel=1e-6)
+    before = tab.run("return fastpin.history.shown.serial")
+    tab.run("const place = document.getElementById('scrub'); place.value = 0; place.dispatchEvent(new Event('input'))")
+    assert tab.run("return fastpin.history.shown.serial") == before - 2
+    tab.keys("drawing", Keys.ARROW_RIGHT)
+    assert tab.run("return [fastpin.history.cycle.cycle, fastpin.history.place]") == [100, 0]  # the state stays
+    tab.keys("cycles", Keys.HOME)
+    assert tab.run("return fastpin.history.cycle.cycle") == 0
+    tab.click("play-life")
+    tab.wait("return fastpin.history.cycle.cycle === 3000 && !fastpin.player.plays")
+    assert tab.trouble() == []
+    assert not tab.run("return performance.getEntriesByType('resource').some((one) => one.name.startsWith('http'))")
+
+
+@pytest.mark.parametrize("width", [1400, 800, 400])
+def test_nothing_of_a_life_lies_beyond_the_window(chrome: webdriver.Chrome, tmp_path: Path, width: int) -> None:
+    tab = life_of(chrome, tmp_path, fretting(1, ()))
+    sizes = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", sizes)
+    wide, inner = tab.run("return [document.documentElement.scrollWidth, innerWidth]")
+    chrome.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert wide <= inner == width
+    assert tab.run("return document.getElementById('cycle').textContent") == "after 1 cycle"
+    assert tab.trouble() == []
 
 
 @pytest.mark.parametrize("width", [1400, 800, 400])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 
@@ -15,19 +14,13 @@ from fastpin.cli.main import main
 from fastpin.live import recording
 from fastpin.live.page import recorded_page
 from fastpin.live.protocol import MOST_PICTURES
-from tests.support.live_pages import Page, contact, floats
-
-
-def content(page: str) -> dict:
-    """Return what a recording holds."""
-    (found,) = re.findall(r'<script type="application/json" id="recording">(.*?)</script>', page, re.DOTALL)
-    return json.loads(found)
+from tests.support.live_pages import Page, contact, floats, recorded
 
 
 def test_a_recording_holds_the_states_of_a_run() -> None:
     case = casefile.builtin_case()
     result = fastpin.solve(case.problem, case.history, nodes=41, between=1)
-    found = content(recording.record_page(case, list(result)))
+    found = recorded(recording.record_page(case, list(result)))
     assert [one["load"] for one in found["add"]] == [state.load for state in result]
     assert np.array_equal(floats(found["add"][-1]["shear"]), result[-1].shear.astype("<f4"))
     assert found["case"]["title"] == case.title
@@ -47,7 +40,7 @@ def test_a_title_cannot_end_the_script() -> None:
     case = fastpin.Case(case.problem, case.history, case.options, title)
     page = recording.record_page(case, [contact(nodes=21).session.state])
     assert "alert(1)</script>" not in page
-    assert content(page)["case"]["title"] == title
+    assert recorded(page)["case"]["title"] == title
 
 
 def test_a_recording_is_the_same_every_time() -> None:
@@ -72,16 +65,16 @@ def test_nothing_to_record_is_refused() -> None:
 def test_run_show_and_a_lost_run_write_recordings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     page, other, stored = tmp_path / "page.html", tmp_path / "other.html", tmp_path / "run.h5"
     assert main(["run", "--nodes", "41", "--between", "2", "--record", str(page), "-o", str(stored)]) == 0
-    assert len(content(page.read_text())["add"]) == 12
+    assert len(recorded(page.read_text())["add"]) == 12
     assert main(["show", str(stored), "--record", str(other)]) == 0
-    assert content(other.read_text()) == content(page.read_text())
+    assert recorded(other.read_text()) == recorded(page.read_text())
     lost = tmp_path / "lost.toml"
     lost.write_text(
         '[pin]\nmaterial = "steel"\n[plate]\nmaterial = "steel"\n[contact]\nhole_radius = 0.01\nclearance = 1e-5\n'
         "friction = 0.3\n[[load]]\nP = 1e6\n[[load]]\nM = 1e6\n[solve]\nnodes = 41\n"
     )
     assert main(["run", str(lost), "--record", str(page)]) == 1
-    found = content(page.read_text())
+    found = recorded(page.read_text())
     assert len(found["add"]) == 1
     assert "the pin spins" in found["sentence"] or "nothing holds the pin" in found["sentence"]
     capsys.readouterr()
@@ -93,7 +86,7 @@ def test_the_recording_of_the_docs_has_the_present_page() -> None:
     """docs/live.md has the line that makes it anew."""
     file = Path(__file__).parents[2] / "docs" / "live-recording.html"
     text = file.read_text(encoding="utf-8")
-    found = content(text)
+    found = recorded(text)
     assert len(found["add"]) == 84
     assert recorded_page(found) == text
     assert file.stat().st_size < 1_000_000

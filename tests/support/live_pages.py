@@ -6,6 +6,7 @@ import asyncio
 import base64
 import contextlib
 import json
+import re
 import threading
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -68,6 +69,13 @@ class Page:
 def floats(text: str) -> np.ndarray:
     """Return an array of a picture."""
     return np.frombuffer(base64.b64decode(text), dtype="<f4")
+
+
+def recorded(page: str) -> dict[str, Any]:
+    """Return what a recording holds."""
+    (found,) = re.findall(r'<script type="application/json" id="recording">(.*?)</script>', page, re.DOTALL)
+    content: dict[str, Any] = json.loads(found)
+    return content
 
 
 @contextlib.contextmanager

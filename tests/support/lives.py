@@ -1,4 +1,4 @@
-"""A small life of wear: a pin with partial slip whose plate has constants of fatigue."""
+"""Small lives of wear, with partial slip and a plate that has constants of fatigue."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import fastpin
+from fastpin import casefile
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, MaterialPair
@@ -30,3 +31,40 @@ def sample_life(path: Path | None = None, problem: Problem = JOINT, **changes: A
     """A life of 60 cycles with the profiles after 0, 2, 20 and 60 cycles, perhaps written to a file."""
     given = {"cycles": 60, "at": [2, 20], "pin": 2e-12, "plate": 8e-12, "nodes": 41, "arc": (-3.0, -0.1)}
     return fastpin.wear(problem, HISTORY, output=path, **{"title": "Worn lug", **given, **changes})
+
+
+FRETTING = """
+title = "Fretting"
+[pin]
+material = "Ti-6Al-4V"
+[plate]
+material = "2024-T3"
+[contact]
+hole_radius = 0.01
+clearance = 5e-5
+friction = 0.4
+pin_load = "body"
+thickness = 5e-3
+[[load]]
+P = 1e4
+[[load]]
+P = [5e3, 1e4]
+Q = [-2e3, 2e3]
+repeat = 3000
+[wear]
+pin = 3e-12
+plate = 12e-12
+tolerance = 0.05
+at = [3, 10, 100, 1000]
+[solve]
+nodes = 41
+"""
+"""The case of the life."""
+
+
+def fretting(cycles: int = 3000, at: tuple[int, ...] = (3, 10, 100, 1000)) -> WearResult:
+    """Follow the life."""
+    case = casefile.parse_case(FRETTING)
+    assert case.wear is not None
+    law = {"pin": case.wear.pin, "plate": case.wear.plate, "tolerance": case.wear.tolerance}
+    return fastpin.wear(case.problem, case.history, cycles=cycles, at=at, nodes=41, **law)

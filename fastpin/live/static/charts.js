@@ -21,7 +21,12 @@ export function angleAxis(more = {}) {
 
 // Ticks of an angle between two ends: at least five of them.
 export function ticks(low, high) {
-  const step = STEPS.find((one) => (high - low) / one >= 5) ?? STEPS.at(-1), found = [];
+  return multiples(low, high, STEPS.find((one) => (high - low) / one >= 5) ?? STEPS.at(-1));
+}
+
+// The multiples of a step between two ends.
+export function multiples(low, high, step) {
+  const found = [];
   for (let k = Math.ceil(low / step); k * step <= high; k++) found.push(k * step);
   return found;
 }
@@ -38,7 +43,8 @@ export function valueAxis(more = {}) {
 
 // A number of an axis: no more digits than it needs.
 export function brief(value) {
-  return String(Number(value.toPrecision(6))).replace("-", "−");
+  const short = Number(value.toPrecision(6)), small = short !== 0 && Math.abs(short) < 1e-3;
+  return (small ? short.toExponential() : String(short)).replaceAll("-", "−");
 }
 
 // A chart that fills its element, and follows the size of it.
@@ -54,6 +60,7 @@ const CURVES = {
   shear: [["reference", REFERENCE, 2], ["upper", SOFT, 1, [5, 3]], ["lower", SOFT, 1, [5, 3]], ["shear", INK, 2]],
   hoop: [["reference", REFERENCE, 2], ["hoop", INK, 2]],
 };
+const DASHES = [[6, 4], [2, 3]]; // of the curves of bodies beside a line without
 
 export class RoundCharts {
   constructor(history) {
@@ -65,13 +72,30 @@ export class RoundCharts {
     this.button = document.getElementById("zoom");
     this.button.addEventListener("click", () => this.zoom(this.isWhole ? "contact" : "whole"));
     this.charts = {};
-    for (const name of Object.keys(CURVES)) this.charts[name] = this.make(name);
+    for (const name of Object.keys(CURVES)) this.charts[name] = this.make(name, CURVES[name]);
+    this.ofLife = []; // charts of a life of wear: their names, units, curves, and the names of these
   }
 
-  make(name) {
-    const series = CURVES[name];
+  // Add the charts of a life of wear: the worn depths, downwards as a scar, and the damage.
+  addLife() {
+    const { cycles, damage } = this.history.life, owners = Object.keys(damage.values);
+    const worn = ["pin", "hole"].filter((body) => cycles.some((cycle) => cycle.worn[body].some((depth) => depth > 0)));
+    const bodies = worn.length > 1 ? [...worn, "both"] : worn;
+    this.ofLife = [{ name: "worn", kind: "displacement", of: (cycle) => cycle.worn, names: bodies.length ? bodies : ["both"] }];
+    if (owners.length) this.ofLife.push({ name: "damage", kind: "ratio", of: (cycle) => cycle.damage, names: owners });
+    document.getElementById("worn-bodies").textContent = worn.length > 1 ? "of both bodies; dashed: pin, dotted: hole" : worn.length ? `of the ${worn[0]}` : "";
+    document.getElementById("damage").hidden = !owners.length;
+    document.getElementById("damage-words").textContent = damage.words.join("; ") + (owners.length > 1 ? `; dashed: ${owners[0]}` : "");
+    for (const { name, names } of this.ofLife) {
+      const series = names.map((label, k) => [label, INK, k < names.length - 1 ? 1.5 : 2, k < names.length - 1 ? DASHES[k] : undefined]);
+      this.peaks[name] = 0;
+      this.charts[name] = this.make(name, [["reference", REFERENCE, 2], ...series], name === "worn" ? -1 : 1);
+    }
+  }
+
+  make(name, series, upwards = 1) {
     return chart(document.getElementById(`${name}-chart`), {
-      scales: { x: { time: false, range: () => this.window }, y: { range: () => this.ranges[name] ?? [0, 1] } },
+      scales: { x: { time: false, range: () => this.window }, y: { dir: upwards, range: () => this.ranges[name] ?? [0, 1] } },
       axes: [angleAxis(), valueAxis()],
       cursor: { sync: { key: "round" }, drag: { x: true, y: false, setScale: false }, bind: { dblclick: () => () => this.zoom("whole") }, points: { show: false } },
       series: [{}, ...series.map(([label, stroke, width, dash]) => ({ label, stroke, width, dash, pxAlign: 0, points: { show: false } }))],
@@ -144,6 +168,20 @@ export class RoundCharts {
     this.fill(scale.factor);
     this.fillHoop(both, unit);
     for (const name of ["pressure", "shear"]) this.label(name, scale.unit);
+    for (const one of this.ofLife) this.fillLife(one, given.units);
+  }
+
+  // The curves of the cycle that is shown. The last one stands beside that of the reference.
+  fillLife({ name, kind, of, names }, units) {
+    const cycles = [this.history.shown, this.history.reference].map((one) => one?.cycle), last = names.at(-1);
+    const largest = Math.max(0, ...cycles.filter(Boolean).flatMap((cycle) => names.map((body) => Math.max(...of(cycle)[body]))));
+    this.peaks[name] = peak(this.peaks[name], largest);
+    const { factor, unit } = scaled(this.peaks[name], units[kind]);
+    const { x, values } = together(cycles.map((cycle) => (cycle ? partsOf(of(cycle)) : [])), this.window);
+    const scaledValues = (number, body) => values(number, body).map((value) => (value === null ? null : factor * value));
+    this.ranges[name] = [0, factor * this.peaks[name] || 1];
+    this.put(name, x, [scaledValues(1, last), ...names.map((body) => scaledValues(0, body))]);
+    this.label(name, unit);
   }
 
   label(name, unit) {

@@ -73,7 +73,7 @@ export class Drawing {
     pen.setTransform(scale, 0, 0, scale, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.lineJoin = "round";
-    const frame = { ...this.frame(), ...this.enlarged() }, picture = this.history.shown;
+    const picture = this.history.shown, frame = { ...this.frame(), ...this.enlarged(picture) };
     if (picture) this.fit(picture.load, frame);
     this.remark(frame.times);
     this.bodies(pen, frame);
@@ -93,12 +93,13 @@ export class Drawing {
   }
 
   // How much gaps are enlarged, and the radius of the hole's edge at an angle, in hole radii.
-  enlarged() {
+  enlarged(picture) {
     const { case: given, profiles } = this.history;
-    const usual = Math.max(Math.abs(given.clearance), profiles.widest, 0.3 * given.yielded);
+    const worn = picture?.cycle && partsOf(picture.cycle.worn)[0], deepest = Math.max(0, ...(worn?.both ?? []));
+    const usual = Math.max(Math.abs(given.clearance), profiles.widest, deepest, 0.3 * given.yielded);
     const times = Math.max((GAP * given.radius) / usual, 1);
     const part = (gap) => (gap * times) / given.radius;
-    const edge = (degrees) => 1 + Math.max(-DEEPEST, Math.min(DEEPEST, part(profiles.gap("hole", degrees))));
+    const edge = (degrees) => 1 + Math.max(-DEEPEST, Math.min(DEEPEST, part(profiles.gap("hole", degrees) + (worn ? valueAt(worn, "hole", degrees) ?? 0 : 0))));
     return { times, edge, part };
   }
 

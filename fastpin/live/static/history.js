@@ -1,6 +1,7 @@
 // What the page knows: the problem, the pictures of the history, the reference, and which picture is shown.
 
 import { floats, statuses } from "live/arrays";
+import { CycleScale } from "live/cycles";
 import { Profiles } from "live/profiles";
 
 export const OPEN = 2, SLIDES = 3; // statuses: open, and closed without friction; 0 sticks, +1 and -1 slip
@@ -12,6 +13,8 @@ export class History {
     this.case = null;
     this.profiles = null; // initial gaps and friction of the case
     this.reference = null;
+    this.life = null; // of wear: its stored cycles, each with the pictures over one cycle
+    this.cycle = null; // the stored cycle that is shown
     this.undos = 0;
     this.redos = 0;
     this.place = -1;
@@ -33,7 +36,29 @@ export class History {
     this.undos = answer.undos ?? 0;
     this.redos = answer.redos ?? 0;
     this.place = this.pictures.length - 1;
+    if (answer.life) this.takeLife(answer.life);
     return isNew;
+  }
+
+  // Take a life of wear, and show its end.
+  takeLife(life) {
+    const { degrees, values } = life.damage;
+    const cycles = life.cycles.map((given, number) => {
+      const damage = Object.fromEntries(Object.entries(values).map(([owner, texts]) => [owner, texts[number]]));
+      const cycle = { ...given, number, worn: unpackedAll(given.worn), damage: unpackedAll({ degrees, ...damage }) };
+      cycle.worn.both = cycle.worn.pin.map((depth, k) => depth + cycle.worn.hole[k]);
+      cycle.pictures = given.pictures.map((picture) => ({ ...this.unpacked(picture), cycle }));
+      return cycle;
+    });
+    this.life = { ...life, cycles, scale: new CycleScale(cycles.map(({ cycle }) => cycle)) };
+    this.choose(cycles.length - 1);
+    this.place = this.pictures.length - 1;
+  }
+
+  // Show a stored cycle of a life of wear, at the same place of the cycle.
+  choose(number) {
+    this.cycle = this.life.cycles[number];
+    this.pictures = this.cycle.pictures;
   }
 
   unpacked(picture) {

@@ -7,6 +7,7 @@ import { Drawing } from "live/drawing";
 import { download, image, loadsText } from "live/files";
 import { History } from "live/history";
 import { Leader } from "live/lead";
+import { LifeSlider } from "live/life";
 import { Link } from "live/link";
 import { LoopChart } from "live/loops";
 import { MapChart } from "live/map";
@@ -27,7 +28,7 @@ const loops = new LoopChart(history);
 const map = new MapChart(history, charts);
 charts.onZoom = show;
 const times = []; // when pictures were asked for and drawn, ms: for measurements
-let waiting = false, link = null, leader = null, player = null, controls = null;
+let waiting = false, link = null, leader = null, player = null, controls = null, life = null;
 
 // Draw at the next frame; several calls before it count once.
 function show() {
@@ -45,6 +46,7 @@ function draw() {
   loops.show();
   map.show();
   showNumbers(history);
+  life?.draw();
   showTimeline();
   showLesson();
   at("doubt").textContent = [...history.case.doubts, history.shown?.doubt ?? ""].filter(Boolean).join("; ");
@@ -57,7 +59,7 @@ function showTimeline() {
   at("scrub").max = Math.max(count - 1, 0);
   at("scrub").value = Math.max(history.place, 0);
   at("scrub").disabled = at("replay").disabled = count < 2;
-  at("step").textContent = count ? `step ${history.place + 1} of ${count}` : "no steps";
+  at("step").textContent = count ? `${life ? "state" : "step"} ${history.place + 1} of ${count}` : "no steps";
   at("undo").disabled = !history.undos;
   at("redo").disabled = !history.redos;
   at("keep").setAttribute("aria-pressed", String(Boolean(history.reference)));
@@ -75,7 +77,7 @@ function showLesson() {
       const most = values(0, "shear").reduce((found, value, k) => Math.max(found, Math.abs(value - before[k])), 0);
       const unit = given.units.traction, part = most / Math.max(Math.abs(reference.peak_shear), 1e-300);
       words = part > 1e-6
-        ? `Same load as the reference, reached in another way: the shear differs by up to ${withUnit(most, unit, 3)}. The contact remembers its way.`
+        ? `Same load as the reference, ${life ? "on another profile" : "reached in another way"}: the shear differs by up to ${withUnit(most, unit, 3)}.${life ? "" : " The contact remembers its way."}`
         : "Same load and same tractions as the reference.";
     }
   }
@@ -116,6 +118,7 @@ function news(answer) {
       document.title = `fastpin live${history.case.title ? ` · ${history.case.title}` : ""}`;
       at("profiles").textContent = history.case.profile_words.map(([name, words]) => `${name}: ${words}`).join("; ");
       listUnits();
+      if (history.life) showLife();
       controls?.make();
     } else controls?.show();
     if (answer.sentence) say(answer.sentence);
@@ -130,6 +133,16 @@ function news(answer) {
     say(answer.sentence);
     if (history.case) controls?.show();
   }
+}
+
+// Show that the recording is a life of wear: a slider of its cycles, and its charts.
+function showLife() {
+  document.body.classList.add("life");
+  charts.addLife();
+  life = new LifeSlider(history, player, show);
+  at("help").textContent = "Space plays the cycles, arrow keys go from one to the next.";
+  at("map-words").textContent = "at this state over the cycles";
+  at("play-life").addEventListener("click", replay);
 }
 
 function status(word) {
@@ -200,6 +213,7 @@ async function save(file) {
 
 function replay() {
   if (player.plays) player.stop();
+  else if (life) player.playLife(life);
   else player.replay(show);
 }
 
@@ -211,7 +225,8 @@ function keys(event) {
   else if (event.key === " " && !event.target.matches("button")) replay();
   else if (recorded && (event.key === "ArrowLeft" || event.key === "ArrowRight")) {
     const way = event.key === "ArrowRight" ? 1 : -1;
-    history.place = Math.max(0, Math.min(history.pictures.length - 1, history.place + way));
+    if (life) life.move(way);
+    else history.place = Math.max(0, Math.min(history.pictures.length - 1, history.place + way));
     show();
   } else return;
   event.preventDefault();
@@ -238,7 +253,7 @@ function legend() {
 
 function playing() {
   at("stop").disabled = !player?.plays && at("connection").dataset.word !== "computing";
-  at("replay").textContent = player?.plays ? "❚❚" : "▶";
+  at("replay").textContent = at("play-life").textContent = player?.plays ? "❚❚" : "▶";
 }
 
 legend();

@@ -1,14 +1,16 @@
 // The table of key numbers of the state that is shown.
 
+import { count } from "live/cycles";
 import { OPEN } from "live/history";
 import { degrees, digits, withUnit } from "live/units";
 
 export function showNumbers(history) {
   const body = document.querySelector("#numbers tbody"), picture = history.shown;
-  const rows = picture ? cells(picture, history.case) : [["no load", ""]];
+  const ofLife = lifeCells(history), rows = [...ofLife, ...(picture ? cells(picture, history.case) : [["no load", ""]])];
   const lines = [];
   for (let k = 0; k < rows.length; k += 2) {
     const line = document.createElement("tr");
+    if (k && k === ofLife.length) line.className = "first"; // of the state
     for (const [name, value] of [rows[k], rows[k + 1] ?? ["", ""]]) {
       const label = document.createElement("td"), number = document.createElement("td");
       label.textContent = name;
@@ -45,6 +47,15 @@ function cells(picture, { units, loads, axes }) {
     ["nodes closed", `${picture.status.filter((one) => one !== OPEN).length} of ${picture.status.length}`],
     ["residual", digits(picture.residual, 1)],
   ];
+}
+
+// The numbers of a life of wear after the cycle that is shown.
+function lifeCells({ life, cycle, case: { units } }) {
+  if (!life) return [];
+  const found = life.quantities.map(({ name, kind, values }) => [name, withUnit(values[cycle.number], units[kind])]);
+  const share = cycle.pin_share === null ? [] : [["of it the pin", `${digits(100 * cycle.pin_share, 3)} %`]];
+  const rows = [["cycles", count(cycle.cycle)], found[0], ...share, ...found.slice(1)];
+  return rows.length % 2 ? [...rows, ["", ""]] : rows;
 }
 
 function hoopCells({ degrees: angles, stress }, unit) {

@@ -4,6 +4,7 @@ import { newGesture } from "live/lead";
 
 const STEPS = 24; // pictures of a step of the case's history, and of a quarter of a cycle
 const PAUSE = 24; // ms between two pictures
+const LIFE = 4000; // ms of a whole life of wear
 
 export class Player {
   constructor(history, leader, link, onChange) {
@@ -113,6 +114,18 @@ export class Player {
         history.place += 1;
         show();
         await pause(2 * PAUSE);
+      }
+    });
+  }
+
+  // Show the cycles of a life of wear, one after the other.
+  playLife(slider) {
+    return this.run(async (goes) => {
+      const { history } = this, last = history.life.cycles.length - 1;
+      if (history.cycle.number === last) slider.choose(0);
+      while (goes() && history.cycle.number < last) {
+        await pause(Math.max(2 * PAUSE, LIFE / last));
+        if (goes()) slider.choose(history.cycle.number + 1);
       }
     });
   }

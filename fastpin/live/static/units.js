@@ -2,7 +2,7 @@
 // values of the server to it: with a thickness, forces are in N here and in N/m there.
 
 const PREFIXES = { 9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n", "-12": "p" };
-const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "1/beta*", "deg"]);
+const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "F R beta*", "1/beta*", "m^2", "m^3", "deg"]);
 
 let prefixes = {}; // the exponents of the units that have a prefix of their own, by their names
 
@@ -38,7 +38,7 @@ export function inBaseUnit(text, { exponent, whole }) {
 }
 
 function shown(unit) {
-  return unit.replace("beta*", "β*").replace("^2", "²");
+  return unit.replace("beta*", "β*").replace("^2", "²").replace("^3", "³");
 }
 
 // A number with so many significant digits and without an exponent where that reads well.
