@@ -72,7 +72,7 @@ def _life(result: WearResult, places: list[int]) -> dict[str, Any]:
         "dissipated in a cycle": ("energy", [each.energy_per_cycle for each in cycles]),
         "largest pressure": ("traction", [each.largest_pressure for each in cycles]),
     } | {
-        f"largest damage of the {owner}": ("ratio", [found.hot_spots[place].damage for place in places])
+        f"largest damage, {owner}": ("ratio", [found.hot_spots[place].damage for place in places])
         for owner, found in damages.items()
     }
     document = {
@@ -107,7 +107,7 @@ def _worn(cycle: WornCycle) -> dict[str, str]:
 def _damages(result: WearResult) -> dict[str, WornFatigue]:
     """The damage of the bodies in contact, by their words; without those that have no constants for a life."""
     found = {}
-    for body in ("plate", "pin"):
+    for body in ("pin", "plate"):
         with suppress(InputError):
             found[edge_body(result.problem, body)] = result.fatigue(body=body)
     return found

@@ -52,7 +52,7 @@ TEXTS: dict[str, dict[str, str]] = {
     "compliance": {"--output": ".json", "--plot": ".png"},
     "benchmarks": {"--json": ".json"},
     "verify": {"--json": ".json"},
-    "wear": {"--json": ".json"},
+    "wear": {"--json": ".json", "--record": ".html"},
 }
 """The options of texts and figures, with the ending of their files."""
 

@@ -58,7 +58,7 @@ def test_the_damage_is_that_of_the_material_that_is_still_there(result: WearResu
     life, found = recording["life"], result.fatigue()
     assert list(life["damage"]["values"]) == ["plate"]
     assert life["damage"]["words"] == [f"plate, smith-watson-topper: {found.words}"]
-    (largest,) = [each["values"] for each in life["quantities"] if each["name"] == "largest damage of the plate"]
+    (largest,) = [each["values"] for each in life["quantities"] if each["name"] == "largest damage, plate"]
     assert largest == [spot.damage for spot in found.hot_spots]
     assert largest[-1] > 0.0
     degrees = floats(life["damage"]["degrees"])
