@@ -7,7 +7,6 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -19,15 +18,10 @@ from fastpin.solver.errors import Interrupted
 from fastpin.solver.wear_result import WearResult
 from fastpin.storage import wear_files
 from tests.support.interrupts import StopAt
-from tests.support.wear_cases import WEAR_CASES
+from tests.support.wear_cases import WEAR_CASES, life
 
 CASE = WEAR_CASES["unlike"]
-GIVEN: dict[str, Any] = {"cycles": 60, "coefficient": 1.0, "tolerance": 0.02, "grid": CASE.grid(31)}
 PARTS = ("pressure", "shear", "gap", "slip", "status", "slip_distance", "dissipation", "work", "energy", "step")
-
-
-def life(path: Path | None = None, **others: Any) -> WearResult:
-    return fastpin.wear(CASE.problem, CASE.history(), output=path, **{**GIVEN, **others})
 
 
 def assert_same_life(one: WearResult, other: WearResult) -> None:
@@ -61,8 +55,8 @@ def test_a_file_holds_the_life_to_the_last_bit(tmp_path):
 def test_a_history_may_be_its_cycle_alone(tmp_path):
     path = tmp_path / "life.h5"
     history = fastpin.LoadHistory([{"P": 1.0}, {"P": 0.5}]).repeated(2)
-    written = fastpin.wear(CASE.problem, history, output=path, **GIVEN)
-    assert_same_life(written, fastpin.wear(CASE.problem, history, **GIVEN))
+    written = life(path, history)
+    assert_same_life(written, life(history=history))
     assert [state.step for state in written[0].states] == [-1, 0, 1]
     assert not written[0].states[0].in_contact
     assert [state.step for state in written[-1].states] == [119, 120, 121]
@@ -143,7 +137,7 @@ import sys
 sys.path.insert(0, {root!r})
 from pathlib import Path
 from fastpin.storage import wear_files
-from tests.storage.test_wear_files import life
+from tests.support.wear_cases import life
 wear_files.CHECKPOINT_EVERY = 0.02
 path = Path({path!r})
 life(path, cycles=3000, tolerance=0.005, resume=path.exists() and path.stat().st_size > 0)

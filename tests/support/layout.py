@@ -77,7 +77,7 @@ BY_NAME = ("import_module", "__import__", "Later")
 MOST_LINES = 600
 MOST_FUNCTION_LINES = 50
 MOST_PARAMETERS = 8
-MOST_PUBLIC_NAMES = 41
+MOST_PUBLIC_NAMES = 43
 
 UPWARD = {
     "states/state.py": "State shows itself in notebooks",

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
+import fastpin
 from fastpin.elasticity.system import System
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
@@ -17,6 +19,7 @@ from fastpin.model.profile_terms import Harmonic
 from fastpin.solver.solving import MemoryRecorder
 from fastpin.solver.wear import KEPT_ON_DEMAND
 from fastpin.solver.wear_path import Removal, WearRun
+from fastpin.solver.wear_result import WearResult
 from tests.support.slip_cases import LIKE, UNLIKE
 
 Loads = dict[str, float]
@@ -136,3 +139,10 @@ def ready_to_wear(nodes: int = 61) -> tuple[WearRun, np.ndarray]:
 def parts_of(run: WearRun, depth: np.ndarray, count: int) -> list[Removal]:
     """Wear a depth in so many equal parts."""
     return [run.wear(depth / count) for _ in range(count)]
+
+
+def life(path: Path | None = None, history: LoadHistory | None = None, **others: Any) -> WearResult:
+    """Live 60 cycles of unlike bodies on 31 nodes, in memory or in a file."""
+    case = WEAR_CASES["unlike"]
+    given = {"cycles": 60, "coefficient": 1.0, "tolerance": 0.02, "grid": case.grid(31)}
+    return fastpin.wear(case.problem, history or case.history(), output=path, **{**given, **others})
