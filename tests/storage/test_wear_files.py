@@ -133,8 +133,6 @@ def test_a_damaged_file_is_told_in_one_sentence(tmp_path, part):
 
 
 KILLED = """
-import sys
-sys.path.insert(0, {root!r})
 from pathlib import Path
 from fastpin.storage import wear_files
 from tests.support.wear_cases import life
@@ -147,9 +145,9 @@ life(path, cycles=3000, tolerance=0.005, resume=path.exists() and path.stat().st
 @pytest.mark.slow
 def test_a_life_that_is_killed_thirty_times_has_the_same_bits(tmp_path):
     """Each process dies some hundredths of a second after it has written one or two more checkpoints."""
-    path, root = tmp_path / "life.h5", str(Path(__file__).parents[2])
+    path, root = tmp_path / "life.h5", Path(__file__).parents[2]
     checkpoint = wear_files.checkpoint_of(path)
-    program = KILLED.format(root=root, path=str(path))
+    program = KILLED.format(path=str(path))
     chance, kills = random.Random(5), 0
 
     def written():
@@ -159,7 +157,7 @@ def test_a_life_that_is_killed_thirty_times_has_the_same_bits(tmp_path):
             return 0
 
     while kills < 30:
-        with subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.PIPE, text=True) as process:
+        with subprocess.Popen([sys.executable, "-c", program], cwd=root, stderr=subprocess.PIPE, text=True) as process:
             for _ in range(chance.randint(1, 2)):
                 before = written()
                 while process.poll() is None and written() == before:
