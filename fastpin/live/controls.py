@@ -94,8 +94,10 @@ class ControlScales:
         """Whether the friction of the case varies along the rim."""
         return isinstance(self._friction, Profile) and self._most_friction > 0.0
 
-    def varying_friction(self, most: float) -> Profile:
-        """The friction of the case along the rim, scaled to a largest coefficient."""
+    def friction_along(self, along: str, most: float) -> float | Profile:
+        """The friction of the case along the rim, scaled to a largest coefficient; or this coefficient all round."""
+        if choice("friction_along", along, tuple(FRICTION_ALONG)) == "uniform":
+            return most
         if not self.has_varying_friction:
             raise InputError("most_friction", "the friction of the case is the same all round")
         return Profile.of("friction", self._friction).scaled(not_negative("friction", most) / self._most_friction)
@@ -164,7 +166,8 @@ def changed_fields(problem: Problem, changes: Mapping[str, Any], scales: Control
         if name in changes:
             fields[name] = changes[name]
     if changes.keys() & {"most_friction", "friction_along"}:
-        fields["friction"] = _changed_friction(problem, changes, scales)
+        most = changes.get("most_friction", problem.most_friction)
+        fields["friction"] = scales.friction_along(changes.get("friction_along", "case"), most)
     if changes.keys() & set(GAP_CONTROLS):
         fields["gap"] = InitialGap(
             **{body: _changed_profile(getattr(problem.gap, body), body, changes, 0.5 * scales.gap) for body in GAPS}
@@ -225,13 +228,6 @@ def _friction(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:
     if scales.has_varying_friction:
         found.append(_chooser("contact", "friction_along", "case" if varies else "uniform", FRICTION_ALONG))
     return found
-
-
-def _changed_friction(problem: Problem, changes: Mapping[str, Any], scales: ControlScales) -> float | Profile:
-    most = changes.get("most_friction", problem.most_friction)
-    if choice("friction_along", changes.get("friction_along", "case"), tuple(FRICTION_ALONG)) == "uniform":
-        return most
-    return scales.varying_friction(most)
 
 
 def _lobes(profile: Profile) -> tuple[int, float, float, tuple[Term, ...]]:

@@ -20,6 +20,7 @@ from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instance, string
 from fastpin.report.case import edge_body
 from fastpin.report.summary import json_ready
+from fastpin.report.wear import DEBRIS
 from fastpin.solver.wear_result import WearResult, WornCycle
 from fastpin.version import __version__
 
@@ -50,9 +51,10 @@ def record_life(result: WearResult, title: str = "", sentence: str = "") -> str:
         raise InputError("result", "there is no stored cycle to record")
     places = recorded_places(len(result), MOST_PICTURES // len(result[0].states))
     problem, history = result.problem, result.history
+    case = case_document(title, problem, ControlScales(problem, history))
     recording: dict[str, Any] = {
         "version": __version__,
-        "case": case_document(title, problem, ControlScales(problem, history)),
+        "case": case | {"doubts": [*case["doubts"], *map(str, result.doubts)]},
         "grids": {"0": packed(result.theta)},
         "reference": None,
         "sentence": sentence,
@@ -77,6 +79,7 @@ def _life(result: WearResult, places: list[int]) -> dict[str, Any]:
     }
     document = {
         "stored": len(result),
+        "remark": DEBRIS,
         "cycles": [
             {
                 "cycle": each.cycle,

@@ -34,6 +34,7 @@ from fastpin.live.pictures import CURVE_ERROR
 from fastpin.live.protocol import CLASS
 from fastpin.live.recording import record_page
 from fastpin.live.server import Server
+from fastpin.model.units import units
 from fastpin.solver import WearResult
 from fastpin.states.curves import traction_patches
 from tests.support.live_pages import FREE, contact, served
@@ -869,7 +870,10 @@ def test_the_slider_of_cycles_moves_through_a_life_of_wear(chrome: webdriver.Chr
         ((degrees, drawn, _),) = [points.T for points in traction_patches(cycle.states[-1])]
         assert np.allclose(pressure, 1e-6 * np.interp(angle, degrees, drawn), rtol=0.0, atol=5.0 * CURVE_ERROR * 160.0)
         text = tab.run(numbers)
-        assert f"cycles{cycle.cycle:,}worn volume" in text
+        factor, label = units(life.problem)["work per stress"].scale([cycle.volume])
+        ((done, volume, unit),) = re.findall(r"cycles([\d,]+)worn volume(\S+) (\S+³)", text)
+        assert (done, unit) == (f"{cycle.cycle:,}", label.replace("^3", "³").replace("u", "µ"))
+        assert float(volume.replace("−", "-")) == pytest.approx(factor * cycle.volume, rel=1e-3)
         assert f"largest pressure{1e-6 * cycle.largest_pressure:#.4g} MPa" in text
         assert tab.run("return fastpin.map.columns.length") == k + 1
     assert np.nanmax(tab.curve("damage")[-1]) == pytest.approx(life.fatigue().hot_spots[2].damage, rel=1e-6)

@@ -90,6 +90,20 @@ def test_of_many_cycles_an_even_choice_is_recorded(result: WearResult, monkeypat
     assert life["stored"] == 6
 
 
+def test_what_is_not_modelled_and_what_is_in_doubt_is_told(result: WearResult, recording: dict) -> None:
+    """A pin that slips by more than a node distance turns its own profile."""
+    assert recording["life"]["remark"] == "debris is not modelled"
+    assert recording["case"]["doubts"] == []
+    problem = fastpin.Problem(result.problem.pair, 0.01, 5e-5, 0.4, rotation="fixed")
+    history = fastpin.LoadHistory([{"P": 1e6}]) + fastpin.LoadHistory([{"rotation": -0.1}, {"rotation": 0.1}]).repeated(
+        1
+    )
+    turned = fastpin.wear(problem, history, pin=1e-15, nodes=41, tolerance=0.0)
+    (doubt,) = recorded(record_life(turned))["case"]["doubts"]
+    assert "the pin slips by" in doubt
+    assert [str(each) for each in turned.doubts] == [doubt]
+
+
 def test_a_life_that_ended_at_its_beginning_has_one_cycle_and_no_damage(result: WearResult) -> None:
     begun = fastpin.solver.WearResult(
         **{name: getattr(result, name) for name in ("problem", "history", "law", "tolerance", "coefficients", "grid")},

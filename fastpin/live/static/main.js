@@ -141,6 +141,7 @@ function showLife() {
   charts.addLife();
   life = new LifeSlider(history, player, show);
   at("help").textContent = "Space plays the cycles, arrow keys go from one to the next.";
+  at("life-remark").textContent = history.life.remark;
   at("map-words").textContent = "at this state over the cycles";
   at("play-life").addEventListener("click", replay);
 }

@@ -2,7 +2,8 @@
 // values of the server to it: with a thickness, forces are in N here and in N/m there.
 
 const PREFIXES = { 9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n", "-12": "p" };
-const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "F R beta*", "1/beta*", "m^2", "m^3", "deg"]);
+const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "F R beta*", "1/beta*", "deg"]);
+const POWERS = { "m^2": [2, -2], "m^3": [3, -5] }; // the power of a unit, and the lowest decade of values in it
 
 let prefixes = {}; // the exponents of the units that have a prefix of their own, by their names
 
@@ -16,11 +17,12 @@ export function scaled(largest, { name, factor }) {
   if (WITHOUT.has(name)) return withExponent(name, factor, 0);
   if (name in prefixes) return withExponent(name, factor, prefixes[name]);
   if (!(largest > 0) || !isFinite(largest)) return withExponent(name, factor, 0);
-  return withExponent(name, factor, Math.min(9, Math.max(-12, 3 * Math.floor(Math.log10(factor * largest * (1 + 1e-12)) / 3))));
+  const [power, lowest] = POWERS[name] ?? [1, 0];
+  return withExponent(name, factor, Math.min(9, Math.max(-12, 3 * Math.floor((Math.log10(factor * largest * (1 + 1e-12)) - lowest) / (3 * power)))), power);
 }
 
-function withExponent(name, factor, exponent) {
-  return { factor: factor * 10 ** -exponent, exponent, whole: factor, unit: PREFIXES[exponent] + shown(name) };
+function withExponent(name, factor, exponent, power = 1) {
+  return { factor: factor * 10 ** (-exponent * power), exponent, whole: factor, unit: PREFIXES[exponent] + shown(name) };
 }
 
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
