@@ -108,9 +108,10 @@ def plot_sweep(
     """
     if not isinstance(chart, Chart):
         each = instances("chart", chart, Chart, "a Chart, or a list of charts")
-        return _side_by_side(
-            Look(path, each[0].title if title is None else title, width or SIDE_BY_SIDE, dpi, ax), each
-        )
+        if ax is not None:
+            raise InputError("ax", "holds one chart; give a list of charts no axes")
+        look = Look(path, each[0].title if title is None else title, width or SIDE_BY_SIDE, dpi)
+        return look.drawn(sweeps_of(each))
     plot = sweep_of(chart)
     maps = 0 if chart.y is None else len(chart.parts)
     if ax is not None and maps > 1:
@@ -119,36 +120,44 @@ def plot_sweep(
     return look.drawn(plot)
 
 
-def _side_by_side(look: Look, charts: Sequence[Chart]) -> Figure:
-    """Draw each of several charts into a panel of one figure, two in a row."""
-    if look.ax is not None:
-        raise InputError("ax", "holds one chart; give a list of charts no axes")
+def sweeps_of(charts: Sequence[Chart]) -> Plot:
+    """Return several charts side by side, two in a row, see :func:`plot_sweep`."""
     for chart in charts:
         if chart.y is not None and len(chart.parts) > 1:
             raise InputError("chart", f"{chart.label} has {len(chart.parts)} maps; side by side each chart has one")
+    names, missing = ", ".join(chart.label for chart in charts), [chart for chart in charts if chart.missing]
+    gaps = [f"{chart.label}: {chart.missing:,} points have no value." for chart in missing]
+    return Plot(
+        lambda look: _draw_beside(look, charts),
+        instead=f"{'Curves' if charts[0].y is None else 'Maps'} of {names} over {_over(charts[0])}.",
+        caption=" ".join([f"{names[0].upper()}{names[1:]} over {_over(charts[0])}.", *gaps]),
+        width=SIDE_BY_SIDE,
+    )
+
+
+def _draw_beside(look: Look, charts: Sequence[Chart]) -> Sheet:
     columns = min(len(charts), 2)
+    sheet = look.sheet([PANEL] * -(-len(charts) // columns), columns, 0.5)
+    for panel in sheet.axes.flat[len(charts) :]:
+        panel.set_visible(False)
+    for panel, chart in zip(sheet.axes.flat, charts, strict=False):
+        with mpl.rc_context(SMALL):
+            sweep_of(replace(chart, problem=None, title="")).draw(Look(ax=panel))
+        above = panel.get_title()
+        panel.set_title("\n".join(filter(None, [above, "" if chart.classes else _shown(chart.label)])), fontsize=8.0)
+    sheet.head(look.title, caption=_fixed_parameters(charts[0]))
+    return sheet
 
-    def draw(look: Look) -> Sheet:
-        sheet = look.sheet([PANEL] * -(-len(charts) // columns), columns, 0.5)
-        for panel in sheet.axes.flat[len(charts) :]:
-            panel.set_visible(False)
-        for panel, chart in zip(sheet.axes.flat, charts, strict=False):
-            with mpl.rc_context(SMALL):
-                sweep_of(replace(chart, problem=None)).draw(Look(ax=panel))
-            above = panel.get_title()
-            panel.set_title(
-                "\n".join(filter(None, [above, "" if chart.classes else _shown(chart.label)])), fontsize=8.0
-            )
-        sheet.head(look.title, caption=_fixed_parameters(charts[0]))
-        return sheet
 
-    return look.drawn(Plot(draw))
+def _over(chart: Chart) -> str:
+    """Words for the axes of a chart."""
+    return chart.x.label if chart.y is None else f"{chart.x.label} and {chart.y.label}"
 
 
 def sweep_of(chart: Chart) -> Plot:
     """Return maps or curves of a sweep, see :func:`plot_sweep`."""
     instance("chart", chart, Chart, "a Chart")
-    over = chart.x.label if chart.y is None else f"{chart.x.label} and {chart.y.label}"
+    over = _over(chart)
     missing = f" {chart.missing:,} points have no value." if chart.missing else ""
     return Plot(
         lambda look: _draw_curves(look, chart) if chart.y is None else _draw_maps(look, chart),
@@ -314,7 +323,7 @@ def _draw_contours(panel: Axes, chart: Chart, numbers: np.ndarray, levels: np.nd
         )
         # A gap in a line would stay where its label is removed.
         labels = list(
-            panel.clabel(lines, fmt=lambda value: f"{value:.4g}".replace("-", "−"), fontsize=6.5, inline=False)
+            panel.clabel(lines, fmt=lambda value: f"{value:.6g}".replace("-", "−"), fontsize=6.5, inline=False)
         )
         for text in labels:
             text.set_bbox({"facecolor": "0.15", "edgecolor": "none", "pad": 0.6})

@@ -10,7 +10,7 @@ from typing import Any
 
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, read_text
 from fastpin.errors import CaseFileError, InputError
-from fastpin.figures.sweep import sweep_of
+from fastpin.figures.sweep import sweep_of, sweeps_of
 from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance
 from fastpin.pages.album import Album
@@ -19,7 +19,7 @@ from fastpin.pages.result import merged
 from fastpin.pages.source import now
 from fastpin.pages.writing import check_page, write_page
 from fastpin.report.case import case_rows, corner_columns
-from fastpin.report.sweep import brief, chart, check_axes, run_columns
+from fastpin.report.sweep import brief, chart, check_axes, definition_words, run_columns
 from fastpin.storage.files import INDEX
 from fastpin.studies.index import DONE, FAILED, WAITING, Index
 from fastpin.studies.plan import Plan, describe_values, parse_plan, read_plan
@@ -31,6 +31,9 @@ KEY_CHARTS = ("peak_pressure", "contact_width", "stick_width", "dissipation")
 
 MOST_CHARTS = 8
 """Most outcomes that are drawn."""
+
+BESIDE = 4
+"""Most charts of a figure, two in a row: more would not fit on a page of paper."""
 
 MOST_RUNS = 500
 """Most runs in the table of a page; a table of more is left to a CSV file."""
@@ -139,7 +142,7 @@ def _plan(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSecti
         fields.append((name, f"{len(values):,}", ", ".join(shown), spacing))
     parts: list[SectionPart] = [Facts("Varied fields", fields, ("field", "values", "which", "spacing"))]
     if plan.outcomes:
-        outcomes = [(name, outcome.definition) for name, outcome in plan.outcomes.items()]
+        outcomes = [(name, definition_words(outcome)) for name, outcome in plan.outcomes.items()]
         parts.append(Facts("Outcomes", outcomes, ("name", "definition")))
     parts.append(Listing("The plan", plan.text))
     return PageSection("plan", "Plan", parts)
@@ -167,12 +170,17 @@ def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSec
     except InputError as error:
         parts.append(Text(f"There is no figure: {error.reason}.", "missing"))
         names = []
-    for name in names[:MOST_CHARTS]:
-        found = replace(chart(plan, runs, name), title="")  # the page has the title
-        if found.missing == len(runs):
-            parts.append(Text(f"There is no figure of {name}: no run has a value.", "missing"))
-        else:
-            parts.append(album.figure(sweep_of(found)))
+    # The page has the title.
+    charts = {name: replace(chart(plan, runs, name), title="") for name in names[:MOST_CHARTS]}
+    drawn = [found for found in charts.values() if found.missing < len(runs)]
+    if any(len(found.parts) > 1 for found in drawn):
+        parts += [album.figure(sweep_of(found)) for found in drawn]
+    else:
+        for first in range(0, len(drawn), BESIDE):
+            some = drawn[first : first + BESIDE]
+            parts.append(album.figure(sweeps_of(some) if len(some) > 1 else sweep_of(some[0])))
+    missing = [name for name, found in charts.items() if found.missing == len(runs)]
+    parts += [Text(f"There is no figure of {name}: no run has a value.", "missing") for name in missing]
     if len(names) > MOST_CHARTS:
         others = ", ".join(names[MOST_CHARTS:])
         parts.append(Text(f"Not drawn here: {others}. fastpin sweep --plot FILE --value NAME draws one.", "missing"))

@@ -24,6 +24,8 @@ from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.index import DONE, FAILED
+from fastpin.studies.outcome_tables import KEYS
+from fastpin.studies.outcomes import StudyOutcome
 from fastpin.studies.plan import Plan
 from fastpin.studies.run_end import KEY_FIGURES, bar_column
 from fastpin.version import __version__
@@ -370,6 +372,17 @@ def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:
     if value in plan.outcomes:
         return plan.outcomes[value].unit_in({kind: Unit(1.0, name) for kind, name in unit.items()}).name
     return "s" if value == "seconds" else unit.get(KEY_FIGURES[value], "")
+
+
+def definition_words(outcome: StudyOutcome) -> str:
+    """Return the definition of an outcome as a plan writes it."""
+    found = json.loads(outcome.definition)
+    found |= found.pop("how", {})
+    if "wear" in found and found["wear"] != "life":  # they have an effect on the life only
+        del found["criterion"], found["body"]
+    first = next(key for key in KEYS if key in found)
+    ordered = {first: found.pop(first), **found}
+    return ", ".join(f"{key} = {brief(value)}" for key, value in ordered.items())
 
 
 def brief(value: Any) -> str:

@@ -18,7 +18,7 @@ from fastpin.errors import InputError
 from fastpin.figures import sweep as sweep_figure
 from fastpin.figures.class_map import LOOKS
 from fastpin.figures.style import MAX_NAMED
-from fastpin.figures.sweep import cell_edges, plot_sweep
+from fastpin.figures.sweep import cell_edges, plot_sweep, sweeps_of
 from fastpin.report.sweep import Axis, Chart, chart
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, parse_plan
@@ -285,3 +285,18 @@ def dots(figure: Figure) -> list[tuple[float, float]]:
     """The places of the dots of a map."""
     lines = [line for line in figure.axes[0].lines if line.get_markerfacecolor() == "white"]
     return [place for line in lines for place in zip(line.get_xdata(), line.get_ydata(), strict=True)]
+
+
+def test_charts_side_by_side_say_what_each_shows(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    charts = [chart(plan, rows, name) for name in ("peak_pressure", "stick_width")]
+    one = [replace(each, parts=each.parts[:1]) for each in charts]
+    figure = plot_sweep(one)
+    titles = [panel.get_title() for panel in figure.axes if panel.get_title()]
+    assert [title.splitlines()[-1] for title in titles] == ["peak pressure (MPa)", "stick width (deg)"]
+    plot = sweeps_of(one)
+    assert plot.caption.startswith("Peak pressure (MPa), stick width (deg) over ")
+    assert plot.instead.startswith("Maps of peak pressure (MPa), stick width (deg) over ")
+    with pytest.raises(InputError, match=r"chart: peak pressure \(MPa\) has 2 maps; side by side each chart has one"):
+        plot_sweep(charts)
+    with pytest.raises(InputError, match="ax: holds one chart; give a list of charts no axes"):
+        plot_sweep(one, ax=figure.axes[0])

@@ -11,6 +11,7 @@ from fastpin.errors import InputError
 from fastpin.pages import write_sweep_report
 from fastpin.studies import read_plan, sweep
 from scripts.inline import Inline
+from tests.support.drawing import draw_roughly
 from tests.support.html import Page
 from tests.support.samples import JOINT
 
@@ -75,6 +76,40 @@ def test_page_has_plan_figures_runs_failed_runs_and_versions(text: str, folder: 
             assert row["reason"] in page.text
     assert '"contact.friction" = [0.2, 0.4]' in page.text
     assert "SHA-256 of fields and runs" in page.text
+
+
+OUTCOMES = """
+energy = { quantity = "dissipation" }
+width = { quantity = "contact_width" }
+volume = { wear = "volume", cycles = 1e4, coefficient = 1e-14 }
+lost = { cycle = "dissipation" }
+life = { wear = "life", cycles = 10, pin = 1e-14, law = "energy" }
+"""
+
+
+@pytest.mark.parametrize("extra", ["", "plate.nu = [0.3, 0.31]\n"])
+def test_maps_of_several_outcomes_stand_side_by_side(
+    folder: Path, extra: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The case has no cycles, so the outcomes of cycles have no values."""
+    draw_roughly(monkeypatch)
+    plan = folder.parent / "several.toml"
+    plan.write_text(PLAN.replace("[outcomes]", f"{extra}[outcomes]") + OUTCOMES)
+    sweep.run(read_plan(plan), tmp_path / "several", Inline())
+    write_sweep_report(tmp_path / "several", tmp_path / "page.html", plan=plan)
+    page = Page((tmp_path / "page.html").read_text(encoding="utf-8"))
+    assert page.tags.count("figcaption") == (3 if extra else 1)  # a panel for each value of a third field
+    together = re.search(r"Largest \(\w+\), energy \(\w+/m\), width \(deg\) over ", page.text)
+    assert (together is None) == bool(extra)
+    assert extra or "energy (J/m): 2 points have no value." in re.sub(r"\([a-z]?J", "(J", page.text)
+    for name in ("volume", "lost", "life"):
+        assert f"There is no figure of {name}: no run has a value." in page.text
+    for words in (
+        'quantity = "dissipation", take = "last", over = "history"',
+        'wear = "volume", coefficient = 1e-14, cycles = 10000', 'cycle = "dissipation"',
+        'wear = "life", body = "plate", criterion = "smith-watson-topper", cycles = 10, law = "energy", pin = 1e-14',
+    ):  # fmt: skip
+        assert words in page.text, words
 
 
 @pytest.mark.usefixtures("undrawn")
