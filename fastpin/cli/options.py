@@ -214,7 +214,7 @@ def add_plot(commands: Any) -> None:
         "result",
         metavar="FILE",
         type=Path,
-        help="HDF5 file (run or wear -o FILE); for a sketch also a case file (TOML)",
+        help="HDF5 file (run or wear -o FILE); for sketch and gap also a case file (TOML)",
     )
     words = "; ".join(f"{name}: {kind.words}" if kind.words else name for name, kind in KINDS.items())
     defaults = "default: tractions; scar of a life of wear, sketch of a case file"

@@ -18,7 +18,7 @@ def run(options: argparse.Namespace) -> int:
     if options.kind is None:
         options.kind = _usual_kind(options.result)
     kind = KINDS[options.kind]
-    is_case = options.kind == "sketch" and options.result.suffix.lower() == ".toml"
+    is_case = "case" in kind.sources and options.result.suffix.lower() == ".toml"
     _check(options, is_case)
     film = kind.ending == "gif"
     figure = Path(f"{options.kind}.{kind.ending}") if options.output is None else options.output
@@ -28,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
     check_outputs({"--output": figure, "--csv": options.csv}, figures=() if film else ("--output",))
     if is_case:
         case = casefile.read_case(options.result)
-        plot, title = figures.sketch.sketch_of(case), case.title
+        plot, title = figures.plotting.plot_of_case(options.kind, case), case.title
     else:
         plot = _plot(options)
 
@@ -52,9 +52,8 @@ def _usual_kind(path: Path) -> str:
 def _check(options: argparse.Namespace, is_case: bool) -> None:
     """Refuse options that have no effect on this kind of figure."""
     if options.result.suffix.lower() == ".toml" and not is_case:
-        raise InputError(
-            str(options.result), f"is a case file; {options.kind} needs a result: fastpin run CASE -o FILE"
-        )
+        needed = "a result: fastpin run" if "result" in KINDS[options.kind].sources else "a life of wear: fastpin wear"
+        raise InputError(str(options.result), f"is a case file; {options.kind} needs {needed} CASE -o FILE")
     if is_case and options.states is not None:
         raise InputError("--states", "chooses a state of a result; a case file has none")
     if is_case and options.after is not None:

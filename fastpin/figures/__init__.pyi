@@ -15,6 +15,7 @@ from .animation import animate as animate
 from .convergence import plot_convergence as plot_convergence
 from .cycles import plot_cycles as plot_cycles
 from .fatigue import plot_fatigue as plot_fatigue
+from .gap import plot_gap as plot_gap
 from .history import plot_history as plot_history
 from .load_cycle import plot_loops as plot_loops
 from .load_cycle import plot_slip as plot_slip

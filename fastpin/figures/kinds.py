@@ -67,7 +67,8 @@ class Kind(NamedTuple):
     ending : str
         The ending of the file, unless the user names one.
     sources : tuple of str
-        What the figure may show: "result" is the result of a run, "life" a life of wear.
+        What the figure may show: "result" is the result of a run, "life" a life of wear, "case" a case file. For a case
+        file the function is ``KIND_of(case)``.
     """
 
     file: str
@@ -77,7 +78,7 @@ class Kind(NamedTuple):
     sources: tuple[str, ...] = ("result", "life")
 
 
-SOURCES = {"result": "the result of a run", "life": "a life of wear"}
+SOURCES = {"result": "the result of a run", "life": "a life of wear", "case": "a case file"}
 """Words for what a figure may show."""
 
 
@@ -85,7 +86,8 @@ KINDS = {
     "tractions": Kind("tractions", "", ("states", "csv", "sketch", "bars")),
     "polar": Kind("polar", "tractions over the circle of the hole", ("states", "csv")),
     "stick-slip": Kind("stick_slip", "map of stick and slip over load points", ("states", "csv")),
-    "sketch": Kind("sketch", "pin, plate and loads", ("states",)),
+    "sketch": Kind("sketch", "pin, plate and loads", ("states",), sources=("result", "life", "case")),
+    "gap": Kind("gap", "initial gap and friction along the rim", ("csv",), sources=("result", "life", "case")),
     "animation": Kind("animation", "the states of the last cycle, one after the other", ("states", "rate"), "gif"),
     "hoop": Kind("stress", "hoop stress round hole and pin", ("states", "csv", "body")),
     "profile": Kind("stress", "stresses below the edge", ("states", "csv", "body", "angle", "depth")),

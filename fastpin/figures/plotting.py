@@ -14,6 +14,7 @@ from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS, SOURCES, kinds_with
 from fastpin.figures.sheet import WIDTH, Look, Plot
 from fastpin.figures.subjects import InMemory, Subject, with_stored_cycles
+from fastpin.model.case import Case
 from fastpin.model.checks import choice
 from fastpin.model.wear import cycles_text
 from fastpin.solver.result import Result
@@ -34,13 +35,14 @@ def plot_of(kind: str, subject: Subject, after: float | None = None, **options: 
     sources = KINDS[kind].sources
     if subject.source not in sources:
         raise InputError("kind", f"{kind} shows {SOURCES[sources[0]]}, but this is {SOURCES[subject.source]}")
+    shows_states = "result" in sources and "case" not in sources
     if after is not None:
-        if "result" not in sources:
-            raise InputError("after", f"has no effect on {kind}, which shows the whole life of wear")
+        if not shows_states:
+            raise InputError("after", f"has no effect on {kind}, which shows no states")
         if subject.source != "life":
             raise InputError("after", f"chooses a profile of a life of wear, but this is {SOURCES[subject.source]}")
     on_profile = ""
-    if subject.source == "life" and "result" in sources and (after is not None or "states" not in options):
+    if subject.source == "life" and shows_states and (after is not None or "states" not in options):
         life = with_stored_cycles(subject)
         after = life[-1].cycle if after is None else after
         subject, on_profile = InMemory(Result.of_life(life, after)), f"after {cycles_text(after)}"
@@ -53,6 +55,18 @@ def plot_of(kind: str, subject: Subject, after: float | None = None, **options: 
         return plot.draw(replace(look, title=", ".join(filter(None, [look.title, on_profile]))))
 
     return replace(plot, draw=draw, notes=[f"the figure shows a cycle {on_profile}", *plot.notes])
+
+
+def plot_of_case(kind: str, case: Case) -> Plot:
+    """Return the figure of a case, of a kind of :data:`fastpin.figures.kinds.KINDS` that shows cases.
+
+    Raises
+    ------
+    InputError
+        If the case can't be drawn in this way.
+    """
+    plot: Plot = getattr(importlib.import_module(f"fastpin.figures.{KINDS[kind].file}"), f"{kind}_of")(case)
+    return plot
 
 
 def plot_result(

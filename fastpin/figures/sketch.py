@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, FancyArrowPatch, Rectangle, Wedge
+from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle, Wedge
 
 from fastpin.bodies.body import Shape
 from fastpin.errors import InputError
@@ -38,6 +38,12 @@ WIDTH = 4.2
 
 GAP = 0.07
 """Drawn clearance, in radii of the hole. The true one could not be seen."""
+
+LARGEST_GAP = 0.7 * GAP
+"""Drawn size of the largest initial gap, in radii of the hole. Below the clearance, so that the pin fits in."""
+
+ROUND = np.linspace(-math.pi, math.pi, 721)
+"""Angles at which rims that are not round are drawn, rad."""
 
 LONG, SHORT = 1.45, 0.55
 """Lengths of the arrow of a force and of a remote stress, in radii of the hole."""
@@ -134,7 +140,8 @@ def sketch_of(joint: Problem | Case | Result | State, history: LoadHistory | Non
     return Plot(
         lambda look: draw_sketch(problem, ranges, look, state),
         instead=f"Sketch of pin and {edge_body(problem, 'plate')} with arrows for the loads.",
-        caption="The joint to scale, with an exaggerated clearance, and its loads with their ranges over the history.",
+        caption=f"The joint to scale, with an exaggerated clearance{' and initial gap' * bool(problem.gap)}, and its "
+        "loads with their ranges over the history.",
         width=WIDTH,
     )
 
@@ -170,9 +177,9 @@ def draw_sketch(
     panel.set_axis_off()
     shapes = problem.plate_body.drawing(problem.joint.hole)
     outside = float(shapes[0].size)
-    for shape in [*shapes, Shape("circle", 1.0, "hole")]:
+    for shape in shapes:
         _draw_shape(panel, shape)
-    _draw_pin(panel, problem, ranges)
+    _draw_hole_and_pin(panel, problem, ranges)
     if state is not None:
         _draw_contact(panel, state)
     force = largest or max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
@@ -187,7 +194,8 @@ def draw_sketch(
         if words:
             sheet.legend([zone_patch(look) for look in looks], len(looks))
     if words:
-        note = "clearance exaggerated" if problem.clearance > 0.0 else ""
+        exaggerated = ["clearance"] * (problem.clearance > 0.0) + ["initial gap"] * bool(problem.gap)
+        note = f"{' and '.join(exaggerated)} exaggerated" if exaggerated else ""
         heading = f"load point {point_text(state)}" if state is not None else ""
         text = caption(problem, () if state is None else [state])
         sheet.head(look.title, heading, caption="; ".join(part for part in (text, note) if part))
@@ -210,20 +218,35 @@ def _draw_shape(panel: Axes, shape: Shape, centre: complex = 0j, zorder: float =
             panel.plot([begin.real, end.real], [begin.imag, end.imag], color="0.35", linewidth=0.7)
 
 
-def _draw_pin(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange]) -> None:
-    """Draw the pin where the force presses it against the hole, and the bore of a hollow pin."""
-    gap = GAP if problem.assembled_clearance > 0.0 else 0.0
-    push = complex(_middle(ranges.get("Q")), -_middle(ranges.get("P")))
-    away = gap * push / abs(push) if push else -1j * gap
-    panel.add_patch(
-        Circle((away.real, away.imag), 1.0 - gap, facecolor=STEEL, edgecolor="0.15", linewidth=1.0, zorder=3)
-    )
+def _draw_hole_and_pin(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange]) -> None:
+    """Draw the hole, the pin where the force presses it against the hole, and the bore of a hollow pin."""
+    clearance = GAP if problem.assembled_clearance > 0.0 else 0.0
+    push = complex(_middle(ranges.get("Q")), -_middle(ranges.get("P"))) or -1j
+    push /= abs(push)
+    hole, pin = (profile.at(ROUND, problem.hole_radius) for profile in (problem.gap.hole, problem.gap.pin))
+    scale = LARGEST_GAP / (float(np.abs([hole, pin, hole + pin]).max()) or 1.0)
+    hole, pin = scale * hole, scale * pin
+    along = np.cos(ROUND - np.angle(push))
+    ahead = along > 0.0
+    away = push * float(((clearance + hole + pin)[ahead] / along[ahead]).min()) if clearance else 0j
+    _draw_rim(panel, 1.0 + hole, 0j, zorder=1.0, **PARTS["hole"])
+    pin_style = {"facecolor": STEEL, "edgecolor": "0.15", "linewidth": 1.0}
+    # Without clearance the pin fills the hole.
+    _draw_rim(panel, 1.0 - clearance - pin if clearance else 1.0 + hole, away, zorder=3, **pin_style)
     if problem.assembled_clearance < 0.0:  # the free pin is larger than the hole
-        panel.add_patch(
-            Circle((0.0, 0.0), 1.0 + GAP, facecolor="none", edgecolor="0.3", linewidth=0.8, linestyle="--", zorder=3)
-        )
+        free = {"facecolor": "none", "edgecolor": "0.3", "linewidth": 0.8, "linestyle": "--"}
+        _draw_rim(panel, 1.0 + GAP - pin, 0j, zorder=3, **free)
     for shape in problem.pin_body.drawing(problem.joint.pin_rim):
         _draw_shape(panel, shape, away, zorder=4.0)
+
+
+def _draw_rim(panel: Axes, radii: np.ndarray, centre: complex, **style: Any) -> None:
+    """Draw a rim with a radius at each angle of :data:`ROUND`: a circle if they are equal."""
+    if not np.ptp(radii):
+        panel.add_patch(Circle((centre.real, centre.imag), float(radii[0]), **style))
+        return
+    points = centre + radii * np.exp(1j * ROUND)
+    panel.add_patch(Polygon(np.column_stack([points.real, points.imag]), **style))
 
 
 def _middle(span: LoadRange | None) -> float:

@@ -113,7 +113,7 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
 
 def _profile_words(profile: Profile, text: Callable[[float], str]) -> str:
     """The terms of a profile as one part of a caption, which parts at commas and semicolons."""
-    return profile.words(text).replace("; and", " and").replace("; ", " + ").replace(", ", ",\N{NO-BREAK SPACE}")
+    return profile.words(text).replace("; and", ";").replace("; ", " and ").replace(", ", ",\N{NO-BREAK SPACE}")
 
 
 def wrapped(text: str, width: float, size: float = CAPTION_SIZE) -> list[str]:

@@ -12,6 +12,7 @@ from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
 from fastpin.figures.cycles import cycles_of
 from fastpin.figures.fatigue import fatigue_of
+from fastpin.figures.gap import gap_of
 from fastpin.figures.history import history_of
 from fastpin.figures.load_cycle import STRAIGHT, loops_of, slip_of
 from fastpin.figures.sketch import sketch_of
@@ -178,6 +179,7 @@ def case(page: PageParts) -> PageSection:
         "Case",
         [
             *drawn_or_reason(lambda: page.album.figure(sketch_of(found))),
+            *([page.album.figure(gap_of(found))] if problem.profiles else []),
             Facts("The problem", rows, ("subject", "in words")),
             Facts("Options of the solver", solver, ("option", "value", "meaning")),
         ],

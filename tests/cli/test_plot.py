@@ -37,7 +37,7 @@ def life(tmp_path_factory):
 @pytest.fixture
 def of_kind(stored, life):
     """The file of a kind of figure: a result, or a life of wear if the kind shows no result."""
-    return {name: stored if "result" in kind.sources else life for name, kind in KINDS.items()}
+    return {name: life if "result" not in kind.sources or name == "gap" else stored for name, kind in KINDS.items()}
 
 
 EXTREMES = functools.cache(storage.marked_extremes)
@@ -72,7 +72,7 @@ def test_the_function_of_each_kind_has_its_options():
 
 BARE = (
     "load point", "cycle", "corner", "length", "number", "pressure_change", "shear_change", "damage", "worn off",
-    "cycles to damage 1",
+    "cycles to damage 1", "friction",
 )  # fmt: skip
 """Columns of numbers without a unit."""
 
@@ -93,10 +93,10 @@ def test_a_figure_and_its_numbers_with_units(of_kind, kind, tmp_path, capsys):
 
 
 @pytest.mark.usefixtures("coarse")
-def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, tmp_path):
+def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, of_kind, tmp_path):
     result = load(stored)
     with mpl.rc_context({"svg.hashsalt": "fastpin"}):
-        for name in [name for name, kind in KINDS.items() if kind.ending == "png" and "result" in kind.sources]:
+        for name in [name for name, file in of_kind.items() if KINDS[name].ending == "png" and file == stored]:
             result.plot(tmp_path / "memory.svg", kind=name)
             assert main(["plot", str(stored), name, "-o", str(tmp_path / "file.svg")]) == 0
             assert (tmp_path / "memory.svg").read_bytes() == (tmp_path / "file.svg").read_bytes(), name
@@ -196,6 +196,8 @@ def test_a_sketch_of_a_result_and_of_a_case_file(stored, tmp_path, monkeypatch, 
         assert (tmp_path / "sketch.png").stat().st_size > 1_000
     assert main(["plot", "case.toml", "hoop"]) == 2
     assert "case.toml: is a case file; hoop needs a result: fastpin run CASE -o FILE" in capsys.readouterr().err
+    assert main(["plot", "case.toml", "scar"]) == 2
+    assert "case.toml: is a case file; scar needs a life of wear: fastpin wear CASE -o FILE" in capsys.readouterr().err
     assert main(["plot", "case.toml", "sketch", "--states", "1"]) == 2
     assert "--states: chooses a state of a result; a case file has none" in capsys.readouterr().err
 
@@ -233,7 +235,7 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
             ["slip", "--states", "last"],
             "--states: has no effect on slip; it is for tractions, polar, stick-slip, ",
         ),
-        (["sketch", "--csv", "a.csv"], "--csv: has no effect on sketch; it is for tractions, polar, stick-slip, hoop"),
+        (["sketch", "--csv", "a.csv"], "--csv: has no effect on sketch; it is for tractions, polar, stick-slip, gap"),
         (["animation", "--states", "last"], "--states: an animation needs two states or more"),
         (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
         (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
@@ -251,6 +253,7 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         (["map", "--component", "x"], "--component: must be "),
         (["profile", "--body", "both"], '--body: must be "plate", "pin" or "seat"'),
         (["fatigue", "--criterion", "crossland"], "crossland needs bending_limit, torsion_limit of the plate"),
+        (["gap"], "gap: there is no initial gap, and the friction is the same all round"),
         (["scar"], "kind: scar shows a life of wear, but this is the result of a run"),
         (["hoop", "--after", "3"], "--after: chooses a profile of a life of wear, but this is the result of a run"),
         (["hoop", "-o", "hoop.txt"], "--output: must be the name of a figure, which ends in .png, .pdf or .svg, not"),
@@ -267,7 +270,8 @@ def test_wrong_options(stored, arguments, message, capsys, tmp_path, monkeypatch
     ("arguments", "message"),
     [
         (["cycles"], "kind: cycles shows the result of a run, but this is a life of wear"),
-        (["scar", "--after", "20"], "--after: has no effect on scar, which shows the whole life of wear"),
+        (["scar", "--after", "20"], "--after: has no effect on scar, which shows no states"),
+        (["gap", "--after", "20"], "--after: has no effect on gap, which shows no states"),
         (["hoop", "--after", "7"], "--after: no profile is stored after 7 cycles; the nearest: 0 and 2"),
         (["hoop", "--after", "x"], '--after: must be a number, not "x"'),
         (["damage", "--criterion", "findley"], "fatigue: findley needs bending_limit, torsion_limit of the plate"),

@@ -39,6 +39,8 @@ clearance = 2e-5
 friction = 0.5
 pin_load = "centre"
 rotation = "fixed"
+[gap]
+hole = { ellipse = 1e-6, axis = 90 }
 [[load]]
 P = 2e6
 [[load]]
@@ -91,7 +93,7 @@ def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult, monkeypa
         "overview", "wear", "profile", "damage", "case", "materials", "loads", "contact", "stresses", "margins",
         "checks", "provenance",
     ]  # fmt: skip
-    assert page.tags.count("svg") + page.tags.count("img") == page.tags.count("figcaption") == 10
+    assert page.tags.count("svg") + page.tags.count("img") == page.tags.count("figcaption") == 11
     last, found = life[-1], life.fatigue()
     assert "summed up from" not in page.text
     for part in (

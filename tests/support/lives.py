@@ -12,6 +12,7 @@ from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.model.profile import InitialGap, Profile
 from fastpin.solver.wear_result import WearResult
 
 CONSTANTS = FatigueConstants(
@@ -22,6 +23,7 @@ CONSTANTS = FatigueConstants(
 JOINT = Problem(
     MaterialPair(MATERIALS["steel"], replace(MATERIALS["2024-T3"], fatigue=CONSTANTS)),
     hole_radius=0.01, clearance=2e-5, friction=0.5, pin_load="centre", rotation="fixed",
+    gap=InitialGap(Profile.ellipse(1e-6)),
 )  # fmt: skip
 
 HISTORY = LoadHistory([{"P": 2e6}]) + LoadHistory([{"Q": 8e5}, {"Q": -8e5}]).repeated(2)
