@@ -154,7 +154,7 @@ def _contact_axis(panel: Axes, life: WearResult, angles: np.ndarray) -> None:
     panel.set_xlabel(ANGLE)
 
 
-class Row(NamedTuple):
+class PanelRow(NamedTuple):
     """A panel over the cycles: its words, the kind of its values, the values by body, and whether they only grow."""
 
     words: str
@@ -163,7 +163,7 @@ class Row(NamedTuple):
     grows: bool = False
 
 
-def _rows(life: WearResult) -> list[Row]:
+def _rows(life: WearResult) -> list[PanelRow]:
     pin, plate = np.array([each.volumes for each in life]).T
     bodies = {"": pin + plate}
     if pin.any() and plate.any():
@@ -173,10 +173,10 @@ def _rows(life: WearResult) -> list[Row]:
     if begins_elsewhere and len(life) > 1:
         energies[0] = np.nan
     return [
-        Row("worn\nvolume", "work per stress", bodies, grows=True),
-        Row("largest\ndepth", "displacement", {"": np.array([each.depth for each in life])}, grows=True),
-        Row("dissipated in\none cycle", "energy", {"": without_rounding(energies)}),
-        Row("largest\npressure", "traction", {"": np.array([each.largest_pressure for each in life])}),
+        PanelRow("worn\nvolume", "work per stress", bodies, grows=True),
+        PanelRow("largest\ndepth", "displacement", {"": np.array([each.depth for each in life])}, grows=True),
+        PanelRow("dissipated in\none cycle", "energy", {"": without_rounding(energies)}),
+        PanelRow("largest\npressure", "traction", {"": np.array([each.largest_pressure for each in life])}),
     ]
 
 

@@ -46,6 +46,8 @@ friction = 0.4
 pin_load = "centre"
 rotation = "spring"
 %s
+[gap]
+hole = { ellipse = 1e-6 }
 [[load]]
 P = [%r]
 sxx = 2e6
@@ -141,11 +143,15 @@ def walk(found: Walk, monkeypatch: pytest.MonkeyPatch) -> None:
     command("run", "case.toml", "--nodes", "101", "--error-bars", "--json", "run.json", "--cycle-csv", "run.csv")
     command("run", "case.toml", "-o", "a.h5", "--plot", "b.svg", "--record", "record.html", "--cycles", "a.svg")
     command("show", "a.h5", "--json", "show.json")
-    for kind, (_, _, allowed, ending) in KINDS.items():
+    life = ["--cycles", "4", "--coefficient", "1e-13", "--nodes", "61"]
+    command("wear", "case.toml", *life, "-o", "life.h5", "--json", "wear.json", "--record", "record-life.html")
+    for kind, (_, _, allowed, ending, sources) in KINDS.items():
         name = f"{kind}.{'gif' if ending == 'gif' else 'svg'}"
         states = ["--states", "2,3"] if "states" in allowed and kind != "sketch" else []
-        command("plot", "a.h5", kind, "-o", name, *states, *(["--csv", f"{kind}.csv"] if "csv" in allowed else []))
+        subject = "a.h5" if "result" in sources else "life.h5"
+        command("plot", subject, kind, "-o", name, *states, *(["--csv", f"{kind}.csv"] if "csv" in allowed else []))
     command("report", "a.h5", "-o", "report.html")
+    command("report", "life.h5", "-o", "report-life.html")
     converge = ["--nodes", "51,71,91", "--corner", "2"]
     command("converge", "case.toml", *converge, "--csv", "converge.csv", "--json", "converge.json", "--plot", "c.svg")
     command("sweep", "plan.toml", "--table", "--plot", "heat.svg", "--value", "heat")
@@ -178,7 +184,9 @@ def units_in(found: Walk, wrong: re.Pattern[str]) -> dict[str, str]:
     texts = found.commands | found.files(".csv") | found.files(".json")
     pages = found.files(".html").items()
     texts |= {
-        name: re.sub(r"(?s)<style.*?</style>|<[^>]*>", " ", text) for name, text in pages if name != "record.html"
+        name: re.sub(r"(?s)<style.*?</style>|<[^>]*>", " ", text)
+        for name, text in pages
+        if not name.startswith("record")
     }
     return {name: place[0] for name, text in texts.items() if (place := wrong.search(text))}
 
@@ -206,7 +214,7 @@ def check_curves(plain: dict[str, str], thick: dict[str, str]) -> None:
             factors.add((name, factor := factor_of(units[0], units[1])))
             for row, other in zip(rows, others, strict=True):
                 assert is_times(row[column], other[column], factor), (name, title)
-    assert {name for name, factor in factors if factor == T} == {"loops.csv", "cycles.csv"}
+    assert {name for name, factor in factors if factor == T} == {"loops.csv", "cycles.csv", "wear.csv"}
 
 
 def is_times(plain: Any, thick: Any, factor: float) -> bool:
