@@ -147,7 +147,7 @@ class Valid:
             "Session": session.copy,
             "Outcome": lambda: benchmarks.Outcome([benchmarks.Row("peak", "1", "0.5", 0.5)]),
         }
-        self._by_target = self._targets(result) | {"worn_fatigue.cycles": _always(life)}
+        self._by_target = self._targets(result) | {"worn_fatigue.cycles": _always(life), "after.cycles": _always(1)}
         self._by_annotation = self._annotations(result)
 
     def _write_files(self, result: fastpin.Result, case: fastpin.Case) -> None:
@@ -269,11 +269,13 @@ class Valid:
             "write_sweep_report.path": "out.html",
             "save.path": "out.h5",
             "Result.report.path": "out.html",
+            "WearResult.report.path": "out.html",
             "record.path": "out.h5",
             "record.nodes": NODES,
             "solve.nodes": NODES,
             "converge.nodes": (51, 101, 201),
             "is_being_written.path": Path("result.h5"),
+            "plot_gap.joint": fastpin.Problem(result.problem.pair, 0.01, 1e-5, 0.4, gap=model.Profile.ellipse(1e-5)),
             "InitialGap.of.value": model.Profile.ellipse(1e-5),
             "Profile.constant.value": 0.4,
             "Profile.of.value": 0.4,

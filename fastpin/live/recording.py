@@ -22,7 +22,7 @@ def recorded_places(count: int, most: int = MOST_PICTURES) -> list[int]:
 
     There are at most `most` of them, and two at least.
     """
-    chosen = min(whole_number("count", count, 0, MAX_CORNERS), max(most, 2))
+    chosen = min(whole_number("count", count, 0, MAX_CORNERS), max(whole_number("most", most, 0, MAX_CORNERS), 2))
     return [round(k * (count - 1) / max(chosen - 1, 1)) for k in range(chosen)]
 
 

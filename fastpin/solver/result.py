@@ -11,7 +11,7 @@ import numpy as np
 
 from fastpin import states
 from fastpin.errors import InputError
-from fastpin.model.checks import whole_number
+from fastpin.model.checks import instance, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import CycleKey, LoadHistory
 from fastpin.model.points import Body
@@ -127,8 +127,9 @@ class Result(Sequence[State]):
         Raises
         ------
         InputError
-            If no profile is stored there.
+            If `life` is no WearResult, or no profile is stored there.
         """
+        instance("life", life, WearResult, "a WearResult")
         chosen = life.cycles if after is None else (life.after(after),)
         return cls(
             [state for each in chosen for state in each.states], life.problem, life.history, life.grid, "path",

@@ -18,7 +18,7 @@ import numpy as np
 from fastpin.elasticity.large import build_system
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, true_or_false, whole_number
+from fastpin.model.checks import as_toml, choice, true_or_false, whole_number
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import MAX_CORNERS, MOST_LOAD, LoadHistory, check_loads
@@ -286,7 +286,9 @@ class Session(InTurns):
             If so many places are not remembered.
         """
         if whole_number("times", times, 1) > len(self._undo):
-            raise InputError("times", f"only {len(self._undo)} places before this one are remembered, not {times}")
+            raise InputError(
+                "times", f"only {len(self._undo)} places before this one are remembered, not {as_toml(times)}"
+            )
         return self._move(self._undo, self._redo, times)
 
     @in_turn
@@ -299,7 +301,7 @@ class Session(InTurns):
             If there were fewer.
         """
         if whole_number("times", times, 1) > len(self._redo):
-            raise InputError("times", f"only {len(self._redo)} steps were undone, not {times}")
+            raise InputError("times", f"only {len(self._redo)} steps were undone, not {as_toml(times)}")
         return self._move(self._redo, self._undo, times)
 
     def _move(self, places: MutableSequence[Place], left: MutableSequence[Place], times: int) -> State | None:

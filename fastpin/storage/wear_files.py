@@ -354,7 +354,7 @@ class WearFile:
             file.release()
 
 
-def holds_wear(path: Path) -> bool:
+def holds_wear(path: str | Path) -> bool:
     """Whether a result is that of a life of wear.
 
     Raises
@@ -362,7 +362,7 @@ def holds_wear(path: Path) -> bool:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(path) as file:
+    with open_result(file_path("path", path)) as file:
         return "wear" in file
 
 
