@@ -108,6 +108,8 @@ def plot_sweep(
     """
     if not isinstance(chart, Chart):
         each = instances("chart", chart, Chart, "a Chart, or a list of charts")
+        if not each:
+            raise InputError("chart", "must hold at least one chart")
         if ax is not None:
             raise InputError("ax", "holds one chart; give a list of charts no axes")
         look = Look(path, each[0].title if title is None else title, width or SIDE_BY_SIDE, dpi)
