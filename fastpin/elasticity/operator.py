@@ -7,6 +7,7 @@ of an arc. So a product is a convolution, by fast Fourier transforms, and an ent
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -70,6 +71,11 @@ class Operator:
     def diagonal(self) -> np.ndarray:
         """The entries of the diagonal, shape (2n,)."""
         return np.array([self.entries(np.array([place]), np.array([place]))[0, 0] for place in range(self.size)])
+
+    @cached_property
+    def typical(self) -> float:
+        """A typical compliance, to judge pivots: the median of the diagonal."""
+        return float(np.median(np.abs(self.diagonal())))
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         """All entries, for tests and studies of small systems."""

@@ -180,11 +180,6 @@ class System:
         """Whether there is friction at a node."""
         return bool(self.friction.any())
 
-    @cached_property
-    def typical_compliance(self) -> float:
-        """A typical compliance, to judge pivots: the median of the operator's diagonal."""
-        return float(np.median(np.abs(self.operator.diagonal())))
-
     def elastic(self, tractions: np.ndarray) -> np.ndarray:
         """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""
         return self.operator @ tractions

@@ -185,7 +185,7 @@ class PathStep:
         while True:
             code = exchange.follow(
                 self._columns.tableau, self._contact, self._load, self._queue,
-                system.friction, system.grid.closed, system.typical_compliance, stop, most_events, self._all_at_once,
+                system.friction, system.grid.closed, system.operator.typical, stop, most_events, self._all_at_once,
             )  # fmt: skip
             updates = int(counts[exchange.UPDATES])
             if self._is_stuck_at_start():
