@@ -13,8 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
+from fastpin.model.points import BODIES
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, Unit, scaled, units
@@ -375,14 +377,13 @@ def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:
 
 
 def definition_words(outcome: StudyOutcome) -> str:
-    """Return the definition of an outcome as a plan writes it."""
+    """Return the definition of an outcome as a plan writes it, without the usual criterion and body of wear."""
     found = json.loads(outcome.definition)
     found |= found.pop("how", {})
-    if "wear" in found and found["wear"] != "life":  # they have an effect on the life only
-        del found["criterion"], found["body"]
+    usual = {"criterion": next(iter(FATIGUE_CRITERIA)), "body": BODIES[0]}
     first = next(key for key in KEYS if key in found)
     ordered = {first: found.pop(first), **found}
-    return ", ".join(f"{key} = {brief(value)}" for key, value in ordered.items())
+    return ", ".join(f"{key} = {brief(value)}" for key, value in ordered.items() if usual.get(key) != value)
 
 
 def brief(value: Any) -> str:

@@ -83,7 +83,7 @@ energy = { quantity = "dissipation" }
 width = { quantity = "contact_width" }
 volume = { wear = "volume", cycles = 1e4, coefficient = 1e-14 }
 lost = { cycle = "dissipation" }
-life = { wear = "life", cycles = 10, pin = 1e-14, law = "energy" }
+life = { wear = "life", cycles = 10, pin = 1e-14, law = "energy", criterion = "fatemi-socie" }
 """
 
 
@@ -107,7 +107,7 @@ def test_maps_of_several_outcomes_stand_side_by_side(
     for words in (
         'quantity = "dissipation", take = "last", over = "history"',
         'wear = "volume", coefficient = 1e-14, cycles = 10000', 'cycle = "dissipation"',
-        'wear = "life", body = "plate", criterion = "smith-watson-topper", cycles = 10, law = "energy", pin = 1e-14',
+        'wear = "life", criterion = "fatemi-socie", cycles = 10, law = "energy", pin = 1e-14',
     ):  # fmt: skip
         assert words in page.text, words
 
