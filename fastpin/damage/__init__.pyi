@@ -23,6 +23,7 @@ from .hot_spots import stress_history as stress_history
 from .lives import fatemi_socie_life as fatemi_socie_life
 from .lives import miner as miner
 from .lives import smith_watson_topper_life as smith_watson_topper_life
+from .race import Race as Race
 from .wear import archard_depth as archard_depth
 from .wear import ruiz as ruiz
 from .worn import WornFatigue as WornFatigue

@@ -5,8 +5,9 @@ is worn off, and the point lies z - w under the present surface. It is gone once
 
     D(theta, z) = int dn / N_f(theta, z - w)
 
-with the life N_f of a criterion on the present profile. A crack starts where a sum reaches 1 before the point is gone.
-The competition of wear and cracks: Madge, Leen, McColl and Shipway, Wear 262 (2007) 1159 and 263 (2007) 679.
+with the life N_f of a criterion on the present profile. A crack starts where a sum reaches 1 before the point is gone:
+it wins the race against wear. Sums of damage over material that wears away: Cruzado, Leen, Urchegui and Gómez, Int. J.
+Fatigue 55 (2013) 7. Which of both wins, in fretting maps: Basseville and Cailletaud, Wear 328-329 (2015) 443.
 """
 
 from __future__ import annotations
@@ -21,12 +22,15 @@ from numpy.typing import ArrayLike
 
 from fastpin.damage.criteria import Criterion
 from fastpin.damage.hot_spots import edge_angles, fatigue
+from fastpin.damage.race import Race
 from fastpin.errors import InputError
+from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instances, numbers
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import Body, Points, far_rim, near_rim, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
 from fastpin.reading.stress import check_body
 from fastpin.states.state import State
@@ -141,11 +145,32 @@ class WornFatigue(ReadOnly):
         return gone
 
     @property
-    def wear_wins(self) -> bool:
-        """Whether no crack starts, and the material with the largest damage of all is worn off."""
+    def gone(self) -> np.ndarray:
+        """Cycles after which each material point is worn off, shape (d, m); infinite where it stays.
+
+        A crack wins the race where :attr:`broken` is finite: the damage of material that is gone does not grow.
+        """
+        found = np.full(self.broken.shape, np.inf)
+        for k in reversed(range(self.cycles.size - 1)):
+            grown, left = self.worn[k + 1] - self.worn[k], self.depth[:, None] - self.worn[k]
+            goes = (left >= 0.0) & (left < grown)
+            part = np.divide(left, grown, out=np.zeros(found.shape), where=goes)
+            found[goes] = (self.cycles[k] + part * float(self.cycles[k + 1] - self.cycles[k]))[goes]
+        return found
+
+    @property
+    def race(self) -> Race:
+        """Whether a crack or wear wins within the cycles of the wear."""
+        if math.isfinite(self.life):
+            return Race.CRACK
         last = self.damage[-1]
         most = last == last.max()
-        return bool(math.isinf(self.life) and last.any() and self.is_gone[-1][most].all())
+        return Race.WEAR if last.any() and self.is_gone[-1][most].all() else Race.OPEN
+
+    @property
+    def wear_wins(self) -> bool:
+        """Whether no crack starts, and the material with the largest damage of all is worn off."""
+        return self.race is Race.WEAR
 
     @property
     def hot_spots(self) -> tuple[WornSpot, ...]:
@@ -159,8 +184,10 @@ class WornFatigue(ReadOnly):
     @property
     def words(self) -> str:
         """The end of the race in words."""
-        if math.isfinite(self.life):
-            return f"a crack starts after {cycles_text(float(f'{self.life:.4g}'))}"
+        if self.race is Race.CRACK:
+            depth = units(self.problem)["displacement"].text(self.crack.depth, 3)
+            place = f"{from_bottom(self.crack.theta):.4g} deg, {depth} below the first surface"
+            return f"a crack starts after {cycles_text(float(f'{self.life:.4g}'))} at {place}"
         done = f"no crack within {cycles_text(int(self.cycles[-1]))}"
         largest = f"largest damage {self.hot_spots[-1].damage:.3g}"
         return (

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.damage import fatigue, worn_fatigue
+from fastpin.damage import Race, fatigue, worn_fatigue
 from fastpin.damage.hot_spots import edge_angles
 from fastpin.errors import InputError
 from fastpin.model import FatigueConstants
+from fastpin.model.angles import from_bottom
 from fastpin.solver import WornCycle
 
 ALUMINIUM = FatigueConstants(
@@ -42,7 +43,10 @@ def test_without_wear_the_life_is_that_of_the_cycle(states):
     assert (found.crack.theta, found.crack.depth) == (today.theta, 0.0)
     assert found.error < 1e-14
     assert not found.is_gone.any()
+    assert np.isinf(found.gone).all()
+    assert found.race is Race.CRACK
     assert not found.wear_wins
+    assert worn_fatigue(_life(states, {0: 0.0, life // 3: 0.0})).race is Race.OPEN
 
 
 def test_damage_under_a_surface_that_wears_at_a_constant_rate_is_an_integral(states):
@@ -82,9 +86,13 @@ def test_material_that_is_gone_neither_breaks_nor_sums_up_more(states):
     assert np.isinf(found.broken[:2, 0]).all()
     assert np.isfinite(found.broken[2:, 0]).all()
     assert found.crack.depth == 4 * depth  # its surface at the end
+    assert found.gone[:, 0].tolist() == pytest.approx([0.0, int(2 * life) / 4, np.inf, np.inf])
+    assert found.race is Race.CRACK
+    assert f"{found.life:.4g} cycles at {from_bottom(spot.theta):.4g} deg, 4 um below the first surface" in found.words
     # The shallow material alone: wear takes it before it breaks.
     shallow = worn_fatigue(_life(states, cycles), theta=[spot.theta], depth=[0.0, depth])
     assert np.isinf(shallow.life)
+    assert shallow.race is Race.WEAR
     assert shallow.wear_wins
     assert "wear takes the most damaged material away" in repr(shallow)
 

@@ -1,0 +1,27 @@
+"""The race between cracks and wear, and its ends."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Race(IntEnum):
+    """What wins within the cycles of a life of wear."""
+
+    OPEN = 0
+    """No crack starts, and the material with the largest damage of all is still there."""
+
+    WEAR = 1
+    """No crack starts, and the material with the largest damage of all is worn off."""
+
+    CRACK = 2
+    """A crack starts before its material is worn off."""
+
+    @property
+    def words(self) -> str:
+        """The winner in words."""
+        return ("no crack so far", "wear wins", "a crack wins")[self]
+
+
+RACES = {int(race): race.words for race in Race}
+"""The words of each end of the race, by its number."""
