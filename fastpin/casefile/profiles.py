@@ -22,6 +22,7 @@ from fastpin.model.profile import MOST_TERMS, NO_GAP, InitialGap, Profile
 from fastpin.model.profile_csv import ProfileKind, read_samples
 from fastpin.model.profile_terms import MOST_ORDER, Crown, Flat, Harmonic, Zone
 from fastpin.model.synonyms import closest
+from fastpin.model.wear import COEFFICIENTS, MOST_CYCLES, WEAR_KEYS, Wear
 
 GAP_KEYS = ("hole", "pin")
 """Keys of the section [gap]."""
@@ -210,9 +211,23 @@ def read_friction(contact: Section, folder: Path, basis: Basis) -> float | Profi
     return contact.number("friction")
 
 
-def read_wear_coefficient(section: Section, folder: Path, key: str) -> Profile | None:
-    """A wear coefficient of [wear]; None if it is missing or wrong (reported)."""
-    return _Reader(section, folder, "wear", "per metre").profile(key)
+def read_wear(section: Section, folder: Path, cycles: int | None) -> Wear | None:
+    """How the bodies wear; None if a key is wrong (reported). `cycles`: their number unless the section gives it."""
+    reader = _Reader(section, folder, "wear", "per metre")
+    profiles = {key: reader.profile(key) for key in COEFFICIENTS if key in section}
+    values = {key: section.value(key) for key in WEAR_KEYS if key in section and key not in COEFFICIENTS}
+    values |= {key: Profile.constant(1.0) if profile is None else profile for key, profile in profiles.items()}
+    if cycles is not None:
+        values.setdefault("cycles", cycles)
+    harmless = {
+        "cycles": MOST_CYCLES,
+        "law": "archard",
+        "at": None,
+        "tolerance": 0.0,
+        **dict.fromkeys(COEFFICIENTS, 1.0),
+    }
+    wear = section.build(Wear, values, harmless)
+    return None if None in profiles.values() else wear
 
 
 def read_gap(section: Section, folder: Path, radius: float | None, dimensionless: bool) -> InitialGap:

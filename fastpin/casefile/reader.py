@@ -19,20 +19,19 @@ from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.material_files import known_materials
 from fastpin.casefile.materials import DUNDURS_KEYS, read_pair
-from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear_coefficient
+from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
 from fastpin.model.case import About, Case, check_arc, check_keep
 from fastpin.model.checks import file_path, string
 from fastpin.model.fields import FIELDS
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
 from fastpin.model.synonyms import closest, meant
 from fastpin.model.units import PER_THICKNESS
-from fastpin.model.wear import COEFFICIENTS, WEAR_KEYS, Wear
+from fastpin.model.wear import WEAR_KEYS
 
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
@@ -174,7 +173,8 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
         _check_together(source, lambda: check_arc(problem, options))
     if history is not None:
         _check_together(source, lambda: check_keep(history, options))
-    wear = _wear(source, folder, history)
+    how = source.section("wear")
+    wear = read_wear(how, folder, None if history is None else history.blocks[-1].count) if how.present else None
     return Case(problem, history, options, title, about, wear) if problem is not None and history is not None else None
 
 
@@ -348,21 +348,6 @@ def _about(section: Section) -> About:
     if type(given.get("date")) is date:
         given["date"] = given["date"].isoformat()
     return section.build(About, given, dict.fromkeys(given, "")) or About()
-
-
-def _wear(source: CaseText, folder: Path, history: LoadHistory | None) -> Wear | None:
-    """How the bodies wear; None without a section. The cycles are those of the history unless they are given."""
-    section = source.section("wear")
-    if not section.present:
-        return None
-    given = {key: section.value(key) for key in WEAR_KEYS if key in section and key not in COEFFICIENTS}
-    faults = len(source.placed)
-    given |= {key: read_wear_coefficient(section, folder, key) for key in COEFFICIENTS if key in section}
-    if len(source.placed) > faults:
-        return None
-    if "cycles" not in given and history is not None:
-        given["cycles"] = history.blocks[-1].count
-    return section.build(Wear, given, {"cycles": 1, "law": "archard", "at": None, "tolerance": 0.0})
 
 
 def _options(section: Section) -> SolveOptions:

@@ -18,13 +18,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from fastpin.casefile.profiles import read_wear
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
 from fastpin.model.points import BODIES
+from fastpin.model.profile import Profile
 from fastpin.model.synonyms import closest
-from fastpin.model.wear import WEAR_KEYS, Wear
+from fastpin.model.wear import WEAR_KEYS
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
@@ -151,7 +153,8 @@ def outcomes_in_text(source: CaseText, folder: Path) -> Outcomes:
             if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
-                found |= _of_table(name, Section(source, ("outcomes", name), dict(value)), folder)
+                outcome = _of_table(_Table(source, name, value), folder)
+                found |= {} if outcome is None else {name: outcome}
             elif callable(value):
                 found[name] = _of_callable(value)
             elif value is not None or section.table[name] is None:  # A value that can't be parsed is reported already.
@@ -195,46 +198,55 @@ def _double_fault(name: str, found: Outcomes) -> str:
 # -- single outcomes ---------------------------------------------------------------------------------------------
 
 
-def _of_table(name: str, section: Section, folder: Path) -> Outcomes:
+class _Table(Section):
+    """The table of one outcome. Its faults begin with its name."""
+
+    def __init__(self, source: CaseText, name: str, table: Mapping[str, Any]) -> None:
+        super().__init__(source, ("outcomes", name), dict(table))
+        self.outcome = name
+
+    def report(self, message: str, *key: str) -> None:
+        """Add a fault of a key, or of the whole table if no key is given."""
+        super().report(f"{self.outcome}: {message}", *key)
+
+
+def _of_table(section: _Table, folder: Path) -> StudyOutcome | None:
     """Read the table of one outcome, and report its faults. No outcome if a value is wrong."""
     first = [key for key in KEYS if key in section]
     if len(first) != 1:
-        section.report(f"{name}: must have one of the keys {', '.join(KEYS)}, such as {_EXAMPLE}")
-        return {}
+        section.report(f"must have one of the keys {', '.join(KEYS)}, such as {_EXAMPLE}")
+        return None
     allowed = KEYS[first[0]]
     for key in section.table:
         if key not in allowed:
             others = f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
             hint = closest(str(key), allowed) or f"; beside {first[0]} there {others}"
-            section.report(f'{name}: unknown key "{key}"{hint}', str(key))
-    if first[0] == "function":
-        outcome = _of_function(name, section, folder)
-    else:
-        outcome = {"cycle": _of_cycle, "wear": _of_wear, "quantity": _of_quantity}[first[0]](name, section)
-    return {} if outcome is None else {name: outcome}
+            section.report(f'unknown key "{key}"{hint}', str(key))
+    readers = {"quantity": _of_quantity, "cycle": _of_cycle, "wear": _of_wear, "function": _of_function}
+    return readers[first[0]](section, folder)
 
 
-def _choice(name: str, section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
+def _choice(section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
     """A word of a table; the first one allowed if its key is missing. None if the word is wrong (reported)."""
     if key not in section:
         return allowed[0]
-    return section.checked(key, lambda _, value: choice(f"{name}: {key}", value, allowed))
+    return section.checked(key, choice, allowed)
 
 
-def _of_quantity(name: str, section: Section) -> StudyOutcome | None:
-    quantity = _choice(name, section, "quantity", tuple(QUANTITIES))
-    take, span = _choice(name, section, "take", TAKES), _choice(name, section, "over", SPANS)
+def _of_quantity(section: Section, folder: Path) -> StudyOutcome | None:
+    quantity = _choice(section, "quantity", tuple(QUANTITIES))
+    take, span = _choice(section, "take", TAKES), _choice(section, "over", SPANS)
     if quantity is None or take is None or span is None:
         return None
     kind = QUANTITIES[quantity].kind
     if kind == "class" and take not in TAKES_OF_CLASS:
-        section.report(f"{name}: take: {quantity} is a class: take {alternatives(TAKES_OF_CLASS)}", "take")
+        section.report(f"take: {quantity} is a class: take {alternatives(TAKES_OF_CLASS)}", "take")
         return None
     if take == "largest magnitude" and kind == "angle":
-        section.report(f'{name}: take: a place on the hole has no magnitude; take "largest" or "smallest"', "take")
+        section.report('take: a place on the hole has no magnitude; take "largest" or "smallest"', "take")
         return None
     if take == "last" and span == "cycle":
-        section.report(f'{name}: over: the last state is that of the history, too; take "largest" or another', "over")
+        section.report('over: the last state is that of the history, too; take "largest" or another', "over")
         return None
     kind = "width" if (kind, take) == ("angle", "range") else kind
     definition = {"quantity": quantity, "take": take, "over": span}
@@ -243,79 +255,74 @@ def _of_quantity(name: str, section: Section) -> StudyOutcome | None:
     return StudyOutcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes), bar)
 
 
-def _of_cycle(name: str, section: Section) -> StudyOutcome | None:
-    quantity = _choice(name, section, "cycle", tuple(CYCLE_QUANTITIES))
+def _of_cycle(section: Section, folder: Path) -> StudyOutcome | None:
+    quantity = _choice(section, "cycle", tuple(CYCLE_QUANTITIES))
     if quantity is None:
         return None
     kind, classes = CYCLE_QUANTITIES[quantity].kind, dict(CYCLE_QUANTITIES[quantity].classes)
     return StudyOutcome(kind, "", json.dumps({"cycle": quantity}), partial(of_last_cycle, quantity), classes)
 
 
-def _of_wear(name: str, section: Section) -> StudyOutcome | None:
+def _of_wear(section: Section, folder: Path) -> StudyOutcome | None:
     """Read a number of the last cycle, followed on a profile that wears."""
-    quantity = _choice(name, section, "wear", tuple(WEAR_QUANTITIES))
+    quantity = _choice(section, "wear", tuple(WEAR_QUANTITIES))
     with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.life is not None)
-    criterion = _choice(name, section, "criterion", with_life)
-    body: Any = _choice(name, section, "body", BODIES)
-    given = {key: section.value(key) for key in WEAR_KEYS if key in section}
-    if quantity is None or criterion is None or body is None or None in given.values():
+    criterion = _choice(section, "criterion", with_life)
+    body: Any = _choice(section, "body", BODIES)
+    if quantity is not None and not WEAR_QUANTITIES[quantity].is_damage:
+        for key in ("criterion", "body"):
+            if key in section:
+                section.report(f"{key}: has no effect on the {quantity.replace('_', ' ')}", key)
+    if "cycles" not in section:
+        section.report("cycles is missing; a life of wear has a number of cycles, such as cycles = 1e5")
+    wear = read_wear(section, folder, None)
+    if quantity is None or criterion is None or body is None or wear is None:
         return None
-    for key in ("criterion", "body"):
-        if key in section and quantity != "life":
-            section.report(f"{name}: {key}: has an effect on the life only", key)
-    if "cycles" not in given:
-        section.report(f"{name}: cycles is missing; a life of wear has a number of cycles, such as cycles = 1e5")
-        return None
-    try:
-        Wear(**given)
-    except InputError as error:
-        section.report(f"{name}: {error}", error.field if error.field in section else "wear")
-        return None
-    how = json.dumps(given, sort_keys=True)
-    definition = {"wear": quantity, "how": given, "criterion": criterion, "body": body}
-    read = partial(of_wear, quantity, how, criterion, body)
-    return StudyOutcome(WEAR_QUANTITIES[quantity].kind, "", json.dumps(definition, sort_keys=True), read)
+    given = {name: value for name in WEAR_KEYS if (value := getattr(wear, name)) is not None}
+    how = {name: value.entries() if isinstance(value, Profile) else value for name, value in given.items()}
+    definition = {"wear": quantity, "how": how, "criterion": criterion, "body": body}
+    kind, classes = WEAR_QUANTITIES[quantity].kind, dict(WEAR_QUANTITIES[quantity].classes)
+    read = partial(of_wear, quantity, wear, criterion, body)
+    return StudyOutcome(kind, "", json.dumps(definition, sort_keys=True), read, classes)
 
 
-def _of_function(name: str, section: Section, folder: Path) -> StudyOutcome | None:
+def _of_function(section: Section, folder: Path) -> StudyOutcome | None:
     """Read a function of a file, ``FILE.py:NAME``."""
     value = section.value("function")
     if value is None:
         return None
     file, colon, function = value.rpartition(":") if isinstance(value, str) else ("", "", "")
     if not (colon and file.endswith(".py") and file.isprintable() and function):
-        section.report(
-            f'{name}: function: must be FILE.py:NAME, such as "my.py:wear", not {as_toml(value)}', "function"
-        )
+        section.report(f'function: must be FILE.py:NAME, such as "my.py:wear", not {as_toml(value)}', "function")
         return None
     if Path(file).is_absolute() or ".." in Path(file).parts:  # A plan runs no code from elsewhere.
-        section.report(f"{name}: {file}: must lie beside the plan, or in a folder below", "function")
+        section.report(f"{file}: must lie beside the plan, or in a folder below", "function")
         return None
     path = folder / file
     # Unlike Path.resolve, realpath takes links that lead to themselves.
     if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
-        section.report(f"{name}: {file}: is a link that leads out of the folder of the plan", "function")
+        section.report(f"{file}: is a link that leads out of the folder of the plan", "function")
         return None
     try:
         text = read_text(path)
         functions = _functions(path, text)
     except CaseFileError as error:
         for line, message in error.problems:
-            section.report(f"{name}: {file}{f', line {line}' if line else ''}: {message}", "function")
+            section.report(f"{file}{f', line {line}' if line else ''}: {message}", "function")
         return None
     if function not in functions:
         hint = closest(function, tuple(functions)) or (f"; there are {', '.join(functions)}" if functions else "")
-        section.report(f'{name}: there is no function "{function}" in {file}{hint}', "function")
+        section.report(f'there is no function "{function}" in {file}{hint}', "function")
         return None
     definition = {"function": function, "file": digest(text)}
     reader = FunctionOfFile(str(path), text, function)
     if "classes" not in section:
         return StudyOutcome("", functions[function], json.dumps(definition), reader)
-    classes = section.checked("classes", lambda _, value: _classes(f"{name}: classes", value))
+    classes = section.checked("classes", _classes)
     if classes is None:
         return None
     if functions[function]:
-        section.report(f"{name}: classes: the number of a class has no unit, but {function}.unit is set", "classes")
+        section.report(f"classes: the number of a class has no unit, but {function}.unit is set", "classes")
     # The words of a class change no value.
     return StudyOutcome("class", "", json.dumps(definition | {"classes": list(classes)}), reader, classes)
 

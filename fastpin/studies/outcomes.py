@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import json
 import math
 import pickle
 import sys
@@ -23,12 +22,14 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from fastpin.damage.criteria import FATIGUE_CRITERIA
+from fastpin.damage.race import RACES
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
 from fastpin.model.doubts import doubts_given
 from fastpin.model.points import Body, owner_of
 from fastpin.model.units import DEGREE, Unit
+from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.error_bars import number_bar, value_bar
 from fastpin.states.quantities import QUANTITIES, size
@@ -37,6 +38,7 @@ from fastpin.states.state import State
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.damage.hot_spots import HotSpot
+    from fastpin.damage.worn import WornFatigue
     from fastpin.solver.result import Result
     from fastpin.solver.wear_result import WearResult
 
@@ -52,7 +54,9 @@ ROUNDING = 1e-9
 
 _PACKAGE = Path(__file__).parents[1]
 
-_WORN_LIVES: WeakKeyDictionary[Result, dict[str, WearResult]] = WeakKeyDictionary()
+_WORN_LIVES: WeakKeyDictionary[Result, dict[Wear, WearResult]] = WeakKeyDictionary()
+
+_WORN_DAMAGES: WeakKeyDictionary[Result, dict[tuple[Wear, str, Body], WornFatigue]] = WeakKeyDictionary()
 
 _HOT_SPOTS: WeakKeyDictionary[Result, dict[tuple[str, Body], HotSpot]] = WeakKeyDictionary()
 
@@ -122,25 +126,34 @@ class WearQuantity(NamedTuple):
     kind : str
         See :class:`CycleQuantity`.
     of : callable
-        ``of(life, criterion, body)`` gives its value for a :class:`fastpin.solver.WearResult`.
+        Gives its value for a :class:`fastpin.solver.WearResult`, or for its :class:`fastpin.damage.WornFatigue`.
+    is_damage : bool
+        Whether it is that of the fatigue.
+    classes : dict of int to str
+        See :class:`CycleQuantity`.
     """
 
     kind: str
-    of: Callable[[WearResult, str, Body], float]
+    of: Callable[[Any], float]
+    is_damage: bool = False
+    classes: Mapping[int, str] = MappingProxyType({})
 
 
 WEAR_QUANTITIES: dict[str, WearQuantity] = {
-    "volume": WearQuantity("work per stress", lambda life, *_: life[-1].volume),
-    "depth": WearQuantity("displacement", lambda life, *_: life[-1].depth),
-    "pin_share": WearQuantity("", lambda life, *_: life[-1].pin_share),
-    "dissipation": WearQuantity("energy", lambda life, *_: life[-1].energy_per_cycle),
-    "pressure": WearQuantity("traction", lambda life, *_: life[-1].largest_pressure),
-    "life": WearQuantity("life", lambda life, criterion, body: _finite(life.fatigue(criterion, body).life)),
+    "volume": WearQuantity("work per stress", lambda life: life[-1].volume),
+    "depth": WearQuantity("displacement", lambda life: life[-1].depth),
+    "pin_share": WearQuantity("", lambda life: life[-1].pin_share),
+    "dissipation": WearQuantity("energy", lambda life: life[-1].energy_per_cycle),
+    "pressure": WearQuantity("traction", lambda life: life[-1].largest_pressure),
+    "life": WearQuantity("life", lambda found: _finite(found.life), is_damage=True),
+    "damage": WearQuantity("", lambda found: float(found.damage[-1].max()), is_damage=True),
+    "race": WearQuantity("class", lambda found: float(found.race), is_damage=True, classes=RACES),
 }
 """The quantities of the last cycle of a result that is followed on a profile that wears, by name.
 
-All but the life belong to the end of the wear: the last profile, and one cycle on it. "life" is the number of cycles
-until a crack starts, see :func:`fastpin.damage.worn_fatigue`.
+The first five belong to the end of the wear: the last profile, and one cycle on it. "life" is the number of cycles
+until a crack starts, "damage" the largest sum of a material point, and "race" what wins, see
+:class:`fastpin.damage.Race`.
 """
 
 
@@ -370,16 +383,20 @@ def of_last_cycle(quantity: str, result: Result) -> float:
     return CYCLE_QUANTITIES[quantity].of(result)
 
 
-def of_wear(quantity: str, how: str, criterion: str, body: Body, result: Result) -> float:
-    """The value of a name in :data:`WEAR_QUANTITIES`; NaN without a crack.
-
-    `how` is the wear as JSON: the fields of :class:`fastpin.model.Wear`. A life is kept while the result lives.
-    """
+def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Result) -> float:
+    """The value of a name in :data:`WEAR_QUANTITIES`; NaN without a crack. Lives are kept while the result lives."""
     lives = _WORN_LIVES.setdefault(result, {})
-    if how not in lives:
+    if wear not in lives:
         with doubts_given():
-            lives[how] = result.wear(**json.loads(how))
-    return WEAR_QUANTITIES[quantity].of(lives[how], criterion, body)
+            lives[wear] = result.wear(**{name: getattr(wear, name) for name in WEAR_KEYS})
+    life, chosen = lives[wear], WEAR_QUANTITIES[quantity]
+    if not chosen.is_damage:
+        return chosen.of(life)
+    key = (wear, criterion, body)
+    damages = _WORN_DAMAGES.setdefault(result, {})
+    if key not in damages:
+        damages[key] = life.fatigue(criterion, body)
+    return chosen.of(damages[key])
 
 
 @dataclass(frozen=True)
