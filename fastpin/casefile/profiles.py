@@ -211,22 +211,18 @@ def read_friction(contact: Section, folder: Path, basis: Basis) -> float | Profi
     return contact.number("friction")
 
 
-def read_wear(section: Section, folder: Path, cycles: int | None) -> Wear | None:
-    """How the bodies wear; None if a key is wrong (reported). `cycles`: their number unless the section gives it."""
+def read_wear(section: Section, folder: Path, default: Mapping[str, Any]) -> Wear | None:
+    """How the bodies wear; None if a key is wrong (reported). `default`: values of keys that the section leaves out.
+
+    A coefficient of the section replaces all default ones.
+    """
     reader = _Reader(section, folder, "wear", "per metre")
     profiles = {key: reader.profile(key) for key in COEFFICIENTS if key in section}
-    values = {key: section.value(key) for key in WEAR_KEYS if key in section and key not in COEFFICIENTS}
+    values = {key: value for key, value in default.items() if not (profiles and key in COEFFICIENTS)}
+    values |= {key: section.value(key) for key in WEAR_KEYS if key in section}
     values |= {key: Profile.constant(1.0) if profile is None else profile for key, profile in profiles.items()}
-    if cycles is not None:
-        values.setdefault("cycles", cycles)
-    harmless = {
-        "cycles": MOST_CYCLES,
-        "law": "archard",
-        "at": None,
-        "tolerance": 0.0,
-        **dict.fromkeys(COEFFICIENTS, 1.0),
-    }
-    wear = section.build(Wear, values, harmless)
+    harmless = {"cycles": MOST_CYCLES, "law": "archard", "at": None, "tolerance": 0.0}
+    wear = section.build(Wear, values, harmless | dict.fromkeys(COEFFICIENTS, 1.0))
     return None if None in profiles.values() else wear
 
 

@@ -174,7 +174,8 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     if history is not None:
         _check_together(source, lambda: check_keep(history, options))
     how = source.section("wear")
-    wear = read_wear(how, folder, None if history is None else history.blocks[-1].count) if how.present else None
+    count = {} if history is None else {"cycles": history.blocks[-1].count}
+    wear = read_wear(how, folder, count) if how.present else None
     return Case(problem, history, options, title, about, wear) if problem is not None and history is not None else None
 
 

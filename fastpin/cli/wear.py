@@ -24,7 +24,6 @@ from fastpin.cli.terminal import (
     write_text,
 )
 from fastpin.errors import InputError
-from fastpin.model.wear import WEAR_KEYS
 
 CYCLES = "{whole} of {total:,} cycles"
 """Text of the progress bar."""
@@ -33,9 +32,7 @@ CYCLES = "{whole} of {total:,} cycles"
 def run(options: argparse.Namespace) -> int:
     """Follow a life of wear, and print and write the chosen cycles."""
     case = casefile.read_case(options.case)
-    how: dict[str, Any] = {"cycles": None}
-    if case.wear is not None:
-        how = {name: getattr(case.wear, name) for name in WEAR_KEYS}
+    how: dict[str, Any] = {} if case.wear is None else case.wear.given
     given = {name: getattr(options, name) for name in ("cycles", "coefficient", "law", "tolerance")}
     given["at"] = None if options.at is None else [literal(part) for part in options.at.split(",")]
     given = {name: value for name, value in given.items() if value is not None}

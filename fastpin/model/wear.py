@@ -111,6 +111,11 @@ class Wear:
         return {name: value.toml() if isinstance(value, Profile) else value for name, value in found.items()}
 
     @property
+    def given(self) -> dict[str, Any]:
+        """The fields that are not None, by name."""
+        return {name: value for name in WEAR_KEYS if (value := getattr(self, name)) is not None}
+
+    @property
     def chosen(self) -> tuple[int, ...]:
         """The cycles after which profile and states are stored, in order, 0 and the last one included."""
         if self.at is not None:

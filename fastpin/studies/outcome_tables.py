@@ -26,7 +26,7 @@ from fastpin.model.checks import alternatives, as_toml, choice, file_path, strin
 from fastpin.model.points import BODIES
 from fastpin.model.profile import Profile
 from fastpin.model.synonyms import closest
-from fastpin.model.wear import WEAR_KEYS
+from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
@@ -110,7 +110,7 @@ def read_outcomes(path: str | Path) -> Outcomes:
     return found
 
 
-def outcomes_from(given: Mapping[str, Any]) -> Outcomes:
+def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None) -> Outcomes:
     """Check outcomes that are given in Python.
 
     Parameters
@@ -118,6 +118,8 @@ def outcomes_from(given: Mapping[str, Any]) -> Outcomes:
     given : mapping of str
         By name: a function of a result, a table as in a plan, such as ``{"quantity": "dx", "take": "largest"}``, or an
         :class:`StudyOutcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
+    wear : Wear, optional
+        How the bodies wear, for outcomes of wear that leave it out.
 
     Returns
     -------
@@ -131,16 +133,17 @@ def outcomes_from(given: Mapping[str, Any]) -> Outcomes:
     if not isinstance(given, Mapping):
         raise InputError("outcomes", f"must be a dict of functions and tables by name, not {as_toml(given)}")
     source = CaseText("").with_tables({"outcomes": dict(given)})
-    found = outcomes_in_text(source, Path())
+    found = outcomes_in_text(source, Path(), wear)
     if source.faults:
         raise CaseFileError("outcomes", source.faults)
     return found
 
 
-def outcomes_in_text(source: CaseText, folder: Path) -> Outcomes:
+def outcomes_in_text(source: CaseText, folder: Path, wear: Wear | None = None) -> Outcomes:
     """Read the table [outcomes] of a text, and report its faults.
 
-    Relative names of Python files start in `folder`. The outcomes have no meaning if the text has faults.
+    Relative names of files start in `folder`. `wear` is that of the case, for outcomes that leave its keys out. The
+    outcomes have no meaning if the text has faults.
     """
     found: Outcomes = {}
     section = source.section("outcomes")
@@ -153,7 +156,7 @@ def outcomes_in_text(source: CaseText, folder: Path) -> Outcomes:
             if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
-                outcome = _of_table(_Table(source, name, value), folder)
+                outcome = _of_table(_Table(source, name, value), folder, wear)
                 found |= {} if outcome is None else {name: outcome}
             elif callable(value):
                 found[name] = _of_callable(value)
@@ -210,7 +213,7 @@ class _Table(Section):
         super().report(f"{self.outcome}: {message}", *key)
 
 
-def _of_table(section: _Table, folder: Path) -> StudyOutcome | None:
+def _of_table(section: _Table, folder: Path, wear: Wear | None) -> StudyOutcome | None:
     """Read the table of one outcome, and report its faults. No outcome if a value is wrong."""
     first = [key for key in KEYS if key in section]
     if len(first) != 1:
@@ -222,8 +225,11 @@ def _of_table(section: _Table, folder: Path) -> StudyOutcome | None:
             others = f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
             hint = closest(str(key), allowed) or f"; beside {first[0]} there {others}"
             section.report(f'unknown key "{key}"{hint}', str(key))
-    readers = {"quantity": _of_quantity, "cycle": _of_cycle, "wear": _of_wear, "function": _of_function}
-    return readers[first[0]](section, folder)
+    if first[0] == "wear":
+        return _of_wear(section, folder, wear)
+    if first[0] == "function":
+        return _of_function(section, folder)
+    return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
 
 
 def _choice(section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
@@ -233,7 +239,7 @@ def _choice(section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
     return section.checked(key, choice, allowed)
 
 
-def _of_quantity(section: Section, folder: Path) -> StudyOutcome | None:
+def _of_quantity(section: Section) -> StudyOutcome | None:
     quantity = _choice(section, "quantity", tuple(QUANTITIES))
     take, span = _choice(section, "take", TAKES), _choice(section, "over", SPANS)
     if quantity is None or take is None or span is None:
@@ -255,7 +261,7 @@ def _of_quantity(section: Section, folder: Path) -> StudyOutcome | None:
     return StudyOutcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes), bar)
 
 
-def _of_cycle(section: Section, folder: Path) -> StudyOutcome | None:
+def _of_cycle(section: Section) -> StudyOutcome | None:
     quantity = _choice(section, "cycle", tuple(CYCLE_QUANTITIES))
     if quantity is None:
         return None
@@ -263,8 +269,8 @@ def _of_cycle(section: Section, folder: Path) -> StudyOutcome | None:
     return StudyOutcome(kind, "", json.dumps({"cycle": quantity}), partial(of_last_cycle, quantity), classes)
 
 
-def _of_wear(section: Section, folder: Path) -> StudyOutcome | None:
-    """Read a number of the last cycle, followed on a profile that wears."""
+def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutcome | None:
+    """Read a number of the last cycle, followed on a profile that wears: as the case says, unless the table does."""
     quantity = _choice(section, "wear", tuple(WEAR_QUANTITIES))
     with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.life is not None)
     criterion = _choice(section, "criterion", with_life)
@@ -273,13 +279,12 @@ def _of_wear(section: Section, folder: Path) -> StudyOutcome | None:
         for key in ("criterion", "body"):
             if key in section:
                 section.report(f"{key}: has no effect on the {quantity.replace('_', ' ')}", key)
-    if "cycles" not in section:
-        section.report("cycles is missing; a life of wear has a number of cycles, such as cycles = 1e5")
-    wear = read_wear(section, folder, None)
+    if default is None and "cycles" not in section:
+        section.report("cycles is missing, such as cycles = 1e5; a section [wear] of the case gives it too")
+    wear = read_wear(section, folder, {} if default is None else default.given)
     if quantity is None or criterion is None or body is None or wear is None:
         return None
-    given = {name: value for name in WEAR_KEYS if (value := getattr(wear, name)) is not None}
-    how = {name: value.entries() if isinstance(value, Profile) else value for name, value in given.items()}
+    how = {name: value.entries() if isinstance(value, Profile) else value for name, value in wear.given.items()}
     definition = {"wear": quantity, "how": how, "criterion": criterion, "body": body}
     kind, classes = WEAR_QUANTITIES[quantity].kind, dict(WEAR_QUANTITIES[quantity].classes)
     read = partial(of_wear, quantity, wear, criterion, body)

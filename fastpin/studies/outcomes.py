@@ -29,7 +29,7 @@ from fastpin.model.checks import number
 from fastpin.model.doubts import doubts_given
 from fastpin.model.points import Body, owner_of
 from fastpin.model.units import DEGREE, Unit
-from fastpin.model.wear import WEAR_KEYS, Wear
+from fastpin.model.wear import Wear
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.error_bars import number_bar, value_bar
 from fastpin.states.quantities import QUANTITIES, size
@@ -388,7 +388,7 @@ def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Resul
     lives = _WORN_LIVES.setdefault(result, {})
     if wear not in lives:
         with doubts_given():
-            lives[wear] = result.wear(**{name: getattr(wear, name) for name in WEAR_KEYS})
+            lives[wear] = result.wear(**wear.given)
     life, chosen = lives[wear], WEAR_QUANTITIES[quantity]
     if not chosen.is_damage:
         return chosen.of(life)

@@ -157,7 +157,7 @@ class Plan:
         InputError
             With all faults. Also if the plan has another outcome of such a name.
         """
-        found = outcomes_from(outcomes)
+        found = outcomes_from(outcomes, self._base.wear)
         known = {name.lower(): outcome.definition for name, outcome in self.outcomes.items()}
         for name, outcome in found.items():
             if known.get(name.lower(), outcome.definition) != outcome.definition:
@@ -269,7 +269,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     count = max(len(rows), 1) * math.prod(len(values) for values in axes.values())
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
-    outcomes = outcomes_in_text(source, folder)
+    outcomes = outcomes_in_text(source, folder, None if base is None else base.wear)
     labels = _labels(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
@@ -416,7 +416,7 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
         return f'"{name}": there is no section [{section}] in a case file{hint}'
     if section == "wear":
         return (
-            f'"{name}": no run of a sweep wears; an outcome such as {{ wear = "depth", ... }} has its own {names[-1]}'
+            f'"{name}": no run of a sweep wears; an outcome such as {{ wear = "depth" }} may have {names[-1]} beside it'
         )
     if section == "load":
         if not 3 <= len(names) <= 4 or not names[1].isdecimal():

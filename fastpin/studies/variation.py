@@ -20,6 +20,7 @@ from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
 from fastpin.model.materials import MATERIALS, Material
+from fastpin.model.wear import Wear
 from fastpin.states.error_bars import check_nodes
 
 LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
@@ -60,6 +61,14 @@ class BaseCase:
         """Number of [[load]] blocks of the case."""
         blocks = self.text.root.value("load")
         return len(self.text.blocks("load")) if isinstance(blocks, list) else 0
+
+    @property
+    def wear(self) -> Wear | None:
+        """How its bodies wear, if the case says so."""
+        if "wear" not in self.text.root:
+            return None
+        _, case = self.vary({})
+        return None if case is None else case.wear
 
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""

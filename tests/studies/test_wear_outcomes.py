@@ -140,6 +140,26 @@ def test_a_coefficient_along_the_rim_is_written_as_in_a_case(result: Result) -> 
     assert one.definition != other.definition
 
 
+def test_the_wear_of_the_case_is_taken_where_an_outcome_has_none_of_its_own(result: Result, tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(f"{CASE}[wear]\ncoefficient = 4e-15\ncycles = 20\ntolerance = 0\n")
+    own = (
+        'own = { wear = "depth" }\nplate = { wear = "depth", plate = 1e-15 }\nlong = { wear = "depth", cycles = 30 }\n'
+    )
+    plan = parse_plan(f"{PLAN}{own}", folder=tmp_path)
+    written = {
+        "own": {"coefficient": 4e-15, "cycles": 20},
+        "plate": {"plate": 1e-15, "cycles": 20},
+        "long": {"coefficient": 4e-15, "cycles": 30},
+    }
+    for name, how in written.items():
+        alone = outcomes_from({"it": {"wear": "depth", "tolerance": 0.0, **how}})["it"]
+        assert plan.outcomes[name].definition == alone.definition
+    added = plan.with_outcomes({"more": {"wear": "depth", "plate": 1e-15}})
+    assert added.outcomes["more"].definition == plan.outcomes["plate"].definition
+    with pytest.raises(CaseFileError, match=r'"wear\.plate": no run of a sweep wears'):
+        parse_plan(PLAN.replace("[outcomes]", "wear.plate = [1e-15]\n[outcomes]"), folder=tmp_path)
+
+
 def test_all_faults_come_at_once_with_their_lines(tmp_path: Path) -> None:
     text = """[grid]
 solve.nodes = [41]
