@@ -9,10 +9,10 @@ class Race(IntEnum):
     """What wins within the cycles of a life of wear."""
 
     OPEN = 0
-    """No crack starts, and the material with the largest damage of all is still there."""
+    """No crack starts, and on the first profile none would start either."""
 
     WEAR = 1
-    """No crack starts, and the material with the largest damage of all is worn off."""
+    """No crack starts, but on the first profile one would: wear takes the material away, or spreads the contact."""
 
     CRACK = 2
     """A crack starts before its material is worn off."""
@@ -20,7 +20,7 @@ class Race(IntEnum):
     @property
     def words(self) -> str:
         """The winner in words."""
-        return ("no crack so far", "wear wins", "a crack wins")[self]
+        return ("no crack in any case", "wear wins", "a crack wins")[self]
 
 
 RACES = {int(race): race.words for race in Race}

@@ -134,7 +134,7 @@ class WornFatigue(ReadOnly):
 
     @property
     def first_life(self) -> float:
-        """Life by the criterion on the first stored profile alone, as if nothing wore on."""
+        """Life by the criterion on the first stored profile alone, as if nothing wore."""
         most = float(self.rate[0].max())
         return 1.0 / most if most else math.inf
 
@@ -163,13 +163,11 @@ class WornFatigue(ReadOnly):
         """Whether a crack or wear wins within the cycles of the wear."""
         if math.isfinite(self.life):
             return Race.CRACK
-        last = self.damage[-1]
-        most = last == last.max()
-        return Race.WEAR if last.any() and self.is_gone[-1][most].all() else Race.OPEN
+        return Race.WEAR if self.first_life <= self.cycles[-1] else Race.OPEN
 
     @property
     def wear_wins(self) -> bool:
-        """Whether no crack starts, and the material with the largest damage of all is worn off."""
+        """Whether no crack starts, though one would on the first profile."""
         return self.race is Race.WEAR
 
     @property
@@ -188,11 +186,9 @@ class WornFatigue(ReadOnly):
             depth = units(self.problem)["displacement"].text(self.crack.depth, 3)
             place = f"{from_bottom(self.crack.theta):.4g} deg, {depth} below the first surface"
             return f"a crack starts after {cycles_text(float(f'{self.life:.4g}'))} at {place}"
-        done = f"no crack within {cycles_text(int(self.cycles[-1]))}"
-        largest = f"largest damage {self.hot_spots[-1].damage:.3g}"
-        return (
-            f"{done}: wear takes the most damaged material away, {largest}" if self.wear_wins else f"{done}, {largest}"
-        )
+        first = f", on the first profile one after {self.first_life:.4g}" if self.wear_wins else ""
+        largest = f"largest damage {self.damage[-1].max():.3g}"
+        return f"no crack within {cycles_text(int(self.cycles[-1]))}{first}; {largest}"
 
     @property
     def every_second(self) -> WornFatigue:

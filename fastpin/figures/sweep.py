@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -139,14 +139,15 @@ def sweeps_of(charts: Sequence[Chart]) -> Plot:
 
 def _draw_beside(look: Look, charts: Sequence[Chart]) -> Sheet:
     columns = min(len(charts), 2)
-    sheet = look.sheet([PANEL] * -(-len(charts) // columns), columns, 0.5)
-    for panel in sheet.axes.flat[len(charts) :]:
-        panel.set_visible(False)
-    for panel, chart in zip(sheet.axes.flat, charts, strict=False):
-        with mpl.rc_context(SMALL):
-            sweep_of(replace(chart, problem=None, title="")).draw(Look(ax=panel))
-        above = panel.get_title()
-        panel.set_title("\n".join(filter(None, [above, "" if chart.classes else _shown(chart.label)])), fontsize=8.0)
+    with mpl.rc_context(SMALL):
+        sheet = look.sheet([PANEL] * -(-len(charts) // columns), columns, 0.5)
+        for panel in sheet.axes.flat[len(charts) :]:
+            panel.set_visible(False)
+        for panel, chart in zip(sheet.axes.flat, charts, strict=False):
+            draw_chart = _draw_curves if chart.y is None else _draw_maps
+            draw_chart(Look(ax=panel), replace(chart, problem=None, title="", label=""))
+            above = [_shown(chart.label), panel.get_title()]
+            panel.set_title("\n".join(filter(None, above)), fontsize=8.0, parse_math=False)
     sheet.head(look.title, caption=_fixed_parameters(charts[0]))
     return sheet
 
@@ -324,9 +325,7 @@ def _draw_contours(panel: Axes, chart: Chart, numbers: np.ndarray, levels: np.nd
             chart.x.values, chart.y.values, np.ma.masked_invalid(numbers), inside, colors="white", linewidths=0.8
         )
         # A gap in a line would stay where its label is removed.
-        labels = list(
-            panel.clabel(lines, fmt=lambda value: f"{value:.6g}".replace("-", "−"), fontsize=6.5, inline=False)
-        )
+        labels = list(panel.clabel(lines, fmt=_in_round_numbers(inside), fontsize=6.5, inline=False))
         for text in labels:
             text.set_bbox({"facecolor": "0.15", "edgecolor": "none", "pad": 0.6})
     return labels
@@ -352,7 +351,7 @@ def _explain(sheet: Sheet, chart: Chart) -> None:
     if any(unsure.any() for unsure in _unsure(chart)):
         words = "another class on the coarse grid" if chart.classes else "error bar above the differences to all sides"
         handles.append(Line2D([], [], label=words, **_UNSURE))
-    sheet.legend(_by_rows(handles, MOST_ENTRIES), MOST_ENTRIES)
+    _add_legend(sheet, handles, MOST_ENTRIES)
 
 
 def _draw_curves(look: Look, chart: Chart) -> Sheet:
@@ -392,7 +391,7 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
         handles.append(Line2D([], [], color="0.3", linestyle="none", marker="x", markersize=4.0, label="failed run"))
     some = f"{len(shown)} of {len(chart.parts)} curves" if len(shown) < len(chart.parts) else ""
     sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
-    sheet.legend(_by_rows(handles, across), across, some)
+    _add_legend(sheet, handles, across, some)
     return sheet
 
 
@@ -409,11 +408,12 @@ def _fixed_parameters(chart: Chart) -> str:
     return " ".join(parts).rstrip(",;")
 
 
-def _by_rows(handles: Sequence[Any], columns: int) -> list[Any]:
-    """Return the entries of a legend that is filled column by column, so that they read row by row."""
+def _add_legend(sheet: Sheet, handles: Sequence[Any], columns: int, title: str = "") -> None:
+    """Add a legend whose entries read row by row, though it is filled column by column. Given axes hold two columns."""
+    columns = columns if sheet.host is None else min(columns, 2)
     blank = Line2D([], [], linestyle="none", label=" ")
     filled = [*handles, *[blank] * (-len(handles) % columns)] if len(handles) > columns else list(handles)
-    return [filled[k] for column in range(columns) for k in range(column, len(filled), columns)]
+    sheet.legend([filled[k] for first in range(columns) for k in range(first, len(filled), columns)], columns, title)
 
 
 def _mark_failed(panel: Axes, x: np.ndarray, index: int) -> None:
@@ -445,14 +445,27 @@ def _scale_axes(panel: Axes, chart: Chart) -> None:
 
 
 def _round_numbers(axis: MatplotlibAxis, values: np.ndarray) -> None:
-    """Put plain numbers at 1, 2 and 5 times powers of ten on a logarithmic axis, or at powers of ten on a long one."""
+    """Put numbers at 1, 2 and 5 times powers of ten on a logarithmic axis, or at powers of ten on a long one."""
     decades = math.log10(float(values.max()) / float(values.min()))
-    plain = PLAIN[0] <= values.min() and values.max() <= PLAIN[1]
     subs = (1.0, 2.0, 5.0) if decades <= DECADES else (1.0, 3.0) if decades <= 2.0 * DECADES else (1.0,)
-    axis.set_major_locator(LogLocator(subs=subs if plain else (1.0,), numticks=12))
+    axis.set_major_locator(LogLocator(subs=subs, numticks=12))
     axis.set_minor_formatter(NullFormatter())
-    if plain:
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    written = _in_round_numbers(values)
+    axis.set_major_formatter(FuncFormatter(lambda value, _: written(value)))
+
+
+def _in_round_numbers(values: np.ndarray) -> Callable[[float], str]:
+    """Return how round numbers like some values are written: all in full, or all as powers of ten."""
+    sizes = np.abs(values[values != 0.0])
+    if not sizes.size or (PLAIN[0] <= sizes.min() and sizes.max() <= PLAIN[1]):
+        return lambda value: f"{value:.6g}".replace("-", "−")
+
+    def written(value: float) -> str:
+        digits, power = f"{value:.3e}".split("e")
+        digits = digits.rstrip("0").rstrip(".")
+        return f"$10^{{{int(power)}}}$" if digits == "1" else rf"${digits}\times10^{{{int(power)}}}$"
+
+    return written
 
 
 def _label_panels(sheet: Sheet, chart: Chart) -> None:

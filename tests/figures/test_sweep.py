@@ -292,7 +292,7 @@ def test_charts_side_by_side_say_what_each_shows(plan: Plan, rows: list[dict[str
     one = [replace(each, parts=each.parts[:1]) for each in charts]
     figure = plot_sweep(one)
     titles = [panel.get_title() for panel in figure.axes if panel.get_title()]
-    assert [title.splitlines()[-1] for title in titles] == ["peak pressure (MPa)", "stick width (deg)"]
+    assert [title.splitlines()[0] for title in titles] == ["peak pressure (MPa)", "stick width (deg)"]
     plot = sweeps_of(one)
     assert plot.caption.startswith("Peak pressure (MPa), stick width (deg) over ")
     assert plot.instead.startswith("Maps of peak pressure (MPa), stick width (deg) over ")
@@ -300,3 +300,42 @@ def test_charts_side_by_side_say_what_each_shows(plan: Plan, rows: list[dict[str
         plot_sweep(charts)
     with pytest.raises(InputError, match="ax: holds one chart; give a list of charts no axes"):
         plot_sweep(one, ax=figure.axes[0])
+
+
+def test_several_charts_stand_side_by_side(smooth: Chart, plan: Plan, rows: list[dict[str, Any]]) -> None:
+    given = chart(plan, rows, "peak_pressure", "contact.clearance")
+    curves = replace(given, parts=[(f"P = {k}", *part[1:]) for k, part in enumerate(given.parts)])
+    named = replace(smooth, label="depth (um)", title="Both")
+    figure = plot_sweep([named, curves, replace(named, label="volume (m^2)")])
+    titles = {"depth (µm)", "volume (m²)"}
+    panels = {panel.get_title(): panel for panel in figure.axes if panel.get_title()}
+    assert titles <= set(panels)
+    assert len(panels) == 3
+    assert not titles & {panel.get_ylabel() for panel in figure.axes}  # the bar of colours repeats no title
+    assert figure.get_suptitle() == "Both"
+    (legend,) = [legend for panel in figure.axes if (legend := panel.get_legend()) and len(legend.get_texts()) > 2]
+    names = [*(name for name, _, _ in curves.parts), "failed run"]
+    assert [text.get_text() for text in legend.get_texts()] == names[::2] + names[1::2]  # two columns, to read by rows
+
+
+def test_what_does_not_fit_side_by_side_is_told(smooth: Chart, plan: Plan, rows: list[dict[str, Any]]) -> None:
+    maps = chart(plan, rows, "peak_pressure")
+    with pytest.raises(InputError, match="has 2 maps; side by side each chart has one"):
+        plot_sweep([smooth, maps])
+    with pytest.raises(InputError, match="ax: holds one chart"):
+        plot_sweep([smooth, smooth], ax=Figure().subplots())
+    with pytest.raises(InputError, match="chart: must be"):
+        plot_sweep([smooth, "depth"])  # type: ignore[list-item]
+
+
+@pytest.mark.parametrize(
+    ("values", "written"),
+    [
+        ([0.0, -0.5, 30000.0], ["0", "−0.5", "30000"]),
+        ([3e4, 1e5, 3e5], [r"$3\times10^{4}$", "$10^{5}$", r"$3\times10^{5}$"]),
+        ([1e-11, 2.5e-3], ["$10^{-11}$", r"$2.5\times10^{-3}$"]),
+    ],
+)
+def test_round_numbers_are_written_in_full_or_all_as_powers_of_ten(values: list[float], written: list[str]) -> None:
+    words = sweep_figure._in_round_numbers(np.array(values))
+    assert [words(value) for value in values] == written

@@ -85,9 +85,7 @@ def test_work_is_energy_and_dissipation_at_second_order(name: str) -> None:
 @pytest.mark.parametrize("name", TABLE)
 def test_the_integral_equations_hold(name: str) -> None:
     """Measured with 101, 201, 401 nodes: (46) 1.7e-4, 4.6e-5, 1.2e-5, (47) 1.6e-5, 3.0e-6, 5.1e-7."""
-    coarse, fine = (
-        residuals_away(solve(PROBLEMS[name], FRETTED[:1], nodes=nodes)[-1], 0.12) for nodes in (101, 201)
-    )
+    coarse, fine = (residuals_away(solve(PROBLEMS[name], FRETTED[:1], nodes=nodes)[-1], 0.12) for nodes in (101, 201))
     assert 3.0 * fine[0] < coarse[0] < 2e-4
     assert 4.0 * fine[1] < coarse[1] < 2e-5
 
@@ -133,8 +131,9 @@ def test_a_mirrored_friction_has_mirrored_states() -> None:
     grid, turned = Grid.circle(120, BOTTOM), [{**each, "Q": -each.get("Q", 0.0)} for each in FRETTED]
     mirror = -np.arange(120) % 120
     mirrored = replace(PROBLEMS["M1"], friction=wave(0.35, 3, 0.0, -0.2))
-    ones, others = solve(PROBLEMS["M1"], [{"Q": 0.0, **each} for each in FRETTED], grid=grid), solve(
-        mirrored, turned, grid=grid
+    ones, others = (
+        solve(PROBLEMS["M1"], [{"Q": 0.0, **each} for each in FRETTED], grid=grid),
+        solve(mirrored, turned, grid=grid),
     )
     for one, other in zip(ones, others, strict=True):
         assert one.pressure == pytest.approx(other.pressure[mirror], abs=2e-12)
