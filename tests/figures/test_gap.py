@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.patches import Circle, Polygon
 
-from fastpin.casefile import parse_case
+from fastpin.casefile import parse_case, read_case
 from fastpin.cli.main import main
 from fastpin.errors import InputError
 from fastpin.figures import plot_gap, plot_sketch
@@ -78,6 +78,12 @@ def test_a_case_file_has_the_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         assert main(["plot", "case.toml", "gap", *extra]) == 2
         assert words in capsys.readouterr().err
     assert plot_gap(parse_case(text)).axes
+
+
+def test_the_case_of_the_documents_has_all_profiles() -> None:
+    case = read_case(Path(__file__).parents[2] / "docs" / "worn-lug.toml")
+    assert set(case.problem.profiles) == {"gap.hole", "gap.pin", "contact.friction"}
+    assert case.wear is not None
 
 
 def rims(problem: Problem) -> tuple[np.ndarray, np.ndarray]:

@@ -129,7 +129,8 @@ def test_the_example_of_figures_draws_them(tmp_path: Path, monkeypatch: pytest.M
     (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     names: dict[str, Any] = {}
     exec(compile(code, "figures.md", "exec"), names)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["cycle.gif", "loops.pdf", "map.svg", "tractions.pdf"]
+    files = ["cycle.gif", "loops.pdf", "map.svg", "scar.pdf", "tractions.pdf"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == files
     assert names["axes"].texts
     for kind in KINDS:
         assert f"`{kind}`" in text, kind
