@@ -83,12 +83,14 @@ def wear_input(result: WearResult) -> dict[str, Any]:
 
 def law_rows(result: WearResult) -> list[tuple[str, str]]:
     """Return the law of wear, its coefficients, the cycles and the control of their error: rows of (subject, text)."""
-    tolerance = f"{result.tolerance:g} of the largest depth" if result.tolerance else "none: every cycle is solved"
+    tolerance = "0: every cycle is solved"
+    if result.tolerance:
+        tolerance = f"{result.tolerance:g} of the largest depth, for the error by cycles that stand for many"
     return [
         ("law", f"{result.law}: {LAW_WORDS[result.law]}"),
         *((f"wear coefficient of the {body}", words) for body, words in coefficient_words(result).items()),
         ("cycles", f"{result.all_cycles:,}"),
-        ("largest error by fat cycles", tolerance),
+        ("tolerance", tolerance),
     ]
 
 

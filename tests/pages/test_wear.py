@@ -206,7 +206,7 @@ def test_a_plate_without_constants_has_no_damage(tmp_path: Path) -> None:
     found = words_of(plain, tmp_path / "page.html")
     assert "Damage needs constants for a life by smith-watson-topper" in found
     assert "wear coefficient of the pin" not in found
-    assert "none: every cycle is solved" in found
+    assert "0: every cycle is solved" in found
     assert not np.any(plain[-1].pin_depth)
 
 
