@@ -7,7 +7,7 @@ import sys
 
 from fastpin import casefile, report
 from fastpin.cli.terminal import EXIT_OK, say
-from fastpin.model.doubts import doubts, warn_of
+from fastpin.model.doubts import doubts, warn_of, wear_doubts
 
 
 def example(_: argparse.Namespace) -> int:
@@ -20,5 +20,6 @@ def check(options: argparse.Namespace) -> int:
     """Read a case file, and print how it is understood, with warnings of doubtful values."""
     case = casefile.read_case(options.case)
     say(*report.describe(case).split("\n"))
-    warn_of(doubts(case.problem, case.history, case.options), 2)
+    of_wear = [] if case.wear is None else wear_doubts(case.problem, case.wear)
+    warn_of([*doubts(case.problem, case.history, case.options), *of_wear], 2)
     return EXIT_OK

@@ -25,8 +25,9 @@ from fastpin.model.loads import LOAD_KIND
 from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import owner_of
-from fastpin.model.problem import Problem
+from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.units import units
+from fastpin.model.wear import Wear
 
 MOST_FRICTION, PERCENT = 2.0, 200.0
 """Friction above the first is rare: clean metals reach 1.5. The second is as much in percent.
@@ -88,6 +89,13 @@ MOST_ANGLE = 4.0 * math.pi
 LEAST_STRENGTH = 1e-5
 """Strength in parts of Young's modulus, below which it is probably in MPa: a pure soft metal yields at 1e-4."""
 
+MOST_WEAR = 1.0
+"""Wear coefficient in parts of beta*, above which it is in another unit.
+
+Archard's coefficient times the hardness is the part of touching asperities that wears off: below 0.01 even for severe
+wear. The hardness of metals is some 1/30 of their modulus, so a coefficient of beta* makes this part some 0.1.
+"""
+
 EDGES = {
     "hole": ("plate", "at the hole of the plate"),
     "bore of the bush": ("bush", "in the bore of the bush"),
@@ -127,6 +135,16 @@ def doubts(
         if all(doubt.field != "E" for doubt in by_loads):
             found += _of_moduli(problem)
     return found
+
+
+def wear_doubts(problem: Problem, wear: Wear) -> list[InputWarning]:
+    """Return a warning for a coefficient of wear that is probably in another unit."""
+    theta = np.linspace(-math.pi, math.pi, LOOKED_AT)
+    most = float(wear.coefficients(problem.hole_radius, theta).sum(axis=0).max())
+    if not _has_units(problem) or most <= MOST_WEAR * problem.surfaces.beta_star:
+        return []
+    hint = "numbers in 1/MPa are to be multiplied by 1e-6, numbers in mm^3/(N m) by 1e-9"
+    return [InputWarning("coefficient", f"{most:.3g} 1/Pa is more than any surface wears; {hint}")]
 
 
 def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[np.ndarray]) -> list[InputWarning]:

@@ -15,6 +15,7 @@ from fastpin.model.materials import Material
 from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import PASCAL, acting_loads, units
+from fastpin.model.wear import Wear
 from fastpin.report.table import Column, table, visible_rows
 
 ROUNDING = 1e-9
@@ -74,7 +75,18 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
     ]
     if options.keep != "all":
         rows.append(("states", f"kept: {options.keep}"))
+    if case.wear is not None:
+        rows.append(("wear", _wear_words(case.wear)))
     return rows
+
+
+def _wear_words(wear: Wear) -> str:
+    """Law, cycles and coefficients of wear."""
+    names = {"coefficient": "pin and plate together", "pin": "pin", "plate": "plate"}
+    known = {words: profile for name, words in names.items() if (profile := wear.given.get(name)) is not None}
+    parts = [f"{words} {profile.words(lambda value: f'{value:.4g}')}" for words, profile in known.items()]
+    law = {"archard": "Archard's law", "energy": "law of energy"}[wear.law]
+    return f"{law}, {wear.cycles:,} cycles; in 1/Pa: {', '.join(parts)}"
 
 
 def profile_rows(problem: Problem) -> list[tuple[str, str]]:

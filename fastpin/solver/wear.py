@@ -121,9 +121,10 @@ class WearTask:
             If it has too many corners.
         """
         *before, last = self.history.blocks
+        most = (MAX_CORNERS - len(self.approach)) // len(self.cycle) - 1
+        if self.wear.cycles > most:
+            raise InputError("cycles", f"must be at most {most:,}: a life has at most {MAX_CORNERS:,} corners")
         block = replace(last, count=self.wear.cycles + 1)
-        if len(self.history) - last.corners + block.corners > MAX_CORNERS:
-            raise InputError("cycles", f"must be fewer: the cycles have more than {MAX_CORNERS:,} corners")
         return LoadHistory.of_blocks([*before, block])
 
     def result(self, grid: Grid, cycles: Sequence[WornCycle], statistics: dict[str, float]) -> WearResult:

@@ -20,7 +20,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.checks import check_callable, file_path, string, true_or_false
-from fastpin.model.doubts import doubts, warn_of
+from fastpin.model.doubts import doubts, warn_of, wear_doubts
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
@@ -133,7 +133,7 @@ def wear(
     how = Wear(coefficient, pin, plate, last.count if cycles is None else cycles, law, at, tolerance)  # type: ignore[arg-type]
     check_callable("progress", progress)
     task = WearTask(problem, history, how, SolveOptions(**options), grid, progress)
-    warn_of(doubts(problem, history, task.options), 2)
+    warn_of([*doubts(problem, history, task.options), *wear_doubts(problem, how)], 2)
     string("title", title)
     for name, value in (("overwrite", overwrite), ("resume", resume)):
         if true_or_false(name, value) and output is None:

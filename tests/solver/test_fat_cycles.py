@@ -226,7 +226,7 @@ WRONG = {
     "history: must end with the cycle that wears: repeat its last block": {"history": [{"P": 1.0}]},
     "keep: has no effect on wear; of the options of a run it takes nodes and arc": {"keep": "cycles"},
     "grid: wear needs equally spaced nodes": {"grid": Grid(np.array([-3.0, -2.0, -1.6, -1.2, -1.0, 0.0]))},
-    "cycles: must be fewer: the cycles have more than 100,000,000 corners": {"cycles": 1e8},
+    "cycles: must be at most 49,999,998: a life has at most 100,000,000 corners": {"cycles": 1e8},
     "resume: needs an output": {"resume": True},
     "overwrite: needs an output": {"overwrite": True},
 }
