@@ -286,9 +286,7 @@ class Session(InTurns):
             If so many places are not remembered.
         """
         if whole_number("times", times, 1) > len(self._undo):
-            raise InputError(
-                "times", f"only {len(self._undo)} places before this one are remembered, not {as_toml(times)}"
-            )
+            raise InputError("times", f"only {len(self._undo)} earlier places are remembered, not {as_toml(times)}")
         return self._move(self._undo, self._redo, times)
 
     @in_turn

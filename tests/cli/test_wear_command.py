@@ -67,6 +67,15 @@ def test_the_command_prints_the_chosen_cycles(capsys):
     assert max(document["plate_coefficient"]) == 2e-12
 
 
+def test_check_describes_the_wear_and_doubts_its_coefficients(capsys):
+    assert main(["check", "case.toml"]) == 0
+    line = "wear     Archard's law, 12 cycles; in 1/Pa: pin 1e-12, plate 1e-12; 1e-12 more from -20 to 20 deg"
+    assert line in capsys.readouterr().out.splitlines()
+    Path("case.toml").write_text(CASE.replace("pin = 1e-12", "pin = 1e-6"))
+    assert main(["check", "case.toml"]) == 0
+    assert "fastpin: warning: coefficient: 1e-06 1/Pa is more than any surface wears" in capsys.readouterr().err
+
+
 def test_options_take_the_place_of_the_case(capsys):
     words = ["--cycles", "20", "--coefficient", "1e-13", "--at", "3,9", "--law", "energy", "--tolerance", "0.05"]
     assert main(["wear", "case.toml", *words, "--nodes", "41", "--json"]) == 0
@@ -105,7 +114,8 @@ def test_a_stored_life_is_shown(capsys):
 def test_an_unfinished_life_says_so(capsys):
     Path("case.toml").write_text(CASE.replace("plate = [{ constant = 1e-12 }, {", "plate = [{ constant = 1e-5 }, {"))
     assert main(["wear", "case.toml", "-o", "life.h5"]) == 1
-    error = capsys.readouterr().err.removeprefix("fastpin: ").strip()
+    doubt, error = (line.removeprefix("fastpin: ") for line in capsys.readouterr().err.splitlines())
+    assert doubt.startswith("warning: coefficient: 1e-05 1/Pa is more than any surface wears")
     assert main(["show", "life.h5"]) == 0
     *_, reached, note = capsys.readouterr().out.splitlines()
     assert reached == "unfinished: 1 of 12 cycles, 1 of them solved; debris is not modelled"

@@ -7,7 +7,9 @@ import pickle
 import numpy as np
 import pytest
 
+import fastpin
 from fastpin.errors import InputError
+from fastpin.model.doubts import wear_doubts
 from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import Zone
 from fastpin.model.wear import Wear
@@ -64,3 +66,24 @@ def test_wrong_wear_is_refused_in_one_sentence(message):
 def test_coefficients_of_zero_are_refused():
     with pytest.raises(InputError, match="coefficient: must be positive somewhere on pin or plate"):
         Wear(0.0).coefficients(1.0, THETA)
+
+
+@pytest.mark.parametrize(
+    ("given", "doubtful"),
+    [
+        ({"coefficient": 1e-14}, False),
+        ({"coefficient": 1e-8}, True),  # 1e-14 in 1/MPa
+        ({"pin": 1e-15, "plate": Profile.constant(1e-15) + Profile((Zone(1e-5, -2.0, -1.0),))}, True),
+        ({"plate": 3e-11}, False),
+    ],
+)
+def test_a_coefficient_in_another_unit_is_doubted(given, doubtful):
+    pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], fastpin.MATERIALS["aluminium"])
+    problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=20e-6, friction=0.4)
+    found = [str(doubt) for doubt in wear_doubts(problem, Wear(**given))]
+    assert len(found) == doubtful
+    assert all("1/Pa is more than any surface wears; numbers in 1/MPa are to be" in each for each in found)
+    in_megapascals = fastpin.MaterialPair(fastpin.Material(116e3, 0.32), fastpin.Material(69e3, 0.33))
+    other = fastpin.Problem(in_megapascals, hole_radius=10.0, clearance=0.02, friction=0.4)
+    assert wear_doubts(other, Wear(1e-8)) == []  # N, mm and MPa fit together
+    assert wear_doubts(fastpin.Problem.from_load_parameter(pair, 0.1, 0.4), Wear(7.0)) == []
