@@ -15,10 +15,11 @@ from fastpin.figures.kinds import KINDS, kinds_with
 
 def run(options: argparse.Namespace) -> int:
     """Draw one kind of figure of a stored result."""
+    is_text = options.result.suffix.lower() == ".toml"
     if options.kind is None:
-        options.kind = _usual_kind(options.result)
+        options.kind = "sketch" if is_text else "scar" if storage.holds_wear(options.result) else "tractions"
     kind = KINDS[options.kind]
-    is_case = "case" in kind.sources and options.result.suffix.lower() == ".toml"
+    is_case = is_text and "case" in kind.sources
     _check(options, is_case)
     film = kind.ending == "gif"
     figure = Path(f"{options.kind}.{kind.ending}") if options.output is None else options.output
@@ -40,13 +41,6 @@ def run(options: argparse.Namespace) -> int:
     if code == 0:
         say(f"wrote {figure}" + ("" if options.csv is None else f" and {options.csv}"))
     return code
-
-
-def _usual_kind(path: Path) -> str:
-    """Return the kind that is drawn unless the user names one."""
-    if path.suffix.lower() == ".toml":
-        return "sketch"
-    return "scar" if storage.holds_wear(path) else "tractions"
 
 
 def _check(options: argparse.Namespace, is_case: bool) -> None:

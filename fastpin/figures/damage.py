@@ -82,7 +82,7 @@ def _draw(look: Look, life: WearResult, found: WornFatigue) -> Sheet:
         Line2D([], [], label="of all material", **EVER),
     ]
     sheet.legend(handles, 2)
-    head = f"{edge_body(found.problem, found.body)}, {found.criterion}: {found.words}"
+    head = f"{edge_body(found.problem, found.body)}, {found.criterion}: {found.words.replace(' um ', ' µm ')}"
     head += "" if life.complete else f"; {followed_words(life)}"
     sheet.head(look.title, head, caption=life_caption(life))
     return sheet

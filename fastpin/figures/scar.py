@@ -29,9 +29,6 @@ MARGIN = 0.15
 CYCLES = "cycles"
 """Words of the axis of cycles."""
 
-FEW = 15
-"""Most stored cycles with large marks."""
-
 
 def scar_plot(subject: Subject) -> Plot:
     """Return the profiles of wear, and the pressure on them, after some of the stored cycles."""
@@ -189,7 +186,7 @@ def _draw_wear(look: Look, life: WearResult) -> Sheet:
         factor, name = unit[row.kind].scale([highest])
         for place, values in enumerate(row.curves.values()):
             style = line(place, place)
-            panel.plot(numbers, factor * values, marker="o", markersize=3.8 if len(life) <= FEW else 2.5, **style)
+            panel.plot(numbers, factor * values, marker="o", markersize=3.8 if len(life) <= 15 else 2.5, **style)
         panel.set_ylabel(quantity(row.words, name))
         if row.grows and numbers[-1] > MAX_NAMED and highest:
             panel.set_yscale("log")

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fastpin.damage import WornFatigue
-from fastpin.damage.worn import WornSpot
 from fastpin.figures.damage import damage_of
 from fastpin.figures.scar import scar_plot, wear_plot
 from fastpin.figures.subjects import InMemory
@@ -155,27 +154,21 @@ def _race(found: WornFatigue) -> list[tuple[str, str]]:
     """Return what is known of the first crack, and of the material that wears away: rows of (subject, text)."""
     length = units(found.problem)["displacement"]
 
-    def cycles(count: float) -> str:
-        return cycles_text(float(f"{count:.4g}")) if math.isfinite(count) else "infinite"
-
-    def place(spot: WornSpot) -> str:
-        where = f"{length.text(spot.depth, 4)} under" if spot.depth else "on"
-        return f"at {from_bottom(spot.theta):z.2f} deg, {where} the first surface"
-
-    crack, left = found.crack, found.hot_spots[-1]
+    left = found.hot_spots[-1]
+    depth = f"{length.text(left.depth, 4)} under" if left.depth else "on"
+    place = f"at {from_bottom(left.theta):z.2f} deg, {depth} the first surface"
+    alone = cycles_text(float(f"{found.first_life:.4g}")) if math.isfinite(found.first_life) else "infinite"
     gone = float(np.where(found.is_gone[-1], found.damage[-1], 0.0).max())
-    if math.isfinite(crack.cycle):
-        ends = f"first crack after {cycles(crack.cycle)}, {place(crack)}"
-    else:
-        ends = f"no crack within {cycles_text(int(found.cycles[-1]))}"
-        ends += "; wear takes the most damaged material away" if found.wear_wins else ""
     change = "not known: it needs three stored cycles"
     if not math.isnan(found.error):
-        change = f"{100.0 * found.error:.2g} %" if math.isfinite(found.error) else "a crack on one side only"
+        change = f"{100.0 * found.error:.2g} %" if math.isfinite(found.error) else "a crack in one of both only"
     return [
-        ("end of the race", ends),
-        ("life on the first profile alone", cycles(found.first_life)),
-        ("largest damage of material still there", f"{left.damage:.4g}, {place(left)}"),
+        ("end of the race", f"{found.race.words}: {found.words}"),
+        ("life on the first profile alone", alone),
+        (
+            "largest damage of material still there",
+            f"{left.damage:.4g}, {place}",
+        ),
         ("largest damage of material worn off", f"{gone:.4g}" if gone else "none"),
         ("change with every second stored cycle", change),
     ]

@@ -7,7 +7,7 @@ import io
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +18,11 @@ from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
 from fastpin.model.points import BODIES
 from fastpin.model.problem import Problem
+from fastpin.model.profile import Profile
+from fastpin.model.profile_terms import TERMS
 from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, Unit, scaled, units
+from fastpin.model.wear import Wear
 from fastpin.report.case import ROUNDING
 from fastpin.report.cells import csv_cell
 from fastpin.report.table import Column, table
@@ -377,13 +380,19 @@ def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:
 
 
 def definition_words(outcome: StudyOutcome) -> str:
-    """Return the definition of an outcome as a plan writes it, without the usual criterion and body of wear."""
+    """Return the definition of an outcome as a plan writes it, without the usual values of wear."""
     found = json.loads(outcome.definition)
     found |= found.pop("how", {})
-    usual = {"criterion": next(iter(FATIGUE_CRITERIA)), "body": BODIES[0]}
+    usual = {each.name: each.default for each in fields(Wear)}
+    usual |= {"criterion": next(iter(FATIGUE_CRITERIA)), "body": BODIES[0]}
     first = next(key for key in KEYS if key in found)
     ordered = {first: found.pop(first), **found}
-    return ", ".join(f"{key} = {brief(value)}" for key, value in ordered.items() if usual.get(key) != value)
+    words = {key: brief(value) for key, value in ordered.items() if usual.get(key) != value}
+    for key, value in ordered.items():
+        if isinstance(value, list) and value and isinstance(value[0], dict):  # the terms of a profile along the rim
+            terms = (TERMS[each["kind"]](**{name: each[name] for name in each if name != "kind"}) for each in value)
+            words[key] = Profile(tuple(terms)).words(brief)
+    return ", ".join(f"{key} = {text}" for key, text in words.items())
 
 
 def brief(value: Any) -> str:

@@ -83,6 +83,7 @@ energy = { quantity = "dissipation" }
 width = { quantity = "contact_width" }
 volume = { wear = "volume", cycles = 1e4, coefficient = 1e-14 }
 lost = { cycle = "dissipation" }
+share = { wear = "pin_share", cycles = 5, pin = [{ constant = 1e-14 }, { zone = 2e-14, start = -9, stop = 9 }] }
 life = { wear = "life", cycles = 10, pin = 1e-14, law = "energy", criterion = "fatemi-socie" }
 """
 
@@ -107,6 +108,7 @@ def test_maps_of_several_outcomes_stand_side_by_side(
     for words in (
         'quantity = "dissipation", take = "last", over = "history"',
         'wear = "volume", coefficient = 1e-14, cycles = 10000', 'cycle = "dissipation"',
+        'wear = "pin_share", cycles = 5, pin = 1e-14; 2e-14 more from -9 to 9 deg',
         'wear = "life", criterion = "fatemi-socie", cycles = 10, law = "energy", pin = 1e-14',
     ):  # fmt: skip
         assert words in page.text, words

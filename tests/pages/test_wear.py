@@ -112,7 +112,10 @@ def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult, monkeypa
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_a_life_in_memory_has_the_same_page(stored: Path, life: WearResult, tmp_path: Path) -> None:
+def test_a_life_in_memory_has_the_same_page(
+    stored: Path, life: WearResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("fastpin.pages.result.now", lambda: "today")
     about = About(project="Hinge")
     found = words_of(life, tmp_path / "memory.html", title="Worn lug", about=about)
     assert "none: a result in memory" in found
