@@ -305,6 +305,7 @@ def _first_patch(
     most_part = 1.0 if self_similar or conforming else most_part
     part = min(part, most_part)
     driven, best = system.drive.has_displacements, None
+    low, high = 0.0, math.inf  # parts with too few nodes, and with too many
     for _ in range(60):
         fraction = begins + part * (1.0 - begins)
         load = before + fraction * (after - before)
@@ -318,11 +319,15 @@ def _first_patch(
         if driven and count == 0 and part < most_part:  # the overlap lies between two nodes
             part = min(4.0 * part, most_part)
             continue
-        if best is None or abs(count - wanted) < abs(best[0] - wanted):
+        if best is None or (count < least, abs(count - wanted)) < (best[0] < least, abs(best[0] - wanted)):
             best = (count, found, fraction)
         if self_similar or least <= count <= most or (count < least and part == most_part):
             break
-        part = min(max(part * min(max((wanted / max(count, 1)) ** 2, 0.05), 10.0), LEAST_PART), most_part)
+        low, high = (part, high) if count < least else (low, part)
+        part *= min(max((wanted / max(count, 1)) ** 2, 0.05), 10.0)
+        if not low < part < high:  # in a worn hole many nodes close at once
+            part = math.sqrt(low * high)
+        part = min(max(part, LEAST_PART), most_part)
     if best is None or (driven and best[0] == 0):
         raise ResolutionError(NARROW)
     count, found, fraction = best

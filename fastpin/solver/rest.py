@@ -135,13 +135,35 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
         rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + moved
         return position, rest_gap + system.initial_gap
     # The hole is tighter than the pin somewhere: the pin touches at two points.
-    optimum = optimize.linprog([-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None))
-    if not optimum.success:
-        raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
-    position = optimum.x
-    if has_gap:
-        position = _on_two_places(system, load, fine[optimum.ineqlin.marginals < -1e-9], position)
+    touched = _pushed_against(system, load, angle, fine)
+    if touched is not None:
+        position = _on_two_places(system, load, *touched) if has_gap else touched[1]
+    else:  # it may be too narrow between two nodes only, as the spline of a worn gap
+        touched = _pushed_against(system, load, angle, _looked_at(system)) if has_gap else None
+        if touched is None:
+            raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
+        position = touched[1]
     return position, system.concentric_gap + system.drive.translation[: system.grid.size] @ position
+
+
+def _pushed_against(
+    system: System, load: np.ndarray, angle: float, theta: np.ndarray
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """The angles of `theta` (n,), rad, at which a rigid pin that is pushed towards `angle` touches; and its position.
+
+    None if the pin has no room between the angles.
+    """
+    rows, gap = np.column_stack([np.cos(theta), np.sin(theta)]), hole_gap(system, load, theta)[0]
+    optimum = optimize.linprog([-math.cos(angle), -math.sin(angle)], rows, gap, bounds=(None, None))
+    return (theta[optimum.ineqlin.marginals < -1e-9], optimum.x) if optimum.success else None
+
+
+def _looked_at(system: System) -> np.ndarray:
+    """The angles of the nodes, and fine ones beyond an arc, rad."""
+    theta = system.grid.theta
+    if system.grid.closed:
+        return theta
+    return np.r_[theta, np.linspace(theta[-1], theta[0] + 2.0 * math.pi, FINE)[1:-1]]
 
 
 def _on_two_places(system: System, load: np.ndarray, angles: np.ndarray, position: np.ndarray) -> np.ndarray:

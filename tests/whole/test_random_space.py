@@ -48,6 +48,13 @@ def test_a_contact_under_force_is_not_lost(seed):
     assert_right(examine("scales", seed))
 
 
+@pytest.mark.parametrize(("kind", "seed"), [("wear", 29), ("wear", 107), ("wear", 164)])
+def test_a_pin_comes_to_rest_in_a_worn_hole(kind, seed):
+    outcome = examine(kind, seed)
+    assert_right(outcome)
+    assert outcome.ending == "solved"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [47, 58])
 def test_one_more_corner_changes_no_first_contact(seed):
