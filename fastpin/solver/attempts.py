@@ -106,8 +106,7 @@ class Attempts:
                 raise unfit.error
             strict_arcs = self.arcs() if arcs is None else arcs
             if unfit is not None:
-                before = itertools.dropwhile(lambda grid: not _is_same(grid, unfit.grid), strict_arcs)
-                strict_arcs = itertools.islice(before, 1, None)
+                strict_arcs = arcs_after(unfit.grid, strict_arcs)
             return first_wide_enough(strict_arcs, partial(on_arc, True))
         except ConvergenceError as error:
             if self.options.method != "path":
@@ -153,6 +152,11 @@ def first_wide_enough(arcs: Iterable[Grid], follow: Callable[[Grid], Followed]) 
                 raise
             log.info("the contact reaches an end of the arc: once more on a wider one")
     raise ArcError(CUT_OFF)
+
+
+def arcs_after(grid: Grid, arcs: Iterable[Grid]) -> Iterator[Grid]:
+    """The arcs that come after a grid among `arcs`."""
+    return itertools.islice(itertools.dropwhile(lambda other: not _is_same(other, grid), arcs), 1, None)
 
 
 def _is_same(one: Grid, two: Grid) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,8 +18,8 @@ from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.wear import Wear
-from fastpin.solver.attempts import first_wide_enough
-from fastpin.solver.errors import ArcError, Interrupted
+from fastpin.solver.attempts import Unfit, arcs_after, first_wide_enough
+from fastpin.solver.errors import ArcError, Interrupted, ResolutionError
 from fastpin.solver.fat_cycles import FatCycles, Worn
 from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import MemoryRecorder
@@ -32,6 +31,13 @@ log = logging.getLogger(__name__)
 
 KEPT_ON_DEMAND = {"keep": "every 100000000", "between": 0}
 """Options of the run: states are kept where they are asked for."""
+
+
+FINER, MOST_FINER = (2, 4, 8), 2000
+"""Factors of finer nodes where a contact is too narrow for the nodes; and how many such nodes there are, at most.
+
+A wear path has full matrices: a hundred paths of 2,000 nodes take minutes.
+"""
 
 
 class WearRecorder(Protocol):
@@ -136,8 +142,9 @@ class WearTask:
             self.problem, self.stored_history, law, tolerance, coefficients, grid, tuple(cycles), complete, statistics
         )
 
-    def _task(self) -> Task:
-        return Task(self.problem, self.history, self.options, self.grid)
+    def _task(self, nodes: int | None = None) -> Task:
+        options = self.options if nodes is None else self.options.changed(nodes=nodes)
+        return Task(self.problem, self.history, options, self.grid)
 
     @property
     def cycle(self) -> np.ndarray:
@@ -150,8 +157,8 @@ class WearTask:
         count = len(self.history) - self.history.blocks[-1].corners
         return self.history[:count].values() if count else np.zeros((0, len(LOADS)))
 
-    def follow(self, recorder: WearRecorder, beyond: Grid | None = None) -> None:
-        """Follow the life from no load, on the first grid that is wide enough; with `beyond` a wider one than that.
+    def follow(self, recorder: WearRecorder, unfit: Unfit | None = None) -> None:
+        """Follow the life from no load, on the first grid that is fine and wide enough; with `unfit` one after that.
 
         Raises
         ------
@@ -166,23 +173,39 @@ class WearTask:
                 if request.stop:
                     raise Interrupted
 
-            attempts = self._task().attempts(watch)
-
             def on_grid(grid: Grid) -> None:
                 log.info("%d nodes from %.5g to %.5g rad", grid.size, grid.theta[0], grid.theta[-1])
                 recorder.begin(grid, attempts.force)
                 life = self._life(grid, attempts.force, watch)
                 self._live(life, life.begin(self.approach), recorder)
 
-            arcs = attempts.arcs()
-            if beyond is not None:
-                nodes = beyond.theta
-                before = itertools.dropwhile(lambda grid: not np.array_equal(grid.theta, nodes), arcs)
-                arcs = itertools.islice(before, 1, None)
-            first_wide_enough(arcs, on_grid)
+            error = None if unfit is None else unfit.error
+            for nodes in self._sizes(unfit):
+                attempts = self._task(nodes).attempts(watch)
+                arcs = attempts.arcs()
+                if unfit is not None and nodes == unfit.grid.size:
+                    arcs = arcs_after(unfit.grid, arcs)
+                try:
+                    return first_wide_enough(arcs, on_grid)
+                except ResolutionError as narrow:
+                    error = narrow
+                    log.info("%s", narrow)
+            assert error is not None
+            raise error
+
+    def _sizes(self, unfit: Unfit | None) -> list[int]:
+        """Numbers of nodes that are tried one after the other, from `unfit` on; one if arc or nodes are given."""
+        first = self.options.nodes
+        if self.grid is not None or self.options.arc is not None:
+            return [first]
+        sizes = [first, *(size for factor in FINER if (size := factor * (first - 1) + 1) <= MOST_FINER)]
+        if unfit is None:
+            return sizes
+        least = unfit.grid.size + (not isinstance(unfit.error, ArcError))
+        return [size for size in sizes if size >= least]
 
     def go_on(self, recorder: WearRecorder, place: Worn, grid: Grid, stored: int) -> None:
-        """Go on from a place of an earlier run on `grid`, to the same bits. A wider arc begins anew.
+        """Go on from a place of an earlier run on `grid`, to the same bits. A wider or a finer grid begins anew.
 
         `stored` is the last chosen cycle that the recorder has; -1 for none.
 
@@ -199,15 +222,15 @@ class WearTask:
 
             life = self._life(grid, place.restart.force, watch)
             life.at(place, len(self.approach))
+            unfit = None
             try:
                 self._live(life, place, recorder, stored)
-            except ArcError:
-                is_given = self.grid is not None or self.options.arc is not None
-                if is_given:
+            except (ArcError, ResolutionError) as error:
+                if self.grid is not None or self.options.arc is not None:
                     raise
-            else:
-                return
-        self.follow(recorder, beyond=grid)
+                unfit = Unfit(grid, error)
+        if unfit is not None:
+            self.follow(recorder, unfit)
 
     def _life(self, grid: Grid, force: float, watch: RunProgress) -> FatCycles:
         system = build_system(self.problem, grid, force)

@@ -269,7 +269,8 @@ class WearFile:
         self._file = JournaledFile(self.path, new=True)
         self._h5 = h5py.File(self._file, "w")
         self._h5.flush()
-        attributes = {**option_attributes(task.options), "nodes": grid.size, "slip_sums": True, "title": self._title}
+        nodes = task.options.nodes if task.grid is None else grid.size
+        attributes = {**option_attributes(task.options), "nodes": nodes, "slip_sums": True, "title": self._title}
         write_head(self._h5, task.problem, task.stored_history, grid, attributes)
         self._h5.attrs["run"] = self._name
         group = self._h5.create_group("wear")

@@ -14,7 +14,8 @@ import pytest
 
 import fastpin
 from fastpin.errors import InputError
-from fastpin.solver.errors import Interrupted
+from fastpin.solver.errors import Interrupted, ResolutionError
+from fastpin.solver.fat_cycles import FatCycles, Worn
 from fastpin.solver.wear_result import WearResult
 from fastpin.storage import wear_files
 from tests.support.interrupts import StopAt
@@ -88,6 +89,28 @@ def test_a_life_goes_on_from_its_checkpoint(tmp_path, monkeypatch):
     found = life(path, at=[2], resume=True, progress=lambda done, total: begun.append(done))
     assert begun[0] > 30
     assert_same_life(found, life(at=[2]))
+
+
+def test_a_life_that_needs_finer_nodes_later_begins_anew_there(tmp_path, monkeypatch):
+    """Interrupted or not: the nodes are too coarse from the sixth cycle on."""
+    follow = FatCycles.next
+
+    def next_cycle(self: FatCycles, place: Worn, target: int) -> Worn:
+        if place.cycle >= 5 and self.run.system.grid.size == 21:
+            raise ResolutionError("the contact is narrower than the nodes can resolve")
+        return follow(self, place, target)
+
+    monkeypatch.setattr(FatCycles, "next", next_cycle)
+    given: dict[str, Any] = {"cycles": 8, "tolerance": 0.0, "grid": None, "nodes": 21}
+    whole = life(**given)
+    assert whole.grid.size == 41
+    path = tmp_path / "life.h5"
+    for number, corner in enumerate([3, 7]):  # on the coarse nodes, and on the fine ones
+        with pytest.raises(Interrupted):
+            life(path, resume=number > 0, progress=StopAt(corner), **given)
+    assert_same_life(life(path, resume=True, **given), whole)
+    with pytest.raises(ResolutionError):
+        life(**{**given, "grid": CASE.grid(21)})
 
 
 def test_a_life_of_another_kind_is_not_continued(tmp_path):
