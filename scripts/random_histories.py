@@ -52,7 +52,7 @@ class Outcome:
     Attributes
     ----------
     ending : str
-        "solved", "spins", "hang", or the name of the error.
+        "solved", "spins", "too fast", "hang", or the name of the error.
     message : str
         The message of the error.
     states, nodes : int
@@ -81,7 +81,9 @@ class Outcome:
 
 
 def ending_of(error: FastpinError) -> str:
-    """The name of an error; "spins" where a moment acts that may exceed the friction."""
+    """The name of an error; "spins" where a moment acts that may exceed the friction, "too fast" for wear."""
+    if "wear is too fast" in str(error):
+        return "too fast"
     return "spins" if "spins" in str(error) and "M = " in str(error) else type(error).__name__
 
 

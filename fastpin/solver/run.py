@@ -170,7 +170,8 @@ class Run:
         self.statistics = dict.fromkeys(COUNTED, 0.0)
         self.stepper = _stepper(system, options, self.statistics, strict)
         # Round a hole that is not round the pin may touch anywhere.
-        self._outside = OutsideGap(system) if system.problem.gap and not system.grid.closed else None
+        may_touch = (bool(system.problem.gap) or self.wears) and not system.grid.closed
+        self._outside = OutsideGap(system) if may_touch else None
         self._begin_at(start)
 
     def _begin_at(self, start: Restart) -> None:
@@ -219,20 +220,21 @@ class Run:
             self._show_corner()
         self.complete = True
 
-    def step_to(self, load: np.ndarray, kept: bool = True) -> None:
+    def step_to(self, load: np.ndarray, kept: bool = True, inside: bool = False) -> None:
         """Follow one more step, to a `load` (loads,), SI. The load is no corner of the history.
 
-        `kept` says whether its state is kept.
+        `kept` says whether its state is kept. A load `inside` a step is not counted; there a contact may be narrow.
 
         Raises
         ------
         SolveError
             See :meth:`follow`.
         """
-        self._step(load, ends_cycle=False, kept=kept)
+        self._step(load, ends_cycle=False, kept=kept, inside=inside)
         self._close_step(load, kept=kept)
-        self.corner += 1
-        self._show_corner()
+        if not inside:
+            self.corner += 1
+            self._show_corner()
 
     def go_back(self, start: Restart) -> None:
         """Go back to a corner on this grid, also from the middle of a step. Nothing is computed anew."""
@@ -292,10 +294,10 @@ class Run:
         )  # fmt: skip
         return Run(self.history, system, self.options, self.recorder, self.progress, start, self.stops, self.strict)
 
-    def _step(self, load: np.ndarray, ends_cycle: bool, kept: bool) -> KnownConfiguration | None:
+    def _step(self, load: np.ndarray, ends_cycle: bool, kept: bool, inside: bool = False) -> KnownConfiguration | None:
         """Follow the step to the corner with the load `load` (SI), and keep its states, at the corner if `kept`.
 
-        Returns the earlier configuration that equals the configuration at the corner, or None.
+        Where the load lies `inside` a step, the contact may have fewer nodes than at a corner. Returns the earlier configuration that equals the configuration at the corner, or None.
         """
         step, scales, position = self.corner, self.system.scales, self.position
         target, before = load / scales.loads, self.now.load
@@ -304,7 +306,8 @@ class Run:
         try:
             for piece in pieces(before, target):
                 self._follow_piece(piece, step)
-            self._check_resolution()
+            if not inside:
+                self._check_resolution()
             if self._outside is not None and self._outside.is_closed(self.system, self.now):
                 raise ArcError(BEYOND)
             known = None

@@ -16,6 +16,7 @@ from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Samples
 from fastpin.solver.configuration import Configuration, work_between
 from fastpin.solver.path_stepper import PathStepper
+from fastpin.solver.rest import release
 from fastpin.solver.run import Run
 from fastpin.solver.step import Piece, Position
 
@@ -54,11 +55,15 @@ class WearRun(Run):
 
     wears: ClassVar[bool] = True
 
-    def set_gap(self, first: System, worn: np.ndarray) -> None:
+    def set_gap(self, first: System, worn: np.ndarray | None) -> None:
         """Let the next first contact see a gap that has grown by `worn` (n,), dimensionless, since the system `first`.
 
-        Between the nodes the grown gap is a spline.
+        Between the nodes the grown gap is a spline. Without `worn` there is no next first contact.
         """
+        if worn is None:
+            if self.system is not first:
+                self.system, self.stepper = first, PathStepper(first, self.statistics, self.strict)
+            return
         problem, grid = first.problem, first.grid
         theta, heights = grid.theta, worn * first.scales.displacement
         if not grid.closed:  # nothing is worn beyond an arc
@@ -106,13 +111,15 @@ class WearRun(Run):
         start = replace(before, load=begin, rest_gap=rest_gap, dissipation=0.0, work=0.0)
         position, piece = Position(start, before.closed.copy()), Piece(0.0, 1.0, begin, end)
         stepper = PathStepper(self.system.with_wear(depth, softness), self.statistics, self.strict)
-        while not np.array_equal(position.now.load, end):
+        while position.now.closed.any() and not np.array_equal(position.now.load, end):
             stepper.advance(position, piece, 1.0, self._check)
         stepper.leave(position)
         now, worn = position.now, depth
         if softness is not None:
             worn = depth + softness * (now.pressure - before.pressure)
         after = replace(now, load=load, rest_gap=before.rest_gap + worn)
+        if not now.closed.any():  # nothing pushed the pin, and now it floats
+            after = _opened(release(self.system, replace(now, load=load), load), worn)
         work = work_between(self.system, replace(before, work=0.0), after)
         weights = self.system.weights
         # The kernel counts wear as a load: int depth dN. By parts, int N d(depth) is the rest.

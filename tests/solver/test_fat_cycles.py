@@ -17,9 +17,12 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import Zone
 from fastpin.model.wear import Wear
+from fastpin.solver import fat_cycles
 from fastpin.solver.errors import SolveError
 from fastpin.solver.fat_cycles import FatCycles
 from fastpin.solver.wear_result import WearResult
+from scripts.conditions import check_states
+from scripts.histories import generate
 from tests.support.slip_cases import LIKE, UNLIKE
 from tests.support.wear_cases import WEAR_CASES, WearCase, lived, step, wearing
 
@@ -119,6 +122,60 @@ def test_a_cycle_without_contact_in_it_wears_on():
     assert last.gap_growth[beside].max() > 0.2 * last.depth > 0.0
     assert last.gap_growth[bottom] < last.depth
     assert max(max(state.residuals.values()) for each in found for state in each.states) < 1e-10
+
+
+def test_a_pin_that_wear_sets_loose_rests_in_the_worn_hole():
+    """An interference fit holds the pin all through the first cycle. Later it floats without force."""
+    problem = fastpin.Problem.from_load_parameter(UNLIKE, -0.01, 0.3, "centre", "fixed")
+    turns = [{"rotation": -1.0}, {"P": 0.0}, {"P": 1.0}, {"rotation": 1.0}]
+    history = LoadHistory([{"P": 1.0, "rotation": 1.0}]) + LoadHistory(turns).repeated(1)
+    found = fastpin.wear(problem, history, cycles=4, coefficient=0.02, tolerance=0.0, nodes=NODES)
+    assert [each.states[2].in_contact for each in found] == [True, True, False, False, False]
+    for each in found:
+        for conditions in check_states(each.states, [each.gap_growth] * len(each.states)):
+            assert max(value for name, value in conditions.items() if name != "balance") < 1e-10
+
+
+def test_wear_may_take_away_the_last_contact_without_force():
+    """A pin that friction holds at no load floats after the wear of the way there."""
+    case = generate("wear", 164)
+    found = fastpin.wear(case.problem, case.history, **case.options)
+    assert not all(state.in_contact for each in found for state in each.states)
+    for each in found:
+        assert max(max(state.residuals.values()) for state in each.states) < 1e-10
+
+
+def test_much_wear_on_the_way_to_a_corner_is_applied_in_parts(monkeypatch):
+    """The volume then hardly depends on the size of the parts. At the corners alone it is far off."""
+    problem = fastpin.Problem.from_load_parameter(LIKE, 15.0, 0.3, "centre", "fixed")
+    history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": 0.5}, {"Q": -0.5}]).repeated(1)
+
+    def volume(part: float) -> float:
+        monkeypatch.setattr(fat_cycles, "LARGEST_PART", part)
+        return fastpin.wear(problem, history, cycles=3, coefficient=0.03, tolerance=0.0, nodes=NODES)[-1].volume
+
+    usual, fine, coarse = (volume(part) for part in (fat_cycles.LARGEST_PART, 0.005, 10.0))
+    assert usual == pytest.approx(fine, rel=0.05)
+    assert abs(coarse / fine - 1.0) > 0.15
+
+
+def test_wear_that_is_too_fast_is_refused_in_one_sentence():
+    problem = fastpin.Problem.from_load_parameter(LIKE, 15.0, 0.3, "centre", "fixed")
+    history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": 0.5}, {"Q": -0.5}]).repeated(1)
+    with pytest.raises(
+        SolveError, match=r"^cycle 1: wear is too fast: on the way to one corner it takes off [\d.]+ times"
+    ):
+        fastpin.wear(problem, history, cycles=3, coefficient=3.0, nodes=NODES)
+
+
+def test_a_narrow_contact_wears_on_finer_nodes():
+    problem = fastpin.Problem.from_load_parameter(LIKE, 1000.0, 0.3, "centre", "fixed")
+    history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"P": 0.05, "Q": 0.02}, {"P": 1.0, "Q": 0.5}]).repeated(1)
+    given = {"cycles": 3, "coefficient": 1e-4, "tolerance": 0.0}
+    found = fastpin.wear(problem, history, nodes=NODES, **given)
+    assert found.grid.size in (2 * NODES - 1, 4 * NODES - 3, 8 * NODES - 7)
+    with pytest.raises(SolveError, match="narrower than the nodes|has shrunk to"):
+        fastpin.wear(problem, history, nodes=NODES, arc=(found.theta[0], found.theta[-1]), **given)
 
 
 def rigid_depth(clearance: float, path: float, friction: float) -> tuple[float, float]:
