@@ -297,7 +297,8 @@ class Run:
     def _step(self, load: np.ndarray, ends_cycle: bool, kept: bool, inside: bool = False) -> KnownConfiguration | None:
         """Follow the step to the corner with the load `load` (SI), and keep its states, at the corner if `kept`.
 
-        Where the load lies `inside` a step, the contact may have fewer nodes than at a corner. Returns the earlier configuration that equals the configuration at the corner, or None.
+        Where the load lies `inside` a step, the contact may have fewer nodes than at a corner. Returns the earlier
+        configuration that equals the configuration at the corner, or None.
         """
         step, scales, position = self.corner, self.system.scales, self.position
         target, before = load / scales.loads, self.now.load

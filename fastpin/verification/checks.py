@@ -20,7 +20,7 @@ from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.profile_terms import Harmonic
 from fastpin.states.state import State
-from fastpin.verification import body_cases, body_rows, closed_forms, gap_rows
+from fastpin.verification import body_cases, body_rows, closed_forms, friction_rows, gap_rows, wear_rows
 from fastpin.verification.comparisons import (
     cattaneo_mindlin,
     cattaneo_mindlin_differences,
@@ -93,6 +93,18 @@ TOLERANCES: dict[str, dict[str, float]] = {
     "bodies, exact": {"peak N": 4e-14, "N, T": 3e-11, "compliance": 1e-15},
     "gaps": {"tractions": 1.2e-4, "peak N": 5e-5, "moment": 2.5e-5, "end": 1.2e-5},
     "gaps, exact": {"N, T": 5e-14},
+    "friction": {"(46)": 3e-5, "(47)": 1.8e-6, "work": 1.4e-5, "work, falls with the loads": 1e-3},
+    "friction, exact": {"N, T": 1.5e-13},
+    "wear": {
+        "tractions": 1.5e-4,
+        "depth, sliding": 2.5e-2,
+        "peak N": 1.7e-2,
+        "volume": 0.15,  # the half-width of stick is known to a part of a node distance, and the volume goes like c^-7
+        "depth": 8e-2,
+        "N, middle": 8e-3,
+        "energy": 4.5e-6,
+    },
+    "wear, exact": {"N, T": 2e-13, "energy taken": 1e-15, "volume": 1e-15},
     "mirror": {"N": 1.5e-12, "T": 1.5e-12, "slip": 1.5e-14},
     "energy": {"work": 1.5e-5},
     "parts": {"differing numbers": 0.0},
@@ -479,6 +491,28 @@ TOPICS: dict[str, tuple[str, Cases]] = {
             "shift of the pin": partial(gap_rows.round_hole, Harmonic(1, 0.5, -0.2)),
             "ellipse, remote stress": gap_rows.oval,
         },
+    ),
+    "friction": (
+        "Friction that varies along the rim, or falls: (46), (47), work",
+        {"along the rim": friction_rows.along_the_rim, "falls with the loads": friction_rows.with_the_loads},
+    ),
+    "friction, exact": (
+        "Friction that falls at constant load, half-planes, L_p = 200",
+        {"as low from the start": friction_rows.at_constant_load},
+    ),
+    "wear": (
+        "Wear: interference fits with waves, rigid bodies, half-planes, energy",
+        {
+            "fit, mu = 0": partial(wear_rows.fit, 0.0),
+            "fit, stuck": partial(wear_rows.fit, 1.0),
+            "sliding": wear_rows.sliding,
+            "partial slip": partial(wear_rows.half_planes, 12, 2e6),
+            "removed material": wear_rows.energy,
+        },
+    ),
+    "wear, exact": (
+        "Wear: exact relations",
+        {"fit": wear_rows.same_fit, "fat cycles": wear_rows.volume},
     ),
     "mirror": (
         "A history with -Q in place of Q: the mirror image",

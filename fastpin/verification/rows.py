@@ -11,6 +11,7 @@ import numpy as np
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
+from fastpin.states.state import State
 
 NODES = 401
 """Number of nodes of all cases, except the cases on the nodes of finite elements."""
@@ -59,10 +60,14 @@ class Solving:
 
     def __call__(self, problem: Problem, history: Sequence[dict[str, float]], **options: Any) -> Result:
         result = solve(problem, history, **{"nodes": NODES, **options})
-        self.states += len(result)
-        residuals = [residual for state in result for residual in state.residuals.values()]
-        self.largest = float(np.max([self.largest, *residuals]))
+        self.note(result)
         return result
+
+    def note(self, states: Sequence[State]) -> None:
+        """Note the residuals of states."""
+        self.states += len(states)
+        residuals = [residual for state in states for residual in state.residuals.values()]
+        self.largest = float(np.max([self.largest, *residuals]))
 
 
 Checks = Iterator[Check]

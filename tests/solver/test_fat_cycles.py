@@ -7,8 +7,6 @@ import pickle
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
-from scipy.optimize import brentq
 
 import fastpin
 from fastpin.errors import InputError, InputWarning
@@ -21,10 +19,14 @@ from fastpin.solver import fat_cycles
 from fastpin.solver.errors import SolveError
 from fastpin.solver.fat_cycles import FatCycles
 from fastpin.solver.wear_result import WearResult
+from fastpin.verification.rows import Solving
+from fastpin.verification.wear_limits import rigid_sliding
+from fastpin.verification.wear_rows import final_state, half_planes, step, wearing
 from scripts.conditions import check_states
 from scripts.histories import generate
+from tests.support.marks import slow
 from tests.support.slip_cases import LIKE, UNLIKE
-from tests.support.wear_cases import WEAR_CASES, WearCase, lived, step, wearing
+from tests.support.wear_cases import WEAR_CASES, WearCase, lived
 
 NODES = 41
 
@@ -174,69 +176,66 @@ def test_a_narrow_contact_wears_on_finer_nodes():
     given = {"cycles": 3, "coefficient": 1e-4, "tolerance": 0.0}
     found = fastpin.wear(problem, history, nodes=NODES, **given)
     assert found.grid.size in (2 * NODES - 1, 4 * NODES - 3, 8 * NODES - 7)
-    with pytest.raises(SolveError, match="narrower than the nodes|has shrunk to"):
+    with pytest.raises(SolveError, match=r"narrower than the nodes|has shrunk to"):
         fastpin.wear(problem, history, nodes=NODES, arc=(found.theta[0], found.theta[-1]), **given)
 
 
-def rigid_depth(clearance: float, path: float, friction: float) -> tuple[float, float]:
-    """Depth and largest pressure of rigid bodies that slide one way over a `path`, coefficient times slip."""
-    size = np.sqrt(1.0 + friction**2)
-
-    def angle(depth: float) -> float:
-        phi = np.arccos(clearance / (clearance + depth))
-        return phi + np.sin(phi) * np.cos(phi)
-
-    def slid(depth: float) -> float:
-        return quad(lambda root: 2.0 * root * angle(root * root), 0.0, np.sqrt(depth))[0] * size
-
-    depth = brentq(lambda tried: slid(tried) - path, 1e-6, 50.0)
-    return depth, 1.0 / (angle(depth) * size)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("clearance", [1.0, 10.0])
-def test_gross_sliding_tends_to_rigid_bodies(clearance):
+def slid(clearance: float, steps: int) -> tuple[float, float, float]:
+    """Depth, peak and tilt of a held pin that has slid one way; k s = 8, mu = 0.2, 61 nodes."""
     problem = fastpin.Problem.from_load_parameter(LIKE, clearance, 0.2, "centre", "fixed")
     run = wearing(problem, Grid.arc(-0.5 * np.pi - 1.7, -0.5 * np.pi + 1.7, 61))
     # Slow wear: slip during a wear path does not count.
-    cycles, coefficient, path = FatCycles(run, Wear(1e-3), np.zeros((0, 10))), 1e-3, 8.0
+    cycles, coefficient, worn = FatCycles(run, Wear(1e-3), np.zeros((0, 10))), 1e-3, np.zeros(61)
     step(run, {"P": 1.0})
-    worn, steps = np.zeros(61), 800
     for number in range(1, steps + 1):
-        step(run, {"rotation": path / coefficient * number / steps})
-        removal = run.wear(*cycles.worn_by(run.corner_log.latest.slip_tally.sums, 1))
-        worn = worn + removal.depth
-    depth, pressure = rigid_depth(clearance, path, 0.2)
-    assert worn.max() == pytest.approx(depth, rel=1e-2)
-    assert run.now.pressure.max() == pytest.approx(pressure, rel=2e-2)
-    deepest = run.system.grid.theta[np.argmax(worn)] + 0.5 * np.pi
-    assert deepest == pytest.approx(-np.arctan(0.2), abs=0.06)  # a node distance
-
-
-def half_plane(nodes: int) -> tuple[float, float, float]:
-    """Relative errors of volume, depth and pressure in the middle against the final state of partial slip."""
-    load_parameter = 2e6
-    a = np.sqrt(1.0 / (np.pi * load_parameter))
-    spacing = a * np.sqrt(0.5) / (nodes + 0.5)  # the edge of stick lies midway between two nodes
-    half = int(np.ceil(1.35 * a / spacing))
-    problem = fastpin.Problem.from_load_parameter(LIKE, load_parameter, 0.5, "centre", "fixed")
-    history = LoadHistory([{"P": 1.0}, {"Q": 0.25}]) + LoadHistory([{"Q": -0.25}, {"Q": 0.25}]).repeated(1)
-    grid = Grid(-0.5 * np.pi + spacing * np.arange(-half, half + 1))
-    last = fastpin.wear(problem, history, cycles=1e7, coefficient=1e-4 * a, tolerance=0.03, grid=grid)[-1]
-    middle = last.states[-1].pressure[half] * np.pi * a / 2.0
-    return (
-        last.volume / (load_parameter * a**3) / 0.072625 - 1.0,
-        last.depth / (load_parameter * a * a) / 0.112733 - 1.0,
-        middle / 1.06066 - 1.0,
-    )
+        step(run, {"rotation": 8.0 / coefficient * number / steps})
+        worn = worn + run.wear(*cycles.worn_by(run.corner_log.latest.slip_tally.sums, 1)).depth
+    top = int(np.argmax(worn))
+    below, middle, above = worn[top - 1 : top + 2]
+    spacing, bend = float(run.system.weights[top]), 2.0 * middle - below - above
+    tilt = run.system.grid.theta[top] + 0.5 * np.pi + 0.5 * spacing * (above - below) / bend
+    depth, peak = middle + (above - below) ** 2 / (8.0 * bend), run.now.pressure.max()
+    return depth, float(peak), tilt
 
 
 @pytest.mark.slow
-def test_partial_slip_tends_to_the_final_state_of_the_half_plane():
-    coarse, fine = half_plane(6), half_plane(12)
-    for one, other, limit in zip(coarse, fine, (0.06, 0.03, 0.004), strict=True):
-        assert 0.0 < other < limit
+@pytest.mark.parametrize(("clearance", "depth", "peak"), [(1.0, 3e-3, 8e-3), (10.0, 4e-3, 1e-2)])
+def test_gross_sliding_tends_to_rigid_bodies(clearance, depth, peak):
+    """Elastic bodies: d 5.252 and 6.925, N0 0.623 and 0.688, against 5.262 and 6.943, 0.625 and 0.693."""
+    found, rigid = slid(clearance, 1600), rigid_sliding(clearance, 8.0, 0.2)
+    assert found[0] == pytest.approx(rigid[0], rel=depth)
+    assert found[1] == pytest.approx(rigid[1], rel=peak)
+    assert found[2] == pytest.approx(-np.arctan(0.2), abs=1e-3)
+
+
+@pytest.mark.slow
+def test_implicit_jumps_of_gross_sliding_converge():
+    """Explicit jumps need more than 900 steps here. Measured: 0.53, 0.144, 0.038 below the depth of small steps."""
+    finest = slid(1.0, 1600)[0]
+    errors = np.array([finest - slid(1.0, steps)[0] for steps in (50, 200, 800)])
+    assert 0.0 < errors[2] < 0.05
+    assert np.all(errors[:-1] > 3.0 * errors[1:])
+
+
+@pytest.mark.parametrize(("load_parameter", "nodes"), [(2e6, (6, 12)), (2e4, (6, 12)), *slow((2e6, (24, 48)))])
+def test_partial_slip_tends_to_the_final_state_of_the_half_plane(load_parameter, nodes):
+    """First order. Measured with 6, 12, 24, 48 nodes: volume 9.1, 5.4, 3.0, 1.5 %, depth 5.0, 2.7, 1.7, 0.9 %."""
+    coarse, fine = ([row.difference for row in half_planes(each, load_parameter, Solving())] for each in nodes)
+    for one, other, limit in zip(coarse, fine, (0.75, 0.45, 0.04), strict=True):
+        assert 0.0 < other < limit / nodes[1]
         assert other < 0.65 * one
+
+
+def test_the_stick_zone_carries_the_whole_load_at_last():
+    """The load beside it is 2e-7. The scar ends within a node distance of the limit."""
+    last, half = final_state(12, 2e6)
+    x, spacing = (last.theta + 0.5 * np.pi) / half, float(last.grid.weights[1]) / half
+    beside = np.abs(x) > np.sqrt(0.5)
+    assert last.grid.weights[beside] @ last.pressure[beside] < 5e-7
+    scar = np.abs(x[last.gap_growth > 1e-3 * last.depth])
+    assert scar.min() == pytest.approx(np.sqrt(0.5), abs=spacing)
+    assert scar.max() == pytest.approx(1.16919, abs=spacing)
+    assert not last.gap_growth[~beside].any()
 
 
 def test_too_deep_wear_ends_with_one_sentence_and_keeps_what_was_found():

@@ -8,18 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import fastpin
-from fastpin.elasticity.system import System
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS, complete_load
-from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.profile import NO_GAP, InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
-from fastpin.solver.solving import MemoryRecorder
-from fastpin.solver.wear import KEPT_ON_DEMAND
 from fastpin.solver.wear_path import Removal, WearRun
 from fastpin.solver.wear_result import WearResult
+from fastpin.verification.wear_rows import step, wearing
 from tests.support.slip_cases import LIKE, UNLIKE
 
 Loads = dict[str, float]
@@ -97,20 +93,6 @@ WEAR_CASES = {
     ),
 }  # fmt: skip
 """Lives of wear: their first lines of a table of two independent computations."""
-
-
-def wearing(problem: Problem, grid: Grid) -> WearRun:
-    """A run without load that can wear."""
-    options = SolveOptions(**KEPT_ON_DEMAND)  # type: ignore[arg-type]
-    return WearRun(LoadHistory([{}]), System.build(problem, grid, 1.0), options, MemoryRecorder())
-
-
-def step(run: WearRun, loads: Loads) -> tuple[np.ndarray, float]:
-    """Follow one step. Returns int N |ds| of each node, and the dissipated energy (dimensionless)."""
-    given = np.array([loads.get(name, np.nan) for name in LOADS])
-    run.step_to(complete_load(given, run.load), kept=False)
-    latest = run.corner_log.latest
-    return latest.slip_tally.sums[4], latest.dissipation
 
 
 def lived(case: WearCase, nodes: int, fat: int, tau: float | None = None) -> tuple[WearRun, np.ndarray, float]:

@@ -24,7 +24,9 @@ from fastpin.verification.checks import TOLERANCES, TOPICS
 from fastpin.verification.rows import Check
 
 MOST_SLACK = 3.0
-ROUNDING = {"mirror", "conditions", "parts", "stresses", "bodies, exact", "gaps, exact"}
+ROUNDING = {
+    "mirror", "conditions", "parts", "stresses", "bodies, exact", "gaps, exact", "friction, exact", "wear, exact",
+}  # fmt: skip
 STATED = {"elements, frictionless", "elements, monotonic", "elements, fretting"}
 
 
