@@ -26,6 +26,7 @@ from fastpin.model.checks import (
     string,
     whole_number,
 )
+from fastpin.model.grid import Grid
 from fastpin.model.profile_csv import PROFILE_KINDS, read_samples
 from fastpin.model.profile_terms import (
     MOST_ANGLE,
@@ -46,6 +47,9 @@ MOST_TERMS = 100
 
 CALLED = 1440
 """Samples of a function round the hole: four a degree."""
+
+BEYOND_ARC = 8
+"""Angles beyond an arc at which the values of its ends are joined."""
 
 MOST_DESCRIBED = 4
 """Most terms that are described one by one."""
@@ -256,6 +260,16 @@ class Profile:
 
 ProfileLike: TypeAlias = "Profile | Term | float | Callable[[np.ndarray], np.ndarray] | tuple[np.ndarray, np.ndarray]"
 """Whatever :meth:`Profile.of` understands."""
+
+
+def profile_of_nodes(grid: Grid, values: np.ndarray) -> Profile:
+    """The profile of values (n,) at the nodes of a grid, joined by a periodic cubic spline; linear beyond an arc."""
+    theta = grid.theta
+    if not grid.closed:
+        first, last = (theta[0] + 2.0 * math.pi, values[0]), (theta[-1], values[-1])
+        beyond = np.linspace(last, first, BEYOND_ARC + 2)[1:-1]
+        theta, values = np.r_[theta, beyond[:, 0]], np.r_[values, beyond[:, 1]]
+    return Profile((Samples(theta, values),))
 
 
 def is_pair(value: object) -> bool:

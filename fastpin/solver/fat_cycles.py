@@ -17,9 +17,11 @@ import numpy as np
 from fastpin.model.checks import MOST_PARAMETER
 from fastpin.model.loads import complete_load
 from fastpin.model.problem import MOST_GAP
+from fastpin.model.profile import Profile
 from fastpin.model.wear import Wear
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import SolveError
+from fastpin.solver.place import followed_problem, system_with_friction
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED
 from fastpin.solver.wear_path import WearRun
@@ -145,6 +147,29 @@ class FatCycles:
         """Stand at a place of an earlier run, whose cycle was led to by so many corners."""
         self._approach = approach
         self._stand_at(place)
+
+    def with_friction(self, place: Worn, friction: Profile) -> tuple[FatCycles, Worn]:
+        """Follow the change to another friction at a place, under its loads. Returns the driver and place from there.
+
+        The slip on the way dissipates, but does not wear.
+
+        Raises
+        ------
+        InputError
+            If the friction can't be used.
+        SolveError
+            If the contact is lost on the way. It names the cycle.
+        """
+        problem = followed_problem(self._first.problem, {"friction": friction})
+        self._stand_at(place)
+        try:
+            run = self.run.with_friction_followed(problem)
+        except SolveError as error:
+            _name_cycle(error, place.cycle)
+            raise
+        life = FatCycles(run, self._wear, self._cycle)
+        life._approach, life._first = self._approach, system_with_friction(self._first, problem)
+        return life, replace(place, restart=life._restart(run.dissipation, run.work))
 
     def _stand_at(self, place: Worn) -> None:
         self.run.set_gap(self._first, place.gap if place.loses_contact else None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Collection
 from dataclasses import replace
-from typing import ClassVar, Protocol
+from typing import ClassVar, Protocol, Self
 
 import numpy as np
 
@@ -259,7 +259,7 @@ class Run:
             self.slip_tally.to_corner,
         )  # fmt: skip
 
-    def with_friction_followed(self, problem: Problem) -> Run:
+    def with_friction_followed(self, problem: Problem) -> Self:
         """The run of another friction that goes on after the change to it, under the load of the last corner.
 
         This run stays at its corner.
@@ -292,7 +292,8 @@ class Run:
             self.bookmark(), configuration=now, dissipation=self.dissipation + now.dissipation,
             work=self.work + now.work, repeats=Repeats(), slip_tally=self.slip_tally.to_corner.joined(now.slip_tally),
         )  # fmt: skip
-        return Run(self.history, system, self.options, self.recorder, self.progress, start, self.stops, self.strict)
+        kind = type(self)
+        return kind(self.history, system, self.options, self.recorder, self.progress, start, self.stops, self.strict)
 
     def _step(self, load: np.ndarray, ends_cycle: bool, kept: bool, inside: bool = False) -> KnownConfiguration | None:
         """Follow the step to the corner with the load `load` (SI), and keep its states, at the corner if `kept`.

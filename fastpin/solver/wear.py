@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -11,12 +11,14 @@ import numpy as np
 
 from fastpin.elasticity.large import build_system
 from fastpin.errors import InputError
+from fastpin.model.checks import number_array
 from fastpin.model.doubts import warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LOOKED_AT, Problem
+from fastpin.model.profile import Profile, ProfileLike, profile_of_nodes
 from fastpin.model.wear import Wear
 from fastpin.solver.attempts import Unfit, arcs_after, first_wide_enough
 from fastpin.solver.errors import ArcError, Interrupted, ResolutionError
@@ -74,6 +76,19 @@ class CyclesInMemory:
         """Do nothing: a result in memory does not go on."""
 
 
+FrictionRule = Callable[[WornCycle], "np.ndarray | ProfileLike | None"]
+"""A function of the user: the friction after a chosen cycle, at the nodes or as a profile. None leaves it as it is."""
+
+
+def _friction_at(cycle: WornCycle, wanted: np.ndarray | ProfileLike) -> Profile:
+    """The friction that a function of the user wants."""
+    if not isinstance(wanted, np.ndarray):
+        return Profile.of("friction", wanted)
+    if wanted.shape != cycle.theta.shape:
+        raise InputError("friction", f"must return an array of the shape {cycle.theta.shape}, not {wanted.shape}")
+    return profile_of_nodes(cycle.grid, number_array("friction", wanted))
+
+
 @dataclass(frozen=True, eq=False)
 class WearTask:
     """A life of wear to follow. All its parts are checked together.
@@ -88,6 +103,8 @@ class WearTask:
     grid : Grid, optional
     progress : callable, optional
         Called as ``progress(done_cycles, all_cycles)`` now and then.
+    friction : callable, optional
+        Gives the friction after each chosen cycle, see :func:`fastpin.wear`.
 
     Raises
     ------
@@ -101,6 +118,7 @@ class WearTask:
     options: SolveOptions
     grid: Grid | None = None
     progress: RunProgress | None = None
+    friction: FrictionRule | None = None
 
     def __post_init__(self) -> None:
         self._task()
@@ -251,6 +269,10 @@ class WearTask:
             if place.cycle == 0:
                 warn_of(slip_doubts(self.coefficients(cycle.theta), cycle), 2)
             recorder.add(cycle, place, {**place.restart.statistics, "solved": place.solved})
+            if self.friction is not None and target < self.wear.cycles:
+                wanted = self.friction(cycle)
+                if wanted is not None:
+                    life, place = life.with_friction(place, _friction_at(cycle, wanted))
 
     def _worn_cycle(self, life: FatCycles, place: Worn) -> WornCycle:
         scales = life.run.system.scales

@@ -12,16 +12,12 @@ from typing import ClassVar
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.model.profile import InitialGap, Profile
-from fastpin.model.profile_terms import Samples
+from fastpin.model.profile import InitialGap, profile_of_nodes
 from fastpin.solver.configuration import Configuration, work_between
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.rest import release
 from fastpin.solver.run import Run
 from fastpin.solver.step import Piece, Position
-
-BEYOND_ARC = 8
-"""Angles beyond an arc at which a worn gap is said not to have grown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,12 +60,8 @@ class WearRun(Run):
             if self.system is not first:
                 self.system, self.stepper = first, PathStepper(first, self.statistics, self.strict)
             return
-        problem, grid = first.problem, first.grid
-        theta, heights = grid.theta, worn * first.scales.displacement
-        if not grid.closed:  # nothing is worn beyond an arc
-            beyond = np.linspace(theta[-1], theta[0] + 2.0 * np.pi, BEYOND_ARC + 2)[1:-1]
-            theta, heights = np.r_[theta, beyond], np.r_[heights, np.zeros(BEYOND_ARC)]
-        hole = problem.gap.hole + Profile((Samples(theta, heights),))
+        problem = first.problem
+        hole = problem.gap.hole + profile_of_nodes(first.grid, worn * first.scales.displacement)
         grown = replace(problem, gap=InitialGap(hole, problem.gap.pin))
         gap = first.initial_gap + worn
         self.system = replace(first, problem=grown, initial_gap=gap, held_as=first.held_as or first)

@@ -15,6 +15,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.points import Body
 from fastpin.model.problem import Problem
+from fastpin.model.profile import InitialGap, Profile, profile_of_nodes
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.wear import cycles_text
 from fastpin.states.cycles import Cycle
@@ -67,6 +68,18 @@ class WornCycle(ReadOnly):
         """Growth of the gap by the wear of both bodies, m, shape (n,)."""
         total: np.ndarray = self.pin_depth + self.plate_depth
         return total
+
+    @property
+    def gap(self) -> InitialGap:
+        """The initial gap of the worn joint: ``replace(problem, gap=cycle.gap)`` is the joint as it is now.
+
+        Between the nodes the worn depths are splines.
+        """
+        found = {}
+        for name, depth in (("hole", self.plate_depth), ("pin", self.pin_depth)):
+            first: Profile = getattr(self.states[0].problem.gap, name)
+            found[name] = first + profile_of_nodes(self.grid, depth) if depth.any() else first
+        return InitialGap(**found)
 
     @property
     def depth(self) -> float:

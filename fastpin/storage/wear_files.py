@@ -31,7 +31,7 @@ from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.fat_cycles import Worn
 from fastpin.solver.run import RunProgress
 from fastpin.solver.task import as_history, deferred_interrupts
-from fastpin.solver.wear import CyclesInMemory, WearTask
+from fastpin.solver.wear import CyclesInMemory, FrictionRule, WearTask
 from fastpin.solver.wear_result import WearResult, WornCycle
 from fastpin.storage import hdf5
 from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of, reading, text_of
@@ -74,6 +74,7 @@ def wear(
     law: str = "archard",
     at: Sequence[int] | None = None,
     tolerance: float = Wear.tolerance,
+    friction: FrictionRule | None = None,
     output: str | Path | None = None,
     overwrite: bool = False,
     resume: bool = False,
@@ -96,6 +97,10 @@ def wear(
         Number of cycles; the n of the history unless given.
     coefficient, pin, plate, law, at, tolerance
         See :class:`fastpin.model.Wear`.
+    friction : callable, optional
+        Called with each chosen cycle but the last, a :class:`WornCycle`. It returns the friction from there on: values
+        at the nodes, shape (n,), or whatever a problem takes as its friction. None leaves the friction as it is. The
+        contact follows the change under the loads at the end of the cycle. For lives in memory only.
     output : path, optional
         An HDF5 file for the result. It survives a kill, and `resume` continues it.
     overwrite : bool
@@ -132,7 +137,10 @@ def wear(
         raise InputError(next(iter(given)), "has no effect on wear; of the options of a run it takes nodes and arc")
     how = Wear(coefficient, pin, plate, last.count if cycles is None else cycles, law, at, tolerance)  # type: ignore[arg-type]
     check_callable("progress", progress)
-    task = WearTask(problem, history, how, SolveOptions(**options), grid, progress)
+    check_callable("friction", friction, 1)
+    if friction is not None and output is not None:
+        raise InputError("friction", "is a function of lives in memory: a file can't hold it, so leave output out")
+    task = WearTask(problem, history, how, SolveOptions(**options), grid, progress, friction)
     warn_of([*doubts(problem, history, task.options), *wear_doubts(problem, how)], 2)
     string("title", title)
     for name, value in (("overwrite", overwrite), ("resume", resume)):

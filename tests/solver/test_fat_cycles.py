@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -266,6 +267,31 @@ def test_a_result_is_read_only_and_can_be_pickled():
     assert "300" in found.summary().splitlines()[-1]
     assert repr(found).startswith("<WearResult: ")
     assert found.tau[-1] == pytest.approx(7.0)
+
+
+def test_a_worn_joint_is_a_problem_of_its_own():
+    """A life in two parts, each from no load, is nearly the whole life: what goes is the memory of the shear."""
+    case = WEAR_CASES["partial slip"]
+    whole = life(case, 200, 0.0, tau=0.5, at=[100])
+    first = life(case, 100, 0.0, tau=0.25, at=[])[-1]
+    assert np.array_equal(first.gap_growth, whole[1].gap_growth)
+    worn = replace(case.problem, gap=first.gap)
+    grown = worn.gap.values(first.theta, 1.0)[0] - case.problem.gap.values(first.theta, 1.0)[0]
+    assert np.abs(grown - first.gap_growth).max() < 1e-15
+    given = {"coefficient": 0.5 / 200, "grid": first.grid, "tolerance": 0.0}
+    second = fastpin.wear(worn, case.history(), cycles=100, at=[], **given)[-1]
+    both = first.gap_growth + second.gap_growth
+    assert np.abs(both - whole[-1].gap_growth).max() < 0.02 * whole[-1].depth
+    assert np.abs(second.pressure - whole[-1].pressure).max() < 0.02 * whole[-1].pressure.max()
+
+
+def test_a_body_that_does_not_wear_keeps_its_profile():
+    case = WEAR_CASES["lobed hole"]
+    last = life(case, 4, 0.0, coefficient=None, plate=0.1)[-1]
+    assert last.gap.pin == case.problem.gap.pin
+    assert last.gap.hole.terms[:-1] == case.problem.gap.hole.terms
+    nothing = life(case, 4, 0.0, coefficient=None, pin=0.1)[0]
+    assert nothing.gap.hole == case.problem.gap.hole
 
 
 def test_states_lie_over_one_cycle_on_the_worn_profile():
