@@ -335,15 +335,23 @@ def _first_patch(
         raise ResolutionError(NARROW)
     if reaches_end(system, found):
         raise ArcError(CUT_OFF)
+    return _begun(system, resting, found, None if rough else before + begins * (after - before)), fraction
+
+
+def _begun(system: System, resting: Configuration, found: Configuration, begin: np.ndarray | None) -> Configuration:
+    """The first patch `found` with its slip tally, dissipation and work since the pin was at rest.
+
+    `begin` is the load (loads,) at which the contact begins, for the slip of a patch without shear; None for others.
+    """
     dissipated = dissipation_between(system, resting, found)
-    if rough:
+    if begin is None:
         begun = slip_tally_with(replace(resting, status=found.status))  # its nodes slip from there on
         found.slip_tally = slip_tally_between(replace(resting, slip_tally=begun), found)
     elif system.has_friction:
-        found = _with_grown_slip(system, found, before + begins * (after - before)) or found
+        found = _with_grown_slip(system, found, begin) or found
     found.dissipation += dissipated
     found.work += elastic_energy(system, found) + dissipated
-    return found, fraction
+    return found
 
 
 def _is_self_similar(system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray]) -> bool:

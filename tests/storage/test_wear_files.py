@@ -158,6 +158,7 @@ def test_a_damaged_file_is_told_in_one_sentence(tmp_path, part):
 
 KILLED = """
 from pathlib import Path
+from typing import Any
 from fastpin.storage import wear_files
 from tests.support.wear_cases import life
 wear_files.CHECKPOINT_EVERY = 0.02
