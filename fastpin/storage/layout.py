@@ -509,8 +509,8 @@ def read_states(
     check_between("states/status", rows["status"], *STATUS_LIMITS)
     if "old_borders" in rows:
         check_old_borders("states", rows["old_borders"], rows["old_places"])
-    # A life of wear keeps the state before the first corner, too, if its first cycle begins there.
-    check_between("states/step", rows["step"], -1, corners - 1)
+    # A life of wear has the state before the first corner, too, if its first cycle begins there.
+    check_between("states/step", rows["step"], -1 if "wear" in file else 0, corners - 1)
     check_between("states/fraction", rows["fraction"], 0.0, 1.0)
     loads = all_loads(rows["loads"], 0.0)
     states, fields = [], [name for name in node_fields(group) if name not in BORDER_FIELDS]
