@@ -134,7 +134,10 @@ class WornFatigue(ReadOnly):
 
     @property
     def first_life(self) -> float:
-        """Life by the criterion on the first stored profile alone, as if nothing wore."""
+        """Life by the criterion on the first stored profile alone, as if nothing wore.
+
+        It belongs to the first cycle, which is settled if what leads to the cycle ends like the cycle.
+        """
         most = float(self.rate[0].max())
         return 1.0 / most if most else math.inf
 
