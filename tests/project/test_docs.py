@@ -14,7 +14,7 @@ from fastpin.figures.kinds import KINDS
 from fastpin.paper import catalog
 from fastpin.studies import sweep
 from fastpin.studies.outcome_tables import KEYS
-from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
+from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES, WEAR_QUANTITIES
 from fastpin.studies.plan import parse_plan, read_plan
 from fastpin.studies.run_end import KEY_FIGURES
 from scripts.inline import Inline
@@ -110,7 +110,7 @@ def test_the_plan_of_the_sweeps_can_be_run(tmp_path: Path) -> None:
 
 def test_every_way_to_an_outcome_is_explained() -> None:
     text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
-    for name in (*CYCLE_QUANTITIES, *TAKES):
+    for name in (*CYCLE_QUANTITIES, *WEAR_QUANTITIES, *TAKES):
         assert f'"{name}"' in text, name
     for key in {key for keys in KEYS.values() for key in keys}:
         assert f"`{key}`" in text, key
