@@ -3,6 +3,8 @@
 A cycle is followed piece by piece, from corner to corner. The wear of a piece is applied at its end, where its contact
 is (:meth:`fastpin.solver.wear_path.WearRun.wear`). In a fat cycle it is multiplied by the jump J, the number of cycles
 for which it stands. A fat cycle of J is compared with two of about J/2 from the same start. The finer result goes on.
+A single cycle comes before: a contact remembers the jump of the wear, and slips otherwise in the next cycle. This is
+multiplied by J, too. Without the single cycle it would be alike in both results, and not seen.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ SETTLING = 2
 """First cycles, which are solved one by one: the contact forgets how it was loaded first."""
 
 LEAST_JUMP = 4
-"""Smallest jump under control. Three cycles are solved for it, so smaller ones save nothing."""
+"""Smallest jump under control. Four cycles are solved for it and one more, so smaller ones save nothing."""
 
 LEAST_PAUSE, LONGEST_PAUSE = 4, 64
 """Single cycles after a failure of control: at first, and after many failures in a row. They double in between."""
@@ -183,24 +185,25 @@ class FatCycles:
         SolveError
             If a cycle can't be followed. It names the cycle.
         """
-        room, tolerance = target - place.cycle, self._wear.tolerance
+        before, tolerance = place.jump, self._wear.tolerance
         if tolerance == 0.0 or place.cycle < SETTLING:
             return replace(self._fat(place, 1), jump=LEAST_JUMP if tolerance else 1)
-        if place.jump < LEAST_JUMP:
-            return replace(self._fat(place, 1), jump=LEAST_JUMP if place.jump == 0 else place.jump + 1)
-        jump = min(room, place.jump)
+        place = self._fat(place, 1)  # the contact forgets the jump of the wear before
+        if before < LEAST_JUMP:
+            return replace(place, jump=LEAST_JUMP if before == 0 else before + 1)
+        jump = min(target - place.cycle, before)
         while jump >= LEAST_JUMP:
             fine, error = self._pair(place, jump)
             place = replace(place, solved=place.solved + 3)
             ratio = SAFETY * tolerance / error if error > 0.0 else math.inf
             wanted = int(jump * min(max(ratio, LEAST_GROWTH), MOST_GROWTH))
             if error <= tolerance:
-                most = place.jump if jump < place.jump else 0  # a chosen cycle has cut it short
+                most = before if jump < before else 0  # a chosen cycle has cut it short
                 return replace(fine, solved=place.solved, jump=max(wanted, LEAST_JUMP, most), pause=LEAST_PAUSE)
             jump = min(wanted, jump - 1)
             if jump < LEAST_JUMP:
-                place = replace(place, jump=1 - place.pause, pause=min(2 * place.pause, LONGEST_PAUSE))
-        return replace(self._fat(place, 1), jump=place.jump)
+                return replace(place, jump=1 - place.pause, pause=min(2 * place.pause, LONGEST_PAUSE))
+        return place
 
     def _pair(self, place: Worn, jump: int) -> tuple[Worn, float]:
         """Two halves of a fat cycle, and the error against the whole one; infinite if one can't be followed."""
@@ -331,14 +334,18 @@ class FatCycles:
         return depth, jump * self._total * np.minimum(slip, mean)
 
     def _error(self, start: Worn, fine: Worn, coarse: Worn) -> float:
-        """The larger error of a fat cycle: of the worn gap in parts of its growth, or of the pressure.
+        """The larger error of a fat cycle: of the worn gap, in parts of what it may add, or of the pressure.
 
-        The errors of the gap then add up to at most this part of the largest depth. Those of the pressure do not add
-        up, and have the weight PRESSURE_SHARE.
+        Half of the error goes with the growth of the largest depth, and half with the cycles. So the errors of the gap
+        add up to at most the tolerance, in parts of the largest depth. Without the second half a joint that has shaken
+        down would fail for ever: it wears by rounding alone. The errors of the pressure do not add up, and have the
+        weight PRESSURE_SHARE.
         """
         one, other = fine.restart.configuration.pressure, coarse.restart.configuration.pressure
-        grown, most = float((fine.gap - start.gap).max()), float(one.max())
-        gap = float(np.abs(fine.gap - coarse.gap).max()) / grown if grown else 0.0
+        depth, most = float(fine.gap.max()), float(one.max())
+        by_cycles = depth * (fine.cycle - start.cycle) / self._wear.cycles
+        allowed = 0.5 * (max(depth - float(start.gap.max()), 0.0) + by_cycles)
+        gap = float(np.abs(fine.gap - coarse.gap).max()) / allowed if allowed else 0.0
         return max(gap, PRESSURE_SHARE * float(np.abs(one - other).max()) / most if most else 0.0)
 
     def _check_depth(self, depth: np.ndarray) -> None:

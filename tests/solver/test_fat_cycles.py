@@ -24,6 +24,8 @@ from fastpin.verification.rows import Solving
 from fastpin.verification.wear_limits import rigid_sliding
 from fastpin.verification.wear_rows import final_state, half_planes, step, wearing
 from scripts.conditions import check_states
+from scripts.fat_cycles import factor_of, seen
+from scripts.fat_cycles import life as random_life
 from scripts.histories import generate
 from tests.support.marks import slow
 from tests.support.slip_cases import LIKE, UNLIKE
@@ -45,12 +47,37 @@ def every_cycle() -> WearResult:
 
 def test_fat_cycles_keep_their_promise_at_every_chosen_cycle():
     direct = every_cycle()
-    fat = life(WEAR_CASES["partial slip"], 300, 0.02)
+    fat = life(WEAR_CASES["partial slip"], 300, 0.05)
     assert direct[-1].solved == 300
     assert fat[-1].solved < 200
     assert [each.cycle for each in fat] == [each.cycle for each in direct]
     for one, other in zip(direct[1:], fat[1:], strict=True):
-        assert np.abs(one.gap_growth - other.gap_growth).max() < 0.02 * one.depth
+        assert np.abs(one.gap_growth - other.gap_growth).max() < 0.05 * one.depth
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [80, 101, 140])
+def test_fat_cycles_keep_their_promise_in_random_lives(seed):
+    """Hard ones: the contact slips otherwise in the cycle after a jump. Measured: 5.6e-3, 1.6e-3, 2.0e-3."""
+    case = generate("wear", seed)
+    factor = factor_of(case, seed, 400)
+    assert factor is not None
+    direct, fat = (random_life(case, factor, cycles=400, tolerance=tolerance) for tolerance in (0.0, 0.01))
+    found = seen(direct, fat)
+    assert 0.0 < found.gap < 0.01
+    assert found.volume < found.gap
+    assert found.solved < 1.0
+
+
+def test_a_joint_that_shakes_down_takes_few_cycles():
+    """A free pin under Q alone slips no more after nine cycles. Then rounding wears it: slip of some 1e-14 a cycle."""
+    problem = fastpin.Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body")
+    history = LoadHistory([{"P": 1.0}, {"Q": 0.3}]) + LoadHistory([{"Q": -0.3}, {"Q": 0.3}]).repeated(1)
+    few, many = (
+        fastpin.wear(problem, history, cycles=cycles, coefficient=0.1, nodes=NODES)[-1] for cycles in (20, 1e6)
+    )
+    assert many.solved < 300
+    assert np.abs(many.gap_growth - few.gap_growth).max() < 1e6 * 0.1 * 1e-13
 
 
 def test_the_volume_is_the_friction_energy_of_the_pieces():
