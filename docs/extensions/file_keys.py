@@ -11,12 +11,12 @@ from typing import Any
 import fastpin
 from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
 from fastpin.casefile.reader import EXAMPLE, KEYS, ROOT_KEYS
-from fastpin.model import FatigueConstants
+from fastpin.model import FatigueConstants, InitialGap, Wear
 from fastpin.model.loads import LOAD
 from fastpin.model.options import OPTIONS
 from fastpin.model.units import units_per_thickness
 from fastpin.states import QUANTITIES
-from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
+from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES, WEAR_QUANTITIES
 from fastpin.studies.run_end import KEY_FIGURES
 
 KINDS_OF_UNITS = {"angle": "rad", "width": "rad"}
@@ -28,6 +28,8 @@ CLASSES: dict[str, tuple[type, ...]] = {
     "contact": (fastpin.Problem, fastpin.MaterialPair),
     "pin_body": (Tube,),
     "plate_body": (Ring, Bushing, Plate, Compliance, fastpin.Material),
+    "gap": (InitialGap,),
+    "wear": (Wear,),
     "solve": (fastpin.SolveOptions,),
 }
 """Classes whose docstrings explain the keys of a section that the example leaves without words."""
@@ -124,7 +126,7 @@ def unit(kind: str) -> str:
 
 def plan_fields() -> str:
     """The fields of a case that a plan can vary."""
-    varied = [section for section in KEYS if section != "load"]
+    varied = [section for section in KEYS if section not in ("load", "wear")]
     rows = [(f"`{name}`", ", ".join(f"`{name}.{key}`" for key in KEYS[name])) for name in varied]
     rows.append(("`load`", ", ".join(f"`load.{key}`" for key in KEYS["load"])))
     return table(("section", "fields"), rows)
@@ -137,6 +139,7 @@ def plan_outcomes() -> str:
         "`take`": [*TAKES],
         "`over`": ["history", "cycle"],
         "`cycle`": [*CYCLE_QUANTITIES],
+        "`wear`": [*WEAR_QUANTITIES],
     }
     rows = [(key, ", ".join(f'"{name}"' for name in names)) for key, names in lists.items()]
     figures = ", ".join(f"`{name}`" for name in KEY_FIGURES)

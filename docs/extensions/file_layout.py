@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +62,37 @@ WORDS = {
 """Words for members that no docstring explains."""
 
 
+WEAR_WORDS = {
+    "law": "the law of wear",
+    "tolerance": "largest error of the worn gap by fat cycles",
+    "chosen": "cycles after which profile and states are kept",
+    "coefficients": "wear coefficients of pin and plate at the nodes",
+    "loses_contact": "whether the pin loses contact in the cycle",
+    "jump": "the next jump; below 1 so many single cycles and one more come first",
+    "pause": "single cycles after the next failure of control",
+    "depth": "worn depth of pin and plate at the nodes, dimensionless",
+}
+"""Words for members of the group of a life of wear that no docstring explains."""
+
+
+def wear_layout() -> str:
+    """A table of the members of the group of a life of wear, and of the place from which it goes on."""
+    parts = []
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "life.h5"
+        pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], fastpin.MATERIALS["aluminium"])
+        problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=20e-6, friction=0.4)
+        history = fastpin.LoadHistory([{"P": 2e6}]) + fastpin.LoadHistory([{"P": 1e6}, {"P": 2e6}]).repeated(2)
+        fastpin.wear(problem, history, coefficient=1e-14, output=path, nodes=31)
+        words = words_of_docstring(fastpin.solver.WornCycle)
+        with h5py.File(path) as file:
+            for name in ("/wear", "/wear/place"):
+                rows = list(_members(file[name], name, WEAR_WORDS | words if name == "/wear" else words | WEAR_WORDS))
+                parts += [f"### {name}", "", table(("name", "kind", "shape", "unit", "meaning"), rows), ""]
+    text = "\n".join(parts)
+    return text.replace("(3, 31)", "(cycle, node)").replace("(3,)", "(cycle,)").replace("(2, 31)", "(body, node)")
+
+
 def file_layout() -> str:
     """A table of the groups, and a table of the members of each group."""
     groups = GROUPS.findall(inspect.getdoc(layout) or "")
@@ -89,12 +120,12 @@ def _write(path: Path) -> None:
     fastpin.record(problem, history, path, title="sample", about=ABOUT, nodes=101, **OPTIONS)
 
 
-def _members(group: h5py.Group, where: str) -> Iterator[tuple[str, ...]]:
-    """Rows for attributes, arrays and groups of a group."""
+def _members(group: h5py.Group, where: str, given: Mapping[str, str] = WORDS) -> Iterator[tuple[str, ...]]:
+    """Rows for attributes, arrays and groups of a group. `given`: words for those that no docstring explains."""
     words = {"/states": words_of_docstring(fastpin.State), "/cycles": words_of_docstring(Cycle)}.get(where, {})
     words |= words_of_docstring(fastpin.Problem) if where == "/problem" else {}
     words |= words_of_docstring(fastpin.SolveOptions) if where == "/solver" else {}
-    words, said = WORDS | words, {}
+    words, said = {**given, **words}, {}
     for name in group.attrs:
         yield f"`{name}`", "attribute", "", "", _once(words.get(name) or _version(name), name, said)
     for name, member in group.items():

@@ -14,7 +14,7 @@ from typing import Any
 
 from command_line import command_line
 from file_keys import case_keys, materials, plan_fields, plan_outcomes, quantities
-from file_layout import file_layout
+from file_layout import file_layout, wear_layout
 
 ROOT = Path(__file__).resolve().parents[2]
 MARK = re.compile(r"^<!-- insert: (\w+)(?: (.+?))? -->$", re.MULTILINE)
@@ -49,6 +49,7 @@ PARTS: dict[str, Callable[..., str]] = {
     "plan_fields": plan_fields,
     "plan_outcomes": plan_outcomes,
     "quantities": quantities,
+    "wear_layout": wear_layout,
 }
 """Names of generated texts, and the functions that return them."""
 

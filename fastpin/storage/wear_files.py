@@ -26,6 +26,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.profile import ProfileLike
+from fastpin.model.units import units_per_thickness
 from fastpin.model.wear import Wear
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.fat_cycles import Worn
@@ -288,6 +289,14 @@ class WearFile:
             group.create_dataset(name, (0, grid.size), maxshape=(None, grid.size), chunks=(1, grid.size), dtype=float)
         for name, kind in NUMBERS.items():
             group.create_dataset(name, (0,), maxshape=(None,), chunks=(128,), dtype=kind)
+        unit = units_per_thickness(task.problem)
+        group["coefficients"].attrs["unit"] = unit["wear coefficient"]
+        for name, quantity in {
+            **dict.fromkeys(DEPTHS, "displacement"),
+            "dissipation": "energy",
+            "removed": "energy",
+        }.items():
+            group[name].attrs["unit"] = unit[quantity]
         self._place, self._is_stored = None, True
         self._commit()
 

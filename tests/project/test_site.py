@@ -17,7 +17,7 @@ import pytest
 import fastpin
 from fastpin.casefile.reader import KEYS
 from fastpin.cli.options import parser
-from fastpin.storage import extremes, layout
+from fastpin.storage import extremes, layout, wear_files
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -114,6 +114,15 @@ def test_the_file_format_of_the_reference_has_every_array(
         row = re.search(rf"^\| `{name}` \| .* \| (.*) \|$", text, re.MULTILINE)
         assert row, name
         assert row[1], name
+
+
+def test_the_file_format_of_a_life_of_wear_has_every_member(extension: ModuleType) -> None:
+    text = extension.PARTS["wear_layout"]()
+    for name in (*wear_files.DEPTHS, *wear_files.NUMBERS, "coefficients", "chosen", "jump", "depth", "restart/"):
+        row = re.search(rf"^\| `{name}` \| .* \| (.*) \|$", text, re.MULTILINE)
+        assert row, name
+        assert row[1], name
+    assert "| `plate_depth` | number | (cycle, node) | m |" in text
 
 
 @pytest.mark.parametrize("name", ["materials", "plan_fields", "plan_outcomes", "quantities"])
