@@ -172,7 +172,8 @@ G = {
     "G1": (
         Problem.from_load_parameter(LIKE, 0.1, 0.3, "body", gap=gap(Harmonic(6, -0.03))),
         [{"P": 0.02}, {"P": 0.2}, {"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}],
-        [(0, "contacts", 2, 0), (1, "contacts", 2, 0), (1, "peak", 0.3763, 6e-4), (2, "peak", 0.8696, 5e-4),
+        [(0, "contacts", 2, 0), (1, "contacts", 2, 0), (1, "peak", 0.3763, 6e-4), (1, "width", 0.69, 8e-3),
+         (2, "peak", 0.8696, 5e-4),
          (2, "bottom", 0.1922, 5e-4), (4, "peak", 0.9590, 5e-4), (4, "bottom", 0.2100, 5e-4), (4, "sum", 1.09076, 3e-5),
          (4, "dx", -0.04866, 1e-5)],
     ),
@@ -198,6 +199,7 @@ G = {
 def reading(state, name):
     return {
         "contacts": len(state.contact),
+        "width": sum(stop - start for start, stop in state.contact),
         "peak": state.peak_pressure,
         "bottom": state.pressure[np.argmin(np.abs(state.theta - BOTTOM))],
         "sum": state.grid.weights @ state.pressure,
