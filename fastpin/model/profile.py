@@ -16,6 +16,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
 from fastpin.model.checks import (
+    as_toml,
     check_callable,
     choice,
     instances,
@@ -188,6 +189,8 @@ class Profile:
                 return cls.samples(*value)  # type: ignore[misc]
             except InputError as error:
                 raise InputError(place, f"{error.field}: {error.reason}") from None
+        if str(value).lower().endswith(".csv"):
+            raise InputError(place, f"is the name of a file: Profile.from_csv({as_toml(str(value))}) reads it")
         height = number(place, value)
         return cls.constant(height) if height else cls()
 

@@ -99,9 +99,9 @@ def wear(
     coefficient, pin, plate, law, at, tolerance
         See :class:`fastpin.model.Wear`.
     friction : callable, optional
-        Called with each chosen cycle but the last, a :class:`WornCycle`. It returns the friction from there on: values
-        at the nodes, shape (n,), or whatever a problem takes as its friction. None leaves the friction as it is. The
-        contact follows the change under the loads at the end of the cycle. For lives in memory only.
+        Called with each chosen cycle but the last, a :class:`fastpin.solver.WornCycle`. It returns the friction from
+        there on: values at the nodes, shape (n,), or whatever a problem takes as its friction. None leaves the friction
+        as it is. The contact follows the change under the loads at the end of the cycle. For lives in memory only.
     output : path, optional
         An HDF5 file for the result. It survives a kill, and `resume` continues it.
     overwrite : bool

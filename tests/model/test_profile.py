@@ -30,6 +30,12 @@ def test_a_function_of_one_angle_is_named_with_its_failure() -> None:
     assert isinstance(raised.value.__cause__, TypeError)
 
 
+def test_the_name_of_a_file_is_no_profile_but_says_how_to_read_one() -> None:
+    with pytest.raises(InputError) as raised:
+        fastpin.model.InitialGap(pin="roundness.csv")  # type: ignore[arg-type]
+    assert str(raised.value) == 'gap.pin: is the name of a file: Profile.from_csv("roundness.csv") reads it'
+
+
 @pytest.mark.parametrize(
     ("call", "field"),
     [

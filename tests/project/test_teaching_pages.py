@@ -32,6 +32,7 @@ HOW_TO = [
     "compliance",
     "superposition",
     "fatigue",
+    "wear",
     "convergence",
     "coming-from",
     "glossary",
@@ -48,7 +49,7 @@ def test_the_tutorial_runs_as_printed() -> None:
     """Figures are left to `scripts/tutorial.py`, which draws them by the same commands."""
     run_page("tutorial.md", lambda command: "" if command.startswith("plot") else command.partition(" --plot")[0])
     assert Path("joint.toml").read_text() == (DOCS / "tutorial.toml").read_text()
-    assert [block.kind for block in blocks("tutorial.md")].count("text") == 8
+    assert [block.kind for block in blocks("tutorial.md")].count("text") == 9
 
 
 def test_the_tutorial_shows_the_figures_of_its_script(monkeypatch: pytest.MonkeyPatch) -> None:
