@@ -125,8 +125,9 @@ def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.nda
     x, y = np.where(system.drive.axes, 0.0, now.rest)
     middle, half = 0.5 * (theta + end), 0.5 * (theta - end)
     change: np.ndarray = 2.0 * np.sin(half) * (x * np.sin(middle) - y * np.cos(middle))
-    initial = (system.problem.gap_at(theta)[0] - system.problem.gap_at(end)[0]) / system.scales.displacement
-    return now.rest_gap[[0, -1]][nearest] + change + initial
+    if system.problem.gap:
+        change += (system.problem.gap_at(theta)[0] - system.problem.gap_at(end)[0]) / system.scales.displacement
+    return now.rest_gap[[0, -1]][nearest] + change
 
 
 def _rest_slip_at(system: System, now: Configuration, columns: np.ndarray) -> np.ndarray:

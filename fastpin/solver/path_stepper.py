@@ -128,10 +128,12 @@ class PathStepper:
 
     def _path(self, now: Configuration, after: np.ndarray) -> PathStep | DriftPath:
         """The path from a configuration to the load `after` (loads,)."""
-        system, friction = self._under(now.load), self._under(after).friction
-        if np.array_equal(system.friction, friction):
+        system = self._under(now.load)
+        is_steady = now.load[FRICTION_CHANGE:].tolist() == after[FRICTION_CHANGE:].tolist()
+        later = system if is_steady else self._under(after)
+        if later is system or np.array_equal(system.friction, later.friction):
             return PathStep(system, now, after, self._memory)
-        return DriftPath(system, now, after, friction)
+        return DriftPath(system, now, after, later.friction)
 
     def _under(self, load: np.ndarray) -> System:
         """The system with the friction under a load (loads,), kept for the next question."""
