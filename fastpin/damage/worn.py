@@ -151,7 +151,7 @@ class WornFatigue(ReadOnly):
     def gone(self) -> np.ndarray:
         """Cycles after which each material point is worn off, shape (d, m); infinite where it stays.
 
-        A crack wins the race where :attr:`broken` is finite: the damage of material that is gone does not grow.
+        A crack wins the race where ``broken`` is finite: the damage of material that is gone does not grow.
         """
         found = np.full(self.broken.shape, np.inf)
         for k in reversed(range(self.cycles.size - 1)):
