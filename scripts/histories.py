@@ -207,7 +207,8 @@ def _everyday_pair(rng: np.random.Generator) -> MaterialPair:
 def moderate_stress(rng: np.random.Generator, seed: int) -> RandomCase:
     """Everyday materials, forces and remote stress in every case."""
     del seed
-    problem = _problem(rng, 10.0 ** rng.uniform(-1.5, 1.0), pair=_everyday_pair(rng), friction=rng.uniform(0.05, 1.0))
+    pair = _everyday_pair(rng)
+    problem = _problem(rng, 10.0 ** rng.uniform(-1.5, 1.0), pair=pair, friction=rng.uniform(0.05, 1.0))
     return RandomCase(problem, LoadHistory(_extreme_loads(rng, problem, int(rng.integers(1, 7)), 2.0)), _nodes(rng))
 
 

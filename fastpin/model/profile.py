@@ -189,8 +189,9 @@ class Profile:
                 return cls.samples(*value)  # type: ignore[misc]
             except InputError as error:
                 raise InputError(place, f"{error.field}: {error.reason}") from None
-        if str(value).lower().endswith(".csv"):
-            raise InputError(place, f"is the name of a file: Profile.from_csv({as_toml(str(value))}) reads it")
+        given: object = value
+        if isinstance(given, (str, Path)) and Path(given).suffix.lower() == ".csv":
+            raise InputError(place, f"is the name of a file: Profile.from_csv({as_toml(str(given))}) reads it")
         height = number(place, value)
         return cls.constant(height) if height else cls()
 
