@@ -234,6 +234,7 @@ class _Checked:
         # Gap and slip from the first resting position of the pin. The place of that position is not known.
         initial = initial_gap(self.problem.gap, state.theta, radius)
         resting = self.problem.assembled_clearance + initial + grown
+        self.room = room_of(self.problem, resting if np.any(grown) else None)
         self.gap = resting - state.dx * cos - state.dy * sin + self.elastic[0] + self.loads[0]
         self.slip = radius * state.rotation + state.dy * cos - state.dx * sin + self.elastic[1] + self.loads[1]
         self.touches = bool(np.any(state.status != OPEN))
@@ -291,6 +292,22 @@ class _Checked:
         return abs(energy - state.energy) / max(size * self.length, 1e-300)
 
 
+def room_of(problem: Problem, resting: np.ndarray | None = None) -> float:
+    """Largest gap round the resting pin, m, of the problem or of worn gaps (n,); -1 where the hole grips the pin."""
+    if resting is not None:
+        return max(float(resting.max()), 0.0)
+    return -1.0 if problem.is_gripped else max(map(abs, problem.clearances))
+
+
+def floats(states: Sequence[State], grown: Sequence[np.ndarray]) -> bool:
+    """Whether the pin loses contact at a state or may lose it between two. `grown` is the growth (n,) of the gap, m."""
+    problem, theta = states[0].problem, states[0].theta
+    resting = problem.assembled_clearance + initial_gap(problem.gap, theta, problem.hole_radius)
+    room = room_of(problem, resting + np.max(grown, axis=0))
+    pairs = pairwise(states)
+    return not all(state.in_contact for state in states) or any(_may_lose_contact(*pair, room) for pair in pairs)
+
+
 def check_states(states: Sequence[State], grown: Sequence[np.ndarray] | None = None) -> list[dict[str, float]]:
     """Largest relative violation of each condition at each state. `grown` is the growth (n,) of the gap at each, m.
 
@@ -342,19 +359,19 @@ def _check_slips(checked: list[_Checked], found: list[dict[str, float]]) -> None
             last, previous = None, one
             continue
         difference = one.slip - one.state.slip
-        if last is None or (previous is not None and _may_lose_contact(previous.state, one.state)):
+        if last is None or (previous is not None and _may_lose_contact(previous.state, one.state, one.room)):
             last = basis @ (basis.T @ difference)
         conditions["slip"] = float(np.abs(difference - last).max()) / one.length
         last, previous = difference, one
 
 
-def _may_lose_contact(before: State, after: State) -> bool:
-    """Whether the pin may float between two states with clearance: no force acts, or the force passes through zero.
+def _may_lose_contact(before: State, after: State, room: float) -> bool:
+    """Whether the pin may float between two states with room: no force acts, or the force passes through zero.
 
-    Along an axis with a prescribed displacement the pin must also be where it is not beyond the clearance.
+    Along an axis with a prescribed displacement the pin must also lie within the `room` of :func:`room_of`, m.
     """
     problem = before.problem
-    if problem.is_gripped:
+    if room < 0.0:
         return False
     first, last = (
         np.array([[state.load["Q"], state.load["P"]], [state.load["ux"], state.load["uy"]]])
@@ -367,8 +384,8 @@ def _may_lose_contact(before: State, after: State) -> bool:
     stops = np.r_[part, np.linspace(0.0, 1.0, STOPS)]
     forces, shifts = (np.linalg.norm(first[k] + stops[:, None] * way[k], axis=1) for k in (0, 1))
     largest = max(float(np.abs([first[0], last[0]]).max()), 1e-300)
-    room = shifts <= max(map(abs, problem.clearances)) if driven.any() else np.ones(stops.size, dtype=bool)
-    return bool(np.any(room & (forces <= 1e-9 * largest)))
+    inside = shifts <= room if driven.any() else np.ones(stops.size, dtype=bool)
+    return bool(np.any(inside & (forces <= 1e-9 * largest)))
 
 
 def _held(states: Sequence[State]) -> list[tuple[int, State, State]]:
@@ -382,7 +399,8 @@ def _held(states: Sequence[State]) -> list[tuple[int, State, State]]:
         if before.in_contact
         and after.in_contact
         and not (
-            _may_lose_contact(before, after) and any(state.load[name] for state in (before, after) for name in "PQ")
+            _may_lose_contact(before, after, room_of(before.problem))
+            and any(state.load[name] for state in (before, after) for name in "PQ")
         )
     ]
 

@@ -333,7 +333,7 @@ def wear(rng: np.random.Generator, seed: int) -> RandomCase:
     while len(corners) < 2:
         corners = np.vstack([corners, 0.5 * corners[-1:]])
     turn = LoadHistory.from_array(corners[1:4], names)
-    size = 10.0 ** rng.uniform(-3.0, 0.5) * (1.0 if problem.dimensionless else 1e-3 * problem.surfaces.beta_star)
+    size = 10.0 ** rng.uniform(-3.0, 0.0) * (1.0 if problem.dimensionless else 1e-3 * problem.surfaces.beta_star)
     options: dict[str, Any] = {"nodes": int(rng.integers(41, 82)), "law": rng.choice(["archard", "energy"]).item()}
     options |= {"cycles": int(rng.integers(2, 7)), "tolerance": 0.0}
     if rng.random() < 0.25:

@@ -26,7 +26,7 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.solver.wear_result import WearResult
 from fastpin.storage.wear_files import wear
-from scripts.conditions import TOLERANCE, check_direction, check_dissipation, check_states
+from scripts.conditions import TOLERANCE, check_direction, check_dissipation, check_states, floats
 from scripts.histories import GENERATORS, RandomCase, generate
 
 BETWEEN = 39
@@ -118,8 +118,9 @@ def _check_wear(outcome: Outcome, result: WearResult) -> None:
     outcome.nodes, outcome.jumps = result.grid.size, result.statistics.get("jumps", 0.0)
     pairs = [(state, each.gap_growth) for each in result for state in each.states]
     outcome.states = len(pairs)
-    found = check_states([state for state, _ in pairs], [grown for _, grown in pairs])
-    if not all(state.in_contact for state, _ in pairs):  # a new contact between two chosen cycles has a slip of its own
+    states, grown = [list(column) for column in zip(*pairs, strict=True)]
+    found = check_states(states, grown)
+    if floats(states, grown):  # a new contact between two chosen cycles has a slip of its own
         parts = [check_states(each.states, [each.gap_growth] * len(each.states)) for each in result]
         for conditions, alone in zip(found, (one for part in parts for one in part), strict=True):
             conditions.pop("slip", None)
