@@ -118,6 +118,8 @@ def _check_wear(outcome: Outcome, result: WearResult) -> None:
     outcome.nodes, outcome.jumps = result.grid.size, result.statistics.get("jumps", 0.0)
     pairs = [(state, each.gap_growth) for each in result for state in each.states]
     outcome.states = len(pairs)
+    if not pairs:
+        return
     states, grown = [list(column) for column in zip(*pairs, strict=True)]
     found = check_states(states, grown)
     if floats(states, grown):  # a new contact between two chosen cycles has a slip of its own
