@@ -17,7 +17,7 @@ from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, Wall, fi
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.kernels.harmonics import First, Layer
-from fastpin.model.checks import MOST_PARAMETER, instance, not_negative, number, positive
+from fastpin.model.checks import MOST_FRICTION, MOST_PARAMETER, instance, not_negative, number, positive, true_or_false
 from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair, check_moduli
 from fastpin.model.synonyms import explains_keywords
@@ -29,7 +29,9 @@ THINNEST_LAYER = 0.01
 @explains_keywords
 @dataclass(frozen=True)
 class Bushing(PlateBody):
-    """A bush in the hole of the plate, bonded to it. The pin touches the bush.
+    """A bush in the hole of the plate, bonded to it or held by friction. The pin touches the bush.
+
+    A bush that is not bonded sticks, slips, opens and walks: its seat is an interface of its own.
 
     Parameters
     ----------
@@ -43,7 +45,9 @@ class Bushing(PlateBody):
     inside : Plate or Ring
         The body round the bush.
     friction : float, optional
-        Coefficient of friction between bush and plate. It changes no state; it tells whether the bush would slip.
+        Coefficient of friction between bush and plate, of a bush that is not bonded.
+    bonded : bool
+        Whether the bush is bonded to the plate.
 
     Raises
     ------
@@ -62,6 +66,7 @@ class Bushing(PlateBody):
     interference: float = 0.0
     inside: Plate | Ring = field(default_factory=Plate)
     friction: float | None = None
+    bonded: bool = True
 
     def __post_init__(self) -> None:
         instance("material", self.material, Material, "a Material")
@@ -71,8 +76,14 @@ class Bushing(PlateBody):
         object.__setattr__(self, "interference", not_negative("interference", self.interference))
         if not isinstance(self.inside, (Plate, Ring)):
             raise InputError("inside", "must be a Plate or a Ring: a bush sits in an infinite plate or a ring")
+        object.__setattr__(self, "bonded", true_or_false("bonded", self.bonded))
         if self.friction is not None:
-            object.__setattr__(self, "friction", not_negative("friction", self.friction))
+            friction = number("friction", not_negative("friction", self.friction), 0.0, MOST_FRICTION)
+            object.__setattr__(self, "friction", friction)
+        if self.bonded and self.friction is not None:
+            raise InputError("friction", "a bonded bush does not slip: leave friction out, or set bonded = false")
+        if not self.bonded and self.friction is None:
+            raise InputError("friction", "a bush that is not bonded needs its friction in the plate")
 
     @property
     def lug(self) -> PlateBody:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fastpin.elasticity.drive import Drive
+from fastpin.elasticity.interfaces import JointSystem, seat_grid
 from fastpin.elasticity.operator import Operator, uniform_part
 from fastpin.elasticity.system import System
 from fastpin.elasticity.terms import BodyTerms
@@ -80,8 +81,11 @@ class LargeSystem(System):
 def build_system(problem: Problem, grid: Grid, force: float) -> System:
     """The system of `problem` on `grid` with reference force `force`, N/m; a :class:`LargeSystem` where that is due.
 
-    The latest systems with few nodes are kept, and returned again for the same problem and grid.
+    The latest systems with few nodes are kept, and returned again for the same problem and grid. Where a bush slips,
+    `grid` has the nodes of the pin, and as many go round the seat.
     """
+    if problem.seat is not None:
+        return JointSystem.join(problem, (grid, seat_grid(problem, grid)), force)
     if grid.closed and not grid.uniform and grid.size > MOST_DENSE:
         return LargeSystem.build(problem, grid, force)
     return _KEPT.system(problem, grid, force) if grid.size <= MOST_KEPT else System.build(problem, grid, force)

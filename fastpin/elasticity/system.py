@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,6 +29,28 @@ from fastpin.model.problem import Problem
 
 _ACTING_FORCES = min(DISPLACEMENTS) if max(DISPLACEMENTS) == ACTING - 1 else ACTING
 """Number of loads in products under forces. The displacements, where they stand last, are left out: zeros cost bits."""
+
+
+class Interface(NamedTuple):
+    """One contact of a joint: the pin in the hole, or a bush in its seat.
+
+    Attributes
+    ----------
+    problem : Problem
+    grid : Grid
+    nodes : slice
+        Its nodes among all nodes.
+    motion : int
+        The first of its three motions (c_x, c_y, omega) among all motions.
+    radius : float
+        Its radius over R.
+    """
+
+    problem: Problem
+    grid: Grid
+    nodes: slice
+    motion: int
+    radius: float
 
 
 @dataclass(frozen=True)
@@ -169,6 +192,30 @@ class System:
     def motions(self) -> int:
         """Number m of motions, and of conditions of equilibrium."""
         return len(self.motion_rows)
+
+    @cached_property
+    def interfaces(self) -> tuple[Interface, ...]:
+        """All contacts of the joint. That of the pin is the first one."""
+        return (Interface(self.problem, self.grid, slice(0, self.grid.size), 0, 1.0),)
+
+    @cached_property
+    def levers(self) -> np.ndarray:
+        """Moment of a unit of shear at each node, shape (n,): its weight times the radius of its rim."""
+        return self.weights
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """Whether a node is the end of an arc, bool, shape (n,). It must stay open."""
+        found = np.zeros(self.grid.size, dtype=bool)
+        if not self.grid.closed:
+            found[[0, -1]] = True
+        return found
+
+    @cached_property
+    def turning(self) -> tuple[slice, ...]:
+        """The nodes of each interface whose rotation only friction holds."""
+        is_free = self.has_friction and self.problem.rotation == "free"
+        return tuple(each.nodes for each in self.interfaces if is_free)
 
     @cached_property
     def concentric_gap(self) -> np.ndarray:

@@ -82,6 +82,10 @@ class LoadTerms(NamedTuple):
         Growth of ``force`` along the step.
     weights : ndarray, shape (n,)
         Weights of the nodes.
+    levers : ndarray, shape (n,)
+        Moment of a unit of shear at each node: its weight times the radius of its rim.
+    stops : ndarray of int, shape (interfaces,)
+        The place after the last node of each interface.
     reactions : ndarray, shape (2, 2n+3)
         Along x and y: weights of the traction rates per reaction, growth of the prescribed displacement, compliance g,
         and 1 if a displacement is prescribed. The motion then holds the reaction.
@@ -92,6 +96,8 @@ class LoadTerms(NamedTuple):
     force: np.ndarray
     force_rate: np.ndarray
     weights: np.ndarray
+    levers: np.ndarray
+    stops: np.ndarray
     reactions: np.ndarray
 
 

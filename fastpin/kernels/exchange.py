@@ -52,7 +52,7 @@ ENDLESS = 7  # more events than allowed
 UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, SETTLED, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
 # Slots of `sums`.
-TIME, DISSIPATION, WORK, SUMS = 0, 1, 2, 3
+TIME, DISSIPATION, WORK, SEAT_DISSIPATION, SUMS = 0, 1, 2, 3, 4
 
 # The row of the slip tally that only runs with wear have: pressure times slip distance.
 WEAR = 4
@@ -307,16 +307,18 @@ def _next_event(contact, rates, friction, traction_tol, length_tol, limit):
 
 
 @inner
-def _advance(contact, rates, friction, weights, step):
+def _advance(contact, rates, friction, weights, step, stop):
     """Advance the contact by `step`, and set values that reach their bound exactly to it.
 
-    Returns the energy that friction dissipates.
+    Returns the energy that friction dissipates, and its part at the nodes from `stop` on.
     """
     status, pressure, shear, gap, slip = contact.status, contact.pressure, contact.shear, contact.gap, contact.slip
     n, tally, rest_slip = status.size, contact.slip_tally, contact.rest_slip
     counts, wears = tally.size > 0, tally.shape[0] > WEAR
-    most_pressure, most_gap, dissipated = 0.0, 0.0, 0.0
+    most_pressure, most_gap, dissipated, before = 0.0, 0.0, 0.0, 0.0
     for i in range(n):
+        if i == stop:
+            before = dissipated
         if status[i] == OPEN:
             gap[i] += step * rates[i]
             slip[i] += step * rates[n + i]
@@ -353,7 +355,7 @@ def _advance(contact, rates, friction, weights, step):
             bound = friction[i] * pressure[i]
             if abs(shear[i]) >= bound - VALUE_TOLERANCE * most_pressure * friction[i]:
                 shear[i] = bound if shear[i] > 0.0 else -bound
-    return dissipated
+    return dissipated, dissipated - before if stop < n else 0.0
 
 
 @inner
@@ -375,43 +377,45 @@ def _reaction_work(contact, rates, friction, load, axis, step):
 def _work(contact, rates, friction, load, time, step):
     """Work of the loads over `step`, exact for the piecewise linear path. Call it before `_advance`.
 
-    The force acts on the first two motions, the translation of the pin. The moment of the shear on its rim acts on the
-    third one, its rotation.
+    At each interface the force acts on the first two motions, the translation. The moment of the shear on its rim acts
+    on the third one, the rotation.
     """
     status, n = contact.status, contact.status.size
     middle = time + 0.5 * step
-    moment, moment_rate, work = 0.0, 0.0, 0.0
-    for i in range(n):
-        if status[i] != OPEN:
-            if status[i] == STICK:
-                shear_rate = _shear_rate(rates, contact, friction, i)
+    work, begin = 0.0, 0
+    for rim in range(load.stops.size):
+        moment, moment_rate, motion = 0.0, 0.0, 2 * n + 3 * rim
+        for i in range(begin, load.stops[rim]):
+            if status[i] != OPEN:
+                if status[i] == STICK:
+                    shear_rate = _shear_rate(rates, contact, friction, i)
+                else:
+                    shear_rate = -status[i] * friction[i] * rates[i]
+                moment -= load.levers[i] * contact.shear[i]
+                moment_rate -= load.levers[i] * shear_rate
+                work += (load.column[i] + middle * load.column_rate[i]) * rates[i]
+                work += (load.column[n + i] + middle * load.column_rate[n + i]) * shear_rate
+        for k in range(2):
+            if load.reactions[k, 2 * n + 2] != 0.0 and rim == 0:
+                work += _reaction_work(contact, rates, friction, load, k, step)
             else:
-                shear_rate = -status[i] * friction[i] * rates[i]
-            moment -= load.weights[i] * contact.shear[i]
-            moment_rate -= load.weights[i] * shear_rate
-            work += (load.column[i] + middle * load.column_rate[i]) * rates[i]
-            work += (load.column[n + i] + middle * load.column_rate[n + i]) * shear_rate
-    for k in range(2):
-        if load.reactions[k, 2 * n + 2] != 0.0:
-            work += _reaction_work(contact, rates, friction, load, k, step)
-        else:
-            work += (load.force[k] + middle * load.force_rate[k]) * rates[2 * n + k]
-    work += (moment + 0.5 * step * moment_rate) * rates[2 * n + 2]
+                work += (load.force[k] + middle * load.force_rate[k]) * rates[motion + k]
+        work += (moment + 0.5 * step * moment_rate) * rates[motion + 2]
+        begin = load.stops[rim]
     return work * step
 
 
 @inner
-def _apply_queue(tableau, contact, queue, friction, typical, closed_grid):
+def _apply_queue(tableau, contact, queue, friction, typical, ends):
     """Make the waiting changes of status. Returns REACHED when none is left, or another code."""
     counts = queue.counts
-    n = contact.status.size
     while counts[NEXT] < counts[QUEUED]:
         node, wanted = queue.node[counts[NEXT]], np.int64(queue.status[counts[NEXT]])  # one type: compiled once
         old = np.int64(contact.status[node])
         if old == wanted:
             counts[NEXT] += 1
             continue
-        if old == OPEN and not closed_grid and (node == 0 or node == n - 1):
+        if old == OPEN and ends[node]:
             return ARC_END
         updates = counts[UPDATES]
         if updates + MOST_UPDATES_A_CHANGE > tableau.left.shape[1]:
@@ -449,12 +453,11 @@ def _apply_queue(tableau, contact, queue, friction, typical, closed_grid):
 
 
 @inner
-def _change_all_at_once(contact, queue, queued, closed_grid):
+def _change_all_at_once(contact, queue, queued, ends):
     """Give all queued nodes their new statuses at once, for a new tableau. The queue keeps the old statuses."""
-    n = contact.status.size
     for k in range(queued):
         node, new = queue.node[k], queue.status[k]
-        if contact.status[node] == OPEN and not closed_grid and (node == 0 or node == n - 1):
+        if contact.status[node] == OPEN and ends[node]:
             return ARC_END
         contact.status[node], queue.status[k] = new, contact.status[node]
         contact.touched[node] = contact.touched[node] or new != OPEN
@@ -464,7 +467,7 @@ def _change_all_at_once(contact, queue, queued, closed_grid):
 
 
 @compiled
-def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, most_events, all_at_once):
+def follow(tableau, contact, load, queue, friction, ends, typical, stop, most_events, all_at_once):
     """Follow the load from sums[TIME] to `stop`, event by event.
 
     Parameters
@@ -473,8 +476,8 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
         All but `load` are changed in place. Time runs from 0 to 1 along the step. Rates are per unit of this time.
     friction : ndarray, shape (n,)
         Coefficient of friction at each node.
-    closed_grid : bool
-        Whether the grid is the whole circle. If not, its end nodes must stay open.
+    ends : ndarray of bool, shape (n,)
+        Whether a node is the end of an arc. It must stay open.
     typical : float
         A typical compliance (diagonal of the operator), to judge pivots.
     stop : float
@@ -495,7 +498,7 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
     settled = counts[SETTLED] != 0
     counts[SETTLED] = 0
     while True:
-        code = _apply_queue(tableau, contact, queue, friction, typical, closed_grid)
+        code = _apply_queue(tableau, contact, queue, friction, typical, ends)
         if code != REACHED:
             return code
         traction_rate, length_rate = _rate_scales(rates, contact, friction)
@@ -519,7 +522,7 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
                 if counts[ROUND] > 4 * contact.status.size + 200:
                     return CYCLING
                 if queued > all_at_once:
-                    return _change_all_at_once(contact, queue, queued, closed_grid)
+                    return _change_all_at_once(contact, queue, queued, ends)
                 continue
             settled = True
             counts[ROUND] = 0
@@ -530,7 +533,9 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
         room = stop - sums[TIME]
         step = _next_event(contact, rates, friction, traction_tol, length_tol, room)
         sums[WORK] += _work(contact, rates, friction, load, sums[TIME], step)
-        sums[DISSIPATION] += _advance(contact, rates, friction, load.weights, step)
+        dissipated, in_seat = _advance(contact, rates, friction, load.weights, step, load.stops[0])
+        sums[DISSIPATION] += dissipated
+        sums[SEAT_DISSIPATION] += in_seat
         if step >= room:
             sums[TIME] = stop
         else:

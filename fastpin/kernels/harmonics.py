@@ -330,3 +330,26 @@ def as_matrices(entries: np.ndarray) -> np.ndarray:
     """The symmetric matrices, shape (m, 2, 2), of entries a, b, d, shape (3, m)."""
     a, b, d = entries
     return np.array([[a, b], [b, d]]).transpose(2, 0, 1)
+
+
+# -- a ring between two loaded rims: what one rim feels of the other -------------------------------------------
+
+
+def across(order: np.ndarray, outer: float, kolosov: float) -> np.ndarray:
+    """2G (u_n, conj u_-n) of a ring's outer rim per traction (t_n, conj t_-n) on its inner rim, shape (m, 2, 2).
+
+    The ring lies in 1 <= r <= `outer`, and its outer rim is free. `order` has the harmonics, 0 or more. In harmonic 0
+    shear moves nothing but the whole rim, and in harmonic 1 the force moves the whole ring: both are left out. The
+    transposed matrices times -`outer` are those of the inner rim per traction on the outer one.
+    """
+    n, c, k = order, outer, kolosov
+    found, q = np.zeros((n.size, 2, 2)), c**-2.0
+    found[n == 0, 0, 0] = -0.5 * (k + 1.0) / (c * (1.0 - q))
+    found[n == 1, 0, 0] = -0.5 * (k + 1.0) / (c * c - q)
+    high = n >= 2
+    m, wall = n[high], (1.0 - 1.0 / c) * (1.0 + 1.0 / c)
+    first, second = -np.expm1((m - 1.0) * math.log(q)), -np.expm1((m + 1.0) * math.log(q))
+    factor = (k + 1.0) * c * q ** (0.5 * m) / _determinant(m, 1.0 / c, -1.0, m + 1.0, m - 1.0)
+    found[high, 0, 0], found[high, 0, 1] = factor * q * first / (m + 1.0), factor * wall
+    found[high, 1, 0], found[high, 1, 1] = factor * q**m * wall, factor * second / (m - 1.0)
+    return found

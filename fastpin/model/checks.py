@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
+MOST_FRICTION = 1e6
+"""Largest coefficient of friction. The pin sticks wherever it touches. Beyond, rounding makes it slip."""
+
 MOST_PARAMETER = 1e50
 """Largest load parameter of a dimensionless problem. A larger clearance could only mean a wrong unit."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -12,8 +12,11 @@ import numpy as np
 from fastpin.bodies.body import BodyBase, PinBody, PinLoad, PlateBody
 from fastpin.bodies.joint import Joint, check_bodies, without_units
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
+from fastpin.bodies.ring import Ring
+from fastpin.bodies.tube import Tube
 from fastpin.errors import InputError
 from fastpin.model.checks import (
+    MOST_FRICTION,
     MOST_PARAMETER,
     as_toml,
     choice,
@@ -37,9 +40,6 @@ Rotation = Literal["free", "fixed", "spring"]
 
 LEAST_RADIUS, MOST_RADIUS = 1e-30, 1e30
 """Limits of the hole radius, m. Squares of dimensional results are then still numbers, in any units."""
-
-MOST_FRICTION = 1e6
-"""Largest coefficient of friction. The pin sticks wherever it touches. Beyond, rounding makes it slip."""
 
 MOST_GAP = 0.1
 """Largest initial gap, in parts of R. A larger one is no small change of a circle."""
@@ -317,6 +317,29 @@ class Problem:
         """The bodies by their fields, without a solid pin and an infinite plate."""
         bodies = {"pin_body": self.pin_body, "plate_body": self.plate_body}
         return {name: body for name, body in bodies.items() if body not in (SOLID_PIN, INFINITE_PLATE)}
+
+    @cached_property
+    def interfaces(self) -> tuple[Problem, ...]:
+        """The contacts of the joint, each as a problem of its own: pin in hole, then a bush that slips in its seat.
+
+        In the first one a bush that slips is a ring, free at its outer rim. In the second one it is a hollow pin, free
+        at its bore. With a single contact it is this problem.
+        """
+        bush = self.plate_body.bush
+        if bush is None or bush.bonded:
+            return (self,)
+        assert bush.friction is not None
+        pin, seat = self.surfaces, replace(
+            self, pair=MaterialPair(bush.material, self.pair.plate, self.pair.plane), hole_radius=bush.outer_radius,
+            clearance=-bush.interference, friction=bush.friction, pin_load="centre", rotation="free", hub_radius=None,
+            hub_stiffness=None, pin_body=Tube(self.hole_radius), plate_body=bush.inside, gap=NO_GAP,
+        )  # fmt: skip
+        return replace(self, pair=pin, plate_body=Ring(bush.outer_radius, "uniform")), seat
+
+    @property
+    def seat(self) -> Problem | None:
+        """The contact of a bush that slips in its seat; None without one."""
+        return self.interfaces[1] if len(self.interfaces) > 1 else None
 
     @property
     def pin_radius(self) -> float:

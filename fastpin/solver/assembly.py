@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from fastpin.elasticity.interfaces import SEAT, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import LOADS
 from fastpin.model.room import widest_place
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
+    NODAL,
     Configuration,
     Solution,
     accept_solution,
@@ -20,6 +22,7 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.errors import ConvergenceError
 from fastpin.solver.increment import implicit_step
+from fastpin.solver.interfaces import PinView, with_seat
 from fastpin.solver.rest import place_between
 from fastpin.solver.settling import FiniteStep
 
@@ -36,6 +39,8 @@ def unloaded_configuration(system: System) -> Configuration:
     ConvergenceError
         If the pressure of an interference fit was not found on this grid.
     """
+    if isinstance(system, JointSystem):
+        return _assembled_joint(system)
     n, drive, load = system.grid.size, system.drive, np.zeros(len(LOADS))
     zeros = np.zeros(n)
     is_gripped = _is_gripped(system)
@@ -64,6 +69,21 @@ def unloaded_configuration(system: System) -> Configuration:
     is_uneven = bool(system.problem.gap) or (system.bodies is not None and bool(system.bodies.matrix.size))
     found = (_uneven if is_uneven else _uniform)(system, configuration)
     found.work = elastic_energy(system, found)  # the work of the assembly, without that of its friction
+    return found
+
+
+def _assembled_joint(joint: JointSystem) -> Configuration:
+    """The configuration of a joint before any load: the bush pressed in its seat first, then the pin in the bush."""
+    seat = unloaded_configuration(joint.alone[SEAT])
+    n = joint.grid.size
+    whole = Configuration(
+        **{name: np.zeros(n) for name in NODAL if name != "status"}, status=np.full(n, OPEN, dtype=np.int8),
+        motion=np.zeros(joint.motions), load=seat.load, origin=np.full(2, np.nan), rest=np.zeros(2),
+    )  # fmt: skip
+    view = PinView(joint, with_seat(joint, whole, seat))
+    found = view.whole(unloaded_configuration(view.system))
+    found.dissipation = found.seat_dissipation = 0.0
+    found.work = elastic_energy(joint, found)
     return found
 
 

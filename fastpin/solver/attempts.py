@@ -123,7 +123,7 @@ class Attempts:
 
     def _graded(self, unfit: Unfit | None) -> Iterable[Grid]:
         """Graded grids for narrow contacts. If an earlier run has ended on one of them, the grids after it."""
-        if self.grid is not None or self.options.arc is not None:
+        if self.grid is not None or self.options.arc is not None or self.problem.seat is not None:
             return ()
         grids = narrow_grids(self.problem, self.values, self.force, self.options, self.progress)
         if unfit is None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.elasticity.system import System
+from fastpin.elasticity.system import Interface, System
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
 from fastpin.model.loads import P, Q
 from fastpin.reading.marks import Marks
@@ -20,6 +20,9 @@ MAX_RESIDUAL = 1e-9
 
 NODAL = ("pressure", "shear", "gap", "slip", "status", "rest_gap", "rest_slip")
 """Arrays of a configuration with one number for each node."""
+
+MARKS = ("marks", "seat_marks")
+"""Fields of a configuration with the marks of each interface."""
 
 AT_REST = ("origin", "rest", "rest_gap", "rest_slip")
 """Arrays that nothing changes in place: copies of a configuration share them."""
@@ -53,6 +56,8 @@ class Configuration:
         Slip that the remote stress had caused when the pin came to rest. It is subtracted before users see the slip.
     dissipation, work : float
         Energy dissipated by friction, and work of the loads.
+    seat_dissipation : float
+        The part of the dissipation in the seat of a bush.
     slip_tally : SlipTally
         What each node has slipped, counted as ``dissipation``.
     """
@@ -72,6 +77,8 @@ class Configuration:
     work: float = 0.0
     slip_tally: SlipTally = NOT_COUNTED
     marks: Marks = field(default_factory=Marks)
+    seat_dissipation: float = 0.0
+    seat_marks: Marks = field(default_factory=Marks)
 
     def copy(self) -> Configuration:
         """A copy that shares no array with this one, except those of :data:`AT_REST`."""
@@ -145,10 +152,14 @@ class Solution:
     slip: np.ndarray
     motion: np.ndarray
 
+    def part(self, nodes: slice) -> Solution:
+        """The solution at some nodes. The motion is that of all."""
+        return Solution(self.pressure[nodes], self.shear[nodes], self.gap[nodes], self.slip[nodes], self.motion)
+
 
 def reaches_end(system: System, configuration: Configuration) -> bool:
     """Whether the contact reaches an end node of an arc. There it is cut off."""
-    return not system.grid.closed and bool(configuration.closed[[0, -1]].any())
+    return bool(configuration.closed[system.ends].any())
 
 
 def resting_status(system: System) -> np.ndarray:
@@ -219,11 +230,14 @@ def work_between(system: System, before: Configuration, after: Configuration) ->
     n = system.grid.size
     load = 0.5 * (before.load + after.load)
     moved = after.motion - before.motion
-    moment = -0.5 * float(system.weights @ (before.shear + after.shear))
     change = np.r_[after.pressure - before.pressure, after.shear - before.shear]
     column = system.held_displacement(load)
     internal = float((system.weights * column[:n]) @ change[:n] + (system.weights * column[n:]) @ change[n:])
-    work = float(load[Q] * moved[0] - load[P] * moved[1] + moment * moved[2]) + internal
+    work = internal
+    for rim in system.interfaces:
+        moment = -0.5 * float(system.levers[rim.nodes] @ (before.shear + after.shear)[rim.nodes])
+        x, y, turned = moved[rim.motion : rim.motion + 3]
+        work = float(load[Q] * x - load[P] * y + moment * turned) + work
     weights, mean = np.r_[system.weights, system.weights], 0.5 * (before.motion + after.motion)
     return work + system.drive.work(weights, change, mean, moved, after.load - before.load)
 
@@ -232,6 +246,20 @@ def dissipation_between(system: System, before: Configuration, after: Configurat
     """Energy dissipated between two configurations, computed with the mean shear (dimensionless)."""
     slid = np.where(after.closed, after.slip - before.slip, 0.0)
     return -0.5 * float((system.weights * slid) @ (before.shear + after.shear))
+
+
+def seat_dissipation_between(system: System, before: Configuration, after: Configuration) -> float:
+    """The part of :func:`dissipation_between` in the seat of a bush; 0 with a single interface."""
+    slid, lost = np.where(after.closed, after.slip - before.slip, 0.0), 0.0
+    for nodes in (rim.nodes for rim in system.interfaces[1:]):
+        lost -= 0.5 * float((system.weights[nodes] * slid[nodes]) @ (before.shear + after.shear)[nodes])
+    return lost
+
+
+def add_dissipation(system: System, before: Configuration, after: Configuration) -> None:
+    """Give `after` the dissipation of `before` and the energy dissipated in between, computed with the mean shear."""
+    after.dissipation = before.dissipation + dissipation_between(system, before, after)
+    after.seat_dissipation = before.seat_dissipation + seat_dissipation_between(system, before, after)
 
 
 def slip_tally_with(configuration: Configuration) -> SlipTally:
@@ -261,11 +289,16 @@ def elastic_energy(system: System, configuration: Configuration) -> float:
     return energy + system.drive.energy(weights, tractions, configuration.motion)
 
 
-def marks_left(before: Configuration, now: Configuration) -> Marks:
-    """The marks of the last corner, the configuration `before`, over which no slip zone has passed until `now`."""
-    if not np.array_equal(now.rest, before.rest):  # the pin was released: slip counts from another position
+def marks_left(before: Configuration, now: Configuration, interface: Interface, name: str) -> Marks:
+    """The marks of the last corner, the configuration `before`, over which no slip zone has passed until `now`.
+
+    They are those of an `interface`, the field `name` of a configuration.
+    """
+    if name == MARKS[0] and not np.array_equal(now.rest, before.rest):  # the pin was released: slip counts anew
         return Marks()
-    return before.marks.left(now.status, now.slip, before.slip)
+    nodes, marks = interface.nodes, getattr(before, name)
+    found: Marks = marks.left(now.status[nodes], now.slip[nodes], before.slip[nodes])
+    return found
 
 
 def worst_residual(system: System, configuration: Configuration) -> float:

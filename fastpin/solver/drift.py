@@ -30,6 +30,7 @@ from fastpin.solver.configuration import (
     Configuration,
     Solution,
     dissipation_between,
+    seat_dissipation_between,
     slip_tally_between,
     solve_unknowns,
     work_between,
@@ -336,7 +337,8 @@ class DriftPath:
         last = self._configuration(end)
         system = end.system
         parts = [(first, middle), (middle, last), (first, last)]
-        for name, between in (("work", work_between), ("dissipation", dissipation_between)):
+        sums = {"work": work_between, "dissipation": dissipation_between, "seat_dissipation": seat_dissipation_between}
+        for name, between in sums.items():
             halves, rest, whole = (between(system, *part) for part in parts)
             setattr(last, name, getattr(first, name) + (4.0 * (halves + rest) - whole) / 3.0)  # Simpson's rule
         middle.slip_tally = slip_tally_between(first, middle)
@@ -379,7 +381,7 @@ class DriftPath:
     def _with_statuses(self, moment: Moment) -> Moment:
         """Take the statuses of a moment."""
         status = moment.status.astype(np.int8)
-        if not self._system.grid.closed and np.any(status[[0, -1]] != OPEN):
+        if np.any(status[self._system.ends] != OPEN):
             raise StepLostError(exchange.ARC_END, self.fraction)
         self.exchanges += int(np.count_nonzero(status != self.now.status))
         self.now.status = status

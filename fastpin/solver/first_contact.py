@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fastpin.elasticity.interfaces import JointSystem
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
@@ -30,6 +31,7 @@ from fastpin.solver.configuration import (
 from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import CUT_OFF, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
+from fastpin.solver.interfaces import PinView
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import bend, hole_gap, place_between, put_at_rest, release, rest_position
 from fastpin.solver.settling import FiniteStep
@@ -202,6 +204,10 @@ def first_contact(
     ArcError
         If the pin touches the hole outside the arc or at its end.
     """
+    if isinstance(system, JointSystem):
+        view = PinView(system, floating)
+        pin, part = first_contact(view.system, view.pin, before, after, strict)
+        return view.whole(pin), part
     found = at_rest(system, floating, before, after)
     if found is None:
         return release(system, floating, after), 1.0

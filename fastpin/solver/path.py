@@ -129,6 +129,7 @@ class PathStep:
         )
         self._queue.sums[exchange.DISSIPATION] = configuration.dissipation
         self._queue.sums[exchange.WORK] = configuration.work
+        self._queue.sums[exchange.SEAT_DISSIPATION] = configuration.seat_dissipation
         self._all_at_once = max(32, n // 20)
         self._sample: slice | np.ndarray = slice(None)
         self._sampled: Operator | np.ndarray = system.operator
@@ -185,7 +186,7 @@ class PathStep:
         while True:
             code = exchange.follow(
                 self._columns.tableau, self._contact, self._load, self._queue,
-                system.friction, system.grid.closed, system.operator.typical, stop, most_events, self._all_at_once,
+                system.friction, system.ends, system.operator.typical, stop, most_events, self._all_at_once,
             )  # fmt: skip
             updates = int(counts[exchange.UPDATES])
             if self._is_stuck_at_start():
@@ -235,6 +236,7 @@ class PathStep:
         self.now.load = self.before + self.fraction * self.rate
         self.now.dissipation = float(self._queue.sums[exchange.DISSIPATION])
         self.now.work = float(self._queue.sums[exchange.WORK])
+        self.now.seat_dissipation = float(self._queue.sums[exchange.SEAT_DISSIPATION])
 
     def _sticking_after_reversal(self) -> StickingRun | None:
         """The system with all closed nodes sticking, if the load has turned. Then most slipping nodes stick at once.
@@ -296,7 +298,7 @@ class PathStep:
         self.resettled += 1
         if status is None or self.resettled > MOST_RESETTLINGS * status.size:
             raise StepLostError(exchange.CYCLING, self.fraction)
-        if not self.system.grid.closed and np.any(status[[0, -1]] != OPEN):
+        if np.any(status[self.system.ends] != OPEN):
             raise StepLostError(exchange.ARC_END, self.fraction)
         counts = self._queue.counts
         counts[exchange.NEXT] = counts[exchange.QUEUED] = counts[exchange.ROUND] = 0
@@ -462,6 +464,8 @@ def _load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTer
         force=np.array([before[Q], -before[P]]),
         force_rate=np.array([rate[Q], -rate[P]]),
         weights=system.weights,
+        levers=system.levers,
+        stops=np.array([rim.nodes.stop for rim in system.interfaces]),
         reactions=system.drive.reaction_terms(weights, rate),
     )
 

@@ -113,7 +113,9 @@ class PathStepper:
                 self.leave(position)
                 position.now = release(self._system, position.now, position.now.load)
             elif lost.code != exchange.CYCLING or not self._jump(position, piece, stop):
-                raise _solve_error(lost.code, position.now, self._system.problem.held) from None
+                raise _solve_error(
+                    lost.code, position.now.closed[self._system.interfaces[0].nodes], self._system.problem.held
+                ) from None
 
     def leave(self, position: Position) -> None:
         """End the present path: note the nodes that it touched, count its events, and forget it."""
@@ -167,7 +169,11 @@ class PathStepper:
         unloading = can_float(self._system, piece.after)
         if unloading and lost.fraction > ALMOST_UNLOADED:
             return True
-        if now.load[M] != 0.0 or int(now.closed.sum()) > FEW_CLOSED or self._releases == MOST_RELEASES:
+        if (
+            now.load[M] != 0.0
+            or int(now.closed[self._system.interfaces[0].nodes].sum()) > FEW_CLOSED
+            or self._releases == MOST_RELEASES
+        ):
             return False
         self._releases += 1
         driven = self._system.drive.has_displacements  # then a contact is lost as well where the pin is moved away
@@ -179,9 +185,9 @@ class PathStepper:
         return small
 
 
-def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
-    """The error of a path that was lost at the configuration `lost`. `held`: the pin can't rotate freely."""
-    closed = int(lost.closed.sum())
+def _solve_error(code: int, closed_nodes: np.ndarray, held: bool) -> SolveError:
+    """The error of a lost path. `closed_nodes` (n,) are those of the pin. `held`: the pin can't rotate freely."""
+    closed = int(closed_nodes.sum())
     if code == exchange.ARC_END:
         return ArcError(CUT_OFF)
     if closed < FEW_CLOSED // 2 or (held and closed <= FEW_CLOSED):

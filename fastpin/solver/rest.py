@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from fastpin.elasticity.interfaces import JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import ACTING, REMOTE, ROTATION, SXX, SXY, SYY
@@ -13,6 +14,7 @@ from fastpin.model.room import widest_place
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration, elastic_energy
 from fastpin.solver.errors import NoEquilibriumError
+from fastpin.solver.interfaces import PinView
 
 FINE = 1441
 """Angles round the hole at which a gap that varies is looked at."""
@@ -40,6 +42,9 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
     load : ndarray, shape (loads,)
         Dimensionless.
     """
+    if isinstance(system, JointSystem):
+        view = PinView(system, last)
+        return view.whole(release(view.system, view.pin, load))
     n = system.grid.size
     new = last.copy()
     new.work -= elastic_energy(system, last)  # the elastic energy that is left goes back to the loads

@@ -58,6 +58,8 @@ class Restart(ReadOnly):
         Statistics of the run up to the corner.
     slip_tally : SlipTally
         What each node has slipped from the latest kept state to the corner (dimensionless).
+    seat_dissipation : float
+        The part of the dissipation in the seat of a bush.
     """
 
     corner: int
@@ -70,6 +72,7 @@ class Restart(ReadOnly):
     marks: dict[CycleKey, CycleEnd]
     statistics: dict[str, float]
     slip_tally: SlipTally = NOT_COUNTED
+    seat_dissipation: float = 0.0
 
     def __repr__(self) -> str:
         return f"<Restart: corner {self.corner}>"

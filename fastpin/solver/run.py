@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Collection
 from dataclasses import replace
-from typing import ClassVar, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 
+from fastpin.elasticity.interfaces import JointSystem
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
@@ -22,6 +23,7 @@ from fastpin.model.units import named_loads
 from fastpin.reading.zones import runs
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import (
+    MARKS,
     MAX_RESIDUAL,
     Configuration,
     contact_residuals,
@@ -33,7 +35,8 @@ from fastpin.solver.drift import DriftingSystem
 from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.growth import OutsideGap
-from fastpin.solver.increment import IncrementStepper
+from fastpin.solver.increment_stepper import IncrementStepper
+from fastpin.solver.interfaces import follow_floating
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.place import system_with_friction
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
@@ -127,6 +130,8 @@ class Run:
         The configuration at the last corner.
     dissipation, work : float
         Energies from the start to the last corner (dimensionless).
+    seat_dissipation : float
+        The part of the dissipation in the seat of a bush.
     slip_tally : RunningTally
         The slip tally since the latest kept state.
     complete : bool
@@ -170,14 +175,14 @@ class Run:
         self.statistics = dict.fromkeys(COUNTED, 0.0)
         self.stepper = _stepper(system, options, self.statistics, strict)
         # Round a hole that is not round the pin may touch anywhere.
-        may_touch = (bool(system.problem.gap) or self.wears) and not system.grid.closed
+        may_touch = (bool(system.problem.gap) or self.wears) and bool(system.ends.any())
         self._outside = OutsideGap(system) if may_touch else None
         self._begin_at(start)
 
     def _begin_at(self, start: Restart) -> None:
         """Take the place of a restart."""
         self.load = self.target = start.load
-        self.dissipation, self.work = start.dissipation, start.work
+        self.dissipation, self.work, self.seat_dissipation = start.dissipation, start.work, start.seat_dissipation
         self.repeats, self.corner = start.repeats, start.corner
         self.slip_tally = RunningTally(self._no_slip, self.keep, start.slip_tally)
         self.last_corner = self._at_corner(start.configuration)
@@ -189,6 +194,16 @@ class Run:
     def now(self) -> Configuration:
         """The present configuration."""
         return self.position.now
+
+    @property
+    def _may_repeat(self) -> bool:
+        """Whether a contact may become periodic. A bush that slips may walk, and a worn gap changes."""
+        return not self.wears and len(self.system.interfaces) == 1
+
+    @property
+    def _pin_closed(self) -> np.ndarray:
+        """Whether each node of the pin is in contact, bool, shape (n,)."""
+        return self.now.closed[self.system.interfaces[0].nodes]
 
     @property
     def touched(self) -> np.ndarray:
@@ -249,6 +264,7 @@ class Run:
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
             Repeats(list(self.repeats)), {}, ReadOnlyDict(self.statistics), self.slip_tally.to_corner,
+            self.seat_dissipation,
         )  # fmt: skip
 
     def restart(self) -> Restart:
@@ -256,7 +272,7 @@ class Run:
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
             self.repeats.copy(same_history=True), copied_ends(self.corner_log.marks), dict(self.statistics),
-            self.slip_tally.to_corner,
+            self.slip_tally.to_corner, self.seat_dissipation,
         )  # fmt: skip
 
     def with_friction_followed(self, problem: Problem) -> Self:
@@ -315,6 +331,7 @@ class Run:
             known = None
             if not self.wears:
                 self._mark_borders()
+            if self._may_repeat:
                 known = self.repeats.recall(self.now, ends_cycle, step)
             if known is not None:
                 sums = {name: getattr(self.now, name) for name in ("dissipation", "work", "slip_tally")}
@@ -333,23 +350,24 @@ class Run:
 
     def _mark_borders(self) -> None:
         """Mark the borders at a corner, beside the old borders that are left."""
-        system, now = self.system, self.now
-        marks = marks_left(self.last_corner, now)
-        if not system.problem.frictionless:
-            tractions = now.pressure, now.shear
-            marks = marks.with_borders(
-                system.problem, system.grid, system.under(now.load).friction, tractions, now.status
-            )
-        self.position.now = replace(now, marks=marks)
+        now = self.now
+        friction, found = self.system.under(now.load).friction, {}
+        for name, each in zip(MARKS, self.system.interfaces, strict=False):
+            marks, nodes = marks_left(self.last_corner, now, each, name), each.nodes
+            if not each.problem.frictionless:
+                tractions = now.pressure[nodes], now.shear[nodes]
+                marks = marks.with_borders(each.problem, each.grid, friction[nodes], tractions, now.status[nodes])
+            found[name] = marks
+        self.position.now = replace(now, **found)
 
     def _check_resolution(self) -> None:
         """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
         if self.recorder is None or force_on_pin(self.system, self.now) <= NEXT_TO_NOTHING:
             return
-        closed = self.now.closed
+        closed = self._pin_closed
         if np.any(closed[:-2] & closed[1:-1] & closed[2:]):  # three neighbours
             return
-        most = max((patch.size for patch in runs(self.system.grid, closed)), default=LEAST_CLOSED)
+        most = max((patch.size for patch in runs(self.system.interfaces[0].grid, closed)), default=LEAST_CLOSED)
         if most < LEAST_CLOSED:
             raise ResolutionError(f"the contact is narrower than the nodes can resolve: it has {most}; use more nodes")
 
@@ -363,7 +381,7 @@ class Run:
             if problem.frictionless and problem.rotation == "free" and load[M] != 0.0:
                 raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
             while not np.array_equal(self.now.load, load):
-                if self.now.closed.any():
+                if self._pin_closed.any():
                     self.stepper.advance(position, piece, stop, lambda reached: self._report(step, reached))
                 else:
                     self._touch_down(load, stop)
@@ -378,6 +396,9 @@ class Run:
         """Bring the floating pin into contact on the way to `load`. It may also reach `load` without contact."""
         position = self.position
         self.stepper.leave(position)
+        if isinstance(self.system, JointSystem) and not is_pushed(load):
+            position.now = follow_floating(self.system, self.now, load)
+            return
         before = self.now.load.copy()
         before[[P, Q, M]] = 0.0  # a contact that was released under a little load begins anew from none
         position.now, part = self._first_contact(before, load)
@@ -400,9 +421,9 @@ class Run:
 
     def _release_if_unloaded(self, piece: Piece, load: np.ndarray) -> None:
         """Release the pin after a complete unloading, when the contact carries nothing any more."""
-        if is_pushed(load) or not self.now.closed.any():
+        if is_pushed(load) or not self._pin_closed.any():
             return
-        left, before = float(self.now.pressure.max()), force_of(piece.before)
+        left, before = float(self.now.pressure[self.system.interfaces[0].nodes].max()), force_of(piece.before)
         if self.system.drive.has_displacements:  # the forces of the nodes hold the rounding of a large displacement
             left, before = float(self.system.weights @ self.now.pressure), 1.0
         if left <= UNLOADED_PRESSURE * before:
@@ -418,12 +439,13 @@ class Run:
         self.corner_log.close_step(now.dissipation, now.work, self.slip_tally.close_step(slip_tally_with(now), kept))
         self.dissipation += now.dissipation
         self.work += now.work
+        self.seat_dissipation += now.seat_dissipation
         self.position.now = self.last_corner = self._at_corner(now)
         self.load = load
 
     def _at_corner(self, configuration: Configuration) -> Configuration:
         """The configuration at a corner, with the sums and the slip tally of a step that begins there."""
-        begun = replace(configuration, dissipation=0.0, work=0.0, slip_tally=self._no_slip)
+        begun = replace(configuration, dissipation=0.0, work=0.0, seat_dissipation=0.0, slip_tally=self._no_slip)
         begun.slip_tally = slip_tally_with(begun)
         return begun
 
@@ -498,44 +520,61 @@ class Run:
         self.slip_tally.keep(self.now.slip_tally)
 
     def _state(self, step: int, fraction: float, residuals: dict[str, float]) -> State:
-        """The present configuration as a state, SI."""
-        system, now, scales = self.system, self.now, self.system.scales
+        """The present configuration as a state, SI, with that of the seat where a bush slips."""
+        system, now = self.system, self.now
         drive, way = system.drive, now.rest - now.origin
         way, tractions = np.where(np.isnan(way), 0.0, way), np.r_[now.pressure, now.shear]
         moved = drive.position(tractions, now.motion, now.load, way)
         load = drive.with_reactions(now.motion, now.load)
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
         is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
-        status = now.status.copy()
-        if system.problem.frictionless:
-            status = np.where(now.closed, SLIP_POSITIVE, OPEN).astype(np.int8)
+        common = {
+            "step": step,
+            "fraction": fraction,
+            "load": named_load(np.where(is_given, self.target, load * system.scales.loads)),
+            "work": (self.work + now.work) * system.scales.energy,
+            "energy": elastic_energy(system, now) * system.scales.energy,
+            "residuals": residuals,
+        }
+        seat = None
+        for place in reversed(range(len(system.interfaces))):
+            turned = now.motion[system.interfaces[place].motion :][:3]
+            turned = np.r_[moved, turned[2]] if place == 0 else turned
+            seat = self._state_of(place, common, turned, seat)
+        assert seat is not None
+        return seat
+
+    def _state_of(self, place: int, common: dict[str, Any], moved: np.ndarray, seat: State | None) -> State:
+        """The state of the interface `place`, with that of the `seat` inside it; `moved` is (dx, dy, rotation)."""
+        now, scales, each = self.now, self.system.scales, self.system.interfaces[place]
+        nodes, name, marks = each.nodes, MARKS[place], getattr(now, MARKS[place])
+        status = now.status[nodes].copy()
+        if each.problem.frictionless:
+            status = np.where(now.closed[nodes], SLIP_POSITIVE, OPEN).astype(np.int8)
+        dissipated = (
+            (self.dissipation, now.dissipation) if place == 0 else (self.seat_dissipation, now.seat_dissipation)
+        )
         nodal = {
-            "pressure": now.pressure * scales.traction,
-            "shear": now.shear * scales.traction,
-            "gap": now.gap * scales.displacement,
-            "slip": (now.slip - now.rest_slip) * scales.displacement,
+            "pressure": now.pressure[nodes] * scales.traction,
+            "shear": now.shear[nodes] * scales.traction,
+            "gap": now.gap[nodes] * scales.displacement,
+            "slip": (now.slip - now.rest_slip)[nodes] * scales.displacement,
             "status": status,
         }
+        slid = self.slip_tally.since_kept(slip_tally_with(now)).fields(scales)
+        nodal |= {field: values[nodes] for field, values in slid.items()}  # type: ignore[index]
         for array in nodal.values():
             array.setflags(write=False)  # nobody else writes to them, so the state needs no views
+        if common["fraction"] < 1.0:  # corners are marked already
+            marks = marks_left(self.last_corner, now, each, name)
+        if place > 0:  # the friction of the pin alone may change
+            common = {**common, "load": {**common["load"], "friction_change": 0.0}}
         return State(
-            **nodal,
-            step=step,
-            fraction=fraction,
-            load=named_load(np.where(is_given, self.target, load * scales.loads)),
-            theta=system.grid.theta,
-            dx=float(moved[0]) * scales.displacement,
-            dy=float(moved[1]) * scales.displacement,
-            rotation=float(now.motion[2]) * scales.rotation,
-            dissipation=(self.dissipation + now.dissipation) * scales.energy,
-            work=(self.work + now.work) * scales.energy,
-            energy=elastic_energy(system, now) * scales.energy,
-            residuals=residuals,
-            problem=system.problem,
-            grid=system.grid,
-            marks=now.marks if fraction == 1.0 else marks_left(self.last_corner, now),  # corners are marked already
-            **self.slip_tally.since_kept(slip_tally_with(now)).fields(scales),
-        )
+            **nodal, **common, theta=each.grid.theta, dx=float(moved[0]) * scales.displacement,
+            dy=float(moved[1]) * scales.displacement, rotation=float(moved[2]) * scales.rotation,
+            dissipation=(dissipated[0] + dissipated[1]) * scales.energy, problem=each.problem, grid=each.grid,
+            marks=marks, seat=seat,
+        )  # fmt: skip
 
 
 def _stepper(system: System, options: SolveOptions, statistics: dict[str, float], strict: bool) -> Stepper:

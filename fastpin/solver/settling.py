@@ -153,15 +153,13 @@ class FiniteStep:
     """
 
     def __init__(self, system: System, now: Configuration, everywhere: bool = False) -> None:
-        n = system.grid.size
         self._system, self._now = system, now
         self._base = np.where(now.closed, resting_status(system), OPEN)
         self._unknowns = DenseUnknowns(system, self._base)
         self._length = float(np.median(np.abs(system.operator.diagonal())))
         self._closed = self._unknowns.normal
         away = np.flatnonzero(~now.closed)
-        if not system.grid.closed:
-            away = away[(away > 0) & (away < n - 1)]
+        away = away[~system.ends[away]]
         room = MOST_VARIABLES // (3 if system.has_friction else 1) - self._closed.size
         room = min(max(room, 0), system.grid.size if everywhere else self._closed.size + MORE_NODES)
         self._away = np.sort(away[np.argsort(now.gap[away], kind="stable")[:room]])

@@ -16,7 +16,7 @@ from fastpin.elasticity.system import System
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
-    dissipation_between,
+    add_dissipation,
     reaches_end,
     slip_tally_between,
     work_between,
@@ -73,7 +73,7 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
         if crept is None:
             stiffness *= STIFFER
             continue
-        if _spins(last, crept):
+        if _spins(system, last, crept):
             raise NoEquilibriumError(UNHELD)
         last, stiffness = crept, stiffness * SOFTER
         beyond = _step(system, last, load)
@@ -83,11 +83,20 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
     return beyond
 
 
-def _spins(before: Configuration, after: Configuration) -> bool:
-    """Whether the pin does nothing but turn from one configuration to the other. All its closed nodes slip one way."""
-    moved = np.abs(after.motion - before.motion)
-    one_way = np.abs(before.status[before.closed].sum()) == np.count_nonzero(before.closed)
-    return bool(one_way and np.array_equal(before.status, after.status) and moved[:2].max() <= SPINNING * moved[2])
+def _spins(system: System, before: Configuration, after: Configuration) -> bool:
+    """Whether the pin, or a bush, does nothing but turn from one configuration to the other.
+
+    All its closed nodes then slip one way.
+    """
+    if not np.array_equal(before.status, after.status):
+        return False
+    for rim in system.interfaces:
+        x, y, turned = np.abs(after.motion - before.motion)[rim.motion : rim.motion + 3]
+        closed = before.closed[rim.nodes]
+        one_way = np.abs(before.status[rim.nodes][closed].sum()) == np.count_nonzero(closed)
+        if one_way and max(x, y) <= SPINNING * turned:
+            return True
+    return False
 
 
 def _step(system: System, start: Configuration, load: np.ndarray) -> Configuration | None:
@@ -97,7 +106,7 @@ def _step(system: System, start: Configuration, load: np.ndarray) -> Configurati
         if after is not None and worst_residual(system, after) <= MAX_RESIDUAL:
             if reaches_end(system, after):
                 raise ArcError(CUT_OFF)
-            after.dissipation = start.dissipation + dissipation_between(system, start, after)
+            add_dissipation(system, start, after)
             after.slip_tally = slip_tally_between(start, after)
             return after
     return None

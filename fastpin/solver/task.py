@@ -157,7 +157,8 @@ class Task:
         self, recorder: Recorder | None, progress: RunProgress, start: Restart | None, grid: Grid, strict: bool
     ) -> Run:
         """Follow the history on one grid, from `start` or from no load; see :class:`Run` for `strict`."""
-        build = build_system if self.options.method == "path" else System.build
+        is_joint = self.problem.seat is not None
+        build = build_system if is_joint or self.options.method == "path" else System.build
         system = build(self.problem, grid, self.force if start is None else start.force)
         run = Run(self.history, system, self.options, recorder, progress, start, self.stops, strict)
         if recorder is not None:

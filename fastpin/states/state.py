@@ -109,6 +109,10 @@ class State(ReadOnly):
         Lowest and highest slip of each node while it was closed, m; NaN where it was not. They cover the time since the
         last kept corner before this state, that corner included, or since the beginning of the history. None as
         ``slip_distance``.
+    seat : State or None
+        The contact of a bush that slips in the plate, as a state of its own: the bush is its pin, and its slip and
+        motion are those of the bush over the plate. Its ``dissipation`` is the part in the seat. Its ``work``,
+        ``energy`` and ``residuals`` are those of the whole joint. None without such a bush.
     """
 
     step: int
@@ -135,6 +139,7 @@ class State(ReadOnly):
     friction_energy: np.ndarray | None = None
     slip_lowest: np.ndarray | None = None
     slip_highest: np.ndarray | None = None
+    seat: State | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields alone: everything else is computed from them."""

@@ -1,0 +1,211 @@
+"""A joint with two interfaces: the pin in a bush, and the bush in its seat, solved together.
+
+Each interface is a :class:`System` of its own, of ``problem.interfaces``: the pin in a ring that is free at its outer
+rim, and the ring in the lug. The pin, the bush and the lug lie within one another, so every interface passes on the
+same force and moment. Each has its own relative motion (c_x, c_y, omega) and its own conditions of equilibrium. Only
+the bush couples gap and slip of one interface to the tractions on the other.
+
+Nodes, motions and conditions of the pin come first, then those of the seat. All is dimensionless with R, F and beta* of
+the pin in the bush. With the radius c of the seat over R, a unit of traction of the seat's own system is 1/c of that, a
+unit of displacement beta_2/beta_1.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from fastpin.elasticity.drive import Drive
+from fastpin.elasticity.operator import DenseOperator
+from fastpin.elasticity.system import Interface, System
+from fastpin.kernels import fourier, harmonics
+from fastpin.model.grid import Grid
+from fastpin.model.loads import FRICTION_CHANGE, REMOTE
+from fastpin.model.problem import Problem
+
+PIN, SEAT = 0, 1
+"""Places of the two interfaces."""
+
+AROUND = 720
+"""Angles round the bore at which its shape is told."""
+
+ACROSS_WALL = 2.0
+"""Nodes of the seat, at least, on a length of the seat that is as long as the wall of the bush is thick."""
+
+TURN = 2
+"""Place of the rotation among the three motions of an interface, and of its condition."""
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """The nodes of several interfaces, one after the other, as a solver asks a :class:`Grid` for them.
+
+    Attributes
+    ----------
+    grids : tuple of Grid
+    """
+
+    grids: tuple[Grid, ...]
+
+    @cached_property
+    def size(self) -> int:
+        """Number of nodes."""
+        return sum(grid.size for grid in self.grids)
+
+    @cached_property
+    def parts(self) -> tuple[slice, ...]:
+        """The nodes of each interface."""
+        ends = np.cumsum([0, *(grid.size for grid in self.grids)]).tolist()
+        return tuple(slice(*pair) for pair in zip(ends, ends[1:], strict=False))
+
+    def rows(self, place: int) -> np.ndarray:
+        """The rows of an interface among (N, T), or (h, s), of all nodes."""
+        own = np.arange(self.size)[self.parts[place]]
+        return np.r_[own, self.size + own]
+
+
+@dataclass(frozen=True, eq=False)
+class JointSystem(System):
+    """The system of a joint with several interfaces.
+
+    Attributes
+    ----------
+    nodes : Nodes
+    alone : tuple of System
+        Each interface alone, while the other one carries nothing; in the units of the whole.
+    radius : float
+        Radius of the seat over R.
+    """
+
+    nodes: Nodes = field(kw_only=True)
+    alone: tuple[System, ...] = field(kw_only=True)
+    radius: float = field(kw_only=True)
+
+    @classmethod
+    def join(cls, problem: Problem, grids: tuple[Grid, Grid], force: float) -> JointSystem:
+        """Fill the matrices of `problem`, whose bush slips, with reference force `force`, N/m."""
+        nodes, (pin_problem, seat_problem) = Nodes(grids), problem.interfaces
+        radius = seat_problem.hole_radius / problem.hole_radius
+        pin = _without_remote(System.build(pin_problem, grids[PIN], force))
+        seat = _scaled(System.build(seat_problem, grids[SEAT], force), pin, radius)
+        both, size, m = (pin, seat), nodes.size, 2 * pin.motions
+        matrix, motion = np.zeros((2 * size, 2 * size), order="F"), np.zeros((2 * size, m))
+        loads = np.zeros((2 * size, pin.loads.shape[1]))
+        equilibrium, motion_rows = np.zeros((m, 2 * size)), np.zeros((m, m))
+        for place, system in enumerate(both):
+            rows, own = nodes.rows(place), slice(3 * place, 3 * place + 3)
+            matrix[np.ix_(rows, rows)] = system.operator.entries()
+            matrix[np.ix_(rows, nodes.rows(1 - place))] = _coupling(problem, grids, place)
+            motion[rows, own], loads[rows] = system.motion, system.loads
+            equilibrium[own, rows], motion_rows[own, own] = system.equilibrium, system.motion_rows
+        if problem.held:
+            # The rotations add up to that of the pin over the lug, and both interfaces carry the same moment.
+            motion_rows[TURN, 3 + TURN] = motion_rows[TURN, TURN]
+            if not seat_problem.frictionless:
+                equilibrium[3 + TURN, nodes.rows(PIN)[grids[PIN].size :]] = pin.weights
+        stacked: dict[str, Any] = {
+            "friction": np.concatenate([each.friction for each in both]),
+            "forces": np.concatenate([each.forces for each in both]),
+            "initial_gap": np.concatenate([each.concentric_gap for each in both]),
+            "weights": np.concatenate([pin.weights, radius * seat.weights]),
+        }
+        if problem.held:
+            stacked["forces"][3 + TURN] = 0.0
+        return cls(
+            problem=problem, grid=nodes, scales=pin.scales, rest_clearance=0.0,  # type: ignore[arg-type]
+            operator=DenseOperator(matrix), motion=motion, loads=loads, equilibrium=equilibrium,
+            motion_rows=motion_rows, plate=0.0, drive=Drive(motion[:, :2], loads), nodes=nodes, alone=both,
+            radius=radius, **stacked,
+        )  # fmt: skip
+
+    @property
+    def is_toeplitz(self) -> bool:
+        return False
+
+    @cached_property
+    def interfaces(self) -> tuple[Interface, ...]:
+        problems, sizes = (self.problem, self.problem.interfaces[SEAT]), (1.0, self.radius)
+        parts = enumerate(zip(problems, self.nodes.grids, self.nodes.parts, sizes, strict=True))
+        return tuple(Interface(problem, grid, nodes, 3 * place, size) for place, (problem, grid, nodes, size) in parts)
+
+    @cached_property
+    def levers(self) -> np.ndarray:
+        return np.concatenate([rim.radius * self.weights[rim.nodes] for rim in self.interfaces])
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        return np.concatenate([each.ends for each in self.alone])
+
+    @cached_property
+    def turning(self) -> tuple[slice, ...]:
+        free = self.motion_rows[TURN::3].any(axis=1)
+        return tuple(rim.nodes for rim, is_held in zip(self.interfaces, free, strict=True) if not is_held)
+
+    @cached_property
+    def bore_shape(self) -> tuple[np.ndarray, np.ndarray]:
+        """Angles (a,) round the bore, rad, and its radial displacement there per traction in the seat, (a, 2k)."""
+        around = Grid.circle(AROUND)
+        return around.theta, _coupling(self.problem, (around, self.nodes.grids[SEAT]), PIN)[:AROUND]
+
+    def under(self, load: np.ndarray) -> System:
+        """The system with the friction under a load (loads,). ``friction_change`` acts on the pin in the bush."""
+        friction = self.alone[PIN].friction * (1.0 + float(load[FRICTION_CHANGE]))
+        return self.with_friction(np.concatenate([friction, self.alone[SEAT].friction]))
+
+
+def seat_grid(problem: Problem, grid: Grid) -> Grid:
+    """The nodes of the seat: as many as the pin's, but at least :data:`ACROSS_WALL` on a wall's length."""
+    bush = problem.plate_body.bush
+    assert bush is not None
+    wall = bush.outer_radius / problem.hole_radius - 1.0
+    least = math.ceil(ACROSS_WALL * 2.0 * math.pi * (1.0 + wall) / wall)
+    return Grid.circle(max(grid.size, least), float(grid.theta[0]))
+
+
+def _without_remote(system: System) -> System:
+    """The system of the pin in the bush. The remote stress acts on the lug alone."""
+    loads = system.loads.copy()
+    loads[:, REMOTE] = 0.0
+    return replace(system, loads=loads, drive=Drive(system.motion[:, :2], loads))
+
+
+def _scaled(seat: System, pin: System, radius: float) -> System:
+    """The system of the seat, of that `radius` over R, in the units of the system of the `pin`."""
+    stretch = seat.scales.displacement / pin.scales.displacement
+    loads, motion = stretch * seat.loads, seat.motion.copy()
+    loads[:, REMOTE] *= radius
+    motion[:, TURN] *= radius
+    equilibrium, motion_rows, forces = radius * seat.equilibrium, seat.motion_rows.copy(), seat.forces.copy()
+    if seat.problem.frictionless:
+        equilibrium[TURN], forces[TURN] = 0.0, 0.0
+    else:
+        equilibrium[TURN] *= radius
+    return replace(
+        seat, operator=DenseOperator(stretch * radius * seat.operator.entries()), motion=motion, loads=loads,
+        equilibrium=equilibrium, motion_rows=motion_rows, forces=forces, drive=Drive(motion[:, :2], loads),
+        rest_clearance=stretch * seat.rest_clearance, scales=pin.scales, bodies=None,
+    )  # fmt: skip
+
+
+def _coupling(problem: Problem, grids: tuple[Grid, Grid], place: int) -> np.ndarray:
+    """Gap and slip of the interface `place` per traction on the other one, through the bush; shape (2n, 2k)."""
+    (pin, seat), (to, other) = problem.interfaces, (grids[place], grids[1 - place])
+    outer, bush = seat.hole_radius / pin.hole_radius, seat.pair.pin
+    order = np.arange(1.0 + harmonics.harmonics_needed(math.sqrt(1.0 / outer)))
+    matrices = harmonics.across(order, outer, bush.kolosov(problem.pair.plane))
+    if place == PIN:
+        matrices = -outer * matrices.transpose(0, 2, 1)
+    sense = 1.0 if place == PIN else -1.0  # the bush is the outer body at the pin, the inner body in its seat
+    unit = -sense / (4.0 * math.pi * bush.shear_modulus * pin.surfaces.beta_star)
+    (a, b), (c, d) = matrices.transpose(1, 2, 0)
+    left, right = other.knots()
+    hats = to.theta, other.theta, other.theta - left, right - other.theta
+    gap_of_pressure, slip_of_shear, gap_of_shear = fourier.hat_columns(
+        *hats, unit * np.array([a + b + c + d, a - b - c + d, a - b + c - d])
+    )
+    slip_of_pressure = fourier.hat_columns(*hats, np.array([0.0 * a, 0.0 * a, -unit * (a + b - c - d)]))[2]
+    return np.block([[gap_of_pressure, gap_of_shear], [slip_of_pressure, slip_of_shear]])

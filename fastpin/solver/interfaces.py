@@ -1,0 +1,216 @@
+"""The pin in a bush that slips: its contact while the bush holds still in its seat.
+
+A pin that comes to rest, touches first or is released is the matter of one interface. A :class:`PinView` gives it a
+system of its own. There the bore has the shape that the tractions in the seat give it, and the bush sticks in its seat
+wherever the two are closed. The contact that is found is put back among all nodes and solved with them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fastpin.elasticity.drive import Drive
+from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
+from fastpin.elasticity.operator import DenseOperator
+from fastpin.elasticity.terms import BodyTerms
+from fastpin.kernels.status import OPEN
+from fastpin.model.loads import REMOTE
+from fastpin.model.profile import InitialGap, Profile
+from fastpin.model.room import widest_place
+from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
+    NODAL,
+    Configuration,
+    accept_solution,
+    add_dissipation,
+    elastic_energy,
+    resting_status,
+    solve_statuses,
+    worst_residual,
+)
+from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
+from fastpin.solver.increment import implicit_step
+from fastpin.solver.path import PathStep, StepLostError
+from fastpin.solver.unknowns import DenseUnknowns
+
+ROUND = 1e-12
+"""Largest difference of a bore from a circle that is rounding, in parts of the largest displacement of the seat."""
+
+
+class PinView:
+    """The contact of the pin while the bush sticks in its seat.
+
+    Parameters
+    ----------
+    joint : JointSystem
+    now : Configuration
+        The configuration of all interfaces. It is not changed.
+
+    Attributes
+    ----------
+    system : System
+        The system of the pin alone, n nodes.
+    """
+
+    def __init__(self, joint: JointSystem, now: Configuration) -> None:
+        self._joint, self._now = joint, now
+        pin, unit = joint.alone[PIN], joint.scales.displacement
+        self._nodes, self._seat = (np.arange(joint.grid.size)[rim.nodes] for rim in joint.interfaces)
+        to_pin = joint.operator.entries(joint.nodes.rows(PIN), joint.nodes.rows(SEAT))
+        of_pin, of_load = self._held_tractions()
+        residual = np.r_[now.pressure, now.shear][joint.nodes.rows(SEAT)] - of_load @ now.load[: of_load.shape[1]]
+        gap, slip = np.split(to_pin @ residual, 2)
+        angles, bore = joint.bore_shape
+        shape = bore @ residual
+        mean = float(shape.mean())
+        is_round = float(np.abs(shape - mean).max()) <= ROUND * float(np.abs(residual).max(initial=0.0))
+        profile = pin.problem.gap
+        if not is_round:
+            around = np.r_[angles, angles[0] + 2.0 * np.pi], unit * (np.r_[shape, shape[0]] - mean)
+            profile = InitialGap(profile.hole + Profile.samples(*around), profile.pin)
+        problem = replace(pin.problem, clearance=pin.problem.clearance + unit * mean, gap=profile)
+        loads = pin.loads + to_pin @ of_load
+        self._gap, self._slip = np.full(gap.size, mean) if is_round else gap, slip
+        self.system = replace(
+            pin, problem=problem, loads=loads, drive=Drive(pin.motion[:, :2], loads),
+            friction=joint.friction[self._nodes], operator=DenseOperator(pin.operator.entries() + to_pin @ of_pin),
+            rest_clearance=pin.rest_clearance + mean, initial_gap=pin.initial_gap + self._gap - mean,
+            bodies=_moved_bore(pin.bodies, bore @ of_load),
+        )  # fmt: skip
+
+    def _held_tractions(self) -> tuple[np.ndarray, np.ndarray]:
+        """Tractions in the seat where the bush sticks, per traction on the pin, (2k, 2n), and per load, (2k, loads)."""
+        joint, seat = self._joint, self._joint.alone[SEAT]
+        held = DenseUnknowns(seat, self._resting_seat())
+        rows = joint.nodes.rows(SEAT)
+        to_seat = joint.operator.entries(rows[held.rows], joint.nodes.rows(PIN))
+        right = np.zeros((held.size, to_seat.shape[1] + seat.loads.shape[1]), order="F")
+        right[: held.count] = -np.hstack([to_seat, seat.loads[held.rows]])
+        right[held.count :, to_seat.shape[1] :] = seat.forces
+        found = held.expand(held.solve(right))
+        return found[:, : to_seat.shape[1]], found[:, to_seat.shape[1] :]
+
+    def _resting_seat(self) -> np.ndarray:
+        """The statuses of the seat, (k,), if nothing moves there."""
+        seat, status = self._joint.alone[SEAT], self._now.status[self._seat]
+        return np.where(status == OPEN, OPEN, resting_status(seat)).astype(np.int8)
+
+    @property
+    def pin(self) -> Configuration:
+        """The contact of the pin."""
+        part = self._now.part(self._nodes)
+        return replace(
+            part, motion=self._now.motion[: self.system.motions], marks=self._now.marks, slip=part.slip - self._slip,
+            rest_gap=part.rest_gap + self._gap, rest_slip=part.rest_slip - self._slip,
+        )  # fmt: skip
+
+    def whole(self, pin: Configuration) -> Configuration:
+        """The configuration of all interfaces with another contact of the pin, at its load.
+
+        Raises
+        ------
+        ConvergenceError
+            If no tractions in the seat were found for it.
+        """
+        joint, now = self._joint, self._now
+        start = now.copy()
+        for name in NODAL:
+            values = getattr(start, name).copy()
+            values[self._nodes] = getattr(pin, name)
+            setattr(start, name, values)
+        start.slip[self._nodes] += self._slip
+        start.rest_slip[self._nodes] += self._slip
+        start.rest_gap[self._nodes] -= self._gap
+        start.status[self._seat] = self._resting_seat()
+        start.motion[: self.system.motions] = pin.motion
+        start.slip_tally = start.slip_tally.with_part(self._nodes, pin.slip_tally)
+        start = replace(start, load=pin.load.copy(), origin=pin.origin, rest=pin.rest, dissipation=pin.dissipation)
+        found = _solved(joint, start) if pin.closed.any() else self._without_pin(start)
+        if found is None or worst_residual(joint, found) > MAX_RESIDUAL:
+            raise ConvergenceError("the tractions between bush and plate were not found; use more nodes")
+        done = elastic_energy(joint, found) - elastic_energy(joint, now)
+        found.work = now.work + done + found.dissipation - now.dissipation
+        return found
+
+    def _without_pin(self, start: Configuration) -> Configuration | None:
+        """The configuration `start`, whose pin floats, with the tractions that are then left in the seat."""
+        seat, own = self._joint.alone[SEAT], seat_of(self._joint, start)
+        solution = solve_statuses(seat, own.status, own.slip, own.load, own.rest_gap)
+        if solution is None:
+            return None
+        return with_seat(self._joint, start, accept_solution(own, solution, own.status, own.load))
+
+
+def follow_floating(joint: JointSystem, now: Configuration, load: np.ndarray) -> Configuration:
+    """The configuration at a `load` (loads,) to which a floating pin is taken: the bush alone follows its load.
+
+    Raises
+    ------
+    NoEquilibriumError
+        If nothing holds the bush, or if the bore closes on the pin.
+    """
+    seat = joint.alone[SEAT]
+    own = seat_of(joint, now)
+    if not np.array_equal(own.load, load) and own.closed.any():
+        try:
+            own = PathStep(seat, own, load).follow(1.0)
+        except StepLostError:
+            raise NoEquilibriumError("nothing holds the bush in its seat") from None
+    own.load = load.copy()
+    moved = with_seat(joint, now, own)
+    view = PinView(joint, moved)
+    room = widest_place(view.system.grid.theta, view.system.concentric_gap, (False, False))[0]
+    if room < 0.0:
+        raise NoEquilibriumError("the bore of the bush closes on the pin before the pin is loaded")
+    return moved
+
+
+def seat_of(joint: JointSystem, configuration: Configuration) -> Configuration:
+    """The contact of the bush in its seat, of a configuration of all interfaces."""
+    nodes = np.arange(joint.grid.size)[joint.interfaces[SEAT].nodes]
+    begin = joint.interfaces[SEAT].motion
+    part = configuration.part(nodes)
+    return replace(part, motion=configuration.motion[begin : begin + 3], marks=configuration.seat_marks)
+
+
+def with_seat(joint: JointSystem, configuration: Configuration, seat: Configuration) -> Configuration:
+    """The configuration of all interfaces with another contact of the bush in its seat."""
+    nodes, begin = np.arange(joint.grid.size)[joint.interfaces[SEAT].nodes], joint.interfaces[SEAT].motion
+    whole = configuration.copy()
+    for name in NODAL:
+        values = getattr(whole, name).copy()
+        values[nodes] = getattr(seat, name)
+        setattr(whole, name, values)
+    whole.motion[begin : begin + 3] = seat.motion
+    tally = whole.slip_tally.with_part(nodes, seat.slip_tally)
+    return replace(
+        whole, load=seat.load, dissipation=seat.dissipation, seat_dissipation=seat.seat_dissipation, work=seat.work,
+        slip_tally=tally,
+    )  # fmt: skip
+
+
+def _solved(joint: JointSystem, start: Configuration) -> Configuration | None:
+    """The configuration `start` with the tractions of its statuses; by an implicit increment where they do not hold."""
+    solution = solve_statuses(joint, start.status, start.slip, start.load, start.rest_gap)
+    if solution is not None:
+        found = accept_solution(start, solution, start.status, start.load)
+        if worst_residual(joint, found) <= MAX_RESIDUAL:
+            return found
+    after = implicit_step(joint, start, start.load)
+    if after is not None:
+        add_dissipation(joint, start, after)
+    return after
+
+
+def _moved_bore(bodies: BodyTerms | None, columns: np.ndarray) -> BodyTerms | None:
+    """The terms of the bodies with the bore's displacement under remote stress; `columns` (angles, loads) is radial."""
+    assert bodies is not None
+    angles = len(columns)
+    start = np.exp(1.5j * np.pi * np.arange(angles // 2))
+    moved = {}
+    for place in REMOTE:
+        series = np.fft.rfft(columns[:, place])[: angles // 2] / angles * start
+        moved[place] = np.r_[series[:0:-1].conj(), series]
+    return replace(bodies, columns=moved)

@@ -1,0 +1,108 @@
+"""The accuracy of a bush that slips: the cases of docs/bush-accuracy.md on several grids.
+
+``python -m scripts.seat_accuracy [--nodes 64,128,256] [--cases A1,A3]`` prints the numbers of each case at the end of
+its history. They are dimensionless: tractions over F/R, displacements over F beta* of the pin in the bush.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from fastpin.bodies import Bushing, Ring
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+
+STEEL, BRONZE, ALUMINIUM = Material(210.0, 0.3), Material(110.0, 0.34), Material(69.0, 0.33)
+
+Corners = list[dict[str, float]]
+
+
+def turns(count: int, pieces: int = 24, sense: float = 1.0) -> Corners:
+    """A unit force that rotates counter-clockwise from the bottom, in straight pieces."""
+    angles = sense * 2.0 * math.pi * np.arange(count * pieces + 1) / pieces
+    return [{"P": math.cos(angle), "Q": math.sin(angle)} for angle in angles]
+
+
+def joint(
+    clearance: float, interference: float, outer: float = 1.25, pin_load: str = "body", friction: float = 0.2,
+    seat_friction: float = 0.2, bush: Material = BRONZE, **inside: Any,
+) -> Problem:  # fmt: skip
+    """A steel pin in a bush in an aluminium lug, dimensionless."""
+    body = Bushing(bush, outer, interference, friction=seat_friction, bonded=False, **inside)
+    pair = MaterialPair(STEEL, ALUMINIUM, "strain")
+    return Problem.from_load_parameter(pair, clearance, friction, pin_load, plate_body=body)  # type: ignore[arg-type]
+
+
+def _to_and_fro(size: float, times: int) -> Corners:
+    return [{"P": 1.0}, {"Q": size}, *({"Q": sense * size} for _ in range(times) for sense in (-1.0, 1.0))]
+
+
+def _loop(times: int) -> Corners:
+    corners = [(1.0, 0.5), (0.2, 0.5), (0.2, -0.5), (1.0, -0.5)] * times
+    return [{"P": 1.0, "Q": 0.0}, *({"P": P, "Q": Q} for P, Q in corners)]
+
+
+CASES: dict[str, tuple[Callable[[], Problem], Corners]] = {
+    "A1": (lambda: joint(0.280496, 0.261450), [{"P": 1.0}, {"P": 0.1}] * 3),
+    "A2": (lambda: joint(0.280496, 0.261450), _to_and_fro(0.5, 4)),
+    "A3": (lambda: joint(0.280496, 0.261450), turns(4)),
+    "A4": (lambda: joint(0.145124, 0.065363, seat_friction=0.3), [{"P": 1.0}, {"P": 0.2}]),
+    "A5": (lambda: joint(0.280496, 0.261450, seat_friction=0.0), [{"P": 1.0}]),
+    "A6": (
+        lambda: joint(0.532143, 0.599915, 1.1, "centre", friction=0.15, seat_friction=0.15, bush=STEEL),
+        _to_and_fro(0.3, 3),
+    ),
+    "A7": (lambda: joint(0.235372, 0.154626, inside=Ring(2.5, "held")), _to_and_fro(0.5, 2)),
+    "A8": (lambda: joint(0.235372, 0.196088), [{"P": 0.5}, {"syy": 0.2}]),
+    "A9": (lambda: joint(0.235372, 0.196088), _loop(6)),
+    "A10": (lambda: joint(1.135372, 0.196088), turns(4)),
+}  # fmt: skip
+"""The cases: how to make the problem, and its history."""
+
+
+def numbers(result: Result) -> dict[str, float]:
+    """The numbers of the last state."""
+    state, slid = result[-1], 0.0
+    seat = state.seat
+    assert seat is not None
+    for each in result.states:
+        assert each.seat is not None and each.seat.slip_distance is not None
+        slid = slid + each.seat.slip_distance
+    weights, around = state.grid.weights, seat.grid.weights
+    return {
+        "peak N1": state.peak_pressure,
+        "int N1": float(weights @ state.pressure),
+        "min N2": float(seat.pressure.min()),
+        "max N2": float(seat.pressure.max()),
+        "int |T2|": float(around @ np.abs(seat.shear)),
+        "slip": float(np.max(slid)),
+        "D2": seat.dissipation,
+        "omega2": seat.rotation,
+        "stick": float((seat.status == STICK).mean()),
+        "open": float((seat.status == OPEN).mean()),
+    }
+
+
+def main() -> None:
+    """Run the command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--nodes", default="64,128,256")
+    parser.add_argument("--cases", default=",".join(CASES))
+    options = parser.parse_args()
+    for name in options.cases.split(","):
+        make, corners = CASES[name]
+        for nodes in map(int, options.nodes.split(",")):
+            found = numbers(solve(make(), corners, nodes=nodes, slip_sums=True))
+            print(f"{name:4}{nodes:5}  " + "  ".join(f"{key} {value:.7g}" for key, value in found.items()), flush=True)
+
+
+if __name__ == "__main__":
+    main()
