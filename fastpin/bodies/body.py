@@ -176,6 +176,11 @@ class BodyBase:
         inner = {name: value.entries() if isinstance(value, BodyBase) else value for name, value in values.items()}
         return {"kind": self.kind, **inner}
 
+    @classmethod
+    def from_entries(cls, entries: Mapping[str, Any]) -> Self:
+        """The body of :meth:`entries`, without the kind."""
+        return cls(**entries)
+
     def as_json(self, material: Callable[[Material], Any]) -> dict[str, Any]:
         """The kind, and the fields by name, JSON-ready. `material` turns a material into its entry."""
 

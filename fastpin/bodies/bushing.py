@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from types import MappingProxyType
@@ -56,7 +57,10 @@ class Bushing(PlateBody):
     """
 
     kind = "bushing"
-    keys = (*MATERIAL_KEYS, "outer_radius", "interference", "friction", "ring_outer_radius", "support", "reaction")
+    keys = (
+        *MATERIAL_KEYS, "outer_radius", "interference", "bonded", "friction", "ring_outer_radius", "support",
+        "reaction",
+    )  # fmt: skip
     controlled = ("outer_radius", "interference")
     title = "plate with a bush"
     refused = MappingProxyType({"file": "; a bush sits in an infinite plate or a ring"})
@@ -101,6 +105,7 @@ class Bushing(PlateBody):
         table.require("outer_radius")
         outer = table.checked("outer_radius", positive)
         interference, friction = (table.checked(key, not_negative) for key in ("interference", "friction"))
+        bonded = table.checked("bonded", true_or_false)
         inside: Plate | Ring | None
         if "ring_outer_radius" in table:
             if "reaction" in table:
@@ -113,12 +118,13 @@ class Bushing(PlateBody):
         if material is None or outer is None:
             return None
         values = {"material": material, "outer_radius": outer, "inside": inside or Plate(), "friction": friction}
+        values["bonded"] = bonded is not False
         key = next(key for key in ("rigid", "material", "E", "nu") if key in table)
         return table.build(cls, {**values, "interference": interference or 0.0}, {}, {"material": (table, key)})
 
     def fitted(self, table: Table, radius: float, dimensionless: bool, pair: MaterialPair | None) -> PlateBody | None:
         key = "material" if "material" in table else "E"
-        bush = Bushing(self.material, self.outer_radius, friction=self.friction)
+        bush = Bushing(self.material, self.outer_radius, friction=self.friction, bonded=self.bonded)
         if not table.passes(partial(bush.check, radius, dimensionless)):
             return None
         if pair is not None and not table.passes(partial(bush.check_material, pair), {"material": key}):
@@ -129,8 +135,22 @@ class Bushing(PlateBody):
         pressed = replace(bush, interference=self.interference)
         return pressed if table.passes(partial(pressed.check, radius, dimensionless)) else bush
 
+    def entries(self) -> dict[str, Any]:
+        found = super().entries()
+        if self.bonded:
+            del found["bonded"]  # as files of earlier versions have it
+        return found
+
+    @classmethod
+    def from_entries(cls, entries: Mapping[str, Any]) -> Self:
+        if "bonded" not in entries:  # earlier versions knew the friction of a bonded bush, which changed no state
+            entries = {name: value for name, value in entries.items() if name != "friction"}
+        return super().from_entries(entries)
+
     def toml(self) -> dict[str, Any]:
         found = super().toml()
+        if self.bonded:
+            del found["bonded"]
         inside = found.pop("inside").toml()
         return found | {"ring_outer_radius" if name == "outer_radius" else name: inside[name] for name in inside}
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -60,7 +61,7 @@ class Nodes:
     def parts(self) -> tuple[slice, ...]:
         """The nodes of each interface."""
         ends = np.cumsum([0, *(grid.size for grid in self.grids)]).tolist()
-        return tuple(slice(*pair) for pair in zip(ends, ends[1:], strict=False))
+        return tuple(slice(*pair) for pair in pairwise(ends))
 
     def rows(self, place: int) -> np.ndarray:
         """The rows of an interface among (N, T), or (h, s), of all nodes."""

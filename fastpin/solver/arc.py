@@ -207,7 +207,7 @@ def _quick_arc(
     if touched.size == 0:
         return None
     first, last = max(touched[0] - QUICK_MARGIN, 0), min(touched[-1] + QUICK_MARGIN, QUICK_NODES - 1)
-    theta = run.system.grid.theta
+    theta = run.grid.theta
     return (float(theta[first]), float(theta[last])) if last - first > 0.4 * QUICK_NODES else None
 
 

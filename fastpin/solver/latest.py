@@ -22,7 +22,7 @@ class LatestState(MemoryRecorder):
         """Forget the state. From here on all states come from `run`."""
         super().begin(run)
         self.touched_outside = False
-        if run.system.grid.closed:
+        if run.grid.closed:
             self.outside = None
         elif self.outside is None or self.outside.of is not run.system.operator:
             self.outside = OutsideGap(run.system)

@@ -14,6 +14,7 @@ from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
+from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import FRICTION_CHANGE, LOADS, M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
@@ -204,6 +205,11 @@ class Run:
     def _pin_closed(self) -> np.ndarray:
         """Whether each node of the pin is in contact, bool, shape (n,)."""
         return self.now.closed[self.system.interfaces[0].nodes]
+
+    @property
+    def grid(self) -> Grid:
+        """The nodes of the pin."""
+        return self.system.interfaces[0].grid
 
     @property
     def touched(self) -> np.ndarray:

@@ -441,7 +441,7 @@ class Session(InTurns):
     def _go_back(self) -> None:
         """Let the run be at the present place, if it can."""
         here, run = self._here, self._run
-        where = None if run is None else (run.system.problem, run.system.grid)
+        where = None if run is None else (run.system.problem, run.grid)
         if run is not None and here.restart is not None and where == (here.problem, here.grid):
             run.go_back(here.restart)
             self._recorder.begin(run)  # it may have seen other runs since

@@ -239,6 +239,6 @@ class MemoryRecorder:
         assert self.run is not None
         run, statistics = self.run, {**self.run.statistics, "seconds": seconds}
         return Result(
-            self.states, task.problem, task.history, run.system.grid, run.options.method, statistics, run.complete,
+            self.states, task.problem, task.history, run.grid, run.options.method, statistics, run.complete,
             run.restart(), tuple(self.cycles),
         )  # fmt: skip

@@ -91,4 +91,4 @@ def _read_body(group: h5py.Group) -> BodyBase:
         given["material"] = read_material(group["material"])
     if "inside" in group:
         given["inside"] = _read_body(group["inside"])
-    return KINDS[kind](**given)
+    return KINDS[kind].from_entries(given)

@@ -166,8 +166,12 @@ class Group:
             part = part._part(name)
         return part
 
-    def __contains__(self, name: str) -> bool:
-        return self._group.id.links.exists(name.encode())
+    def __contains__(self, path: str) -> bool:
+        name, _, rest = path.partition("/")
+        if not self._group.id.links.exists(name.encode()):
+            return False
+        part = self._part(name) if rest else None
+        return not rest or (isinstance(part, Group) and rest in part)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._group)

@@ -30,6 +30,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
 from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
@@ -70,6 +71,9 @@ WITH_BODIES = 3
 WITH_PROFILES = 4
 """Version with an initial gap, or with friction that varies along the rim, for the same reason."""
 
+WITH_SEAT = 5
+"""Version with a bush that slips in its seat, for the same reason."""
+
 # Each dict below maps a stored field to its kind of quantity: a key of fastpin.model.units.units, or "" for a plain
 # number. The other fields of State are written and read one by one. Error bars come from the states in ``/coarse``.
 # A test checks that every field of State is in one of the three tables.
@@ -107,11 +111,17 @@ NUMBER_FIELDS = {
 }
 """Kind of quantity of each field of a state with one number."""
 
-OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "error_bars", "marks")
+OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "error_bars", "marks", "seat")
 """Fields of a state that are stored in another form, or not at all."""
 
 FIELD_KINDS = {**NODE_FIELDS, **BORDER_FIELDS, **SLIP_FIELDS, **NUMBER_FIELDS}
 """Kind of quantity of each array of node values or numbers in ``/states``."""
+
+SEAT_NUMBERS = ("dx", "dy", "rotation", "dissipation")
+"""Fields with one number that a seat has of its own. The others are those of the pin's state."""
+
+SEATED = ("", "seat/")
+"""What stands before the names of the arrays of pin and seat."""
 
 RESIDUALS = ("gap", "slip", "cone", "equilibrium")
 """Names of the residuals of a state, in the order of a row."""
@@ -164,7 +174,8 @@ def _node_fields(has_slip: bool, has_borders: bool = True) -> dict[str, str]:
 
 def state_rows(group: h5py.Group) -> tuple[str, ...]:
     """Return the names of the arrays of ``/states``, ``group``, with one row for each state."""
-    return (*node_fields(group), *NUMBER_FIELDS, "loads", "residuals")
+    seat = [f"{SEATED[1]}{name}" for name in (*node_fields(group), *SEAT_NUMBERS)] if "seat" in group else []
+    return (*node_fields(group), *NUMBER_FIELDS, "loads", "residuals", *seat)
 
 
 # -- parts of fixed size: problem, history, grid, options, statistics ---------------------------------------
@@ -178,7 +189,8 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     """
     file.attrs["format"] = FORMAT
     with_bodies = WITH_BODIES if problem.has_bodies else FORMAT_VERSION
-    file.attrs["format_version"] = WITH_PROFILES if problem.profiles else with_bodies
+    with_profiles = WITH_PROFILES if problem.profiles else with_bodies
+    file.attrs["format_version"] = with_profiles if problem.seat is None else WITH_SEAT
     file.attrs["complete"] = False
     file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
     file.attrs["platform"] = platform.platform()
@@ -317,6 +329,7 @@ _PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffl
 
 
 def _dtype(name: str) -> type:
+    name = name.removeprefix(SEATED[1])
     if name in SMALL_NUMBERS:
         return np.int8
     return np.int64 if name in WHOLE_NUMBERS else bool if name == "solved" else float
@@ -356,11 +369,52 @@ def _make_states(file: h5py.File, problem: Problem, grid: Grid, fields: Mapping[
         dataset.dims[0].attach_scale(scales["state"])
         if dimension:
             dataset.dims[1].attach_scale(scales[dimension])
+    if problem.seat is not None:
+        _make_seat(group, problem.seat, seat_grid(problem, grid), fields)
     loads = _growing(group, "loads", (len(LOADS),), float, load_units(problem))
     residuals = _growing(group, "residuals", (len(RESIDUALS),), float, "")
     for dataset, dimension in ((loads, "load_name"), (residuals, "residual_name")):
         dataset.dims[0].attach_scale(scales["state"])
         dataset.dims[1].attach_scale(scales[dimension])
+
+
+def _make_seat(states: h5py.Group, problem: Problem, grid: Grid, fields: Mapping[str, str]) -> None:
+    """Create the arrays of the seat's states in its group of ``/states``, without rows."""
+    group, unit = states.create_group("seat"), units_per_thickness(problem)
+    theta = group.create_dataset("theta", data=grid.theta)
+    theta.attrs["unit"] = "rad"
+    theta.make_scale("seat_theta")
+    for name, kind in fields.items():
+        dataset = _growing(group, name, (grid.size,), _dtype(name), unit.get(kind, ""))
+        dataset.dims[0].attach_scale(states["state"])
+        dataset.dims[1].attach_scale(theta)
+    for name in SEAT_NUMBERS:
+        _growing(group, name, (), float, unit[NUMBER_FIELDS[name]]).dims[0].attach_scale(states["state"])
+
+
+def read_seat_grid(file: h5py.Group, problem: Problem, grid: Grid) -> Grid | None:
+    """Read the nodes of the seat of a bush that slips, beside the nodes `grid` of the pin; None without one.
+
+    Raises
+    ------
+    ValueError
+        If the file has a seat that the problem has not, or other nodes than the seat has.
+    """
+    if (problem.seat is None) != ("seat" not in file["states"]):
+        raise ValueError("states/seat does not fit the problem")
+    if problem.seat is None:
+        return None
+    made = seat_grid(problem, grid)
+    theta = dataset_of(file["states/seat"], "theta", float, ())
+    if theta.shape != made.theta.shape or not np.array_equal(theta[()], made.theta):
+        raise ValueError("states/seat/theta has other nodes than the seat")
+    return made
+
+
+def all_nodes(file: h5py.Group, problem: Problem, grid: Grid) -> int:
+    """The number of nodes of pin and seat in a file; `grid` has those of the pin."""
+    seat = read_seat_grid(file, problem, grid)
+    return grid.size + (0 if seat is None else seat.size)
 
 
 def load_units(problem: Problem) -> list[str]:
@@ -385,14 +439,24 @@ def all_loads(vectors: np.ndarray, missing: float) -> np.ndarray:
 def rows_of(states: Sequence[State]) -> Rows:
     """Return the rows of some states. The residuals or the old borders of a state may be missing."""
     names = [*(name for name in node_fields_of(states) if name not in BORDER_FIELDS), *NUMBER_FIELDS]
-    rows: Rows = {name: np.array([getattr(state, name) for state in states], dtype=_dtype(name)) for name in names}
-    marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
-    for k, name in enumerate(BORDER_FIELDS):
-        rows[name] = np.array([arrays[k] for arrays in marks], dtype=_dtype(name))
+    rows: Rows = _own_rows(states, names)
+    seats = [state.seat for state in states if state.seat is not None]
+    if seats:
+        names = [name for name in names if name not in NUMBER_FIELDS]
+        rows |= {f"{SEATED[1]}{name}": array for name, array in _own_rows(seats, [*names, *SEAT_NUMBERS]).items()}
     rows["loads"] = np.array([[state.load[name] for name in LOADS] for state in states], dtype=float)
     rows["residuals"] = np.array(
         [[state.residuals.get(name, np.nan) for name in RESIDUALS] for state in states], dtype=float
     )
+    return rows
+
+
+def _own_rows(states: Sequence[State], names: Sequence[str]) -> Rows:
+    """Return the fields `names` and the old borders of some states of pin or seat."""
+    rows: Rows = {name: np.array([getattr(state, name) for state in states], dtype=_dtype(name)) for name in names}
+    marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
+    for k, name in enumerate(BORDER_FIELDS):
+        rows[name] = np.array([arrays[k] for arrays in marks], dtype=_dtype(name))
     return rows
 
 
@@ -454,12 +518,16 @@ def read_rows(group: h5py.Group, names: Sequence[str], picked: slice | Sequence[
 
 
 def check_states(file: h5py.File, nodes: int) -> None:
-    """Raise :class:`ValueError` if an array of states is missing, or its rows don't fit the nodes."""
+    """Raise :class:`ValueError` if an array of states is missing, or its rows don't fit the nodes of the pin."""
     group = file["states"]
     for name in node_fields(group):
         dataset_of(group, name, _dtype(name), (nodes,))
     for name in NUMBER_FIELDS:
         dataset_of(group, name, _dtype(name), ())
+    if "seat" in group:
+        around = (len(dataset_of(group["seat"], "theta", float, ())),)
+        for name in (*node_fields(group), *SEAT_NUMBERS):
+            dataset_of(group, f"{SEATED[1]}{name}", _dtype(name), around if name not in SEAT_NUMBERS else ())
     dataset_of(group, "residuals", float, (len(RESIDUALS),))
     if dataset_of(group, "loads", float).ndim != 2 or group["loads"].shape[1] > len(LOADS):
         raise ValueError(f"states/loads has the shape {group['loads'].shape}")
@@ -497,39 +565,52 @@ def read_states(
     ValueError
         If the arrays don't fit each other or the nodes of `grid`, or a number is out of range or not finite.
     """
-    group = file["states"]
+    group, seat = file["states"], read_seat_grid(file, problem, grid)
     check_states(file, grid.size)
     rows = read_rows(group, state_rows(group), picked)
-    for name in (*node_fields(group), *NUMBER_FIELDS, "loads"):
-        if name not in (*EXTREMES, "old_places"):
-            check_finite(f"states/{name}", rows[name])
-    if EXTREMES[0] in rows:
-        lowest, highest = (rows[name] for name in EXTREMES)
-        check_extremes("states/slip_lowest", lowest, highest, np.isnan(lowest) & np.isnan(highest))
-    check_between("states/status", rows["status"], *STATUS_LIMITS)
-    if "old_borders" in rows:
-        check_old_borders("states", rows["old_borders"], rows["old_places"])
+    check_finite("states/loads", rows["loads"])
     # A life of wear has the state before the first corner, too, if its first cycle begins there.
     check_between("states/step", rows["step"], -1 if "wear" in file else 0, corners - 1)
     check_between("states/fraction", rows["fraction"], 0.0, 1.0)
     loads = all_loads(rows["loads"], 0.0)
-    states, fields = [], [name for name in node_fields(group) if name not in BORDER_FIELDS]
-    for k in range(len(rows["step"])):
+    residuals = [zip(RESIDUALS, row, strict=True) for row in rows["residuals"].tolist()]
+    common = [
+        {"load": named_load(load), "residuals": {name: value for name, value in pairs if not np.isnan(value)}}
+        for load, pairs in zip(loads, residuals, strict=True)
+    ]
+    fields = [name for name in node_fields(group) if name not in BORDER_FIELDS]
+    seats: list[State] | list[None] = [None] * len(common)
+    if seat is not None and problem.seat is not None:
+        own = {name.removeprefix(SEATED[1]): array for name, array in rows.items() if name.startswith(SEATED[1])}
+        still = [{**each, "load": {**each["load"], "friction_change": 0.0}} for each in common]
+        seats = _states_of({**rows, **own}, fields, still, (problem.seat, seat), "states/seat", [None] * len(common))
+    return _states_of(rows, fields, common, (problem, grid), "states", seats)
+
+
+def _states_of(
+    rows: Rows, fields: list[str], common: list[dict[str, Any]], where: tuple[Problem, Grid], label: str,
+    seats: Sequence[State | None],
+) -> list[State]:  # fmt: skip
+    """The states of pin or seat from their checked rows. `common` are more fields of each, `where` problem and grid."""
+    for name in (*fields, *NUMBER_FIELDS):
+        if name not in EXTREMES:
+            check_finite(f"{label}/{name}", rows[name])
+    if EXTREMES[0] in rows:
+        lowest, highest = (rows[name] for name in EXTREMES)
+        check_extremes(f"{label}/slip_lowest", lowest, highest, np.isnan(lowest) & np.isnan(highest))
+    check_between(f"{label}/status", rows["status"], *STATUS_LIMITS)
+    if "old_borders" in rows:
+        check_finite(f"{label}/old_borders", rows["old_borders"])
+        check_old_borders(label, rows["old_borders"], rows["old_places"])
+    states, (problem, grid) = [], where
+    for k, (each, seat) in enumerate(zip(common, seats, strict=True)):
         per_node = {name: rows[name][k] for name in fields}
         for array in per_node.values():
             array.setflags(write=False)
-        residuals = zip(RESIDUALS, rows["residuals"][k].tolist(), strict=True)
+        marks = Marks.stored(rows["old_borders"][k], rows["old_places"][k]) if "old_borders" in rows else None
+        numbers = {name: rows[name][k].item() for name in NUMBER_FIELDS}
         states.append(
-            State(
-                **per_node,
-                **{name: rows[name][k].item() for name in NUMBER_FIELDS},
-                load=named_load(loads[k]),
-                theta=grid.theta,
-                residuals={name: value for name, value in residuals if not np.isnan(value)},
-                problem=problem,
-                grid=grid,
-                marks=Marks.stored(rows["old_borders"][k], rows["old_places"][k]) if "old_borders" in rows else None,
-            )
+            State(**per_node, **numbers, **each, theta=grid.theta, problem=problem, grid=grid, marks=marks, seat=seat)
         )
     return states
 
@@ -552,7 +633,7 @@ def check_format(file: h5py.File, path: str) -> None:
     """Raise :class:`InputError` if a file is no result, or has another version of the format."""
     if file.attrs.get("format") != FORMAT:
         raise InputError(path, "is an HDF5 file, but not a result of fastpin")
-    if file.attrs.get("format_version") not in (FORMAT_VERSION, WITH_BODIES, WITH_PROFILES):
+    if file.attrs.get("format_version") not in (FORMAT_VERSION, WITH_BODIES, WITH_PROFILES, WITH_SEAT):
         made_by = file.attrs.get("version_fastpin")
         origin = "" if made_by is None else f"; it was written by fastpin {made_by}"
         raise InputError(path, f"has a format that this version of fastpin can't read{origin}")

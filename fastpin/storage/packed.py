@@ -123,8 +123,10 @@ class PackedGroup:
             last, values if isinstance(values, PackedArray) else PackedArray(group._path(last), np.asarray(values))
         )
 
-    def __contains__(self, name: str) -> bool:
-        return name in self._parts
+    def __contains__(self, path: str) -> bool:
+        name, _, rest = path.partition("/")
+        part = self._parts.get(name)
+        return part is not None and (not rest or (isinstance(part, PackedGroup) and rest in part))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._parts)
@@ -134,7 +136,7 @@ class PackedGroup:
 
     def get(self, name: str, default: Any = None) -> Any:
         """A part of the group, or `default` if there is none of this name."""
-        return self._parts.get(name, default)
+        return self[name] if name in self else default  # noqa: SIM401 - this is the method itself
 
     def items(self) -> Iterator[tuple[str, PackedArray | PackedGroup]]:
         """Names and parts."""

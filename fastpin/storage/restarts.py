@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import h5py
 import numpy as np
@@ -10,18 +11,18 @@ import numpy as np
 from fastpin.model.checks import number, whole_number
 from fastpin.model.loads import LOADS
 from fastpin.reading.marks import Marks
-from fastpin.solver.configuration import Configuration
+from fastpin.solver.configuration import MARKS, Configuration
 from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
-from fastpin.storage.layout import BORDER_FIELDS, SMALL_NUMBERS, STATUS_LIMITS, all_loads, check_old_borders
+from fastpin.storage.layout import BORDER_FIELDS, SEATED, SMALL_NUMBERS, STATUS_LIMITS, all_loads, check_old_borders
 
 LEAST_FORCE = 1e-145
 """Least reference force in a file, N/m; the largest is its inverse. The limits of units and loads imply it."""
 
 # Sums begin anew at a corner. Marks have arrays of another form.
-_NO_ARRAYS = ("dissipation", "work", "slip_tally", "marks")
+_NO_ARRAYS = ("dissipation", "work", "seat_dissipation", "slip_tally", *MARKS)
 _ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in _NO_ARRAYS]
 
 
@@ -57,29 +58,39 @@ def write_restart(group: h5py.Group, restart: Restart) -> None:
     group["marks_dissipation"] = np.array([mark.dissipation for _, mark in marks])
     for name in _ARRAYS:
         group[f"configurations/{name}"] = np.array([getattr(item, name) for item in configurations])
-    borders = zip(*(item.marks.arrays(item.status.size) for item in configurations), strict=True)
-    for name, values in zip(BORDER_FIELDS, borders, strict=True):
-        group[f"configurations/{name}"] = np.array(values)
+    for place, marks_field in enumerate(MARKS[: restart.configuration.motion.size // 3]):
+        parts = [getattr(item, marks_field).arrays(item.status.size) for item in configurations]
+        for name, values in zip(BORDER_FIELDS, zip(*parts, strict=True), strict=True):
+            group[f"configurations/{SEATED[place]}{name}"] = np.array(values)
+    if restart.seat_dissipation:
+        group.attrs["seat_dissipation"] = restart.seat_dissipation
     group.create_group("statistics").attrs.update(restart.statistics)
 
 
 def read_restart(group: h5py.Group, nodes: int) -> Restart:
-    """Read a restart, on a grid of so many nodes, from a group of :func:`write_restart`.
+    """Read a restart, with so many nodes of pin and seat, from a group of :func:`write_restart`.
 
     Raises
     ------
     ValueError
         If a number is not finite or out of range, or the arrays don't fit each other.
     """
-    arrays = {name: _read_configurations(group["configurations"], name, nodes) for name in (*_ARRAYS, *BORDER_FIELDS)}
+    seated = SEATED if f"{SEATED[1]}old_borders" in group["configurations"] else SEATED[:1]
+    borders = [f"{before}{name}" for before in seated for name in BORDER_FIELDS]
+    arrays = {
+        name: _read_configurations(group["configurations"], name, nodes, 3 * len(seated))
+        for name in (*_ARRAYS, *borders)
+    }
     size = len(arrays["load"])
     if any(len(array) != size for array in arrays.values()):
         raise ValueError(f"{group.name[1:]}/configurations has arrays of different lengths")
-    check_old_borders("configurations", arrays["old_borders"], arrays["old_places"])
-    all_marks = [Marks.stored(*(arrays[name][k] for name in BORDER_FIELDS)) for k in range(size)]
-    configurations = [
-        Configuration(**{name: arrays[name][k] for name in _ARRAYS}, marks=all_marks[k]) for k in range(size)
-    ]
+    all_marks: list[dict[str, Any]] = [{} for _ in range(size)]
+    for field, before in zip(MARKS, seated, strict=False):
+        pairs = [arrays[f"{before}{name}"] for name in BORDER_FIELDS]
+        check_old_borders(f"configurations/{before}".rstrip("/"), *pairs)
+        for marks_of, *pair in zip(all_marks, *pairs, strict=True):
+            marks_of[field] = Marks.stored(*pair)
+    configurations = [Configuration(**{name: arrays[name][k] for name in _ARRAYS}, **all_marks[k]) for k in range(size)]
     met, marks = (dataset_of(group, name, np.int64, (5,))[()] for name in ("met", "marks"))
     dissipations = dataset_of(group, "marks_dissipation", float, ())[()]
     check_between("met", met[:, 0], 0, size - 1)
@@ -110,6 +121,7 @@ def read_restart(group: h5py.Group, nodes: int) -> Restart:
         },
         statistics=numbers_of(group["statistics"]),
         slip_tally=_read_slip_tally(group, nodes),
+        seat_dissipation=number("seat_dissipation", group.attrs.get("seat_dissipation", 0.0)),
     )
 
 
@@ -125,9 +137,9 @@ def _read_slip_tally(group: h5py.Group, nodes: int) -> SlipTally:
     return SlipTally(tally)
 
 
-def _read_configurations(group: h5py.Group, name: str, nodes: int) -> np.ndarray:
+def _read_configurations(group: h5py.Group, name: str, nodes: int, motions: int) -> np.ndarray:
     """Read one array of all configurations of a restart, shape (configurations, ...)."""
-    size = {"motion": 3, "origin": 2, "rest": 2}.get(name, nodes)
+    size = {"motion": motions, "origin": 2, "rest": 2}.get(name, nodes)
     if name in BORDER_FIELDS and name not in group:  # a file of an earlier version
         value, dtype = (0, np.int8) if name == "old_borders" else (np.nan, float)
         return np.full((len(group["status"]), nodes), value, dtype=dtype)
@@ -135,12 +147,13 @@ def _read_configurations(group: h5py.Group, name: str, nodes: int) -> np.ndarray
         array = all_loads(dataset_of(group, name, float)[()], 0.0)
         size = len(LOADS)
     else:
-        array = dataset_of(group, name, np.int8 if name in SMALL_NUMBERS else float, (size,))[()]
+        dtype = np.int8 if name.removeprefix(SEATED[1]) in SMALL_NUMBERS else float
+        array = dataset_of(group, name, dtype, (size,))[()]
     label = f"configurations/{name}"
     if array.shape[1:] != (size,):
         raise ValueError(f"{label} has the shape {array.shape}")
     if name == "status":
         check_between(label, array, *STATUS_LIMITS)
-    elif name not in ("origin", "old_places"):  # The origin is NaN before the pin has come to rest.
+    elif name not in ("origin", "old_places", "seat/old_places"):  # The origin is NaN before the pin has come to rest.
         check_finite(label, array)
     return array

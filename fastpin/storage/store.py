@@ -42,6 +42,7 @@ from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import open_h5
 from fastpin.storage.layout import (
     SLIP_FIELDS,
+    all_nodes,
     append,
     check_format,
     count,
@@ -212,11 +213,11 @@ def _read(
     restarts = file.get("restart", {})
     found = count(file["states"])
     if after is not None:
-        task, restart = _way_to(path, file, history, after, grid.size)
+        task, restart = _way_to(path, file, history, after, all_nodes(file, problem, grid))
         history, complete = history[:after], True
         found = int(np.searchsorted(file["states/step"][()], after))
     elif "latest" in restarts and ("run" not in file.attrs or complete or "error" in file.attrs):
-        restart = read_restart(restarts["latest"], grid.size)
+        restart = read_restart(restarts["latest"], all_nodes(file, problem, grid))
     if isinstance(states, slice):
         states = slice(*states.indices(found))
     elif any(not -found <= state < found for state in states):
@@ -254,7 +255,7 @@ def _read_coarse(
         return None
     grid, restart = read_grid(group), None
     if after is None and "restart" in group:
-        restart = read_restart(group["restart/latest"], grid.size)
+        restart = read_restart(group["restart/latest"], all_nodes(group, fine.problem, grid))
     states = read_states(group, fine.problem, grid, list(places), len(fine.history))
     if any((one.step, one.fraction) != (two.step, two.fraction) for one, two in zip(fine, states, strict=True)):
         raise ValueError("coarse/states has other load points than states")

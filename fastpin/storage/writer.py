@@ -30,6 +30,7 @@ from fastpin.storage.files import forget_temporaries, replacing
 from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
 from fastpin.storage.layout import (
     Rows,
+    all_nodes,
     append,
     check_format,
     check_growing,
@@ -189,7 +190,7 @@ class FileRecorder:
             If the file must not be overwritten, or can't be written.
         """
         self._run = run
-        if self._file is not None and np.array_equal(self._h5["grid/theta"][()], run.system.grid.theta):
+        if self._file is not None and np.array_equal(self._h5["grid/theta"][()], run.grid.theta):
             return  # The file was reopened.
         if self._file is None:
             self.check_overwriting()  # Check again: the choice of the arc may have taken long.
@@ -202,7 +203,7 @@ class FileRecorder:
         self._h5.flush()  # The signature goes first: what a killed process leaves is known as a result.
         self._states, self._cycles, self._pending = [], [], 0
         self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
-        task, system = self.task, run.system
+        task = self.task
         extra = {
             "title": self._title,
             **self._about.given(),
@@ -213,8 +214,8 @@ class FileRecorder:
             self._h5,
             task.problem,
             task.history,
-            system.grid,
-            {**option_attributes(task.options), "nodes": system.grid.size, **extra},
+            run.grid,
+            {**option_attributes(task.options), "nodes": run.grid.size, **extra},
         )
         self._h5.attrs["run"] = self._name
         for name in ("start", "latest"):
@@ -386,7 +387,8 @@ def add_coarse(path: Path, beside: Path) -> None:
                 for first in range(0, count(states), PIECE):
                     append(group["states"], read_rows(states, state_rows(states), slice(first, first + PIECE)))
                 append(group["cycles"], cycle_rows(read_cycles(stored)))
-                write_restart(group.create_group("restart/latest"), read_restart(stored["restart/latest"], grid.size))
+                nodes = all_nodes(stored, read_problem(stored), grid)
+                write_restart(group.create_group("restart/latest"), read_restart(stored["restart/latest"], nodes))
             h5.flush()
             file.commit()
         except BaseException:
@@ -440,7 +442,7 @@ def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Rest
                 options = stored["solver"].attrs
                 writer = FileRecorder(path, task, str(options["title"]), read_about(stored))
                 writer.chosen_arc = bool(options["arc_chosen"])
-                restart = _latest(path, stored, task.grid.size, lambda group: writer.reopen(file, h5, group))
+                restart = _latest(path, stored, all_nodes(stored, task.problem, task.grid), lambda group: writer.reopen(file, h5, group))
                 h5.attrs.pop("error", None)
                 return writer, restart
         except BaseException:
@@ -455,7 +457,7 @@ def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Rest
 def _latest(path: Path, stored: hdf5.Group, nodes: int, use: Callable[[hdf5.Group], None]) -> Restart:
     """Read the latest restart of a run, from its checkpoint or else from the file itself.
 
-    `nodes` is the number of nodes of the grid. `use` gets the group of the restart while it is open.
+    `nodes` is the number of nodes of pin and seat. `use` gets the group of the restart while it is open.
     """
     file_restart = stored["restart/latest"]
     try:
