@@ -78,13 +78,13 @@ class JointSystem(System):
     nodes : Nodes
     alone : tuple of System
         Each interface alone, while the other one carries nothing; in the units of the whole.
-    radius : float
+    seat_radius : float
         Radius of the seat over R.
     """
 
     nodes: Nodes = field(kw_only=True)
     alone: tuple[System, ...] = field(kw_only=True)
-    radius: float = field(kw_only=True)
+    seat_radius: float = field(kw_only=True)
 
     @classmethod
     def join(cls, problem: Problem, grids: tuple[Grid, Grid], force: float) -> JointSystem:
@@ -112,7 +112,7 @@ class JointSystem(System):
             "friction": np.concatenate([each.friction for each in both]),
             "forces": np.concatenate([each.forces for each in both]),
             "initial_gap": np.concatenate([each.concentric_gap for each in both]),
-            "weights": np.concatenate([pin.weights, radius * seat.weights]),
+            "weights": np.concatenate([pin.weights, seat.weights]),
         }
         if problem.held:
             stacked["forces"][3 + TURN] = 0.0
@@ -120,7 +120,7 @@ class JointSystem(System):
             problem=problem, grid=nodes, scales=pin.scales, rest_clearance=0.0,  # type: ignore[arg-type]
             operator=DenseOperator(matrix), motion=motion, loads=loads, equilibrium=equilibrium,
             motion_rows=motion_rows, plate=0.0, drive=Drive(motion[:, :2], loads), nodes=nodes, alone=both,
-            radius=radius, **stacked,
+            seat_radius=radius, **stacked,
         )  # fmt: skip
 
     @property
@@ -129,13 +129,13 @@ class JointSystem(System):
 
     @cached_property
     def interfaces(self) -> tuple[Interface, ...]:
-        problems, sizes = (self.problem, self.problem.interfaces[SEAT]), (1.0, self.radius)
+        problems, sizes = (self.problem, self.problem.interfaces[SEAT]), (1.0, self.seat_radius)
         parts = enumerate(zip(problems, self.nodes.grids, self.nodes.parts, sizes, strict=True))
         return tuple(Interface(problem, grid, nodes, 3 * place, size) for place, (problem, grid, nodes, size) in parts)
 
     @cached_property
     def levers(self) -> np.ndarray:
-        return np.concatenate([rim.radius * self.weights[rim.nodes] for rim in self.interfaces])
+        return np.concatenate([each.levers for each in self.alone])
 
     @cached_property
     def ends(self) -> np.ndarray:
@@ -188,7 +188,8 @@ def _scaled(seat: System, pin: System, radius: float) -> System:
     return replace(
         seat, operator=DenseOperator(stretch * radius * seat.operator.entries()), motion=motion, loads=loads,
         equilibrium=equilibrium, motion_rows=motion_rows, forces=forces, drive=Drive(motion[:, :2], loads),
-        rest_clearance=stretch * seat.rest_clearance, scales=pin.scales, bodies=None,
+        rest_clearance=stretch * seat.rest_clearance, scales=pin.scales,
+        weights=radius * seat.weights, radius=radius,
     )  # fmt: skip
 
 

@@ -112,7 +112,7 @@ class System:
     forces : ndarray, shape (m, acting loads)
         Maps the loads to the conditions of equilibrium.
     weights : ndarray, shape (n,)
-        Integrals of the hat functions of the nodes, rad.
+        Integrals of the hat functions of the nodes along the rim, over R.
     plate : float
         Size R kappa'/(2 G) of the displacement of the hole in an infinite plate per remote stress, Eq. (42).
     drive : Drive
@@ -123,6 +123,8 @@ class System:
     held_as : System or None
         The system whose contacts answer alike while all closed nodes stick: it differs in loads only. None for a
         system of its own.
+    radius : float
+        Radius of the contact over the R of the units.
     """
 
     problem: Problem
@@ -142,6 +144,7 @@ class System:
     drive: Drive
     bodies: BodyTerms | None = None
     held_as: System | None = None
+    radius: float = 1.0
 
     @classmethod
     def build(cls, problem: Problem, grid: Grid, force: float) -> System:
@@ -196,12 +199,12 @@ class System:
     @cached_property
     def interfaces(self) -> tuple[Interface, ...]:
         """All contacts of the joint. That of the pin is the first one."""
-        return (Interface(self.problem, self.grid, slice(0, self.grid.size), 0, 1.0),)
+        return (Interface(self.problem, self.grid, slice(0, self.grid.size), 0, self.radius),)
 
     @cached_property
     def levers(self) -> np.ndarray:
         """Moment of a unit of shear at each node, shape (n,): its weight times the radius of its rim."""
-        return self.weights
+        return self.radius * self.weights
 
     @cached_property
     def ends(self) -> np.ndarray:

@@ -205,7 +205,7 @@ def first_contact(
         If the pin touches the hole outside the arc or at its end.
     """
     if isinstance(system, JointSystem):
-        view = PinView(system, floating)
+        view = PinView(system, replace(floating, load=before))
         pin, part = first_contact(view.system, view.pin, before, after, strict)
         return view.whole(pin), part
     found = at_rest(system, floating, before, after)

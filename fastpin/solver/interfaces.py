@@ -16,9 +16,8 @@ from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
 from fastpin.elasticity.operator import DenseOperator
 from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels.status import OPEN
-from fastpin.model.loads import REMOTE
+from fastpin.model.loads import REMOTE, M, P, Q
 from fastpin.model.profile import InitialGap, Profile
-from fastpin.model.room import widest_place
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     NODAL,
@@ -30,9 +29,8 @@ from fastpin.solver.configuration import (
     solve_statuses,
     worst_residual,
 )
-from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
+from fastpin.solver.errors import ConvergenceError
 from fastpin.solver.increment import implicit_step
-from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.unknowns import DenseUnknowns
 
 ROUND = 1e-12
@@ -128,7 +126,7 @@ class PinView:
         start.slip_tally = start.slip_tally.with_part(self._nodes, pin.slip_tally)
         start = replace(start, load=pin.load.copy(), origin=pin.origin, rest=pin.rest, dissipation=pin.dissipation)
         found = _solved(joint, start) if pin.closed.any() else self._without_pin(start)
-        if found is None or worst_residual(joint, found) > MAX_RESIDUAL:
+        if found is None:
             raise ConvergenceError("the tractions between bush and plate were not found; use more nodes")
         done = elastic_energy(joint, found) - elastic_energy(joint, now)
         found.work = now.work + done + found.dissipation - now.dissipation
@@ -137,34 +135,23 @@ class PinView:
     def _without_pin(self, start: Configuration) -> Configuration | None:
         """The configuration `start`, whose pin floats, with the tractions that are then left in the seat."""
         seat, own = self._joint.alone[SEAT], seat_of(self._joint, start)
-        solution = solve_statuses(seat, own.status, own.slip, own.load, own.rest_gap)
-        if solution is None:
-            return None
-        return with_seat(self._joint, start, accept_solution(own, solution, own.status, own.load))
+        unloaded = without_force(start.load)
+        solution = solve_statuses(seat, own.status, own.slip, unloaded, own.rest_gap)
+        found = None if solution is None else accept_solution(own, solution, own.status, unloaded)
+        if found is None or worst_residual(seat, found) > MAX_RESIDUAL:
+            found = implicit_step(seat, own, unloaded)
+            if found is None or worst_residual(seat, found) > MAX_RESIDUAL:
+                return None
+            add_dissipation(seat, own, found)
+        found.load = start.load
+        return with_seat(self._joint, start, found)
 
 
-def follow_floating(joint: JointSystem, now: Configuration, load: np.ndarray) -> Configuration:
-    """The configuration at a `load` (loads,) to which a floating pin is taken: the bush alone follows its load.
-
-    Raises
-    ------
-    NoEquilibriumError
-        If nothing holds the bush, or if the bore closes on the pin.
-    """
-    seat = joint.alone[SEAT]
-    own = seat_of(joint, now)
-    if not np.array_equal(own.load, load) and own.closed.any():
-        try:
-            own = PathStep(seat, own, load).follow(1.0)
-        except StepLostError:
-            raise NoEquilibriumError("nothing holds the bush in its seat") from None
-    own.load = load.copy()
-    moved = with_seat(joint, now, own)
-    view = PinView(joint, moved)
-    room = widest_place(view.system.grid.theta, view.system.concentric_gap, (False, False))[0]
-    if room < 0.0:
-        raise NoEquilibriumError("the bore of the bush closes on the pin before the pin is loaded")
-    return moved
+def without_force(load: np.ndarray) -> np.ndarray:
+    """The load (loads,) without force and moment on the pin."""
+    left = load.copy()
+    left[[P, Q, M]] = 0.0
+    return left
 
 
 def seat_of(joint: JointSystem, configuration: Configuration) -> Configuration:
@@ -184,10 +171,10 @@ def with_seat(joint: JointSystem, configuration: Configuration, seat: Configurat
         values[nodes] = getattr(seat, name)
         setattr(whole, name, values)
     whole.motion[begin : begin + 3] = seat.motion
-    tally = whole.slip_tally.with_part(nodes, seat.slip_tally)
+    lost, tally = seat.dissipation - whole.dissipation, whole.slip_tally.with_part(nodes, seat.slip_tally)
     return replace(
-        whole, load=seat.load, dissipation=seat.dissipation, seat_dissipation=seat.seat_dissipation, work=seat.work,
-        slip_tally=tally,
+        whole, load=seat.load, dissipation=seat.dissipation, seat_dissipation=whole.seat_dissipation + lost,
+        work=seat.work, slip_tally=tally,
     )  # fmt: skip
 
 
@@ -199,8 +186,9 @@ def _solved(joint: JointSystem, start: Configuration) -> Configuration | None:
         if worst_residual(joint, found) <= MAX_RESIDUAL:
             return found
     after = implicit_step(joint, start, start.load)
-    if after is not None:
-        add_dissipation(joint, start, after)
+    if after is None or worst_residual(joint, after) > MAX_RESIDUAL:
+        return None
+    add_dissipation(joint, start, after)
     return after
 
 

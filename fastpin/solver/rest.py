@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from fastpin.elasticity.interfaces import JointSystem
+from fastpin.elasticity.interfaces import SEAT, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import ACTING, REMOTE, ROTATION, SXX, SXY, SYY
@@ -14,7 +15,8 @@ from fastpin.model.room import widest_place
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration, elastic_energy
 from fastpin.solver.errors import NoEquilibriumError
-from fastpin.solver.interfaces import PinView
+from fastpin.solver.interfaces import PinView, seat_of, with_seat
+from fastpin.solver.path import PathStep, StepLostError
 
 FINE = 1441
 """Angles round the hole at which a gap that varies is looked at."""
@@ -24,6 +26,9 @@ TOUCHING = 1e-9
 
 LEAST_BEND = 1e-4
 """Angle beside a place, rad, at least, over which a gap is bent: rounding is 1e-8 of the gap there."""
+
+SHORTEST_WAY = 1e-9
+"""Part of a step within which the bore of a bush grips a floating pin."""
 
 REFINEMENTS = 8
 """Newton's steps for a pin that rests on two places."""
@@ -61,6 +66,41 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
     position = middle + way + given
     put_at_rest(system, new, load, position, system.concentric_gap + translation @ position)
     return new
+
+
+def follow_floating(joint: JointSystem, now: Configuration, load: np.ndarray) -> Configuration:
+    """Take a floating pin to a `load` (loads,), or to where the bore grips it. The bush alone follows its load.
+
+    Raises
+    ------
+    NoEquilibriumError
+        If nothing holds the bush.
+    """
+    start = seat_of(joint, now)
+
+    def at(part: float) -> Configuration:
+        reached = start.load + part * (load - start.load)
+        seat = start
+        if not np.array_equal(start.load, load):
+            seat = PathStep(joint.alone[SEAT], start, load).follow(part)
+        view = PinView(joint, with_seat(joint, now, replace(seat, load=reached)))
+        return view.whole(release(view.system, view.pin, reached))
+
+    try:
+        found = at(1.0)
+        if _room(joint, found) < 0.0:
+            grips = optimize.brentq(lambda part: _room(joint, at(part)), 0.0, 1.0, xtol=SHORTEST_WAY)
+            return at(max(float(grips) - SHORTEST_WAY, 0.0))
+    except StepLostError:
+        raise NoEquilibriumError("nothing holds the bush in its seat") from None
+    found.load = load.copy()
+    return found
+
+
+def _room(joint: JointSystem, floating: Configuration) -> float:
+    """The narrowest gap round a floating pin where it has most room; negative where the bore grips it."""
+    system, theta = PinView(joint, floating).system, np.linspace(-math.pi, math.pi, FINE)
+    return widest_place(theta, hole_gap(system, floating.load, theta)[0], (False, False))[0]
 
 
 def place_between(system: System, load: np.ndarray) -> np.ndarray:

@@ -37,11 +37,10 @@ from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, NoEquilibr
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.growth import OutsideGap
 from fastpin.solver.increment_stepper import IncrementStepper
-from fastpin.solver.interfaces import follow_floating
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.place import system_with_friction
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
-from fastpin.solver.rest import release
+from fastpin.solver.rest import follow_floating, release
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
 from fastpin.solver.step import Piece, Position, Stepper, force_of, force_on_pin, is_pushed, pieces
@@ -404,7 +403,8 @@ class Run:
         self.stepper.leave(position)
         if isinstance(self.system, JointSystem) and not is_pushed(load):
             position.now = follow_floating(self.system, self.now, load)
-            return
+            if np.array_equal(self.now.load, load):
+                return
         before = self.now.load.copy()
         before[[P, Q, M]] = 0.0  # a contact that was released under a little load begins anew from none
         position.now, part = self._first_contact(before, load)

@@ -442,7 +442,12 @@ def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Rest
                 options = stored["solver"].attrs
                 writer = FileRecorder(path, task, str(options["title"]), read_about(stored))
                 writer.chosen_arc = bool(options["arc_chosen"])
-                restart = _latest(path, stored, all_nodes(stored, task.problem, task.grid), lambda group: writer.reopen(file, h5, group))
+                restart = _latest(
+                    path,
+                    stored,
+                    all_nodes(stored, task.problem, task.grid),
+                    lambda group: writer.reopen(file, h5, group),
+                )
                 h5.attrs.pop("error", None)
                 return writer, restart
         except BaseException:
