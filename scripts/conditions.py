@@ -273,15 +273,17 @@ class _Checked:
         return {name: float(value) for name, value in found.items()}
 
     def _hub_turn(self, shear_force: float) -> float:
-        """Rotation that a hub of a given radius adds; the force is R int T."""
+        """Rotation that a spring or a hub of a given radius adds; the force is R int T."""
         problem, integrals = self.problem, self._integrals
+        force = shear_force / problem.hole_radius
+        spring = 0.0 if problem.hub_stiffness is None else force * problem.hole_radius**2 / problem.hub_stiffness
         hub = problem.hub_radius
         if hub is None and isinstance(problem.pin_body, Tube):
             hub = problem.pin_body.bore_radius
         if hub is None:
-            return 0.0
+            return spring
         factor = (problem.hole_radius / hub) ** 2 - (integrals.kappa_pin + 1.0)
-        return factor * integrals.pin / (4.0 * math.pi) * shear_force / problem.hole_radius
+        return spring + factor * integrals.pin / (4.0 * math.pi) * force
 
     def _energy_error(self, size: float) -> float:
         """Energy of the tractions on their displacements, up to a part of the loads alone, against the state's."""

@@ -8,13 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin.bodies import Disk, Ring, Tube
 from fastpin.elasticity.system import System
 from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from scripts import conditions, metamorphic, two_roads
 from scripts.histories import GENERATORS, generate
 from scripts.random_histories import Outcome, examine, table
 from tests.support.potentials import displacement_kernels
+from tests.support.slip_cases import UNLIKE
 
 FEW, MANY = range(1, 4), range(300, 314)
 
@@ -140,6 +143,16 @@ def test_wrong_states_are_found(name, change):
     assert max(conditions.check_states(states)[-1].values()) < 1e-3
     wrong = replace(states[-1], **change(states[-1]))
     assert conditions.check_states([*states[:-1], wrong])[-1][name] > 1e-5
+
+
+@pytest.mark.parametrize("pin", [Disk(), Tube(0.4)])
+def test_the_check_knows_the_spring_of_a_hub(pin):
+    problem = Problem.from_load_parameter(
+        UNLIKE, 0.1, 0.5, "centre", "spring", hub_stiffness=2.0, pin_body=pin, plate_body=Ring(3.0)
+    )
+    states = solve(problem, [{"P": 1.0}, {"Q": 0.3, "rotation": 0.2}], nodes=41).states
+    assert states[-1].rotation != pytest.approx(0.2, rel=0.1)
+    assert max(found["rotation"] for found in conditions.check_states(states)) < 1e-12
 
 
 def test_wrong_directions_of_slip_are_found():
