@@ -232,7 +232,7 @@ def not_readable(path: Path) -> InputError:
 def _not_readable(path: Path, start: bytes) -> InputError:
     """Return the error of a file with these first bytes that can't be opened as an HDF5 file."""
     if not start:
-        return InputError(str(path), "is empty, and no result")
+        return InputError(str(path), "is empty, and no result; if its run was killed, start it again")
     if start == HDF5_SIGNATURE:
         return InputError(str(path), "is damaged or cut short")
     if path.suffix == ".toml":

@@ -38,7 +38,7 @@ from fastpin.storage import hdf5
 from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of, reading, text_of
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import check_exists, check_writable, replacing
-from fastpin.storage.journal import JournaledFile, check_beside, not_readable
+from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
 from fastpin.storage.layout import (
     append,
     check_format,
@@ -152,7 +152,9 @@ def wear(
     path = file_path("output", output)
     check_writable(path, result=True)
     if resume:
-        return _resumed(path, task)
+        check_exists(path)
+        if not is_empty(path):  # a killed life may have left a file without any transaction
+            return _resumed(path, task)
     writer = WearFile(path, task, title)
     check_overwriting(path, overwrite)
     with _closing(writer):
@@ -174,7 +176,6 @@ def _in_memory(task: WearTask) -> WearResult:
 
 def _resumed(path: Path, task: WearTask) -> WearResult:
     """Continue the life in a file."""
-    check_exists(path)
     writer = WearFile(path, task, "")
     place, grid = writer.reopen()
     with _closing(writer):

@@ -19,6 +19,7 @@ from fastpin.solver.errors import Interrupted, ResolutionError
 from fastpin.solver.fat_cycles import FatCycles, Worn
 from fastpin.solver.wear_result import WearResult
 from fastpin.storage import wear_files
+from fastpin.storage.journal import JournaledFile
 from tests.support.interrupts import StopAt
 from tests.support.wear_cases import WEAR_CASES, life
 
@@ -114,6 +115,21 @@ def test_a_life_that_needs_finer_nodes_later_begins_anew_there(tmp_path, monkeyp
         life(**{**given, "grid": CASE.grid(21)})
 
 
+def test_a_life_that_ended_before_its_first_transaction_begins_anew(tmp_path, monkeypatch):
+    path = tmp_path / "life.h5"
+
+    def fail(file: JournaledFile) -> None:
+        raise RuntimeError("killed")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(JournaledFile, "commit", fail)
+        with pytest.raises(RuntimeError):
+            life(path, cycles=2)
+    with pytest.raises(InputError, match="is empty, and no result; if its run was killed, start it again"):
+        fastpin.load_wear(path)
+    assert_same_life(life(path, cycles=2, resume=True), life(cycles=2))
+
+
 def test_a_life_of_another_kind_is_not_continued(tmp_path):
     path = tmp_path / "life.h5"
     with pytest.raises(Interrupted):
@@ -163,7 +179,7 @@ from fastpin.storage import wear_files
 from tests.support.wear_cases import life
 wear_files.CHECKPOINT_EVERY = 0.02
 path = Path({path!r})
-life(path, cycles=3000, tolerance=0.005, resume=path.exists() and path.stat().st_size > 0)
+life(path, cycles=3000, tolerance=0.005, resume=path.exists())
 """
 
 
