@@ -401,7 +401,7 @@ class LiveContact:
             )
         arc = ALL_ROUND if grid.closed else (float(grid.theta[0]), float(grid.theta[-1]))
         options = replace(SolveOptions(), nodes=grid.size, arc=arc)
-        return case_text(Case(self.session.problem, history, options, self._case.title))
+        return case_text(replace(self._case, problem=self.session.problem, history=history, options=options))
 
 
 def _sentence(error: FastpinError) -> str:

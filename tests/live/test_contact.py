@@ -18,7 +18,7 @@ from fastpin.live import contact as contact_module
 from fastpin.live.contact import LiveContact
 from fastpin.live.pictures import CURVE_ERROR
 from fastpin.live.protocol import ALONE, CLASS, Limits
-from fastpin.model import InitialGap, Profile
+from fastpin.model import About, InitialGap, Profile, Wear
 from fastpin.states.curves import traction_patches
 from fastpin.states.state import State
 from fastpin.verification.body_cases import ring_compliance
@@ -457,6 +457,12 @@ def test_the_saved_case_has_the_same_states() -> None:
     page.tell("reset")
     with pytest.raises(fastpin.InputError, match="no load was followed yet"):
         page.live.case_text()
+
+
+def test_the_saved_case_keeps_its_origin_and_its_wear() -> None:
+    case = replace(casefile.parse_case(FREE), title="A joint", about=About(author="A. Smith"), wear=Wear(2e-15, cycles=9))
+    saved = casefile.parse_case(LiveContact(case, NODES).case_text())
+    assert (saved.title, saved.about, saved.wear) == (case.title, case.about, case.wear)
 
 
 def test_a_plate_from_a_compliance_file_is_not_saved_but_its_loads_are_pointed_to() -> None:
