@@ -38,6 +38,8 @@ def run(options: argparse.Namespace) -> int:
     given = {name: value for name, value in given.items() if value is not None}
     if "coefficient" in given:
         how |= {"pin": None, "plate": None}
+    if "at" in how and isinstance(given.get("cycles"), (int, float)):
+        how["at"] = [cycle for cycle in how["at"] if cycle <= given["cycles"]]  # of the file, which has more cycles
     how |= given
     for name in ("overwrite", "resume"):
         if getattr(options, name) and options.output is None:

@@ -288,7 +288,7 @@ def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutco
     definition = {"wear": quantity, "how": how, "criterion": criterion, "body": body}
     kind, classes = WEAR_QUANTITIES[quantity].kind, dict(WEAR_QUANTITIES[quantity].classes)
     read = partial(of_wear, quantity, wear, criterion, body)
-    return StudyOutcome(kind, "", json.dumps(definition, sort_keys=True), read, classes)
+    return StudyOutcome(kind, "", json.dumps(definition, sort_keys=True), read, classes, wear=wear)
 
 
 def _of_function(section: Section, folder: Path) -> StudyOutcome | None:

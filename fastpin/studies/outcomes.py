@@ -176,6 +176,8 @@ class StudyOutcome:
     bar : callable or None
         Gives the error bar of the number for a result with error bars. None: the bar comes from the numbers on the two
         grids alone, see :func:`fastpin.states.error_bars.number_bar`.
+    wear : Wear or None
+        How the bodies wear, of a number of a life of wear.
     """
 
     kind: str
@@ -184,6 +186,7 @@ class StudyOutcome:
     read: Callable[[Result], Any]
     classes: Mapping[int, str] = field(default_factory=dict)
     bar: Callable[[Result], float] | None = None
+    wear: Wear | None = None
 
     def reported(self, value: float) -> float:
         """A value in the units of reports: angles in degrees from the bottom of the hole, widths in degrees."""

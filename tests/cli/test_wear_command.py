@@ -86,6 +86,15 @@ def test_options_take_the_place_of_the_case(capsys):
     assert set(document["pin_coefficient"]) == {5e-14}
 
 
+@pytest.mark.parametrize(("cycles", "stored"), [("5", [0, 2, 5]), ("1", [0, 1])])
+def test_fewer_cycles_leave_out_the_chosen_ones_beyond(cycles, stored, capsys):
+    Path("case.toml").write_text(CASE.replace("tolerance = 0", "tolerance = 0\nat = [2, 5, 7]"))
+    assert main(["wear", "case.toml", "--cycles", cycles, "--json"]) == 0
+    assert [each["cycle"] for each in json.loads(capsys.readouterr().out)["cycles"]] == stored
+    assert main(["wear", "case.toml", "--cycles", "some"]) == 2
+    assert "--cycles: must be a number" in capsys.readouterr().err
+
+
 def test_a_file_is_begun_continued_and_kept(capsys):
     assert main(["wear", "case.toml", "-o", "life.h5"]) == 0
     first = capsys.readouterr().out

@@ -439,6 +439,19 @@ def test_a_plan_names_the_runs_in_doubt(tmp_path: Path) -> None:
     assert len(plan.points) == 6
 
 
+def test_a_plan_doubts_the_coefficients_of_its_outcomes_of_wear(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    outcomes = "".join(
+        f'{name} = {{ wear = "{name}", cycles = 10, coefficient = {size} }}\n'
+        for name, size in {"depth": 1e-9, "volume": 1e-9, "pressure": 1e-15}.items()
+    )
+    path.write_text(f"[grid]\ncontact.friction = [0.1, 0.2]\n[outcomes]\n{outcomes}")
+    with pytest.warns(InputWarning) as given:
+        read_plan(path)
+    (warning,) = given
+    assert str(warning.message).startswith("coefficient: 1e-09 1/Pa is more than any surface wears")
+
+
 @pytest.mark.parametrize("other", [False, True], ids=["named", "given"])
 def test_a_pressure_above_the_yield_strength_is_doubted(
     other: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None
