@@ -31,7 +31,13 @@ PROFILES = (("contact", "friction"), ("gap", "hole"), ("gap", "pin"))
 """Section and key of each profile."""
 
 IN_RADIANS = 2e-4
-"""Relative distance from a multiple of pi/12 within which an angle is in rad by mistake: 1.5708 is meant as 90."""
+"""Relative distance from a multiple of pi/12 within which an angle is in rad by mistake: 1.5708 is meant as 90.
+
+It must also have three digits after the point, and its last digit less than one off. Hardly any other angle has both.
+"""
+
+LAST_DIGIT = 1e-14
+"""Least distance that counts as a digit: multiples of pi/12 that were computed differ by rounding."""
 
 
 class Word(NamedTuple):
@@ -61,7 +67,10 @@ def _degrees(field: str, value: object) -> float:
     """Check an angle in degrees."""
     degrees = number(field, value, -360.0, 360.0)
     parts = degrees / (15.0 * DEGREE)
-    if 1.0 <= abs(round(parts)) <= 24 and abs(parts - round(parts)) <= IN_RADIANS * abs(parts) and degrees % 1.0:
+    away = abs(parts - round(parts))
+    digits = len(repr(degrees).partition(".")[2])
+    rounded = away <= min(IN_RADIANS * abs(parts), max(10.0**-digits, LAST_DIGIT) / (15.0 * DEGREE))
+    if 1.0 <= abs(round(parts)) <= 24 and digits > 2 and rounded:
         words = f"{degrees:g} is {15 * round(parts)} degrees in rad"
         raise InputError(field, f"must be in degrees from the bottom of the hole; {words}")
     return degrees

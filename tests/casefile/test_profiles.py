@@ -162,6 +162,19 @@ def test_a_wrong_gap_is_explained(gap: str) -> None:
     assert faults(gap=gap) == [GAPS[gap]]
 
 
+@pytest.mark.parametrize("angle", [5.76, 1.57085, 2.617912345678901, 1.0])
+def test_an_angle_beside_one_in_rad_is_in_degrees(angle: float) -> None:
+    """The first three are within 2e-4 of 330, 90 and 150 degrees in rad, but have other digits."""
+    case = parse_case(text(gap=f"pin = {{ flat = 1e-6, centre = {angle} }}"))
+    assert case.problem.gap.pin.terms[0].centre == angle_at(angle)
+
+
+@pytest.mark.parametrize("degrees", range(15, 375, 15))
+def test_all_angles_in_rad_are_refused(degrees: int) -> None:
+    for angle in (math.radians(degrees), -degrees * (math.pi / 180.0), round(math.radians(degrees), 5)):
+        assert "degrees in rad" in faults(gap=f"pin = {{ flat = 1e-6, centre = {angle!r} }}")[0]
+
+
 def test_one_of_many_samples_may_look_like_an_angle_in_rad() -> None:
     case = parse_case(
         f"{PRESSED}\n[gap]\npin = {{ angles = [0, 1.5708, 90, 180, 270], values = [0, 0, 1e-6, 0, 0] }}\n"
