@@ -176,7 +176,7 @@ class Harmonic(Term):
         if self.order == 1:
             return f"eccentricity {text(size)} at {at + 0.0:.4g} deg"
         if self.order == 2:
-            return f"oval of {text(size)}, longer half axis at {at + 0.0:.4g} deg"
+            return f"oval of {text(size)}, largest at {at + 0.0:.4g} deg"
         return f"{self.order} lobes of {text(size)}, one at {at + 0.0:.4g} deg"
 
 

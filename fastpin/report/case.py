@@ -91,8 +91,11 @@ def _wear_words(wear: Wear) -> str:
 
 def profile_rows(problem: Problem) -> list[tuple[str, str]]:
     """Return the rows that describe the profiles along the rim; none for a round hole and pin and uniform friction."""
-    angle = "angles in degrees from the bottom"
-    return [(name, f"{words} ({angle})" if "deg" in words else words) for name, words in profile_words(problem)]
+    found = []
+    for name, words in profile_words(problem):
+        notes = ["missing material"] * (name != "friction") + ["angles in degrees from the bottom"] * ("deg" in words)
+        found.append((name, f"{words} ({', '.join(notes)})" if notes else words))
+    return found
 
 
 def profile_words(problem: Problem) -> list[tuple[str, str]]:

@@ -56,7 +56,7 @@ def test_only_what_varies_is_drawn() -> None:
 def test_captions_hold_the_profiles() -> None:
     text = caption(LOBED).replace("\N{NO-BREAK SPACE}", " ")
     assert "friction coefficient 0.1 to 0.4 along the rim: 0.4 and -0.3 more from -28.65 to 57.3 deg" in text
-    assert "initial gap of the hole: oval of 4 µm, longer half axis at 90 deg and 5 lobes of 1 µm, one at" in text
+    assert "initial gap of the hole: oval of 4 µm, largest at 90 deg and 5 lobes of 1 µm, one at" in text
     assert "initial gap of the pin: crown of −2 µm at 0 deg, half width 28.65 deg" in text
     many = Profile.constant(1e-6)
     for k in range(1, 6):

@@ -65,6 +65,14 @@ def lines(text: str) -> dict[str, str]:
     return {row[:width].strip(): row[width + 1 :] for row in rows}
 
 
+def test_an_oval_is_described_by_the_place_of_its_largest_gap() -> None:
+    """The hole has its longer half axis there, and the pin its shorter one."""
+    gap = "[gap]\nhole = { ellipse = 20e-6, axis = 30 }\npin = { ellipse = 5e-6 }\n"
+    said, words = describe(parse_case(JOINED + gap)), "(missing material, angles in degrees from the bottom)"
+    assert f"hole profile oval of 20 um, largest at 30 deg {words}\n" in said
+    assert f"pin profile  oval of 5 um, largest at 0 deg {words}\n" in said
+
+
 def test_a_hollow_pin_is_described() -> None:
     said = lines(JOINED + "[pin_body]\nbore_radius = 5e-3\n")
     assert said["pin body"] == "hollow, bore radius 5 mm"
