@@ -91,6 +91,8 @@ class Look:
         with house_style():
             with mpl.rc_context(None if self.ax is None else SMALL):
                 sheet: Sheet = plot.draw(self)
+            if sheet.host is None:
+                sheet.wrap_axes()
             if self.path is not None:
                 save_figure(sheet.figure, Path(self.path), self.dpi)
         return sheet.figure
@@ -189,6 +191,14 @@ class Sheet:
         if text:
             size = HEADING if self.axes.shape[1] == 1 or not small else 0.85 * HEADING
             self.figure.suptitle(text, fontsize=size, parse_math=False)
+
+    def wrap_axes(self) -> None:
+        """Break words of horizontal axes that are wider than the figure into lines."""
+        for panel in self.axes.flat:
+            label = panel.xaxis.label
+            lines = wrapped(label.get_text(), self.figure.get_figwidth() - 0.9, label.get_size())
+            if len(lines) > 1 and "\n" not in label.get_text():
+                label.set_text("\n".join(lines))
 
     def legend(self, handles: Sequence[Artist], columns: int, title: str = "") -> None:
         """Add a legend below the panels. Blank entries keep columns apart."""

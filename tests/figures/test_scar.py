@@ -54,6 +54,14 @@ def heading(figure: Figure) -> str:
     return str(figure.get_suptitle()).replace("\n", " ").replace("\N{NO-BREAK SPACE}", " ")
 
 
+def test_words_of_the_angle_fit_a_narrow_figure(life: WearResult) -> None:
+    figure = life.plot(width=3.4)
+    label = figure.axes[-1].xaxis.label
+    assert label.get_text() == "angle from the bottom of the hole,\ncounter-clockwise (deg)"
+    figure.canvas.draw()
+    assert 0.0 <= label.get_window_extent().x0 < label.get_window_extent().x1 <= figure.bbox.width
+
+
 def test_a_scar_goes_down_on_the_profiles_of_the_cycles(life: WearResult) -> None:
     figure = life.plot(title="Scar")
     upper, lower = figure.axes
