@@ -40,6 +40,9 @@ HALVINGS = 44
 STOPS = 101
 """Places between two states at which a driven pin may float."""
 
+RANK = 1e-8
+"""Size of a further displacement by loads, in parts of the largest one, below which it is the sum of others."""
+
 LEAST_LENGTH = 1e-6
 """Least size of displacements, in parts of the clearance: below it the clearance leaves no digits."""
 
@@ -159,9 +162,9 @@ class Integrals:
             turning = turning + moved[4 * k + 4] * columns[2 * k + 1] + moved[4 * k + 5] * columns[2 * k + 2]
         return gap + unit * radial, slip - unit * turning
 
-    def loads(self, state: State) -> tuple[np.ndarray, np.ndarray]:
+    def loads(self, load: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         """The parts of gap and slip that the loads determine: terms of the force (w), and remote stress (42)."""
-        load, cos, sin = state.load, np.cos(self.theta), np.sin(self.theta)
+        cos, sin = np.cos(self.theta), np.sin(self.theta)
         double, double_sin = np.cos(2.0 * self.theta), np.sin(2.0 * self.theta)
         if self.bodies is not None:
             return self._loads_of_bodies(load, cos, sin)
@@ -226,9 +229,9 @@ class _Checked:
     """One state with its recomputed displacements."""
 
     def __init__(self, integrals: Integrals, state: State, grown: np.ndarray | float) -> None:
-        self.state, self.problem, self._integrals = state, state.problem, integrals
+        self.state, self.problem, self.integrals = state, state.problem, integrals
         self.elastic = integrals.elastic(state)
-        self.loads = integrals.loads(state)
+        self.loads = integrals.loads(state.load)
         cos, sin = np.cos(state.theta), np.sin(state.theta)
         radius = self.problem.hole_radius
         # Gap and slip from the first resting position of the pin. The place of that position is not known.
@@ -261,7 +264,7 @@ class _Checked:
             "|T| <= mu N": max((np.abs(T) - mu * N).max(), 0.0) / (most * peak),
             "slipping": np.abs(T + status * mu * N)[slips].max(initial=0.0) / (most * peak),
         }
-        forces, size = self._integrals.resultants(state)
+        forces, size = self.integrals.resultants(state)
         wrong = forces - np.array([state.load["P"], state.load["Q"], state.load["M"] / self.problem.hole_radius])
         free = self.problem.rotation == "free"
         if self.touches:
@@ -274,7 +277,7 @@ class _Checked:
 
     def _hub_turn(self, shear_force: float) -> float:
         """Rotation that a spring or a hub of a given radius adds; the force is R int T."""
-        problem, integrals = self.problem, self._integrals
+        problem, integrals = self.problem, self.integrals
         force = shear_force / problem.hole_radius
         spring = 0.0 if problem.hub_stiffness is None else force * problem.hole_radius**2 / problem.hub_stiffness
         hub = problem.hub_radius
@@ -289,7 +292,7 @@ class _Checked:
         """Energy of the tractions on their displacements, up to a part of the loads alone, against the state's."""
         state = self.state
         parts = zip((state.pressure, state.shear), self.elastic, self.loads, strict=True)
-        weights = self.problem.hole_radius * self._integrals.moments[0]
+        weights = self.problem.hole_radius * self.integrals.moments[0]
         energy = sum(float(weights @ (traction * (0.5 * own + given))) for traction, own, given in parts)
         return abs(energy - state.energy) / max(size * self.length, 1e-300)
 
@@ -350,10 +353,14 @@ def _check_gaps(checked: list[_Checked], found: list[dict[str, float]]) -> None:
 
 
 def _check_slips(checked: list[_Checked], found: list[dict[str, float]]) -> None:
-    """Compare the slips. Their reference is a rigid motion and a remote stress: five functions of the angle."""
+    """Compare the slips. Their reference is a rigid motion, and the displacement of the hole by loads."""
     theta = checked[0].state.theta
-    columns = np.column_stack([np.ones_like(theta), *(f(k * theta) for k in (1.0, 2.0) for f in (np.cos, np.sin))])
-    basis = np.linalg.qr(columns)[0]
+    columns = [np.ones_like(theta), np.cos(theta), np.sin(theta)]
+    for name in checked[0].state.load:
+        moved = checked[0].integrals.loads({**dict.fromkeys(LOADS, 0.0), name: 1.0})[1]
+        columns.append(moved / max(float(np.abs(moved).max()), 1e-300))
+    directions, sizes, _ = np.linalg.svd(np.column_stack(columns), full_matrices=False)
+    basis = directions[:, sizes > RANK * sizes[0]]
     last: np.ndarray | None = None
     previous: _Checked | None = None
     for one, conditions in zip(checked, found, strict=True):

@@ -460,7 +460,9 @@ def test_the_saved_case_has_the_same_states() -> None:
 
 
 def test_the_saved_case_keeps_its_origin_and_its_wear() -> None:
-    case = replace(casefile.parse_case(FREE), title="A joint", about=About(author="A. Smith"), wear=Wear(2e-15, cycles=9))
+    case = replace(
+        casefile.parse_case(FREE), title="A joint", about=About(author="A. Smith"), wear=Wear(2e-15, cycles=9)
+    )
     saved = casefile.parse_case(LiveContact(case, NODES).case_text())
     assert (saved.title, saved.about, saved.wear) == (case.title, case.about, case.wear)
 

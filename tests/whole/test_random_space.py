@@ -11,10 +11,11 @@ import pytest
 from fastpin.bodies import Disk, Ring, Tube
 from fastpin.elasticity.system import System
 from fastpin.model.grid import Grid
+from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from scripts import conditions, metamorphic, two_roads
-from scripts.histories import GENERATORS, generate
+from scripts.histories import GENERATORS, generate, lug
 from scripts.random_histories import Outcome, examine, table
 from tests.support.potentials import displacement_kernels
 from tests.support.slip_cases import UNLIKE
@@ -153,6 +154,16 @@ def test_the_check_knows_the_spring_of_a_hub(pin):
     states = solve(problem, [{"P": 1.0}, {"Q": 0.3, "rotation": 0.2}], nodes=41).states
     assert states[-1].rotation != pytest.approx(0.2, rel=0.1)
     assert max(found["rotation"] for found in conditions.check_states(states)) < 1e-12
+
+
+def test_the_check_knows_the_displacement_of_a_lug_by_loads():
+    """A driven pin meets the hole after some stress has acted. Its slip counts from there."""
+    pair = MaterialPair(UNLIKE.pin, Material(UNLIKE.plate.E, 0.33), "strain")
+    body = lug(0.33, "strain")
+    problem = Problem.from_load_parameter(pair, 0.1, 0.5, "centre", "fixed", plate_body=body, drive="uy")
+    states = solve(problem, [{"uy": 0.5, "sxx": 0.3}, {"uy": -0.5}], nodes=61).states
+    found = conditions.check_states(states)
+    assert max(each["slip"] for each in found) < 1e-12
 
 
 def test_wrong_directions_of_slip_are_found():
