@@ -26,13 +26,13 @@ from fastpin.model.loads import LOADS, ROTATION, SXX, SXY, SYY, UX, UY, M, P, Q
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, Profile
-from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples, Term
+from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples, Term, Zone
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from scripts.histories import generate
 from scripts.random_histories import ending_of, options_for, run_jobs, within_time
 
-CLASSES = ("general", "extreme", "moderate_stress", "fixed", "remote", "bodies", "gap")
+CLASSES = ("general", "extreme", "moderate_stress", "fixed", "remote", "bodies", "gap", "drift")
 """Classes that are run unless others are given."""
 
 MOST_NODES = 300
@@ -152,13 +152,22 @@ def enlarged(body: Any, radius: float, modulus: float, displacement: float) -> A
 
 def moved_gap(gap: InitialGap, angle: float, mirrored: bool = False) -> InitialGap:
     """A gap turned by `angle`, rad; or its mirror image, left and right exchanged."""
-    return InitialGap(
-        *(Profile(tuple(_moved(term, angle, mirrored) for term in each.terms)) for each in (gap.hole, gap.pin))
-    )
+    return InitialGap(*(moved_profile(each, angle, mirrored) for each in (gap.hole, gap.pin)))
+
+
+def moved_profile(profile: Profile, angle: float, mirrored: bool = False) -> Profile:
+    """A profile turned by `angle`, rad; or its mirror image, left and right exchanged."""
+    return Profile(tuple(_moved(term, angle, mirrored) for term in profile.terms))
+
+
+def _moved_friction(problem: Problem, angle: float, mirrored: bool = False) -> float | Profile:
+    """The friction of a problem turned by `angle`, rad; or its mirror image."""
+    friction = problem.friction
+    return moved_profile(friction, angle, mirrored) if isinstance(friction, Profile) else friction
 
 
 def _moved(term: Term, angle: float, mirrored: bool) -> Term:
-    """A term of a gap turned by `angle`, rad; or its mirror image."""
+    """A term of a profile turned by `angle`, rad; or its mirror image."""
     if isinstance(term, Harmonic):
         wave = complex(term.cosine, -term.sine) * cmath.exp(-1j * term.order * angle)
         if mirrored:  # theta becomes -pi - theta
@@ -167,6 +176,9 @@ def _moved(term: Term, angle: float, mirrored: bool) -> Term:
     if isinstance(term, Samples):
         angles, heights = np.array(term.angles), np.array(term.heights)
         return Samples(-math.pi - angles[::-1], heights[::-1]) if mirrored else Samples(angles + angle, heights)
+    if isinstance(term, Zone):
+        ends = (-math.pi - term.stop, -math.pi - term.start) if mirrored else (term.start + angle, term.stop + angle)
+        return Zone(term.value, *ends)
     assert isinstance(term, (Crown, Flat))
     return replace(term, centre=-math.pi - term.centre if mirrored else term.centre + angle)
 
@@ -202,7 +214,8 @@ def turned(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid: 
     new[:, SYY] = sin * sin * xx + cos * cos * yy + 2.0 * sin * cos * xy
     new[:, SXY] = sin * cos * (xx - yy) + (cos * cos - sin * sin) * xy
     plate = with_point(problem.plate_body, lambda point: point * complex(cos, sin))
-    problem = replace(problem, plate_body=plate, gap=moved_gap(problem.gap, angle))
+    friction = _moved_friction(problem, angle)
+    problem = replace(problem, plate_body=plate, gap=moved_gap(problem.gap, angle), friction=friction)
     return Changed(problem, new, Grid(grid.theta + angle, grid.closed), np.arange(len(loads)), angle=angle)
 
 
@@ -213,7 +226,10 @@ def mirrored(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid
     new[:, [Q, M, SXY, ROTATION]] *= -1.0
     order = np.arange(n)[::-1]
     plate = with_point(problem.plate_body, lambda point: -point.conjugate())
-    problem = replace(problem, plate_body=plate, gap=moved_gap(problem.gap, 0.0, mirrored=True))
+    friction = _moved_friction(problem, 0.0, mirrored=True)
+    problem = replace(
+        problem, plate_body=plate, gap=moved_gap(problem.gap, 0.0, mirrored=True), friction=friction
+    )  # fmt: skip
     return Changed(
         problem, new, Grid(-math.pi - grid.theta[::-1], grid.closed), np.arange(len(loads)), order, sign=-1.0
     )
@@ -234,7 +250,7 @@ def scaled(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid: 
         plate_body=enlarged(problem.plate_body, radius, modulus, displacement),
         gap=enlarged_gap(problem.gap, displacement),
     )  # fmt: skip
-    factors = dict.fromkeys(LOADS, factor) | {"rotation": factor / modulus}
+    factors = dict.fromkeys(LOADS, factor) | {"rotation": factor / modulus, "friction_change": 1.0}
     factors |= {"P": factor * radius, "Q": factor * radius, "M": factor * radius**2}
     new = loads * np.array([factors[name] for name in LOADS])
     return Changed(

@@ -74,10 +74,17 @@ def test_the_way_between_the_corners(kind):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["general", "extreme", "moderate_stress", "remote"])
-def test_related_cases_have_related_states(kind):
-    """Turned, mirrored, scaled, split and renumbered cases: forty pairs in all."""
-    for seed in (1, 2):
+@pytest.mark.parametrize(
+    ("kind", "seeds"),
+    [
+        *((kind, (1, 2)) for kind in ("general", "extreme", "moderate_stress", "remote")),
+        ("gap", (3, 7)),
+        ("drift", (2, 5)),
+    ],
+)
+def test_related_cases_have_related_states(kind, seeds):
+    """Turned, mirrored, scaled, split and renumbered cases: sixty pairs in all."""
+    for seed in seeds:
         pairs = metamorphic.compare(kind, seed)
         assert len(pairs) == len(metamorphic.RELATIONS)
         for pair in pairs:
