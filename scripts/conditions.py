@@ -225,13 +225,18 @@ def integrals_of(states: Sequence[State]) -> Integrals:
     return Integrals(states[0].problem, states[0].theta, states[0].grid.closed, loaded)
 
 
-class _Checked:
+class Checked:
     """One state with its recomputed displacements."""
 
-    def __init__(self, integrals: Integrals, state: State, grown: np.ndarray | float) -> None:
+    def __init__(
+        self, integrals: Integrals, state: State, grown: np.ndarray | float,
+        moved: tuple[np.ndarray | float, np.ndarray | float] = (0.0, 0.0), remote: bool = True,
+    ) -> None:  # fmt: skip
         self.state, self.problem, self.integrals = state, state.problem, integrals
-        self.elastic = integrals.elastic(state)
-        self.loads = integrals.loads(state.load)
+        own = integrals.elastic(state)
+        self.elastic = own[0] + moved[0], own[1] + moved[1]
+        acting = state.load if remote else {**state.load, "sxx": 0.0, "syy": 0.0, "sxy": 0.0}
+        self.loads = integrals.loads(acting)
         cos, sin = np.cos(state.theta), np.sin(state.theta)
         radius = self.problem.hole_radius
         # Gap and slip from the first resting position of the pin. The place of that position is not known.
@@ -270,12 +275,12 @@ class _Checked:
         if self.touches:
             found["equilibrium"] = np.abs(wrong[: 3 if free else 2]).max() / max(size, 1e-300)
         if not free and self.touches:
-            turned = state.rotation - state.load["rotation"] - self._hub_turn(-float(forces[2]))
+            turned = state.rotation - state.load["rotation"] - self.hub_turn(-float(forces[2]))
             found["rotation"] = abs(turned) * self.problem.hole_radius / self.length
-        found["energy"] = self._energy_error(size)
+        found["energy"] = abs(self.energy - state.energy) / max(size * self.length, 1e-300)
         return {name: float(value) for name, value in found.items()}
 
-    def _hub_turn(self, shear_force: float) -> float:
+    def hub_turn(self, shear_force: float) -> float:
         """Rotation that a spring or a hub of a given radius adds; the force is R int T."""
         problem, integrals = self.problem, self.integrals
         force = shear_force / problem.hole_radius
@@ -288,13 +293,13 @@ class _Checked:
         factor = (problem.hole_radius / hub) ** 2 - (integrals.kappa_pin + 1.0)
         return spring + factor * integrals.pin / (4.0 * math.pi) * force
 
-    def _energy_error(self, size: float) -> float:
-        """Energy of the tractions on their displacements, up to a part of the loads alone, against the state's."""
+    @property
+    def energy(self) -> float:
+        """Energy of the tractions on their displacements, up to a part of the loads alone."""
         state = self.state
         parts = zip((state.pressure, state.shear), self.elastic, self.loads, strict=True)
         weights = self.problem.hole_radius * self.integrals.moments[0]
-        energy = sum(float(weights @ (traction * (0.5 * own + given))) for traction, own, given in parts)
-        return abs(energy - state.energy) / max(size * self.length, 1e-300)
+        return sum(float(weights @ (traction * (0.5 * own + given))) for traction, own, given in parts)
 
 
 def room_of(problem: Problem, resting: np.ndarray | None = None) -> float:
@@ -310,7 +315,7 @@ def floats(states: Sequence[State], grown: Sequence[np.ndarray]) -> bool:
     resting = problem.assembled_clearance + initial_gap(problem.gap, theta, problem.hole_radius)
     room = room_of(problem, resting + np.max(grown, axis=0))
     pairs = pairwise(states)
-    return not all(state.in_contact for state in states) or any(_may_lose_contact(*pair, room) for pair in pairs)
+    return not all(state.in_contact for state in states) or any(may_lose_contact(*pair, room) for pair in pairs)
 
 
 def check_states(states: Sequence[State], grown: Sequence[np.ndarray] | None = None) -> list[dict[str, float]]:
@@ -324,7 +329,7 @@ def check_states(states: Sequence[State], grown: Sequence[np.ndarray] | None = N
         return []
     integrals = integrals_of(states)
     growths = [0.0] * len(states) if grown is None else grown
-    checked = [_Checked(integrals, state, growth) for state, growth in zip(states, growths, strict=True)]
+    checked = [Checked(integrals, state, growth) for state, growth in zip(states, growths, strict=True)]
     found = [dict(one.conditions) for one in checked]
     _check_gaps(checked, found)
     _check_slips(checked, found)
@@ -332,7 +337,7 @@ def check_states(states: Sequence[State], grown: Sequence[np.ndarray] | None = N
     return found
 
 
-def _check_gaps(checked: list[_Checked], found: list[dict[str, float]]) -> None:
+def _check_gaps(checked: list[Checked], found: list[dict[str, float]]) -> None:
     """Compare the gaps. Before the first contact the pin is in the middle; its later datum is fitted.
 
     With an initial gap the pin may float beside the middle. Then it is not judged.
@@ -352,7 +357,7 @@ def _check_gaps(checked: list[_Checked], found: list[dict[str, float]]) -> None:
         conditions["gap"] = float(np.abs(one.gap - columns @ datum - one.state.gap).max()) / one.length
 
 
-def _check_slips(checked: list[_Checked], found: list[dict[str, float]]) -> None:
+def _check_slips(checked: list[Checked], found: list[dict[str, float]]) -> None:
     """Compare the slips. Their reference is a rigid motion, and the displacement of the hole by loads."""
     theta = checked[0].state.theta
     columns = [np.ones_like(theta), np.cos(theta), np.sin(theta)]
@@ -362,19 +367,19 @@ def _check_slips(checked: list[_Checked], found: list[dict[str, float]]) -> None
     directions, sizes, _ = np.linalg.svd(np.column_stack(columns), full_matrices=False)
     basis = directions[:, sizes > RANK * sizes[0]]
     last: np.ndarray | None = None
-    previous: _Checked | None = None
+    previous: Checked | None = None
     for one, conditions in zip(checked, found, strict=True):
         if one.problem.frictionless or not one.touches:
             last, previous = None, one
             continue
         difference = one.slip - one.state.slip
-        if last is None or (previous is not None and _may_lose_contact(previous.state, one.state, one.room)):
+        if last is None or (previous is not None and may_lose_contact(previous.state, one.state, one.room)):
             last = basis @ (basis.T @ difference)
         conditions["slip"] = float(np.abs(difference - last).max()) / one.length
         last, previous = difference, one
 
 
-def _may_lose_contact(before: State, after: State, room: float) -> bool:
+def may_lose_contact(before: State, after: State, room: float) -> bool:
     """Whether the pin may float between two states with room: no force acts, or the force passes through zero.
 
     Along an axis with a prescribed displacement the pin must also lie within the `room` of :func:`room_of`, m.
@@ -408,13 +413,13 @@ def _held(states: Sequence[State]) -> list[tuple[int, State, State]]:
         if before.in_contact
         and after.in_contact
         and not (
-            _may_lose_contact(before, after, room_of(before.problem))
+            may_lose_contact(before, after, room_of(before.problem))
             and any(state.load[name] for state in (before, after) for name in "PQ")
         )
     ]
 
 
-def _check_energy_balance(checked: list[_Checked], found: list[dict[str, float]]) -> None:
+def _check_energy_balance(checked: list[Checked], found: list[dict[str, float]]) -> None:
     """Work = energy + dissipation. The sizes of energies are products of resultant and displacement."""
     size = 0.0
     for one, conditions in zip(checked, found, strict=True):

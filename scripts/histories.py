@@ -437,11 +437,46 @@ def drift(rng: np.random.Generator, seed: int) -> RandomCase:
     return RandomCase(problem, LoadHistory([*corners, *held]), {"nodes": int(rng.integers(41, 82))})
 
 
+def bush(rng: np.random.Generator, seed: int) -> RandomCase:
+    """A bush that slips in a plate, a ring or a lug: press fits from light to heavy, all fits of the pin, all loads."""
+    del seed
+    plane: Plane = "strain" if rng.random() < 0.5 else "stress"
+    pin, plate, layer = (Material(10.0 ** rng.uniform(-0.7, 0.7), rng.uniform(0.1, 0.45)) for _ in range(3))
+    outer = 1.0 + 10.0 ** rng.uniform(-1.2, 0.2)
+    inside: PlateBody = _plate(rng, outer) if rng.random() < 0.5 else _ring(rng, outer)
+    pressure = 10.0 ** rng.uniform(-2.0, 0.0)
+    support = (
+        _support(rng) if rng.random() < 0.8 else {"pin_load": "centre", "rotation": "spring", "hub_stiffness": 1.0}
+    )
+    support |= {"hub_radius": None}
+
+    def problem(interference: float, clearance: float) -> Problem:
+        body = Bushing(layer, outer, interference, inside, float(10.0**friction), bonded=False)  # type: ignore[arg-type]
+        return Problem.from_load_parameter(
+            MaterialPair(pin, plate, plane), clearance, _any_friction(rng), plate_body=body, **support
+        )
+
+    friction = rng.uniform(-1.5, 0.0)
+    trial = problem(1.0, 0.0)
+    interference = pressure / trial.press_fit_pressure
+    shrinks = -trial.assembled_clearance * interference
+    gap = float(10.0 ** rng.uniform(-2.0, 0.5)) * (-0.1 if rng.random() < 0.2 else 1.0)
+    found = problem(interference, shrinks + gap)
+    stress = 0.3 if rng.random() < 0.2 and not _is_held(found) else 0.0
+    corners = _extreme_loads(rng, found, int(rng.integers(1, 7)), 0.0)
+    for corner in corners:
+        if stress:
+            corner |= {name: stress * pressure * rng.uniform(-1.0, 1.0) for name in ("sxx", "syy", "sxy")}
+    if rng.random() < 0.2:
+        corners[1:1] = [dict.fromkeys(corners[0], 0.0), dict(corners[0])]
+    return RandomCase(found, LoadHistory(corners), {"nodes": int(rng.integers(41, 102))})
+
+
 GENERATORS: dict[str, Callable[[np.random.Generator, int], RandomCase]] = {
     function.__name__: function
     for function in (
         general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering, bodies, gap, drift,
-        wear,
+        wear, bush,
     )
 }  # fmt: skip
 """The classes of random cases, by name."""

@@ -28,6 +28,7 @@ from fastpin.solver.wear_result import WearResult
 from fastpin.storage.wear_files import wear
 from scripts.conditions import TOLERANCE, check_direction, check_dissipation, check_states, floats
 from scripts.histories import GENERATORS, RandomCase, generate
+from scripts.joint_conditions import check_joint
 
 BETWEEN = 39
 """States inside each step with ``--dense``."""
@@ -136,7 +137,8 @@ def _check_wear(outcome: Outcome, result: WearResult) -> None:
 def _check(outcome: Outcome, case: RandomCase, result: Result, dense: bool) -> None:
     """Note the largest violation of each condition."""
     outcome.states, outcome.nodes, outcome.jumps = len(result), result.grid.size, result.statistics["jumps"]
-    for place, conditions in enumerate(check_states(result.states)):
+    check = check_states if case.problem.seat is None else check_joint
+    for place, conditions in enumerate(check(result.states)):
         for name, value in conditions.items():
             if name not in outcome.worst or not value <= outcome.worst[name][0]:
                 outcome.worst[name] = value, place
@@ -156,7 +158,8 @@ def _balance_on_finer_nodes(case: RandomCase) -> float:
         result = solve(case.problem, case.history, **{**case.options, "nodes": 2 * case.options["nodes"]})
     except FastpinError:
         return math.nan
-    return max(conditions["balance"] for conditions in check_states(result.states))
+    check = check_states if case.problem.seat is None else check_joint
+    return max(conditions["balance"] for conditions in check(result.states))
 
 
 def within_time(job: Callable[..., Any], *arguments: Any) -> Any | None:

@@ -105,7 +105,9 @@ class JointSystem(System):
             equilibrium[own, rows], motion_rows[own, own] = system.equilibrium, system.motion_rows
         if problem.held:
             # The rotations add up to that of the pin over the lug, and both interfaces carry the same moment.
-            motion_rows[TURN, 3 + TURN] = motion_rows[TURN, TURN]
+            unit = motion_rows[TURN, TURN]
+            motion_rows[TURN, 3 + TURN] = unit
+            equilibrium[TURN, nodes.rows(SEAT)[grids[SEAT].size :]] = unit * _twist(problem, grids[SEAT])
             if not seat_problem.frictionless:
                 equilibrium[3 + TURN, nodes.rows(PIN)[grids[PIN].size :]] = pin.weights
         stacked: dict[str, Any] = {
@@ -193,6 +195,16 @@ def _scaled(seat: System, pin: System, radius: float) -> System:
     )  # fmt: skip
 
 
+def _twist(problem: Problem, grid: Grid) -> np.ndarray:
+    """Rotation of the bush's outer rim beyond its own, per shear at the nodes of the seat, shape (k,).
+
+    The rotation of the seat is that of a solid pin at the paper's datum; its rim turns by this much more.
+    """
+    pin, seat = problem.interfaces
+    kolosov = seat.pair.pin.kolosov(seat.pair.plane)
+    return kolosov / (4.0 * math.pi * seat.pair.pin.shear_modulus * pin.surfaces.beta_star) * grid.weights
+
+
 def _coupling(problem: Problem, grids: tuple[Grid, Grid], place: int) -> np.ndarray:
     """Gap and slip of the interface `place` per traction on the other one, through the bush; shape (2n, 2k)."""
     (pin, seat), (to, other) = problem.interfaces, (grids[place], grids[1 - place])
@@ -206,8 +218,8 @@ def _coupling(problem: Problem, grids: tuple[Grid, Grid], place: int) -> np.ndar
     (a, b), (c, d) = matrices.transpose(1, 2, 0)
     left, right = other.knots()
     hats = to.theta, other.theta, other.theta - left, right - other.theta
-    gap_of_pressure, slip_of_shear, gap_of_shear = fourier.hat_columns(
-        *hats, unit * np.array([a + b + c + d, a - b - c + d, a - b + c - d])
-    )
+    series = unit * np.array([a + b + c + d, a - b - c + d, a - b + c - d])
+    series[1, 0] = 0.0  # shear all round turns the other rim
+    gap_of_pressure, slip_of_shear, gap_of_shear = fourier.hat_columns(*hats, series)
     slip_of_pressure = fourier.hat_columns(*hats, np.array([0.0 * a, 0.0 * a, -unit * (a + b - c - d)]))[2]
     return np.block([[gap_of_pressure, gap_of_shear], [slip_of_pressure, slip_of_shear]])

@@ -250,8 +250,15 @@ class System:
     def without_friction(self) -> System:
         """The same system without friction (mu = 0). The rotation is held at the load's ``rotation``."""
         equilibrium, motion_rows, forces = self.equilibrium.copy(), self.motion_rows.copy(), self.forces.copy()
-        equilibrium[2], motion_rows[2], forces[2] = 0.0, 0.0, 0.0
-        motion_rows[2, 2] = forces[2, ROTATION] = 1.0
+        unit = float(motion_rows[2, 2])
+        if unit:  # pressures and loads turn a bush between the pin and what holds it
+            equilibrium[2, self.grid.size :] = 0.0
+            equilibrium[2], forces[2] = equilibrium[2] / unit, forces[2] / unit
+        else:
+            equilibrium[2], forces[2] = 0.0, 0.0
+            forces[2, ROTATION] = 1.0
+        motion_rows[2] = 0.0
+        motion_rows[2, 2] = 1.0
         friction = np.zeros_like(self.friction)
         return replace(self, friction=friction, equilibrium=equilibrium, motion_rows=motion_rows, forces=forces)
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from fastpin.elasticity.drive import Drive
-from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
+from fastpin.elasticity.interfaces import PIN, SEAT, TURN, JointSystem
 from fastpin.elasticity.operator import DenseOperator
 from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels.status import OPEN
@@ -57,8 +57,9 @@ class PinView:
         pin, unit = joint.alone[PIN], joint.scales.displacement
         self._nodes, self._seat = (np.arange(joint.grid.size)[rim.nodes] for rim in joint.interfaces)
         to_pin = joint.operator.entries(joint.nodes.rows(PIN), joint.nodes.rows(SEAT))
-        of_pin, of_load = self._held_tractions()
-        residual = np.r_[now.pressure, now.shear][joint.nodes.rows(SEAT)] - of_load @ now.load[: of_load.shape[1]]
+        (of_pin, turned_of_pin), (of_load, turned_of_load) = self._held()
+        tractions = np.r_[now.pressure, now.shear][joint.nodes.rows(SEAT)]
+        residual = tractions - of_load @ now.load[: of_load.shape[1]]
         gap, slip = np.split(to_pin @ residual, 2)
         angles, bore = joint.bore_shape
         shape = bore @ residual
@@ -70,25 +71,42 @@ class PinView:
             profile = InitialGap(profile.hole + Profile.samples(*around), profile.pin)
         problem = replace(pin.problem, clearance=pin.problem.clearance + unit * mean, gap=profile)
         loads = pin.loads + to_pin @ of_load
-        self._gap, self._slip = np.full(gap.size, mean) if is_round else gap, slip
+        equilibrium, forces, self._turned = pin.equilibrium, pin.forces, 0.0
+        if joint.problem.held:  # the rotation of the pin over the lug is prescribed, and the bush turns in between
+            unit = float(pin.motion_rows[TURN, TURN])
+            turned = now.motion[3 + TURN] + joint.equilibrium[TURN, joint.nodes.rows(SEAT)] / unit @ tractions
+            self._turned = float(turned - turned_of_load @ now.load[: of_load.shape[1]])
+            equilibrium, forces = equilibrium.copy(), forces.copy()
+            equilibrium[TURN] += unit * turned_of_pin
+            forces[TURN] -= unit * turned_of_load
+        self._gap, self._slip = np.full(gap.size, mean) if is_round else gap, slip - self._turned
         self.system = replace(
             pin, problem=problem, loads=loads, drive=Drive(pin.motion[:, :2], loads),
-            friction=joint.friction[self._nodes], operator=DenseOperator(pin.operator.entries() + to_pin @ of_pin),
+            friction=joint.friction[self._nodes], operator=DenseOperator(pin.operator.entries() + to_pin @ of_pin), equilibrium=equilibrium, forces=forces,
             rest_clearance=pin.rest_clearance + mean, initial_gap=pin.initial_gap + self._gap - mean,
             bodies=_moved_bore(pin.bodies, bore @ of_load),
         )  # fmt: skip
 
-    def _held_tractions(self) -> tuple[np.ndarray, np.ndarray]:
-        """Tractions in the seat where the bush sticks, per traction on the pin, (2k, 2n), and per load, (2k, loads)."""
+    def _held(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+        """Tractions in the seat, (2k, 2n) and (2k, loads), and rotation of the bush, where the bush sticks.
+
+        They are per traction on the pin and per load.
+        """
         joint, seat = self._joint, self._joint.alone[SEAT]
         held = DenseUnknowns(seat, self._resting_seat())
-        rows = joint.nodes.rows(SEAT)
-        to_seat = joint.operator.entries(rows[held.rows], joint.nodes.rows(PIN))
-        right = np.zeros((held.size, to_seat.shape[1] + seat.loads.shape[1]), order="F")
+        rows, columns = joint.nodes.rows(SEAT), joint.nodes.rows(PIN)
+        to_seat = joint.operator.entries(rows[held.rows], columns)
+        n = columns.size
+        right = np.zeros((held.size, n + seat.loads.shape[1]), order="F")
         right[: held.count] = -np.hstack([to_seat, seat.loads[held.rows]])
-        right[held.count :, to_seat.shape[1] :] = seat.forces
-        found = held.expand(held.solve(right))
-        return found[:, : to_seat.shape[1]], found[:, to_seat.shape[1] :]
+        right[held.count :, n:] = seat.forces
+        if joint.problem.held and not seat.motion_rows[TURN, TURN]:  # the moment that holds the pin acts on the bush
+            right[held.count + TURN, :n] = -joint.equilibrium[3 + TURN, columns]
+        found = held.solve(right)
+        tractions, turned = held.expand(found), found[held.count + TURN]
+        if joint.problem.held:
+            turned = turned + joint.equilibrium[TURN, rows] / joint.motion_rows[TURN, TURN] @ tractions
+        return (tractions[:, :n], turned[:n]), (tractions[:, n:], turned[n:])
 
     def _resting_seat(self) -> np.ndarray:
         """The statuses of the seat, (k,), if nothing moves there."""
@@ -99,8 +117,10 @@ class PinView:
     def pin(self) -> Configuration:
         """The contact of the pin."""
         part = self._now.part(self._nodes)
+        motion = self._now.motion[: self.system.motions].copy()
+        motion[TURN] += self._turned
         return replace(
-            part, motion=self._now.motion[: self.system.motions], marks=self._now.marks, slip=part.slip - self._slip,
+            part, motion=motion, marks=self._now.marks, slip=part.slip - self._slip,
             rest_gap=part.rest_gap + self._gap, rest_slip=part.rest_slip - self._slip,
         )  # fmt: skip
 
@@ -123,6 +143,7 @@ class PinView:
         start.rest_gap[self._nodes] -= self._gap
         start.status[self._seat] = self._resting_seat()
         start.motion[: self.system.motions] = pin.motion
+        start.motion[TURN] -= self._turned
         start.slip_tally = start.slip_tally.with_part(self._nodes, pin.slip_tally)
         start = replace(start, load=pin.load.copy(), origin=pin.origin, rest=pin.rest, dissipation=pin.dissipation)
         found = _solved(joint, start) if pin.closed.any() else self._without_pin(start)

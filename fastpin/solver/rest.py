@@ -15,7 +15,7 @@ from fastpin.model.room import widest_place
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration, elastic_energy
 from fastpin.solver.errors import NoEquilibriumError
-from fastpin.solver.interfaces import PinView, seat_of, with_seat
+from fastpin.solver.interfaces import PinView, seat_of, with_seat, without_force
 from fastpin.solver.path import PathStep, StepLostError
 
 FINE = 1441
@@ -76,7 +76,8 @@ def follow_floating(joint: JointSystem, now: Configuration, load: np.ndarray) ->
     NoEquilibriumError
         If nothing holds the bush.
     """
-    start = seat_of(joint, now)
+    own = seat_of(joint, now)
+    start = replace(own, load=without_force(own.load))
 
     def at(part: float) -> Configuration:
         reached = start.load + part * (load - start.load)
