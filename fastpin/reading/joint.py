@@ -9,6 +9,7 @@ import numpy as np
 
 from fastpin.bodies.compliance import basis
 from fastpin.errors import InputError
+from fastpin.kernels import harmonics
 from fastpin.model.checks import number
 from fastpin.model.grid import Grid
 from fastpin.model.points import Points
@@ -57,6 +58,30 @@ def _checked_gauge(problem: Problem, gauge_radius: float) -> float:
         raise InputError("gauge_radius", lug.without_gauge(gauge_radius))
     most = min(lug.outer_radius, MOST_GAUGE * problem.hole_radius)
     return number("gauge_radius", gauge_radius, problem.hole_radius, most)
+
+
+def counted_twice(problem: Problem, resultants: Mapping[str, float]) -> dict[str, float]:
+    """Less the displacement of a bush's bore over its outer rim, m, under uniform tractions on both.
+
+    The ring of the pin's contact and the tube of the seat's both have it.
+    """
+    pin, seat = problem.interfaces
+    bush = seat.pair.pin
+    first = harmonics.first(seat.hole_radius / pin.hole_radius, bush.kolosov(seat.pair.plane), "uniform")
+    force = complex(resultants["Q"], -resultants["P"])
+    per_force = first.translation(seat.hole_radius / pin.hole_radius)[1] / (4.0 * math.pi * bush.shear_modulus)
+    moved = per_force * force
+    return {"ux": float(moved.real), "uy": float(moved.imag)}
+
+
+def bush_fit_of_nodes(
+    problem: Problem, theta: np.ndarray, pressure: np.ndarray, shear: np.ndarray, friction: float | None
+) -> BushFit:
+    """The interface of a bush that slips, from the tractions at its nodes (n,); see :meth:`fastpin.State.bush_fit`."""
+    bush = problem.plate_body.bush
+    assert bush is not None
+    chosen = bush.friction if friction is None else number("friction", friction, 0.0)
+    return BushFit(theta, pressure, shear, problem.press_fit_pressure, chosen)
 
 
 def bush_fit(problem: Problem, stress_at: Callable[[Points], Stress], friction: float | None) -> BushFit:

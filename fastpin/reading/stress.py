@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from fastpin.elasticity.bush_stress import bush_stress
 from fastpin.elasticity.stress import is_beyond_bush, pin_stress, plate_stress, press_fit_hoop, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
@@ -202,10 +203,14 @@ def check_body(problem: Problem, body: Body) -> Material:
     return material
 
 
-def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float], points: Points, body: Body) -> Stress:
+def stress_at(
+    problem: Problem, tractions: Tractions, load: Mapping[str, float], points: Points, body: Body,
+    seat: Tractions | None = None,
+) -> Stress:  # fmt: skip
     """The stress at points of a body; see :meth:`fastpin.State.stress`, also for the errors.
 
-    `tractions` are in Pa. Of the `load` by name, the remote stress acts on the plate.
+    `tractions` are in Pa, and so are those in the `seat` of a bush that slips. Of the `load` by name, the remote stress
+    acts on the plate.
     """
     instance("points", points, Points, "fastpin.Points")
     material = check_body(problem, body)
@@ -222,13 +227,31 @@ def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float],
                 raise InputError("points", "the reaction acts at one of the points: the stress there is infinite")
         ratio = ratio if body == "seat" else _ratios_in_plate(problem, depth)
         remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])
-        stress = seat_stress if body == "seat" else plate_stress
-        components = stress(problem, tractions, remote, theta, depth)
+        if seat is not None:
+            components = _of_joint(problem, (tractions, seat), remote, (theta, depth), body)
+        else:
+            stress = seat_stress if body == "seat" else plate_stress
+            components = stress(problem, tractions, remote, theta, depth)
     radial, hoop, shear = (component.reshape(points.shape) for component in components)
     axial = np.zeros(points.shape)
     if problem.surfaces.plane == "strain":
         axial = (ratio.reshape(points.shape) if isinstance(ratio, np.ndarray) else ratio) * (radial + hoop)
     return Stress(points.theta, radial, hoop, shear, axial)
+
+
+def _of_joint(
+    problem: Problem, tractions: tuple[Tractions, Tractions], remote: np.ndarray,
+    places: tuple[np.ndarray, np.ndarray], body: Body,
+) -> np.ndarray:  # fmt: skip
+    """Stresses (3, m) in a bush that slips, and in the plate round it. `places` are angles and depths in the body."""
+    (theta, depth), seat = places, problem.interfaces[1]
+    if body == "seat":
+        return plate_stress(seat, tractions[1], remote, theta, depth * problem.hole_radius / seat.hole_radius)
+    beyond, found = is_beyond_bush(problem, depth), np.empty((3, theta.size))
+    found[:, ~beyond] = bush_stress(problem, *tractions, theta[~beyond], depth[~beyond])
+    below = np.maximum((1.0 + depth[beyond]) * problem.hole_radius / seat.hole_radius - 1.0, 0.0)
+    found[:, beyond] = plate_stress(seat, tractions[1], remote, theta[beyond], below)
+    return found
 
 
 def _ratios_in_plate(problem: Problem, depth: np.ndarray) -> float | np.ndarray:

@@ -352,6 +352,11 @@ class State(ReadOnly):
             "M": -(radius**2) * float(self.grid.weights @ self.shear),
         }
 
+    @property
+    def _interfaces(self) -> tuple[State, ...]:
+        """The states of the pin and of the seat of a bush that slips."""
+        return (self,) if self.seat is None else (self, self.seat)
+
     @cached_property
     def _tractions(self) -> Tractions:
         return reading.stress.tractions_of(self.grid, self.status, self.pressure, self.shear)
@@ -383,8 +388,11 @@ class State(ReadOnly):
             If a point lies outside the body, inside a plate that a compliance describes, or where the stress is
             infinite, if the body is rigid, or if an argument is of another class.
         """
-        tractions = self._tractions if true_or_false("straight", straight) else self.refined.tractions
-        return reading.stress.stress_at(self.problem, tractions, self.load, points, body)
+        chosen = (
+            each._tractions if true_or_false("straight", straight) else each.refined.tractions
+            for each in self._interfaces
+        )
+        return reading.stress.stress_at(self.problem, next(chosen), self.load, points, body, next(chosen, None))
 
     def hoop_stress(self, body: Body = "plate", theta: ArrayLike | None = None, straight: bool = False) -> np.ndarray:
         """The hoop stress on the edge of the hole, of the pin, or of the plate at the seat of a bush, Pa.
@@ -415,6 +423,8 @@ class State(ReadOnly):
             If the body is rigid, or there is no bush.
         """
         reading.stress.check_body(self.problem, body)
+        if body == "seat" and self.seat is not None:
+            return self.seat.peak_hoop_stress()
         if body not in self._hoop_peaks:
             is_kept = "refined" in self.__dict__
             self._hoop_peaks[body] = reading.hoop.hoop_peak(
@@ -451,13 +461,17 @@ class State(ReadOnly):
         Parameters
         ----------
         friction : float, optional
-            Coefficient of friction between bush and plate; by default the bush's own, if it has one.
+            Coefficient of friction between bush and plate; by default that of a bush that slips.
 
         Raises
         ------
         InputError
             If the plate has no bush, or `friction` is negative.
         """
+        if self.seat is not None:
+            return reading.joint.bush_fit_of_nodes(
+                self.problem, self.seat.theta, self.seat.pressure, self.seat.shear, friction
+            )
         return reading.joint.bush_fit(self.problem, partial(self.stress, straight=True), friction)
 
     def joint_displacement(
@@ -483,10 +497,19 @@ class State(ReadOnly):
         InputError
             If a circle lies outside its body, or the body has no such circle.
         """
-        moved, force = complex(self.dx, self.dy), complex(self.resultants["Q"], -self.resultants["P"])
-        return reading.joint.joint_displacement(
-            self.problem, self.grid, (self.pressure, self.shear), self.load, moved, force, hub_radius, gauge_radius
-        )
+        radii = [(hub_radius, gauge_radius)]
+        if self.seat is not None:  # to the outer rim of the bush, and from its bore on
+            radii = [(hub_radius, None), (None, gauge_radius)]
+        parts = [
+            reading.joint.joint_displacement(
+                problem, each.grid, (each.pressure, each.shear), each.load, complex(each.dx, each.dy),
+                complex(each.resultants["Q"], -each.resultants["P"]), *pair,
+            )
+            for each, problem, pair in zip(self._interfaces, self.problem.interfaces, radii, strict=True)
+        ]  # fmt: skip
+        if self.seat is not None:
+            parts.append(reading.joint.counted_twice(self.problem, self.resultants))
+        return {name: sum(part[name] for part in parts) for name in ("ux", "uy")}
 
 
 class ErrorBars(Mapping[str, float]):
