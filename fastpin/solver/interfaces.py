@@ -29,8 +29,10 @@ from fastpin.solver.configuration import (
     solve_statuses,
     worst_residual,
 )
-from fastpin.solver.errors import ConvergenceError
+from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
 from fastpin.solver.increment import implicit_step
+from fastpin.solver.path import PathStep, StepLostError
+from fastpin.solver.settling import FiniteStep
 from fastpin.solver.unknowns import DenseUnknowns
 
 ROUND = 1e-12
@@ -82,7 +84,8 @@ class PinView:
         self._gap, self._slip = np.full(gap.size, mean) if is_round else gap, slip - self._turned
         self.system = replace(
             pin, problem=problem, loads=loads, drive=Drive(pin.motion[:, :2], loads),
-            friction=joint.friction[self._nodes], operator=DenseOperator(pin.operator.entries() + to_pin @ of_pin), equilibrium=equilibrium, forces=forces,
+            friction=joint.friction[self._nodes], operator=DenseOperator(pin.operator.entries() + to_pin @ of_pin),
+            equilibrium=equilibrium, forces=forces,
             rest_clearance=pin.rest_clearance + mean, initial_gap=pin.initial_gap + self._gap - mean,
             bodies=_moved_bore(pin.bodies, bore @ of_load),
         )  # fmt: skip
@@ -129,6 +132,8 @@ class PinView:
 
         Raises
         ------
+        NoEquilibriumError
+            If nothing holds the bush in its seat.
         ConvergenceError
             If no tractions in the seat were found for it.
         """
@@ -141,12 +146,13 @@ class PinView:
         start.slip[self._nodes] += self._slip
         start.rest_slip[self._nodes] += self._slip
         start.rest_gap[self._nodes] -= self._gap
-        start.status[self._seat] = self._resting_seat()
         start.motion[: self.system.motions] = pin.motion
         start.motion[TURN] -= self._turned
         start.slip_tally = start.slip_tally.with_part(self._nodes, pin.slip_tally)
         start = replace(start, load=pin.load.copy(), origin=pin.origin, rest=pin.rest, dissipation=pin.dissipation)
-        found = _solved(joint, start) if pin.closed.any() else self._without_pin(start)
+        resting = start.copy()
+        resting.status[self._seat] = self._resting_seat()
+        found = _solved(joint, start, resting) if pin.closed.any() else self._without_pin(start)
         if found is None:
             raise ConvergenceError("the tractions between bush and plate were not found; use more nodes")
         done = elastic_energy(joint, found) - elastic_energy(joint, now)
@@ -199,18 +205,59 @@ def with_seat(joint: JointSystem, configuration: Configuration, seat: Configurat
     )  # fmt: skip
 
 
-def _solved(joint: JointSystem, start: Configuration) -> Configuration | None:
-    """The configuration `start` with the tractions of its statuses; by an implicit increment where they do not hold."""
-    solution = solve_statuses(joint, start.status, start.slip, start.load, start.rest_gap)
-    if solution is not None:
-        found = accept_solution(start, solution, start.status, start.load)
-        if worst_residual(joint, found) <= MAX_RESIDUAL:
+def _solved(joint: JointSystem, start: Configuration, resting: Configuration) -> Configuration | None:
+    """The configuration `start` with its tractions: `resting`, where the seat sticks, or with a seat that slips.
+
+    Where the bush does not stick, its seat follows the tractions of the pin, which grow in proportion, along its path.
+    An implicit increment then finds both together.
+    """
+    found = _of_statuses(joint, resting)
+    if found is not None:
+        return found
+    followed = _with_followed_seat(joint, start)
+    for begun in (start,) if followed is None else (followed, start):
+        found = _of_statuses(joint, begun) or implicit_step(joint, begun, begun.load)
+        found = found or FiniteStep(joint, begun).to(begun.load)
+        if found is not None and worst_residual(joint, found) <= MAX_RESIDUAL:
+            add_dissipation(joint, begun, found)
             return found
-    after = implicit_step(joint, start, start.load)
-    if after is None or worst_residual(joint, after) > MAX_RESIDUAL:
+    if followed is None:
+        raise NoEquilibriumError("nothing holds the bush in its seat: it spins or loses contact")
+    return None
+
+
+def _of_statuses(joint: JointSystem, start: Configuration) -> Configuration | None:
+    """The configuration `start` with the tractions of its statuses; None if they do not hold."""
+    solution = solve_statuses(joint, start.status, start.slip, start.load, start.rest_gap)
+    if solution is None:
         return None
-    add_dissipation(joint, start, after)
-    return after
+    found = accept_solution(start, solution, start.status, start.load)
+    return found if worst_residual(joint, found) <= MAX_RESIDUAL else None
+
+
+def _with_followed_seat(joint: JointSystem, start: Configuration) -> Configuration | None:
+    """The configuration `start` with its seat followed while the tractions of the pin grow from nothing.
+
+    None if the seat can't follow them.
+    """
+    pin, seat = (joint.interfaces[place].nodes for place in (PIN, SEAT))
+    tractions = np.r_[start.pressure[pin], start.shear[pin]]
+    column = joint.operator.entries(joint.nodes.rows(SEAT), joint.nodes.rows(PIN)) @ tractions
+    force = np.zeros(3)
+    if joint.problem.held:  # the moment that holds the pin is no load
+        force[TURN] = -float(joint.alone[PIN].levers @ start.shear[pin])
+    alone = joint.alone[SEAT]
+    loads = np.column_stack([alone.loads, column])
+    grown = replace(
+        alone, loads=loads, forces=np.column_stack([alone.forces, force]), drive=Drive(alone.motion[:, :2], loads)
+    )
+    own = seat_of(joint, start)
+    begin, end = np.r_[without_force(start.load), 0.0], np.r_[start.load, 1.0]
+    try:
+        followed = PathStep(grown, replace(own, load=begin), end).follow(1.0)
+    except StepLostError:
+        return None
+    return with_seat(joint, start, replace(followed, load=start.load, work=start.work))
 
 
 def _moved_bore(bodies: BodyTerms | None, columns: np.ndarray) -> BodyTerms | None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from fastpin import states
+from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
 from fastpin.model.checks import instance, whole_number
 from fastpin.model.grid import Grid
@@ -138,6 +139,20 @@ class Result(Sequence[State]):
             [state for each in chosen for state in each.states], life.problem, life.history, life.grid, "path",
             life.statistics, life.complete, cycles=tuple(each.changes for each in chosen),
         )  # fmt: skip
+
+    @property
+    def seat(self) -> Result | None:
+        """The contact of a bush that slips in its seat, as a result of its own; None without such a bush.
+
+        Its states are ``State.seat`` of the states here. Nothing can continue from it.
+        """
+        problem = self.problem.seat
+        if problem is None:
+            return None
+        states = [state.seat for state in self.states if state.seat is not None]
+        grid = states[0].grid if states else seat_grid(self.problem, self.grid)
+        coarse = None if self.coarse is None else self.coarse.seat
+        return replace(self, states=states, problem=problem, grid=grid, restart=None, coarse=coarse)
 
     def cycle(self, place: int = -1, *, first: int | None = None, last: int | None = None) -> LoadCycle:
         """The quantities over a cycle: ranges of slip and tractions, friction energy, loops of the loads.
@@ -348,5 +363,8 @@ def with_error_bars(result: Result, coarse: Result) -> Result:
     fine = []
     for state, coarse_state in zip(result, coarse, strict=True):
         assert (state.step, state.fraction) == (coarse_state.step, coarse_state.fraction)
-        fine.append(replace(state, error_bars=states.traction_bars.PairBars(state, coarse_state)))
+        seat = state.seat
+        if seat is not None and coarse_state.seat is not None:
+            seat = replace(seat, error_bars=states.traction_bars.PairBars(seat, coarse_state.seat))
+        fine.append(replace(state, error_bars=states.traction_bars.PairBars(state, coarse_state), seat=seat))
     return replace(result, states=fine, coarse=coarse)

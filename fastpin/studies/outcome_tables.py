@@ -30,6 +30,7 @@ from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
+    INTERFACES,
     SPANS,
     TAKES,
     WEAR_QUANTITIES,
@@ -47,7 +48,7 @@ Outcomes = dict[str, StudyOutcome]
 """Outcomes by the names that the user chose."""
 
 KEYS = {
-    "quantity": ("quantity", "take", "over"),
+    "quantity": ("quantity", "take", "over", "interface"),
     "cycle": ("cycle",),
     "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
     "function": ("function", "classes"),
@@ -242,7 +243,8 @@ def _choice(section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
 def _of_quantity(section: Section) -> StudyOutcome | None:
     quantity = _choice(section, "quantity", tuple(QUANTITIES))
     take, span = _choice(section, "take", TAKES), _choice(section, "over", SPANS)
-    if quantity is None or take is None or span is None:
+    interface = _choice(section, "interface", INTERFACES)
+    if quantity is None or take is None or span is None or interface is None:
         return None
     kind = QUANTITIES[quantity].kind
     if kind == "class" and take not in TAKES_OF_CLASS:
@@ -256,8 +258,10 @@ def _of_quantity(section: Section) -> StudyOutcome | None:
         return None
     kind = "width" if (kind, take) == ("angle", "range") else kind
     definition = {"quantity": quantity, "take": take, "over": span}
-    read = partial(taken, quantity, take, span)
-    bar = None if kind == "class" else partial(bar_of_taken, quantity, take, span)
+    if interface != INTERFACES[0]:  # a definition without it is as it was before there was a choice
+        definition["interface"] = interface
+    read = partial(taken, quantity, take, span, interface)
+    bar = None if kind == "class" else partial(bar_of_taken, quantity, take, span, interface)
     return StudyOutcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes), bar)
 
 

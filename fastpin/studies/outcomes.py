@@ -48,6 +48,9 @@ TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
 SPANS = ("history", "cycle")
 """Kept states whose values count: those of the whole history, or of the last cycle."""
 
+INTERFACES = ("pin", "seat")
+"""Interfaces of a joint: the pin in the hole, and a bush that slips in its seat."""
+
 
 ROUNDING = 1e-9
 """Largest slip range without slip, in parts of the natural size of displacements."""
@@ -303,7 +306,7 @@ def _beside(kind: str, value: float, other: float) -> float:
 # -- readers ---------------------------------------------------------------------------------------------------
 
 
-def taken(quantity: str, take: str, span: str, result: Result) -> float:
+def taken(quantity: str, take: str, span: str, interface: str, result: Result) -> float:
     """Take one number from the values of a quantity at the kept states.
 
     States without the value, such as the angle of a peak without contact, do not count.
@@ -317,6 +320,8 @@ def taken(quantity: str, take: str, span: str, result: Result) -> float:
         places on the hole. "range": the largest minus the smallest value; for a place on the hole, the length of the
         smallest arc that holds all its places.
     span : {"history", "cycle"}
+    interface : {"pin", "seat"}
+        The contact of the pin, or that of a bush that slips in its seat.
     result : Result
 
     Returns
@@ -329,7 +334,7 @@ def taken(quantity: str, take: str, span: str, result: Result) -> float:
     FastpinError
         If there is no cycle, or not all corners of the last cycle are kept.
     """
-    kind, of = QUANTITIES[quantity].kind, QUANTITIES[quantity].of
+    kind, of = QUANTITIES[quantity].kind, of_interface(quantity, interface)
     if take == "last":
         return of(result[-1])
     values = np.array([of(state) for state in _states_of(span, result)])
@@ -343,7 +348,15 @@ def taken(quantity: str, take: str, span: str, result: Result) -> float:
     return float(values.min() if take == "smallest" else values.max())
 
 
-def bar_of_taken(quantity: str, take: str, span: str, result: Result) -> float:
+def of_interface(quantity: str, interface: str) -> Callable[[State], float]:
+    """A quantity of the states of an interface: a name in :data:`INTERFACES`. NaN without a seat."""
+    of = QUANTITIES[quantity].of
+    if interface == "pin":
+        return of
+    return lambda state: math.nan if state.seat is None else of(state.seat)
+
+
+def bar_of_taken(quantity: str, take: str, span: str, interface: str, result: Result) -> float:
     """Error bar of the number of :func:`taken`, for a result with error bars.
 
     It is 1.25 times the difference of the numbers on the two grids, plus the floor of the quantity at the state that
@@ -354,6 +367,10 @@ def bar_of_taken(quantity: str, take: str, span: str, result: Result) -> float:
     float
         See :func:`fastpin.states.error_bars.bars`.
     """
+    if interface == "seat":
+        if result.seat is None:
+            return math.nan
+        result = result.seat
     if take == "last":
         bars = result[-1].error_bars
         return math.nan if bars is None else bars[quantity]
@@ -362,7 +379,7 @@ def bar_of_taken(quantity: str, take: str, span: str, result: Result) -> float:
     states = [state for state in _states_of(span, result) if math.isfinite(of(state))]
     if not states:
         return math.nan
-    value, other = (taken(quantity, take, span, each) for each in (result, result.coarse))
+    value, other = (taken(quantity, take, span, "pin", each) for each in (result, result.coarse))
     kind = "width" if take == "range" else QUANTITIES[quantity].kind
     lowest, highest = min(states, key=of), max(states, key=of)
     ends = {

@@ -107,8 +107,8 @@ def key_bars(result: Result) -> dict[str, float]:
     found = {name: bar_in_degrees(name, bars[name]) for name in (*_PEAKS, *_OTHERS)}
     for end in ("start", "stop"):  # A contact all round has no ends.
         found[f"contact_{end}"] = math.degrees(bars.get(f"contact_{widest + 1}_{end}", math.nan))
-    found["max_pressure"] = bar_of_taken("peak_pressure", "largest", "history", result)
-    found["max_shear"] = bar_of_taken("peak_shear", "largest magnitude", "history", result)
+    found["max_pressure"] = bar_of_taken("peak_pressure", "largest", "history", "pin", result)
+    found["max_shear"] = bar_of_taken("peak_shear", "largest magnitude", "history", "pin", result)
     return {name: bar for name, bar in found.items() if not math.isnan(bar)}
 
 
