@@ -136,21 +136,27 @@ class KeptStates:
     def blocks(self) -> Iterator[StateBlock]:
         """Give the nodal values of all states, in order."""
         for begin in range(0, len(self._states), AT_ONCE):
-            some = self._states[begin : begin + AT_ONCE]
-            marks = [(state.marks or Marks()).arrays(self.grid.size) for state in some]
-            pressure, shear, status = (np.array([getattr(state, name) for state in some]) for name in NODE_VALUES)
-            yield StateBlock(
-                pressure,
-                shear,
-                status,
-                np.array([list(state.load.values()) for state in some]),
-                tuple(np.array([arrays[k] for arrays in marks]) for k in range(2)),
-                {name: np.array([getattr(state, name) for state in some]) for name in NUMBERS},
-            )
+            yield _block_of(self._states[begin : begin + AT_ONCE])
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Read the states at these places."""
         return [self._states[place] for place in places]
+
+
+def _block_of(states: Sequence[State]) -> StateBlock:
+    """The nodal values of some states on one grid, and those of their seats."""
+    marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
+    pressure, shear, status = (np.array([getattr(state, name) for state in states]) for name in NODE_VALUES)
+    seats = [state.seat for state in states if state.seat is not None]
+    return StateBlock(
+        pressure,
+        shear,
+        status,
+        np.array([list(state.load.values()) for state in states]),
+        tuple(np.array([arrays[k] for arrays in marks]) for k in range(2)),
+        {name: np.array([getattr(state, name) for state in states]) for name in NUMBERS},
+        _block_of(seats) if seats else None,
+    )
 
 
 def all_extremes(kept: Kept) -> dict[str, Extremes]:
@@ -175,10 +181,17 @@ def yield_extremes(kept: Kept) -> Found:
     owners = yielding_owners(kept.problem)
     if not owners:
         return {}
-    columns = [np.abs(np.c_[b.pressure.max(axis=1), np.abs(b.shear).max(axis=1), b.loads]) for b in kept.blocks()]
+    columns = [np.abs(np.column_stack(list(_sizes(block)))) for block in kept.blocks()]
     states = kept.read(sorted({int(np.argmax(column)) for column in np.concatenate(columns).T}))
     near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]
     return find_extremes(kept, [(PREFIX + owner, "largest") for owner in near])
+
+
+def _sizes(block: StateBlock) -> Iterator[np.ndarray]:
+    """Give the loads of some states and their largest tractions, also those in the seat of a bush."""
+    yield block.loads
+    for each in (block, *([] if block.seat is None else [block.seat])):
+        yield from (np.abs(part).max(axis=1) for part in (each.pressure, each.shear))
 
 
 def _is_near_yield(state: State, owner: str) -> bool:
@@ -314,10 +327,8 @@ class Different:
 
 def _keys(block: StateBlock) -> Iterator[bytes]:
     """Return a digest of the parts of each state that its readings depend on."""
-    parts = [block.pressure, block.shear, block.status, block.loads, *block.marks]
-    parts += [block.numbers[name] for name in ("dx", "dy", "rotation")]
     for row in range(len(block.pressure)):
         digest = hashlib.blake2b(digest_size=16)
-        for part in parts:
+        for part in block.read_parts:
             digest.update(part[row].tobytes())
         yield digest.digest()

@@ -82,6 +82,8 @@ class StateBlock(NamedTuple):
         The arrays of :class:`fastpin.reading.marks.Marks`; empty if the states have none.
     numbers : dict of str to ndarray, shape (k,)
         Of :data:`NUMBERS`.
+    seat : StateBlock or None
+        The states of the seat of a bush that slips.
     """
 
     pressure: np.ndarray
@@ -90,6 +92,14 @@ class StateBlock(NamedTuple):
     loads: np.ndarray
     marks: tuple[np.ndarray, ...]
     numbers: dict[str, np.ndarray]
+    seat: StateBlock | None = None
+
+    @property
+    def read_parts(self) -> list[np.ndarray]:
+        """The arrays (k, ...) on which the readings of the states depend."""
+        own = [self.pressure, self.shear, self.status, self.loads, *self.marks]
+        own += [self.numbers[name] for name in ("dx", "dy", "rotation")]
+        return own if self.seat is None else own + self.seat.read_parts
 
 
 class Bounds:
@@ -342,13 +352,14 @@ class StressBounds:
         Its plate is not rigid if a reading of the plate is asked for.
     grid : Grid
     names : set of str
-        The readings.
+        The readings. Bush and plate have no bounds where the bush slips: their stresses depend on its seat, too.
     """
 
     HOOP, SEAT = "peak_hoop", "peak_hoop_seat"
     BUSH = ("bush_open_margin", "bush_slip_margin", "bush_least_friction")
 
     def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
+        names = names if problem.seat is None else names & {f"{PREFIX}pin"}
         owners = {name: name.removeprefix(PREFIX) for name in sorted(names) if name.startswith(PREFIX)}
         self.names = names & {self.HOOP, self.SEAT, *self.BUSH, *owners}
         self._owners, self._hats = owners, Hats(problem, grid)

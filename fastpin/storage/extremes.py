@@ -19,6 +19,9 @@ from fastpin.storage import hdf5
 from fastpin.storage.damage import check_finite, dataset_of, text_of
 from fastpin.storage.layout import (
     BORDER_FIELDS,
+    SEAT_NUMBERS,
+    SEATED,
+    Rows,
     all_loads,
     check_states,
     count,
@@ -51,19 +54,29 @@ class StoredStates:
         """Give the nodal values of all states, in order."""
         group = self._file["states"]
         marks = [name for name in BORDER_FIELDS if name in node_fields(group)]
-        names = ["pressure", "shear", "status", "loads", *marks, *NUMBERS]
+        names = ["pressure", "shear", "status", *marks, *NUMBERS]
+        seated = [f"{SEATED[1]}{name}" for name in names if name not in NUMBERS or name in SEAT_NUMBERS]
         for begin in range(0, self.points.size, AT_ONCE):
-            rows = read_rows(group, names, slice(begin, begin + AT_ONCE))
+            some = slice(begin, begin + AT_ONCE)
+            rows = read_rows(group, [*names, "loads", *(seated if "seat" in group else ())], some)
             for name in ("pressure", "shear", "loads", *NUMBERS):
                 check_finite(f"states/{name}", rows[name])
-            yield StateBlock(
-                rows["pressure"], rows["shear"], rows["status"], all_loads(rows["loads"], 0.0),
-                tuple(rows[name] for name in marks), {name: rows[name] for name in NUMBERS},
-            )  # fmt: skip
+            loads = all_loads(rows["loads"], 0.0)
+            of_seat = {name.removeprefix(SEATED[1]): array for name, array in rows.items() if name in seated}
+            seat = _block_of({**rows, **of_seat}, loads, marks) if of_seat else None
+            yield _block_of(rows, loads, marks)._replace(seat=seat)
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Read the states at these places."""
         return read_states(self._file, self.problem, self.grid, places, self._corners)
+
+
+def _block_of(rows: Rows, loads: np.ndarray, marks: list[str]) -> StateBlock:
+    """The nodal values of some states from their rows. `marks` are the names of the arrays of old borders."""
+    numbers = {name: rows[name] for name in NUMBERS}
+    return StateBlock(
+        rows["pressure"], rows["shear"], rows["status"], loads, tuple(rows[name] for name in marks), numbers
+    )
 
 
 def read_extremes(file: h5py.File, find: Callable[[Kept], Found] = extremes.marked_extremes) -> Found:

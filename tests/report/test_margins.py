@@ -21,7 +21,7 @@ from fastpin.states.yielding import von_mises_peak
 STEEL, BRONZE = Material(210e9, 0.3), Material(103e9, 0.34, yield_strength=300e6)
 LIMITS = FatigueConstants(bending_limit=150e6, torsion_limit=90e6)
 ALUMINIUM = Material(71e9, 0.33, "sheet", LIMITS, yield_strength=503e6)
-LUG = Bushing(BRONZE, 12.5e-3, 20e-6, inside=Ring(0.03), friction=0.2)
+LUG = Bushing(BRONZE, 12.5e-3, 20e-6, inside=Ring(0.03))
 HISTORY = LoadHistory([{"P": 2e6}]) + LoadHistory([{"P": 3e6, "Q": 5e5}, {"P": 2e6, "Q": 0.0}]).repeated(2)
 
 
