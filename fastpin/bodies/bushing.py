@@ -115,7 +115,8 @@ class Bushing(PlateBody):
             if "support" in table:
                 table.report("support: needs ring_outer_radius, the outer radius of the ring round the bush", "support")
             inside = Plate.read(table)
-        if material is None or outer is None:
+        is_wrong = friction is None and "friction" in table or bonded is None and "bonded" in table
+        if material is None or outer is None or is_wrong:
             return None
         values = {"material": material, "outer_radius": outer, "inside": inside or Plate(), "friction": friction}
         values["bonded"] = bonded is not False
@@ -319,13 +320,16 @@ class Bushing(PlateBody):
     # -- words, drawing, controls
 
     def rows(self, length: InWords, material: InWords) -> list[tuple[str, str]]:
-        grip = "" if self.friction is None else f", friction {self.friction:g} in the plate"
         size = f"outer radius {length(self.outer_radius)}"
-        return [("plate body", self.inside.words(length)), ("bush", f"{material(self.material)}, {size}{grip}")]
+        return [("plate body", self.inside.words(length)), ("bush", f"{material(self.material)}, {size}{self._grip()}")]
 
     def caption(self, length: InWords, material: InWords) -> str:
         bush = f" with bush of {material(self.material)} to radius {length(self.outer_radius)}"
-        return bush + self.inside.caption(length, material)
+        return bush + self._grip(" that") + self.inside.caption(length, material)
+
+    def _grip(self, that: str = ",") -> str:
+        """Words on a bush that slips, for texts on the bush; none on a bonded one."""
+        return "" if self.bonded else f"{that} slips, friction {self.friction:g} in the plate"
 
     def drawing(self, rim: Rim) -> list[Shape]:
         seat = self.around(rim)[1]

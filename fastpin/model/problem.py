@@ -13,7 +13,7 @@ from fastpin.bodies.body import BodyBase, PinBody, PinLoad, PlateBody
 from fastpin.bodies.joint import Joint, check_bodies, without_units
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.bodies.ring import Ring
-from fastpin.bodies.tube import Tube
+from fastpin.bodies.tube import SeatedBush
 from fastpin.errors import InputError
 from fastpin.model.checks import (
     MOST_FRICTION,
@@ -234,7 +234,10 @@ class Problem:
             raise InputError("hub_stiffness", 'a pin with rotation = "spring" needs the stiffness of the spring')
 
     def _check_drive(self, radius: float) -> None:
-        """Check the radius of the gauge circle. `radius` is the radius of the hole."""
+        """Check the drive and the radius of the gauge circle. `radius` is the radius of the hole."""
+        bush = self.plate_body.bush
+        if self.drive != "force" and bush is not None and not bush.bonded:
+            raise InputError("drive", 'must be "force" in a bush that slips: its pin can\'t be driven by a displacement')
         if self.gauge_radius is not None:
             gauge = number("gauge_radius", self.gauge_radius)
             if self.drive == "force":
@@ -332,7 +335,7 @@ class Problem:
         pin, seat = self.surfaces, replace(
             self, pair=MaterialPair(bush.material, self.pair.plate, self.pair.plane), hole_radius=bush.outer_radius,
             clearance=-bush.interference, friction=bush.friction, pin_load="centre", rotation="free", hub_radius=None,
-            hub_stiffness=None, pin_body=Tube(self.hole_radius), plate_body=bush.inside, gap=NO_GAP,
+            hub_stiffness=None, pin_body=SeatedBush(self.hole_radius), plate_body=bush.inside, gap=NO_GAP,
         )  # fmt: skip
         return replace(self, pair=pin, plate_body=Ring(bush.outer_radius, "uniform")), seat
 

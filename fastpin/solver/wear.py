@@ -122,6 +122,8 @@ class WearTask:
 
     def __post_init__(self) -> None:
         self._task()
+        if self.problem.seat is not None or self.problem.pin_body.is_bush:
+            raise InputError("bonded", "must be true: the wear in a bush that slips in its seat is not known")
         if self.options.method != "path":
             raise InputError("method", 'wear is followed by method = "path" only')
         if not self.history.blocks[-1].cycle:

@@ -44,12 +44,17 @@ def _von_mises(owner: str) -> Quantity:
     return Quantity(f"largest von Mises stress of the {owner}", "traction", of)
 
 
+def _seat_slip(state: State) -> float:
+    return math.nan if state.seat is None else state.seat.peak_slip
+
+
 NODE_VALUES = ("pressure", "shear", "status")
 """Fields of a state of which a block has all nodes."""
 
 READINGS: dict[str, Quantity] = {
     **{name: each for name, each in QUANTITIES.items() if each.kind not in ("angle", "ratio", "class")},
     "bush_least_friction": Quantity("bush least friction", "ratio", of_bush(lambda fit: fit.least_friction)),
+    "seat_slip": Quantity("slip in the seat", "displacement", _seat_slip),
     **{PREFIX + owner: _von_mises(owner) for owner in OWNERS},
 }
 """The quantities that have extremes.
@@ -65,6 +70,7 @@ MARKS: dict[tuple[str, Side], str] = {
     ("peak_hoop_seat", "largest"): "largest hoop stress at the seat",
     ("bush_open_margin", "smallest"): "bush nearest to opening",
     ("bush_least_friction", "largest"): "bush nearest to slip",
+    ("seat_slip", "largest magnitude"): "largest slip of the bush",
     **{(PREFIX + owner, "largest"): f"largest von Mises stress of the {owner}" for owner in OWNERS},
 }
 """The extremes that texts, tables and figures show, with their words."""
@@ -148,13 +154,16 @@ def _block_of(states: Sequence[State]) -> StateBlock:
     marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
     pressure, shear, status = (np.array([getattr(state, name) for state in states]) for name in NODE_VALUES)
     seats = [state.seat for state in states if state.seat is not None]
+    numbers = {name: np.array([getattr(state, name) for state in states]) for name in NUMBERS}
+    if seats:
+        numbers["seat_slip"] = np.array([seat.peak_slip for seat in seats])
     return StateBlock(
         pressure,
         shear,
         status,
         np.array([list(state.load.values()) for state in states]),
         tuple(np.array([arrays[k] for arrays in marks]) for k in range(2)),
-        {name: np.array([getattr(state, name) for state in states]) for name in NUMBERS},
+        numbers,
         _block_of(seats) if seats else None,
     )
 
@@ -263,8 +272,8 @@ def exists(problem: Problem, name: str) -> bool:
     """Whether the states of a problem have a quantity."""
     if name.startswith(PREFIX):
         return name.removeprefix(PREFIX) in yielding_owners(problem)
-    if name == "bush_slip_margin":
-        return problem.joint.bush is not None and problem.plate_body.bush.friction is not None
+    if name in ("bush_slip_margin", "seat_slip"):
+        return problem.seat is not None
     if name.startswith("bush_"):
         return problem.joint.bush is not None
     edges = {"peak_hoop": "plate", "peak_hoop_seat": "seat"}
@@ -292,7 +301,7 @@ class Different:
     def __init__(self, kept: Kept, names: set[str]) -> None:
         self._kept = kept
         first: dict[bytes, int] = {}
-        numbers: dict[str, list[np.ndarray]] = {name: [] for name in NUMBERS if name in names}
+        numbers: dict[str, list[np.ndarray]] = {name: [] for name in (*NUMBERS, "seat_slip") if name in names}
         bounds, begin = Bounds(kept.problem, kept.grid, names), 0
         for block in kept.blocks():
             rows = [row for row, key in enumerate(_keys(block)) if first.setdefault(key, begin + row) == begin + row]

@@ -81,7 +81,7 @@ class StateBlock(NamedTuple):
     marks : tuple of ndarray, shape (k, n)
         The arrays of :class:`fastpin.reading.marks.Marks`; empty if the states have none.
     numbers : dict of str to ndarray, shape (k,)
-        Of :data:`NUMBERS`.
+        Of :data:`NUMBERS`, and "seat_slip" of states with a seat.
     seat : StateBlock or None
         The states of the seat of a bush that slips.
     """
@@ -96,9 +96,9 @@ class StateBlock(NamedTuple):
 
     @property
     def read_parts(self) -> list[np.ndarray]:
-        """The arrays (k, ...) on which the readings of the states depend."""
+        """The arrays (k, ...) on which the readings of the states depend, without those that are numbers."""
         own = [self.pressure, self.shear, self.status, self.loads, *self.marks]
-        own += [self.numbers[name] for name in ("dx", "dy", "rotation")]
+        own += [self.numbers[name] for name in ("dx", "dy")]
         return own if self.seat is None else own + self.seat.read_parts
 
 

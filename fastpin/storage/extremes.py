@@ -14,7 +14,7 @@ import numpy as np
 from fastpin.states import extremes
 from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Kept
 from fastpin.states.reading_bounds import NUMBERS, StateBlock
-from fastpin.states.state import State
+from fastpin.states.state import State, peak_slips
 from fastpin.storage import hdf5
 from fastpin.storage.damage import check_finite, dataset_of, text_of
 from fastpin.storage.layout import (
@@ -55,16 +55,19 @@ class StoredStates:
         group = self._file["states"]
         marks = [name for name in BORDER_FIELDS if name in node_fields(group)]
         names = ["pressure", "shear", "status", *marks, *NUMBERS]
-        seated = [f"{SEATED[1]}{name}" for name in names if name not in NUMBERS or name in SEAT_NUMBERS]
+        seated = [f"{SEATED[1]}{name}" for name in ("pressure", "shear", "status", "slip", *marks, *SEAT_NUMBERS)]
         for begin in range(0, self.points.size, AT_ONCE):
             some = slice(begin, begin + AT_ONCE)
             rows = read_rows(group, [*names, "loads", *(seated if "seat" in group else ())], some)
             for name in ("pressure", "shear", "loads", *NUMBERS):
                 check_finite(f"states/{name}", rows[name])
             loads = all_loads(rows["loads"], 0.0)
-            of_seat = {name.removeprefix(SEATED[1]): array for name, array in rows.items() if name in seated}
-            seat = _block_of({**rows, **of_seat}, loads, marks) if of_seat else None
-            yield _block_of(rows, loads, marks)._replace(seat=seat)
+            block = _block_of(rows, loads, marks)
+            if "seat" in group:
+                own = {name.removeprefix(SEATED[1]): rows[name] for name in seated}
+                block.numbers["seat_slip"] = peak_slips(own["slip"], own["status"])
+                block = block._replace(seat=_block_of({**rows, **own}, loads, marks))
+            yield block
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Read the states at these places."""
