@@ -16,6 +16,7 @@ import numpy as np
 
 from fastpin import casefile, figures, live, report, solver, storage
 from fastpin.cli import wear
+from fastpin.cli.interface import SEAT_WORDS, load_seat
 from fastpin.cli.options import literal
 from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration, progress_to
 from fastpin.cli.terminal import (
@@ -103,7 +104,12 @@ def show(options: argparse.Namespace) -> int:
     if storage.holds_wear(options.output):
         return wear.show(options)
     case = _stored_case(options)
-    code = _write_stored(case, options, None)
+    if options.interface == "seat":
+        seat = load_seat(options.output)
+        title = f"{case.title}, {SEAT_WORDS}" if case.title else SEAT_WORDS
+        code = RunReport(dataclasses.replace(case, problem=seat.problem, title=title), None, seat, None).write(options)
+    else:
+        code = _write_stored(case, options, None)
     if options.json != "-":
         _note_unfinished(case, options.output)
     return code

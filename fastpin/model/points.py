@@ -152,7 +152,7 @@ def material_of(problem: Problem, body: Body) -> Material:
 
 def owner_of(problem: Problem, body: Body) -> str:
     """The word for the body that the material of :func:`material_of` belongs to: "pin", "plate" or "bush"."""
-    if body == "plate" and problem.joint.bush is not None:
+    if problem.pin_body.is_bush if body == "pin" else body == "plate" and problem.joint.bush is not None:
         return "bush"
     return "plate" if body == "seat" else body
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from fastpin.elasticity.large import build_system
 from fastpin.errors import InputError
+from fastpin.model.case import check_wear
 from fastpin.model.checks import number_array
 from fastpin.model.doubts import warn_of
 from fastpin.model.grid import Grid
@@ -122,8 +123,7 @@ class WearTask:
 
     def __post_init__(self) -> None:
         self._task()
-        if self.problem.seat is not None or self.problem.pin_body.is_bush:
-            raise InputError("bonded", "must be true: the wear in a bush that slips in its seat is not known")
+        check_wear(self.problem)
         if self.options.method != "path":
             raise InputError("method", 'wear is followed by method = "path" only')
         if not self.history.blocks[-1].cycle:
