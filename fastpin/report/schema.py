@@ -123,6 +123,11 @@ def _field(field: Field) -> Schema:
 
 
 def _state() -> Schema:
+    seat = _object(_parts_of_state()) | {"description": "the contact of a bush that slips in its seat"}
+    return _object(_parts_of_state() | {"seat": seat}, without=["seat"])
+
+
+def _parts_of_state() -> dict[str, Schema]:
     interval = _list_of(_NUMBER, 2)
     slip = {"description": "start and stop, deg, and the sign of the slip", **_list_of(_NUMBER, 3)}
     quantities = {
@@ -130,24 +135,22 @@ def _state() -> Schema:
         for name, each in QUANTITIES.items()
         if name not in _RESULTANTS
     }
-    return _object(
-        {
-            "load_point": _NUMBER,
-            "step": _WHOLE,
-            "fraction": _NUMBER,
-            "load": _object(dict.fromkeys(LOADS, _NUMBER), LOADS[:ACTING]),
-            "in_contact": _TRUTH,
-            **quantities,
-            "peak_hoop_resolved": {"type": ["boolean", "null"]},
-            "contact": _list_of(interval),
-            "stick": _list_of(interval),
-            "slip": _list_of(slip),
-            "energy": _UNKNOWN,
-            "resultants": _object(dict.fromkeys(_RESULTANTS, _NUMBER)),
-            "residuals": _map_of(_UNKNOWN, "errors of the contact conditions"),
-            "error_bars": _or_null(_map_of(_UNKNOWN, "largest likely errors")),
-        }
-    )
+    return {
+        "load_point": _NUMBER,
+        "step": _WHOLE,
+        "fraction": _NUMBER,
+        "load": _object(dict.fromkeys(LOADS, _NUMBER), LOADS[:ACTING]),
+        "in_contact": _TRUTH,
+        **quantities,
+        "peak_hoop_resolved": {"type": ["boolean", "null"]},
+        "contact": _list_of(interval),
+        "stick": _list_of(interval),
+        "slip": _list_of(slip),
+        "energy": _UNKNOWN,
+        "resultants": _object(dict.fromkeys(_RESULTANTS, _NUMBER)),
+        "residuals": _map_of(_UNKNOWN, "errors of the contact conditions"),
+        "error_bars": _or_null(_map_of(_UNKNOWN, "largest likely errors")),
+    }
 
 
 def _last_cycle() -> Schema:
