@@ -115,7 +115,7 @@ class Bushing(PlateBody):
             if "support" in table:
                 table.report("support: needs ring_outer_radius, the outer radius of the ring round the bush", "support")
             inside = Plate.read(table)
-        is_wrong = friction is None and "friction" in table or bonded is None and "bonded" in table
+        is_wrong = any(value is None and key in table for key, value in (("friction", friction), ("bonded", bonded)))
         if material is None or outer is None or is_wrong:
             return None
         values = {"material": material, "outer_radius": outer, "inside": inside or Plate(), "friction": friction}

@@ -266,7 +266,7 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     points, cycles = storage.load_points(path), storage.load(path, states=[]).cycles
     peaks = marked_places(storage.marked_extremes(path))
     rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(path, places).states, peaks)
-    places, ends = {*rows.printed, *peaks}, range(points.size)[-1:]
+    places, ends = {*rows.printed, *peaks}, [*range(points.size)[-1:]]
     if cycles:
         last = range(points.size)[storage.places_between(path, *span_of(cycles[-1]))]
         if len(last) <= report.cycle.MOST_STOPS:

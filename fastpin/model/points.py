@@ -142,7 +142,9 @@ def material_of(problem: Problem, body: Body) -> Material:
         If there is no such body.
     """
     if choice("body", body, BODIES) == "pin" and problem.pin_body.is_bush:
-        raise InputError("body", "the pin of a seat is its bush: its stress is that of the joint, whose pin loads it, too")
+        raise InputError(
+            "body", "the pin of a seat is its bush: its stress is that of the joint, whose pin loads it, too"
+        )
     if body != "seat":
         return problem.surfaces.pin if body == "pin" else problem.surfaces.plate
     if problem.joint.bush is None:
@@ -150,7 +152,7 @@ def material_of(problem: Problem, body: Body) -> Material:
     return problem.pair.plate
 
 
-def owner_of(problem: Problem, body: Body) -> str:
+def owner_of(problem: Problem, body: str) -> str:
     """The word for the body that the material of :func:`material_of` belongs to: "pin", "plate" or "bush"."""
     if problem.pin_body.is_bush if body == "pin" else body == "plate" and problem.joint.bush is not None:
         return "bush"

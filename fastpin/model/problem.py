@@ -237,7 +237,9 @@ class Problem:
         """Check the drive and the radius of the gauge circle. `radius` is the radius of the hole."""
         bush = self.plate_body.bush
         if self.drive != "force" and bush is not None and not bush.bonded:
-            raise InputError("drive", 'must be "force" in a bush that slips: its pin can\'t be driven by a displacement')
+            raise InputError(
+                "drive", 'must be "force" in a bush that slips: its pin can\'t be driven by a displacement'
+            )
         if self.gauge_radius is not None:
             gauge = number("gauge_radius", self.gauge_radius)
             if self.drive == "force":

@@ -324,7 +324,9 @@ def seat(page: PageParts) -> PageSection:
     drawn, mapped = source.drawn.seats, source.mapped.seats
     if not drawn:
         return PageSection("seat", "Seat of the bush", [Text(NO_STATE, "missing")])
-    words = "Here the bush is the pin, and its seat in the plate the hole: the motion is that of the bush over the plate."
+    words = (
+        "Here the bush is the pin, and its seat in the plate the hole: the motion is that of the bush over the plate."
+    )
     words += " Work is that of the whole joint."
     parts: list[SectionPart] = [Text(sentence(_seat_line(source))), Text(words)]
     parts += drawn_or_reason(lambda: page.album.figure(tractions_plot(InMemory(drawn))))
@@ -341,7 +343,8 @@ def seat(page: PageParts) -> PageSection:
 
 def _seat_line(source: Source) -> str:
     ends = () if source.cycle is None else (source.cycle.states[0], source.cycle.states[-1])
-    return seat_line(source.case.problem, source.peaks, *source.read([source.points.size - 1]), ends)
+    (last,) = source.read([source.points.size - 1])
+    return seat_line(source.case.problem, source.peaks, last, ends)
 
 
 _DIRECTIONS = {SLIP_POSITIVE: "counter-clockwise", SLIP_NEGATIVE: "clockwise"}

@@ -9,8 +9,6 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from fastpin.damage import Fatigue
 from fastpin.damage import fatigue as fatigue_of
 from fastpin.damage.criteria import Criterion
