@@ -193,6 +193,7 @@ class Problem:
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "dimensionless", bool(self.dimensionless))
         object.__setattr__(self, "gap", checked_gap(self.gap, radius, self.dimensionless))
+        assert self.interfaces  # each contact of the joint is checked as a problem of its own
 
     def _checked_friction(self, radius: float) -> float | Profile:
         """The coefficient of friction: a number, or a profile if it varies. `radius` is the radius of the hole."""

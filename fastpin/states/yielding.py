@@ -74,7 +74,8 @@ def circles(problem: Problem) -> Iterator[Circle]:
             yield from (Circle("bush", "plate", depth, "bore of the bush") for depth in _depths(wall))
             yield Circle("bush", "plate", wall, "rim of the bush")
         if not problem.pair.plate.is_rigid:
-            yield from (Circle("plate", "seat", depth, "seat") for depth in _depths(_wall(problem, "seat")))
+            depths = (0.0,) if problem.plate_body.lug.edge_only else _depths(_wall(problem, "seat"))
+            yield from (Circle("plate", "seat", depth, "seat") for depth in depths)
     elif problem.plate_body.edge_only:
         yield Circle("plate", "plate", 0.0, "hole")
     elif not problem.surfaces.plate.is_rigid:
