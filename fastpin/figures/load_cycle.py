@@ -333,7 +333,13 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
     load, load_unit = unit[kind].scale(np.concatenate([loop.load for loop in loops]).tolist())
     words, conjugate = CONJUGATES[kind]
     words = "displacement of the pin" if kind == "force" else words
-    moves = [_abscissa_values(cycle, name, abscissa) for cycle in cycles]
+    sign, shift = (1.0, "ux") if name == "Q" else (-1.0, "uy")  # a displacement gets the sign of the load
+    moves = [
+        np.array([sign * state.load[shift] for state in cycle.states])
+        if _prescribed(cycle.states[0].problem, name, abscissa)
+        else loop.displacement
+        for cycle, loop in zip(cycles, loops, strict=True)
+    ]
     if prescribed := _prescribed(problem, name, abscissa):
         words = f"prescribed displacement {prescribed}"
     moved, moved_unit = _displacement_scale(np.concatenate(moves), unit[conjugate])
@@ -357,14 +363,6 @@ def _prescribed(problem: Problem, name: str, abscissa: Abscissa | None) -> str:
     """Words for the prescribed displacement over which a load is drawn; empty if it is drawn over that of the pin."""
     driven = dict(zip(("Q", "P"), problem.driven, strict=True)).get(name, False)
     return PRESCRIBED[name] if driven and abscissa != "pin" else ""
-
-
-def _abscissa_values(cycle: LoadCycle, name: str, abscissa: Abscissa | None) -> np.ndarray:
-    """The displacements over which a load is drawn, with the sign of the load, shape (states,)."""
-    if not _prescribed(cycle.states[0].problem, name, abscissa):
-        return cycle.loops[name].displacement
-    sign, load = (1.0, "ux") if name == "Q" else (-1.0, "uy")
-    return np.array([sign * state.load[load] for state in cycle.states])
 
 
 def dissipated_words(cycle: LoadCycle) -> str:
