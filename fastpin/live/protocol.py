@@ -125,10 +125,6 @@ class Message:
         return self.kind == "load" and bool(self.fields["drag"])
 
 
-def _loads(name: str, value: object) -> dict[str, float]:
-    return {load: number(load, one) for load, one in _table(name, value).items()}
-
-
 def _table(name: str, value: object) -> dict[str, Any]:
     if not isinstance(value, dict) or not value:
         raise InputError(name, f"must be an object with at least one entry, not {as_toml(value)}")
@@ -145,7 +141,11 @@ def _follow(name: str, value: object) -> str:
 
 FIELDS: dict[str, dict[str, Any]] = {
     "hello": {"session": string},
-    "load": {"loads": _loads, "gesture": _whole, "drag": true_or_false},
+    "load": {
+        "loads": lambda name, value: {load: number(load, one) for load, one in _table(name, value).items()},
+        "gesture": _whole,
+        "drag": true_or_false,
+    },
     "change": {"changes": _table, "follow": _follow, "gesture": _whole},
     "nodes": {
         "nodes": lambda name, value: whole_number(name, value, LEAST_NODES, MOST_LIVE_NODES),
