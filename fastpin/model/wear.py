@@ -68,7 +68,10 @@ class Wear:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "law", choice("law", self.law, LAWS))
-        object.__setattr__(self, "cycles", _whole_cycles(self.cycles))
+        cycles = number("cycles", self.cycles, 1, MOST_CYCLES)  # 1e5 is a whole number too
+        if cycles != int(cycles):
+            raise InputError("cycles", f"must be a whole number, not {cycles:g}")
+        object.__setattr__(self, "cycles", int(cycles))
         object.__setattr__(self, "tolerance", number("tolerance", self.tolerance, 0.0, LARGEST_TOLERANCE))
         if self.coefficient is None and self.pin is None and self.plate is None:
             raise InputError("coefficient", "give the wear coefficient, or those of pin and plate")
@@ -128,14 +131,6 @@ class Wear:
 def cycles_text(count: float) -> str:
     """A number of cycles as text: "1 cycle", "100,000 cycles"."""
     return f"{count:,.15g} cycle{'s' * (count != 1)}"
-
-
-def _whole_cycles(value: object) -> int:
-    """A number of cycles; 1e5 is one too."""
-    plain = number("cycles", value, 1, MOST_CYCLES)
-    if plain != int(plain):
-        raise InputError("cycles", f"must be a whole number, not {plain:g}")
-    return int(plain)
 
 
 COEFFICIENTS = ("coefficient", "pin", "plate")
