@@ -308,19 +308,15 @@ def _zone_rows(state: State) -> list[tuple[str, ...]]:
     found = [("contact", start, stop, "") for start, stop in state.contact]
     found += [("stick", start, stop, "") for start, stop in state.stick]
     found += [("slip", start, stop, _DIRECTIONS[int(sign)]) for start, stop, sign in state.slip_zones]
-    return [(point, zone, *_ends(start, stop), words) for zone, start, stop, words in found] or [
-        (point, "no contact", "-", "-", "")
-    ]
+    rows = []
+    for zone, start, stop, words in found:
+        first, last = (f"{angle:z.2f}" for angle in interval_from_bottom(start, stop))
+        ends = ("all round", "all round") if is_all_round(stop - start) else (first, last)
+        rows.append((point, zone, *ends, words))
+    return rows or [(point, "no contact", "-", "-", "")]
 
 
 _DIRECTIONS = {SLIP_POSITIVE: "counter-clockwise", SLIP_NEGATIVE: "clockwise"}
-
-
-def _ends(start: float, stop: float) -> tuple[str, str]:
-    if is_all_round(stop - start):
-        return "all round", "all round"
-    first, last = interval_from_bottom(start, stop)
-    return f"{first:z.2f}", f"{last:z.2f}"
 
 
 def hysteresis(page: PageParts) -> PageSection:

@@ -124,7 +124,11 @@ class Source:
             case = replace(source.case, about=stored.about, options=stored.options)
             return replace(source, case=case, origin=origin, error=error, path=path)
         result, points = storage.load(path, states=[]), storage.load_points(path)
-        case = replace(stored, options=_as_given(stored.options))
+        # The file holds the fractions of the states inside each step. Where they are equally spaced, their number gives
+        # the id of the case file and of a sweep.
+        spaced = stored.options.changed(between=stored.options.fractions.size - 1)
+        is_spaced = np.array_equal(spaced.fractions, stored.options.fractions)
+        case = replace(stored, options=spaced) if is_spaced else stored
 
         def read(places: Sequence[int]) -> list[State]:
             return storage.load(path, states=list(places)).states
@@ -328,16 +332,6 @@ _PLACES = {"created": "begun", "host": "machine", "platform": "system", "run": "
 
 LIBRARIES = ("python", "numpy", "scipy", "numba", "h5py")
 """Libraries whose versions are named."""
-
-
-def _as_given(options: SolveOptions) -> SolveOptions:
-    """Return stored options with the number of states inside each step: a file holds their fractions.
-
-    The id of the input is then that of the case file and of a sweep.
-    """
-    count = options.fractions.size - 1
-    spaced = options.changed(between=count)
-    return spaced if np.array_equal(spaced.fractions, options.fractions) else options
 
 
 def _named_versions(known: dict[str, str]) -> str:
