@@ -189,15 +189,10 @@ def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
     limit = "-" if row.verdict == "to rounding" else number(row.limit)
     cells = [row.label, unit, *map(number, row.values), row.words, limit, bar]
     if with_path:
-        cells += [number(row.path), _within(row)]
+        is_known = not (math.isnan(row.path) or math.isnan(row.bar))
+        is_within = abs(row.path - row.values[-1]) <= row.bar + row.negligible
+        cells += [number(row.path), ("yes" if is_within else "no") if is_known else "-"]
     return cells
-
-
-def _within(row: ReportedSeries) -> str:
-    """Whether the error bar of the last value in increments reaches the value of the path solver."""
-    if math.isnan(row.path) or math.isnan(row.bar):
-        return "-"
-    return "yes" if abs(row.path - row.values[-1]) <= row.bar + row.negligible else "no"
 
 
 def write_csv(convergence: Convergence, path: Path) -> None:

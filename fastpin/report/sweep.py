@@ -337,13 +337,8 @@ def _column(name: str, values: Sequence[Any], unit: str, bars: Sequence[float | 
     values = [0.0 if value is not None and abs(value) < least else value for value in values]
     factor, label = scaled([value for value in values if value is not None], unit)
     cells = ["-" if value is None else f"{value * factor:.5g}" for value in values]
-    return name, label, [f"{cell}{_bar_words(factor, bar)}" for cell, bar in zip(cells, bars, strict=True)]
-
-
-def _bar_words(factor: float, bar: float | None) -> str:
-    if bar is None:
-        return ""
-    return f" +-{factor * bar:.2g}" if math.isfinite(bar) else " +-?"
+    tails = ["" if bar is None else f" +-{factor * bar:.2g}" if math.isfinite(bar) else " +-?" for bar in bars]
+    return name, label, [cell + tail for cell, tail in zip(cells, tails, strict=True)]
 
 
 def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRow], dict[str, str]]:
