@@ -341,8 +341,11 @@ def taken(quantity: str, take: str, span: str, interface: str, result: Result) -
     values = values[np.isfinite(values)]
     if len(values) == 0:
         return math.nan
+    if take == "range" and kind == "angle":  # the smallest arc is a turn without the widest gap between two angles
+        turned = np.sort(np.mod(values, 2.0 * math.pi))
+        return 2.0 * math.pi - float(np.diff(turned, append=turned[0] + 2.0 * math.pi).max())
     if take == "range":
-        return _arc(values) if kind == "angle" else float(np.ptp(values))
+        return float(np.ptp(values))
     if take == "largest magnitude":
         values = np.abs(values)
     return float(values.min() if take == "smallest" else values.max())
@@ -546,12 +549,6 @@ def _life(result: Result, criterion: str, body: Body) -> float:
 
 def _finite(life: float) -> float:
     return life if math.isfinite(life) else math.nan
-
-
-def _arc(angles: np.ndarray) -> float:
-    """Length of the smallest arc that holds all angles, rad."""
-    turned = np.sort(np.mod(angles, 2.0 * math.pi))
-    return 2.0 * math.pi - float(np.diff(turned, append=turned[0] + 2.0 * math.pi).max())
 
 
 def reason_of(error: BaseException) -> str:
