@@ -22,9 +22,6 @@ from fastpin.model.synonyms import closest
 LUG_EXAMPLE = Path(__file__).with_name("lug.toml").read_text(encoding="utf-8")
 """A commented lug file: a lug with a round end."""
 
-SHAPES = ("parts", "rectangle")
-"""Shapes of an outline; the first one is meant if none is given."""
-
 LUG_KEYS: dict[str, tuple[str, ...]] = {
     "plate": ("material", "nu", "plane", "hole_radius"),
     "outline": ("shape", "x", "y", "start"),
@@ -155,7 +152,7 @@ def _outline(source: CaseText) -> tuple[Part, ...] | None:
     section = source.section("outline", required=True)
     if not section.present:
         return None
-    shape = section.choice("shape", SHAPES)
+    shape = section.choice("shape", ("parts", "rectangle"))  # the first one is meant if none is given
     if shape == "rectangle":
         if "start" in section:
             section.report("start: has no meaning for a rectangle", "start")

@@ -17,9 +17,6 @@ from fastpin.model.synonyms import closest
 FILE_KEYS = ("E", "nu", "yield_strength", "fatigue", "source")
 """Keys of a material."""
 
-KEPT_FILES = 8
-"""Files whose materials stay in memory. The points of a sweep share one."""
-
 
 def read_materials(path: str | Path) -> dict[str, Material]:
     """Read the materials of a TOML file.
@@ -83,7 +80,7 @@ def _read(path: Path) -> dict[str, Material]:
     return _remembered(path, status.st_mtime_ns, status.st_size)
 
 
-@functools.lru_cache(maxsize=KEPT_FILES)
+@functools.lru_cache(maxsize=8)  # the points of a sweep share one file
 def _remembered(path: Path, changed: int, size: int) -> dict[str, Material]:
     return read_materials(path)
 
