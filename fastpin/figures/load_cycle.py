@@ -55,9 +55,6 @@ SMALL = 0.1
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
-TICKS = {1: 9, 2: 6, 3: 3}
-"""Most intervals on the axis of displacements, by the number of panels side by side."""
-
 ENERGY_DIGITS = 4
 """Significant digits of areas and energies."""
 
@@ -66,9 +63,6 @@ AREA_ERROR = 0.01
 
 Abscissa = Literal["prescribed", "pin"]
 """The displacement over which a reaction is drawn."""
-
-PRESCRIBED = {"Q": "ux", "P": "−uy"}
-"""Names of prescribed displacements along the reactions."""
 
 
 def plot_slip(
@@ -356,13 +350,13 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
             is_rounding = abs(loop.work) <= ROUNDING * float(np.abs(loop.load).max() * np.abs(loop.displacement).max())
             area = f"area {'0' if is_rounding else short(float(loop.work), unit['energy'])}"
         panel.text(0.0, 1.02, area, fontsize=8.0, ha="left", va="bottom", transform=panel.transAxes)
-    panel.xaxis.set_major_locator(MaxNLocator(TICKS[across], steps=[1, 2, 5, 10]))
+    panel.xaxis.set_major_locator(MaxNLocator({1: 9, 2: 6, 3: 3}[across], steps=[1, 2, 5, 10]))
 
 
 def _prescribed(problem: Problem, name: str, abscissa: Abscissa | None) -> str:
     """Words for the prescribed displacement over which a load is drawn; empty if it is drawn over that of the pin."""
     driven = dict(zip(("Q", "P"), problem.driven, strict=True)).get(name, False)
-    return PRESCRIBED[name] if driven and abscissa != "pin" else ""
+    return {"Q": "ux", "P": "−uy"}[name] if driven and abscissa != "pin" else ""
 
 
 def dissipated_words(cycle: LoadCycle) -> str:

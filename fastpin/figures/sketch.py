@@ -54,9 +54,6 @@ THICK = 0.07
 MARGIN = 1.25
 """Room for the arrows of remote stresses, in radii of the hole."""
 
-SHORTEST = 0.35
-"""Length of the arrow of a small force, in parts of the longest: a shorter one has no shaft."""
-
 STEEL, ALLOY, BRASS = "#C9CDD3", "#E8EAED", "#EAD9A8"
 """Shades of pin, plate and bush."""
 
@@ -301,7 +298,7 @@ def _arrow(panel: Axes, tail: complex, head: complex, span: LoadRange, colour: s
 
 def _draw_force(panel: Axes, name: str, span: LoadRange, words: str, scale: Scale) -> None:
     """Draw a force on the pin: from its centre, through it if the force changes its sign."""
-    length = LONG * max(_size(span) / scale.force, SHORTEST)
+    length = LONG * max(_size(span) / scale.force, 0.35)  # a shorter arrow has no shaft
     along = -1j if name == "P" else 1.0
     both = span[0] < 0.0 < span[1]
     if span[1] <= 0.0:

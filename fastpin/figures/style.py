@@ -155,14 +155,10 @@ Line = dict[str, Any]
 """Keywords of ``Axes.plot``: colour, dashes, width."""
 
 
-FAR = 1.0
-"""Distance of all curves from 0 beyond which 0 is not shown, in parts of their range."""
-
-
 def draw_zero(panel: Axes) -> None:
-    """Draw the line of 0 behind the curves of a panel. Curves that lie far from 0 are not flattened for it."""
+    """Draw the line of 0 behind the curves of a panel. Curves farther from 0 than their range are not flattened."""
     low, high = panel.dataLim.intervaly
-    if max(low, -high) <= FAR * (high - low):
+    if max(low, -high) <= high - low:
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
 
 
