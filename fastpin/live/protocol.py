@@ -78,9 +78,6 @@ MOST_UNDONE_NODES = 20_000
 MOST_LIVE_NODES = 1_600
 """Most nodes of a live contact. A step then takes half a second."""
 
-MOST_NUMBER = 2**53
-"""Largest whole number that a page can send: beyond, JavaScript's numbers have gaps."""
-
 
 @dataclass(frozen=True)
 class Limits:
@@ -107,9 +104,6 @@ ALONE = Limits()
 CLASS = Limits(connections=80, sessions=40, pictures=500, undone_nodes=2_000, nodes=400)
 """The limits of a page for a class: 40 visitors. A step of one of them keeps the others waiting for 30 ms at most."""
 
-FOLLOW = ("load", "history")
-"""What follows a change of the problem: one straight step to the present load, or all loads again."""
-
 
 @dataclass(frozen=True)
 class Message:
@@ -132,11 +126,11 @@ def _table(name: str, value: object) -> dict[str, Any]:
 
 
 def _whole(name: str, value: object) -> int:
-    return whole_number(name, value, 0, MOST_NUMBER)
+    return whole_number(name, value, 0, 2**53)  # beyond, JavaScript's numbers have gaps
 
 
 def _follow(name: str, value: object) -> str:
-    return choice(name, value, FOLLOW)
+    return choice(name, value, ("load", "history"))  # one straight step to the load, or all loads again
 
 
 FIELDS: dict[str, dict[str, Any]] = {
