@@ -33,9 +33,6 @@ MOST_PARAMETER = 1e50
 LONGEST_TEXT = 60
 """Most characters of a value that a message repeats."""
 
-DEEPEST_LIST = 3
-"""Lists inside lists that a message repeats."""
-
 LONGEST_NAME, LONGEST_PATH = 255, 4095
 """Most bytes of a file's name and of its whole path, as usual systems allow them."""
 
@@ -269,7 +266,7 @@ def _as_toml(value: object, depth: int) -> str:
     if isinstance(value, Mapping):
         return "a table"
     if isinstance(value, (list, tuple)):
-        if len(value) > 6 or depth >= DEEPEST_LIST:
+        if len(value) > 6 or depth >= 3:
             return "a list"
         return f"[{', '.join(_as_toml(item, depth + 1) for item in value)}]"
     if isinstance(value, str):

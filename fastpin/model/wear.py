@@ -12,9 +12,6 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, items, not_negative, number, numbers, whole_number
 from fastpin.model.profile import Profile, ProfileLike
 
-LAWS = ("archard", "energy")
-"""Names of the laws of wear."""
-
 MOST_CYCLES = 10**12
 """Cycles, at most."""
 
@@ -26,9 +23,6 @@ A_DECADE = 10
 
 LOOKED_AT = 1441
 """Angles at which a coefficient is checked, four a degree."""
-
-LARGEST_TOLERANCE = 0.1
-"""Largest tolerance of a fat cycle."""
 
 
 @dataclass(frozen=True)
@@ -67,12 +61,12 @@ class Wear:
     tolerance: float = 1e-2
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "law", choice("law", self.law, LAWS))
+        object.__setattr__(self, "law", choice("law", self.law, ("archard", "energy")))
         cycles = number("cycles", self.cycles, 1, MOST_CYCLES)  # 1e5 is a whole number too
         if cycles != int(cycles):
             raise InputError("cycles", f"must be a whole number, not {cycles:g}")
         object.__setattr__(self, "cycles", int(cycles))
-        object.__setattr__(self, "tolerance", number("tolerance", self.tolerance, 0.0, LARGEST_TOLERANCE))
+        object.__setattr__(self, "tolerance", number("tolerance", self.tolerance, 0.0, 0.1))
         if self.coefficient is None and self.pin is None and self.plate is None:
             raise InputError("coefficient", "give the wear coefficient, or those of pin and plate")
         if self.coefficient is not None and (self.pin is not None or self.plate is not None):
