@@ -20,7 +20,7 @@ from fastpin.figures.stick_slip import stick_slip_plot
 from fastpin.figures.stress import hoop_plot, map_plot
 from fastpin.figures.subjects import InMemory
 from fastpin.figures.tractions import tractions_plot
-from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
+from fastpin.kernels.status import SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
@@ -307,16 +307,14 @@ def _zone_rows(state: State) -> list[tuple[str, ...]]:
     point = point_name(load_point(state))
     found = [("contact", start, stop, "") for start, stop in state.contact]
     found += [("stick", start, stop, "") for start, stop in state.stick]
-    found += [("slip", start, stop, _DIRECTIONS[int(sign)]) for start, stop, sign in state.slip_zones]
-    rows = []
+    for start, stop, sign in state.slip_zones:
+        found.append(("slip", start, stop, "counter-clockwise" if sign == SLIP_POSITIVE else "clockwise"))
+    rows: list[tuple[str, ...]] = []
     for zone, start, stop, words in found:
         first, last = (f"{angle:z.2f}" for angle in interval_from_bottom(start, stop))
         ends = ("all round", "all round") if is_all_round(stop - start) else (first, last)
         rows.append((point, zone, *ends, words))
     return rows or [(point, "no contact", "-", "-", "")]
-
-
-_DIRECTIONS = {SLIP_POSITIVE: "counter-clockwise", SLIP_NEGATIVE: "clockwise"}
 
 
 def hysteresis(page: PageParts) -> PageSection:

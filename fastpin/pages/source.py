@@ -51,9 +51,6 @@ MOST_SUMMED = 60
 MOST_CORNERS = 100_000
 """Most corners in which a closed part without repeated blocks is looked for."""
 
-PIECE = 1 << 20
-"""Bytes of a file that are read at once for its hash."""
-
 
 @dataclass(frozen=True, eq=False)
 class Source:
@@ -113,7 +110,8 @@ class Source:
         """
         stored, known, error = storage.stored_case(path), storage.provenance(path), storage.stored_error(path)
         origin = [("solved by", _named_versions(known))]
-        origin += [(words, known[name]) for name, words in _PLACES.items() if name in known]
+        told = {"created": "begun", "host": "machine", "platform": "system", "run": "name of the run"}
+        origin += [(words, known[name]) for name, words in told.items() if name in known]
         content = packed_result(path)
         if content is None:
             origin += [("file", path.name), ("SHA-256 of the file", _digest(path))]
@@ -138,8 +136,8 @@ class Source:
         def extremes() -> Found:
             return storage.marked_extremes(path)
 
-        told = "run" in known
-        return cls(case, result, points, read, extremes, origin, *largest, error, path, knows_options=told)
+        knows_options = "run" in known
+        return cls(case, result, points, read, extremes, origin, *largest, error, path, knows_options=knows_options)
 
     @classmethod
     def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:
@@ -327,16 +325,10 @@ def with_count(history: LoadHistory, count: int) -> LoadHistory:
     return LoadHistory.of_blocks([*before, replace(last, count=count)])
 
 
-_PLACES = {"created": "begun", "host": "machine", "platform": "system", "run": "name of the run"}
-"""Words for the attributes of a file that tell where it comes from."""
-
-LIBRARIES = ("python", "numpy", "scipy", "numba", "h5py")
-"""Libraries whose versions are named."""
-
-
 def _named_versions(known: dict[str, str]) -> str:
     """Return the versions of fastpin and the libraries as text."""
-    others = ", ".join(f"{name} {known[name]}" for name in LIBRARIES if name in known)
+    libraries = ("python", "numpy", "scipy", "numba", "h5py")
+    others = ", ".join(f"{name} {known[name]}" for name in libraries if name in known)
     return f"fastpin {known.get('fastpin', 'of an unknown version')}{f' ({others})' if others else ''}"
 
 
@@ -345,7 +337,7 @@ def _digest(path: Path) -> str:
     found = hashlib.sha256()
     try:
         with path.open("rb") as file:
-            while piece := file.read(PIECE):
+            while piece := file.read(1 << 20):
                 found.update(piece)
     except OSError as error:
         raise InputError(str(path), f"can't be read: {error.strerror or error}") from None
