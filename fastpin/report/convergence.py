@@ -40,9 +40,6 @@ is the value of the path solver on the grid of the increment solver.
 MOST_DECIMALS = 9
 """Most decimals of a value in the text tables. A value that needs more is written with an exponent."""
 
-LEAST_PLAIN = 1e-3
-"""Least scatter that is written without an exponent."""
-
 
 @dataclass(frozen=True)
 class ReportedSeries:
@@ -124,7 +121,7 @@ class ReportedSeries:
 def one_digit(value: float) -> str:
     """Return a number with one digit, such as 0.02 or 1e-6."""
     head, e, power = f"{value:.0e}".partition("e")
-    return f"{head}e{int(power)}" if e and value < LEAST_PLAIN and value > 0.0 else f"{value:.1g}"
+    return f"{head}e{int(power)}" if e and value < 1e-3 and value > 0.0 else f"{value:.1g}"
 
 
 def reported_series(study: Study, problem: Problem, corner: int) -> list[ReportedSeries]:
