@@ -33,9 +33,6 @@ from fastpin.storage.layout import (
 LEAST_STORED = 500
 """Least states of a result whose extremes are stored. Those of fewer states are found in a second."""
 
-EQUAL = 1e-9
-"""Relative difference of two readings of one state that is rounding."""
-
 
 class StoredStates:
     """The states of an open file, see :class:`fastpin.states.extremes.Kept`."""
@@ -105,7 +102,7 @@ def _stored(file: hdf5.Group, kept: StoredStates) -> Found | None:
         for name, place, value in zip(names, places, values, strict=True):
             (state,), pair = kept.read([place]), wanted[name]
             read = READINGS[pair[0]].of(state)
-            if not math.isclose(read, value, rel_tol=EQUAL):
+            if not math.isclose(read, value, rel_tol=1e-9):  # more than rounding
                 return None
             found[pair] = Extreme(read, place, float(kept.points[place]))
     except (KeyError, ValueError, TypeError):

@@ -138,13 +138,9 @@ CYCLE_FIELDS = {
 }
 """Kind of quantity of each field of a cycle."""
 
-WHOLE_NUMBERS = ("step", "corner", "length", "number")
-"""Fields of states and cycles that are whole numbers."""
-
 SMALL_NUMBERS = ("status", "old_borders")
 """Fields of states that are whole numbers of one byte."""
 
-_PROBLEM_FIELDS = (*FIELDS, "dimensionless")
 
 STATUS_LIMITS = (min(Status), max(Status))
 """Smallest and largest status of a node."""
@@ -152,7 +148,6 @@ STATUS_LIMITS = (min(Status), max(Status))
 DENSE = 8
 """Rows of a slice, in parts of the picked ones, up to which the slice is read: each row alone takes some 50 us."""
 
-_ROWS = 128  # rows in a chunk of an array without node values
 
 Rows = dict[str, np.ndarray]
 """Arrays of some states or cycles, by quantity. The first dimension counts the states or cycles."""
@@ -247,7 +242,7 @@ def read_problem(file: h5py.File) -> Problem:
     """Read the problem of a result."""
     group = file["problem"]
     pair = MaterialPair(read_material(group["pin"]), read_material(group["plate"]), group.attrs["plane"])
-    given = {name: as_python(group.attrs[name]) for name in _PROBLEM_FIELDS if name in group.attrs}
+    given = {name: as_python(group.attrs[name]) for name in (*FIELDS, "dimensionless") if name in group.attrs}
     return Problem(pair, **given, **read_profiles(group), **read_bodies(group))
 
 
@@ -287,10 +282,6 @@ def option_attributes(options: SolveOptions) -> dict[str, Any]:
     return {**attributes, "fractions": options.fractions}
 
 
-_OTHER_FORM = ("nodes", "method", "increments", "arc", "between")
-"""Options that a file holds in another form, or not always."""
-
-
 def read_options(file: h5py.File) -> SolveOptions:
     """Read the options of a result. A file of :func:`fastpin.save` has only the nodes and the method."""
     stored = {name: as_python(value) for name, value in file["solver"].attrs.items()}
@@ -303,7 +294,8 @@ def read_options(file: h5py.File) -> SolveOptions:
         start, stop = stored["arc"].tolist()
         # Earlier versions took an arc longer than 2 pi as a circle.
         options["arc"] = (start, min(stop, start + 2.0 * np.pi))
-    options |= {name: stored[name] for name in OPTIONS if name in stored and name not in _OTHER_FORM}
+    other_form = ("nodes", "method", "increments", "arc", "between")  # or not in every file
+    options |= {name: stored[name] for name in OPTIONS if name in stored and name not in other_form}
     return SolveOptions(**options)
 
 
@@ -332,7 +324,9 @@ def _dtype(name: str) -> type:
     name = name.removeprefix(SEATED[1])
     if name in SMALL_NUMBERS:
         return np.int8
-    return np.int64 if name in WHOLE_NUMBERS else bool if name == "solved" else float
+    if name in ("step", "corner", "length", "number"):
+        return np.int64
+    return bool if name == "solved" else float
 
 
 def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, unit: str | list[str]) -> h5py.Dataset:
@@ -341,7 +335,7 @@ def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, 
     Each row of node values is a chunk, compressed, and never written again.
     """
     nodes = name in NODE_FIELDS or name in BORDER_FIELDS or name in SLIP_FIELDS
-    chunks = (1 if nodes else _ROWS, *shape)
+    chunks = (1 if nodes else 128, *shape)
     dataset = group.create_dataset(
         name, (0, *shape), maxshape=(None, *shape), chunks=chunks, dtype=dtype, **(_PACKED if nodes else {})
     )
