@@ -55,8 +55,6 @@ INTERFACES = ("pin", "seat")
 ROUNDING = 1e-9
 """Largest slip range without slip, in parts of the natural size of displacements."""
 
-_PACKAGE = Path(__file__).parents[1]
-
 _WORN_LIVES: WeakKeyDictionary[Result, dict[Wear, WearResult]] = WeakKeyDictionary()
 
 _WORN_DAMAGES: WeakKeyDictionary[Result, dict[tuple[Wear, str, Body], WornFatigue]] = WeakKeyDictionary()
@@ -554,7 +552,8 @@ def _finite(life: float) -> float:
 def reason_of(error: BaseException) -> str:
     """An error in one line, with the line of the user's code that raised it."""
     frames = traceback.extract_tb(error.__traceback__)
-    of_user = [frame for frame in frames if not Path(frame.filename).is_relative_to(_PACKAGE)]
+    package = Path(__file__).parents[1]
+    of_user = [frame for frame in frames if not Path(frame.filename).is_relative_to(package)]
     place = f" ({Path(of_user[0].filename).name}, line {of_user[0].lineno})" if of_user else ""
     words = str(error) if isinstance(error, FastpinError) else f"{type(error).__name__}: {error}"
     return printable(f"{words}{place}")
