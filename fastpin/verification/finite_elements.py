@@ -27,6 +27,9 @@ UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 FRETTING = ({"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275})
 """Corners of a fretting history: P = F, then +Q, -Q and +Q, with Q = 0.275 F."""
 
+REFERENCE = Path(__file__).parent / "data"
+"""Folder of the finite-element tractions."""
+
 _ELEMENT = math.pi / 720.0  # node distance of the models, rad: 1,440 nodes round the hole
 _NEAR = 6  # nodes on either side of an edge or border that "away" leaves out
 
@@ -87,7 +90,7 @@ class FiniteElements:
         if name not in _MODELS:
             raise InputError("name", f"must be one of {', '.join(_MODELS)}, not {name!r}")
         problem, half_width, states = _MODELS[name]
-        text = Path(__file__).with_name("data").joinpath(f"fem_{name}.csv").read_text(encoding="utf-8")
+        text = (REFERENCE / f"fem_{name}.csv").read_text(encoding="utf-8")
         rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
         values = {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
         first = values["theta"][0]
