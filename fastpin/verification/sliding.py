@@ -54,10 +54,6 @@ WIDER = (1.0, 2.0, 3.0)
 A tube with the bore 0.8 R in a ring to 1.5 R has a contact 2.5 times as wide as Hertz's at L_p = 1.
 """
 
-# Half-widths, rad: a narrower contact can't be told from a point, a wider one has no two ends.
-_NARROWEST, _WIDEST = 1e-7, 0.995 * math.pi
-_FAR_OFF = np.array([10.0, 10.0])  # residuals for ends that are out of range
-
 
 @dataclass(frozen=True, eq=False)
 class Sliding:
@@ -475,14 +471,18 @@ def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float
 def _ends_near(case: _Case, basis: _Basis, start: tuple[float, float]) -> tuple[float, float] | None:
     """Return middle and half-width of a case's contact near `start`, None if the iteration does not converge."""
 
+    # A narrower contact can't be told from a point, and a wider one has no two ends.
+    narrowest, widest = 1e-7, 0.995 * math.pi
+    out_of_range = np.array([10.0, 10.0])
+
     def residuals(unknowns: np.ndarray) -> np.ndarray:
         half = 2.0 * math.atan(math.exp(min(unknowns[1], 50.0)))
-        if not (_NARROWEST < half < _WIDEST and abs(unknowns[0] - start[0]) < 1.0):
-            return _FAR_OFF
+        if not (narrowest < half < widest and abs(unknowns[0] - start[0]) < 1.0):
+            return out_of_range
         try:
             patch = _patch(case, basis, unknowns[0], half)
         except np.linalg.LinAlgError:
-            return _FAR_OFF
+            return out_of_range
         # In a loose fit the clearance varies like 1/half^2; so its residual is scaled by half^2.
         return np.array([(patch.clearance - case.clearance) * half**2, patch.unbalanced])
 
