@@ -34,9 +34,6 @@ WIDTH = 6.7
 HEADING = 9.5
 """Size of a title, points."""
 
-USUAL_ROWS, ROW = 4, 0.16
-"""Rows of a legend for which figures have room, and the height of a further row, inches."""
-
 SMALL: Any = {"font.size": 7.5}
 """Size of letters in given axes, points."""
 
@@ -200,7 +197,8 @@ class Sheet:
             return
         if self.host is None:
             rows = -(-len(handles) // columns)
-            self.figure.set_figheight(self.figure.get_figheight() + ROW * max(rows - USUAL_ROWS, 0))
+            # Figures have room for four rows of a legend. A further one is 0.16 inches high.
+            self.figure.set_figheight(self.figure.get_figheight() + 0.16 * max(rows - 4, 0))
             fitted_legend(self.figure, list(handles), columns, title)
             return
         host = self.host

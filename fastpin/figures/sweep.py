@@ -36,8 +36,8 @@ _UNSURE: Any = {
     "linestyle": "none",
 }  # fmt: skip
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
-SIDE_BY_SIDE, PANEL = 7.6, 2.9
-"""Width of a figure of several charts, and the height of a row, inches."""
+SIDE_BY_SIDE = 7.6
+"""Width of a figure of several charts, inches."""
 
 MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 """Marks of the computed values, as many as colours. Crosses mark failed runs."""
@@ -51,9 +51,6 @@ DECADES = 1.7
 Up to twice as many they stand at 1 and 3 times powers of ten, and beyond at powers of ten.
 """
 
-BODY_SECTIONS, BODY_FIELDS = ("pin", "plate", "dundurs", "pin_body", "plate_body"), ("contact.pin_load",)
-"""Sections and fields of a case that change the bodies. A caption leaves out the bodies if one of them varies."""
-
 CAPTION_WORDS = {
     "contact.friction": ("friction",),
     "contact.hole_radius": ("hole radius",),
@@ -62,9 +59,6 @@ CAPTION_WORDS = {
     "gap.pin": ("initial gap of the pin",),
 }
 """Words with which the parts of a caption begin that belong to a field."""
-
-PLAIN = 1e-3, 1e5
-"""Numbers between these are written in full, others as powers of ten."""
 
 
 def plot_sweep(
@@ -125,7 +119,7 @@ def sweeps_of(charts: Sequence[Chart]) -> Plot:
 def _draw_beside(look: Look, charts: Sequence[Chart]) -> Sheet:
     columns = min(len(charts), 2)
     with mpl.rc_context(SMALL):
-        sheet = look.sheet([PANEL] * -(-len(charts) // columns), columns, 0.5)
+        sheet = look.sheet([2.9] * -(-len(charts) // columns), columns, 0.5)
         for panel in sheet.axes.flat[len(charts) :]:
             panel.set_visible(False)
         for panel, chart in zip(sheet.axes.flat, charts, strict=False):
@@ -385,7 +379,8 @@ def _fixed_parameters(chart: Chart) -> str:
     if chart.problem is None:
         return ""
     parts = re.split("(?<=[,;]) ", caption(chart.problem))
-    if any(field.split(".")[0] in BODY_SECTIONS or field in BODY_FIELDS for field in chart.varied):
+    of_bodies = ("pin", "plate", "dundurs", "pin_body", "plate_body")
+    if any(field.split(".")[0] in of_bodies or field == "contact.pin_load" for field in chart.varied):
         parts = parts[next(k for k, part in enumerate(parts) if part.startswith("plane ")) :]
     for field, words in CAPTION_WORDS.items():
         if any(name == field or name.startswith(f"{field}.") for name in chart.varied):
@@ -442,7 +437,7 @@ def _round_numbers(axis: MatplotlibAxis, values: np.ndarray) -> None:
 def _in_round_numbers(values: np.ndarray) -> Callable[[float], str]:
     """Return how round numbers like some values are written: all in full, or all as powers of ten."""
     sizes = np.abs(values[values != 0.0])
-    if not sizes.size or (PLAIN[0] <= sizes.min() and sizes.max() <= PLAIN[1]):
+    if not sizes.size or (sizes.min() >= 1e-3 and sizes.max() <= 1e5):
         return lambda value: f"{value:.6g}".replace("-", "−")
 
     def written(value: float) -> str:
