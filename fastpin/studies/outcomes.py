@@ -55,11 +55,17 @@ INTERFACES = ("pin", "seat")
 ROUNDING = 1e-9
 """Largest slip range without slip, in parts of the natural size of displacements."""
 
-_WORN_LIVES: WeakKeyDictionary[Result, dict[Wear, WearResult]] = WeakKeyDictionary()
 
-_WORN_DAMAGES: WeakKeyDictionary[Result, dict[tuple[Wear, str, Body], WornFatigue]] = WeakKeyDictionary()
+@dataclass
+class _Known:
+    """What outcomes have read from a result: lives of wear, the damage of these lives, and hot spots."""
 
-_HOT_SPOTS: WeakKeyDictionary[Result, dict[tuple[str, Body], HotSpot]] = WeakKeyDictionary()
+    lives: dict[Wear, WearResult] = field(default_factory=dict)
+    damages: dict[tuple[Wear, str, Body], WornFatigue] = field(default_factory=dict)
+    spots: dict[tuple[str, Body], HotSpot] = field(default_factory=dict)
+
+
+_KNOWN: WeakKeyDictionary[Result, _Known] = WeakKeyDictionary()
 
 
 class CycleQuantity(NamedTuple):
@@ -406,18 +412,17 @@ def of_last_cycle(quantity: str, result: Result) -> float:
 
 def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Result) -> float:
     """The value of a name in :data:`WEAR_QUANTITIES`; NaN without a crack. Lives are kept while the result lives."""
-    lives = _WORN_LIVES.setdefault(result, {})
-    if wear not in lives:
+    known = _KNOWN.setdefault(result, _Known())
+    if wear not in known.lives:
         with doubts_given():
-            lives[wear] = result.wear(**wear.given)
-    life, chosen = lives[wear], WEAR_QUANTITIES[quantity]
+            known.lives[wear] = result.wear(**wear.given)
+    life, chosen = known.lives[wear], WEAR_QUANTITIES[quantity]
     if not chosen.is_damage:
         return chosen.of(life)
     key = (wear, criterion, body)
-    damages = _WORN_DAMAGES.setdefault(result, {})
-    if key not in damages:
-        damages[key] = life.fatigue(criterion, body)
-    return chosen.of(damages[key])
+    if key not in known.damages:
+        known.damages[key] = life.fatigue(criterion, body)
+    return chosen.of(known.damages[key])
 
 
 @dataclass(frozen=True)
@@ -528,7 +533,7 @@ def _friction_energy(result: Result) -> tuple[float, float]:
 
 def _hot_spot(result: Result, criterion: str, body: Body) -> HotSpot:
     """The hot spot on the edge of a body. It is kept while the result lives: several outcomes read it."""
-    spots = _HOT_SPOTS.setdefault(result, {})
+    spots = _KNOWN.setdefault(result, _Known()).spots
     if (criterion, body) not in spots:
         _states_of_cycle(result)
         spots[criterion, body] = result.fatigue(criterion, body).hot_spot
