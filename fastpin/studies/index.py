@@ -37,14 +37,6 @@ WAITING, DONE, FAILED = "waiting", "done", "failed"
 """Statuses of a run."""
 
 _END_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "host", "versions")
-_OUTCOMES_TABLE = (
-    "CREATE TABLE IF NOT EXISTS outcomes (run TEXT NOT NULL, name TEXT NOT NULL, definition TEXT NOT NULL, value REAL, "
-    "reason TEXT, PRIMARY KEY (run, name))"
-)
-_BARS_TABLE = (
-    "CREATE TABLE IF NOT EXISTS bars (run TEXT NOT NULL, name TEXT NOT NULL, bar REAL NOT NULL, "
-    "PRIMARY KEY (run, name))"
-)
 
 
 def has_index(directory: Path) -> bool:
@@ -302,8 +294,15 @@ class Index:
 
     def _make_tables(self) -> None:
         """Add the tables that an index of an earlier version lacks."""
-        for table in (_OUTCOMES_TABLE, _BARS_TABLE, TABLE):
-            self._database.execute(table)
+        self._database.execute(
+            "CREATE TABLE IF NOT EXISTS outcomes (run TEXT NOT NULL, name TEXT NOT NULL, definition TEXT NOT NULL, "
+            "value REAL, reason TEXT, PRIMARY KEY (run, name))"
+        )
+        self._database.execute(
+            "CREATE TABLE IF NOT EXISTS bars (run TEXT NOT NULL, name TEXT NOT NULL, bar REAL NOT NULL, "
+            "PRIMARY KEY (run, name))"
+        )
+        self._database.execute(TABLE)
 
     def _write_result(self, run: str, content: bytes | None) -> None:
         """Write a packed result. Without one, the result has a file of its own, and an older one is removed."""
