@@ -21,12 +21,6 @@ from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 
-WORDS = {
-    "force": "force", "moment": "moment", "traction": "remote stress", "rotation": "prescribed", "displacement":
-    "prescribed",
-}  # fmt: skip
-"""Words before the names of loads, by kind."""
-
 
 def plot_history(
     problem: Problem,
@@ -88,7 +82,13 @@ def _draw(look: Look, problem: Problem, folded: Folded) -> Sheet:
             panel.plot(np.arange(len(loads)), factor * columns[name], **style, **dots)
             entries.append((name, style))
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-        panel.set_ylabel(quantity(f"{WORDS[kind]} {', '.join(names)}", label))
+        other = {
+            "traction": "remote stress",
+            "rotation": "prescribed",
+            "displacement": "prescribed",
+            "ratio": "relative",
+        }
+        panel.set_ylabel(quantity(f"{other.get(kind, kind)} {', '.join(names)}", label))
         panel.set_xlim(0.0, len(loads) - 1.0)
         _shade(panel, repeated, panel is axes[0, 0])
     locator = MaxNLocator(nbins=9, integer=True, min_n_ticks=1)
