@@ -246,7 +246,11 @@ class Index:
             for row in rows:
                 _check_row(row)
                 for name in fields:
-                    row[name] = _shown(_value(name, row[name]))
+                    cell = row[name]
+                    # Other texts of a load are the names of a CSV file or of one of its columns.
+                    may_be_list = name.startswith("load.") or name in ("solve.arc", "solve.between")
+                    is_list = may_be_list and isinstance(cell, str) and cell.startswith(("[", "{"))
+                    row[name] = _shown(json.loads(cell) if is_list else cell)
                 for name in ("versions", "input"):
                     row[name] = _shown(_table(row[name]))
             return rows
@@ -441,15 +445,6 @@ def _quoted(names: Iterable[str]) -> str:
 def _cell(value: Any) -> Any:
     """Return a value of a field for SQL. A list or table becomes JSON; a number or text stays."""
     return json.dumps(value) if isinstance(value, list | dict) else value
-
-
-def _value(name: str, cell: Any) -> Any:
-    """Return the value of a cell. Only loads, the ends of an arc and fractions of a step may be lists or tables.
-
-    Other texts of a load are the names of a CSV file or of one of its columns.
-    """
-    may_be_list = name.startswith("load.") or name in ("solve.arc", "solve.between")
-    return json.loads(cell) if may_be_list and isinstance(cell, str) and cell.startswith(("[", "{")) else cell
 
 
 def ensure_directory(directory: Path) -> Path:
