@@ -97,14 +97,11 @@ def _lug_file(source: CaseText) -> LugFile | None:
     try:
         lug = Lug(nu, plane, radius, outline, supports, tuple(given[0]), tuple(given[1]))  # type: ignore[arg-type]
     except InputError as error:
-        section, *key = PLACES.get(error.field, (error.field,))
+        places = {"holes": ("hole",), "radius": ("hole",), "hole_radius": ("plate", "hole_radius")}
+        section, *key = places.get(error.field, (error.field,))
         source.report(str(error), section, *key)
         return None
     return LugFile(lug, title, harmonics)
-
-
-PLACES = {"holes": ("hole",), "radius": ("hole",), "hole_radius": ("plate", "hole_radius")}
-"""Place in the file of a field of the lug, where it has another name."""
 
 
 def _in_brackets(section: str) -> str:

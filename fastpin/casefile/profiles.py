@@ -128,9 +128,6 @@ WORDS = {
 WORD_KEYS = tuple(dict.fromkeys(key for word in WORDS.values() for key in word.keys))
 """All keys of the tables of terms."""
 
-_FIRST = ("depth", "height", "value", "order")
-"""Fields of terms whose key is the name of the kind."""
-
 
 class _Reader:
     """Reads the profiles of a section, and reports their faults to it."""
@@ -204,7 +201,8 @@ def _from_table(name: str, table: Mapping[str, Any]) -> Profile:
     try:
         return make(*values.values())
     except InputError as error:
-        field = kinds[0] if error.field in _FIRST else error.field
+        is_kind = error.field in ("depth", "height", "value", "order")  # their key is the name of the kind
+        field = kinds[0] if is_kind else error.field
         raise InputError(f"{name}.{field}", error.reason) from None
 
 
