@@ -50,9 +50,6 @@ SHADES = {NodeBehaviour.SLIPS: ("0.80", "slips at some time"), NodeBehaviour.OPE
 STRAIGHT = 3
 """States of a cycle, with both ends, between which a loop is a line. Its area tells nothing then."""
 
-SMALL = 0.1
-"""Displacement without a prefix below which the unit gets a power of ten: long numbers would overlap on the axis."""
-
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 ENERGY_DIGITS = 4
@@ -400,7 +397,7 @@ def _displacement_scale(values: np.ndarray, unit: Unit) -> tuple[float, str]:
     """As :meth:`fastpin.model.units.Unit.scale`; a unit without prefixes gets a power of ten for small values."""
     factor, label = unit.scale(values.tolist())
     largest = factor * float(np.abs(values).max())
-    if not 0.0 < largest < SMALL:
+    if not 0.0 < largest < 0.1:  # longer numbers would overlap on the axis
         return factor, label
     power = math.floor(math.log10(largest))
     return factor / 10.0**power, f"10{str(power).translate(SUPERSCRIPTS)} {label}"
