@@ -33,9 +33,6 @@ MOST_PARAMETER = 1e50
 LONGEST_TEXT = 60
 """Most characters of a value that a message repeats."""
 
-LONGEST_NAME, LONGEST_PATH = 255, 4095
-"""Most bytes of a file's name and of its whole path, as usual systems allow them."""
-
 _NUMBER_KINDS = "iuf"
 """Kinds of NumPy arrays and scalars that hold numbers: no truth values, complex numbers, times, texts or objects."""
 
@@ -143,7 +140,8 @@ def file_path(field: str, value: object) -> Path:
         name, encoded = None, b""
     if not isinstance(name, str) or not name or "\0" in name:
         raise InputError(field, f"must be the name of a file, not {as_toml(value)}")
-    if len(encoded) > LONGEST_PATH or max(map(len, encoded.split(os.fsencode(os.sep)))) > LONGEST_NAME:
+    # Usual systems allow so many bytes of a whole path, and of the name of a file.
+    if len(encoded) > 4095 or max(map(len, encoded.split(os.fsencode(os.sep)))) > 255:
         raise InputError(field, f"is too long for the name of a file: {as_toml(value)}")
     return Path(name)
 

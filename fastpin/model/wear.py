@@ -21,9 +21,6 @@ MOST_CHOSEN = 10_000
 A_DECADE = 10
 """Cycles that are chosen in each decade, unless others are given."""
 
-LOOKED_AT = 1441
-"""Angles at which a coefficient is checked, four a degree."""
-
 
 @dataclass(frozen=True)
 class Wear:
@@ -74,7 +71,8 @@ class Wear:
         for name in ("coefficient", "pin", "plate"):
             if (given := getattr(self, name)) is not None:
                 profile = Profile.of(name, given)
-                not_negative(name, float(profile.at(np.linspace(-np.pi, np.pi, LOOKED_AT), 1.0).min()))
+                four_a_degree = np.linspace(-np.pi, np.pi, 1441)
+                not_negative(name, float(profile.at(four_a_degree, 1.0).min()))
                 object.__setattr__(self, name, profile)
         if self.at is not None:
             chosen = [whole_number("at", each, 1, self.cycles) for each in items("at", self.at, "a list of cycles")]
