@@ -44,9 +44,6 @@ def _von_mises(owner: str) -> Quantity:
     return Quantity(f"largest von Mises stress of the {owner}", "traction", of)
 
 
-NODE_VALUES = ("pressure", "shear", "status")
-"""Fields of a state of which a block has all nodes."""
-
 READINGS: dict[str, Quantity] = {
     **{name: each for name, each in QUANTITIES.items() if each.kind not in ("angle", "ratio", "class")},
     "bush_least_friction": Quantity("bush least friction", "ratio", of_bush(lambda fit: fit.least_friction)),
@@ -138,11 +135,10 @@ class KeptStates:
         for begin in range(0, len(self._states), AT_ONCE):
             some = self._states[begin : begin + AT_ONCE]
             marks = [(state.marks or Marks()).arrays(self.grid.size) for state in some]
-            pressure, shear, status = (np.array([getattr(state, name) for state in some]) for name in NODE_VALUES)
             yield StateBlock(
-                pressure,
-                shear,
-                status,
+                np.array([state.pressure for state in some]),
+                np.array([state.shear for state in some]),
+                np.array([state.status for state in some]),
                 np.array([list(state.load.values()) for state in some]),
                 tuple(np.array([arrays[k] for arrays in marks]) for k in range(2)),
                 {name: np.array([getattr(state, name) for state in some]) for name in NUMBERS},
