@@ -17,8 +17,7 @@ from typing import Any, TypeVar
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
-from fastpin.casefile.material_files import known_materials
-from fastpin.casefile.materials import DUNDURS_KEYS, read_pair
+from fastpin.casefile.materials import DUNDURS_KEYS, known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError

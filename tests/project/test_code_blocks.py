@@ -29,7 +29,7 @@ import pytest
 import fastpin
 from fastpin.casefile import EXAMPLE, LUG_EXAMPLE, builtin_case, parse_lug
 from fastpin.casefile.lug import LUG_KEYS
-from fastpin.casefile.material_files import FILE_KEYS
+from fastpin.casefile.materials import FILE_KEYS
 from fastpin.casefile.reader import KEYS, ROOT_KEYS
 from fastpin.cli.options import join_words, parser
 from fastpin.elasticity import plate_compliance
