@@ -377,7 +377,7 @@ def _polygon(outline: Sequence[Part]) -> np.ndarray:
     pieces = []
     for part in outline:
         sweep = abs(part.circle[3]) if part.circle is not None else 0.0
-        count = max(1, math.ceil(96 * sweep / (2.0 * math.pi)))  # 96 of a full circle
+        count = max(1, math.ceil(96 * sweep / (2.0 * math.pi)))  # 96 chords to a full circle
         pieces.append(part.at(np.arange(count) / count))
     return np.concatenate(pieces)
 
