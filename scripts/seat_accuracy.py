@@ -74,7 +74,8 @@ def numbers(result: Result) -> dict[str, float]:
     seat = state.seat
     assert seat is not None
     for each in result.states:
-        assert each.seat is not None and each.seat.slip_distance is not None
+        assert each.seat is not None
+        assert each.seat.slip_distance is not None
         slid = slid + each.seat.slip_distance
     weights, around = state.grid.weights, seat.grid.weights
     return {

@@ -348,6 +348,13 @@ class PlateBody(BodyBase):
         """Return the part of the body that fits round the hole, for a case file. Other parts are reported."""
         return self if table.passes(lambda: self.check(radius, dimensionless)) else None
 
+    def contacts(self, pair: MaterialPair, radius: float) -> tuple[dict[str, Any], ...]:
+        """The fields of a problem that differ at the pin and at the seat of a bush that slips; none without one.
+
+        `radius` is that of the hole, m.
+        """
+        return ()
+
     # -- materials
 
     def surface(self, pair: MaterialPair) -> MaterialPair:

@@ -26,6 +26,7 @@ from fastpin.bodies.body import (
 from fastpin.bodies.compliance import Compliance
 from fastpin.bodies.plate import Plate
 from fastpin.bodies.ring import Ring
+from fastpin.bodies.tube import Tube
 from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, Wall, first_change, force_on, pairs_of, spectrum
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
@@ -196,6 +197,16 @@ class Bushing(PlateBody):
         self.check_material(pair)
         self.inside.check_pair(pair, self.outer_radius, dimensionless)
         number("interference", self.interference, 0.0, MOST_PARAMETER)
+
+    def contacts(self, pair: MaterialPair, radius: float) -> tuple[dict[str, Any], ...]:
+        if self.bonded:
+            return ()
+        seat = {
+            "pair": MaterialPair(self.material, pair.plate, pair.plane), "hole_radius": self.outer_radius,
+            "clearance": -self.interference, "friction": self.friction, "pin_body": Tube(radius),
+            "plate_body": self.inside,
+        }  # fmt: skip
+        return {"pair": self.surface(pair), "plate_body": Ring(self.outer_radius, "uniform")}, seat
 
     def surface(self, pair: MaterialPair) -> MaterialPair:
         return MaterialPair(pair.pin, self.material, pair.plane)

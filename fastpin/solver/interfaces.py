@@ -240,7 +240,7 @@ def _with_followed_seat(joint: JointSystem, start: Configuration) -> Configurati
 
     None if the seat can't follow them.
     """
-    pin, seat = (joint.interfaces[place].nodes for place in (PIN, SEAT))
+    pin = joint.interfaces[PIN].nodes
     tractions = np.r_[start.pressure[pin], start.shear[pin]]
     column = joint.operator.entries(joint.nodes.rows(SEAT), joint.nodes.rows(PIN)) @ tractions
     force = np.zeros(3)
