@@ -273,16 +273,12 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     cases: dict[str, Case] = {}
     found: list[InputWarning] = []
     points = _points(source, base, places, rows or [{}], axes, (cases, found), progress)
-    found += _wear_doubts(base, outcomes)
-    fields = {name: spacings[name] for name in places}
-    return Plan(title, text, fields, axes, points, outcomes, found, labels, base, cases)
-
-
-def _wear_doubts(base: BaseCase, outcomes: Outcomes) -> list[InputWarning]:
-    """Warnings for coefficients of wear that are probably in another unit, in the outcomes of a plan."""
     wears = dict.fromkeys(each.wear for each in outcomes.values() if each.wear is not None)
     case = base.vary({})[1] if wears else None
-    return [] if case is None else [doubt for wear in wears for doubt in wear_doubts(case.problem, wear)]
+    if case is not None:
+        found += [doubt for wear in wears for doubt in wear_doubts(case.problem, wear)]
+    fields = {name: spacings[name] for name in places}
+    return Plan(title, text, fields, axes, points, outcomes, found, labels, base, cases)
 
 
 def _labels(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
