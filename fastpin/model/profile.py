@@ -126,7 +126,7 @@ class Profile:
 
     @classmethod
     def zone(cls, value: float, start: float, stop: float) -> Profile:
-        """A `value` from the angle `start` counter-clockwise to `stop`, and 0 elsewhere. For friction only."""
+        """A `value` from the angle `start` counter-clockwise to `stop`, and 0 elsewhere. For friction and wear only."""
         return cls((Zone(value, start, stop),))
 
     @classmethod
@@ -150,8 +150,8 @@ class Profile:
         Parameters
         ----------
         path : str or Path
-        quantity : {"gap", "friction"}
-            What the values are. Friction has no unit.
+        quantity : {"gap", "friction", "wear"}
+            What the values are. Friction has no unit. Wear coefficients are in 1/Pa.
 
         Raises
         ------
