@@ -27,8 +27,8 @@ from fastpin.storage.layout import (
     read_history,
     read_problem,
     read_rows,
-    read_states,
 )
+from fastpin.storage.stored_states import read_states
 
 LEAST_STORED = 500
 """Least states of a result whose extremes are stored. Those of fewer states are found in a second."""
