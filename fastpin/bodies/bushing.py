@@ -72,7 +72,7 @@ class Bushing(PlateBody):
     kind = "bushing"
     keys = (
         *MATERIAL_KEYS, "outer_radius", "interference", "bonded", "friction", "ring_outer_radius", "support",
-        "reaction", "file",
+        "reaction", "lug_file",
     )  # fmt: skip
     controlled = ("outer_radius", "interference")
     title = "plate with a bush"
@@ -125,11 +125,11 @@ class Bushing(PlateBody):
         interference, friction = (table.checked(key, not_negative) for key in ("interference", "friction"))
         bonded = table.checked("bonded", true_or_false)
         inside: Plate | Ring | Compliance | None
-        if "file" in table:
+        if "lug_file" in table:
             for key in ("ring_outer_radius", "support", "reaction"):
                 if key in table:
-                    table.report(f"{key}: can't be given together with file", key)
-            inside = Compliance.read(table)
+                    table.report(f"{key}: can't be given together with lug_file", key)
+            inside = Compliance.read(table, "lug_file")
         elif "ring_outer_radius" in table:
             if "reaction" in table:
                 table.report("reaction: can't be given together with ring_outer_radius", "reaction")
