@@ -170,7 +170,8 @@ def test_every_number_of_a_body_is_another_run():
         bush,
         bush.replace("110", "111"),
         bush + "interference = 1e-6\n",
-        bush + "friction = 0.2\n",
+        bush + "friction = 0.2\nbonded = false\n",
+        bush + "friction = 0.3\nbonded = false\n",
         bush + "ring_outer_radius = 2e-2\n",
         bush + "reaction = [0.0, 0.06]\n",
     ]
@@ -200,7 +201,7 @@ def test_fields_of_bodies_have_their_units(tmp_path):
         tmp_path,
         BUSH,
         "[grid]\npin_body.bore_radius = [5e-3]\nplate_body.outer_radius = [12e-3]\nplate_body.interference = [2e-6]\n"
-        'plate_body.E = [110e9]\nplate_body.support = ["held"]\nplate_body.friction = [0.2]\n'
+        'plate_body.E = [110e9]\nplate_body.support = ["held"]\n'
         'contact.rotation = ["free"]\nload.1.P = [2e6]\n',
     )
     rows = [{"id": point.id, **point.values, "status": "to do", "dimensionless": False} for point in plan.points]
@@ -216,7 +217,6 @@ def test_fields_of_bodies_have_their_units(tmp_path):
         "plate_body.interference": "2 um",
         "plate_body.E": "110 GPa",
         "plate_body.support": "held",
-        "plate_body.friction": "0.2",
         "contact.rotation": "free",
         "load.1.P": "2 MN/m",
     }
