@@ -25,7 +25,7 @@ from fastpin.storage.layout import (
     NUMBER_FIELDS,
     OTHER_FIELDS,
     SLIP_FIELDS,
-    WITH_PROFILES,
+    WITH_SEAT,
 )
 from fastpin.storage.store import load, load_points, save
 from tests.support.samples import PAIR, sample_result
