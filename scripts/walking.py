@@ -72,7 +72,7 @@ def random_walk(seed: int, cycles: int, nodes: int) -> Walk | None:
         return None
     seats = [state.seat for state in result.states]
     count = (BETWEEN + 1) * len(corners)
-    turned = [seat.rotation for seat in seats[-1 :: -count] if seat is not None]
+    turned = [seat.rotation for seat in seats[-1::-count] if seat is not None]
     last = [seat for seat in seats[-count - 1 :] if seat is not None]
     stuck = np.all([seat.status == STICK for seat in last], axis=0)
     slid = np.sum([seat.slip_distance for seat in last[1:]], axis=0)

@@ -29,7 +29,7 @@ from fastpin.solver.configuration import (
     solve_statuses,
     worst_residual,
 )
-from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
+from fastpin.solver.errors import NARROW, ConvergenceError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.settling import FiniteStep
@@ -134,6 +134,8 @@ class PinView:
         ------
         NoEquilibriumError
             If nothing holds the bush in its seat.
+        ResolutionError
+            If the pin touches at a single node.
         ConvergenceError
             If no tractions in the seat were found for it.
         """
@@ -154,6 +156,8 @@ class PinView:
         resting.status[self._seat] = self._resting_seat()
         found = _solved(joint, start, resting) if pin.closed.any() else self._without_pin(start)
         if found is None:
+            if pin.closed.sum() == 1:
+                raise ResolutionError(NARROW)
             raise ConvergenceError("the tractions between bush and plate were not found; use more nodes")
         done = elastic_energy(joint, found) - elastic_energy(joint, now)
         found.work = now.work + done + found.dissipation - now.dissipation

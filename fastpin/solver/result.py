@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -144,7 +145,9 @@ class Result(Sequence[State]):
     def seat(self) -> Result | None:
         """The contact of a bush that slips in its seat, as a result of its own; None without such a bush.
 
-        Its states are ``State.seat`` of the states here. Nothing can continue from it.
+        Its states are ``State.seat`` of the states here. Nothing can continue from it. Its cycles have the dissipation
+        in the seat and the rotation of the bush, by which it walks; NaN where the states at their ends were not kept.
+        The changes of the tractions are those of the whole joint.
         """
         problem = self.problem.seat
         if problem is None:
@@ -152,7 +155,8 @@ class Result(Sequence[State]):
         states = [state.seat for state in self.states if state.seat is not None]
         grid = states[0].grid if states else seat_grid(self.problem, self.grid)
         coarse = None if self.coarse is None else self.coarse.seat
-        return replace(self, states=states, problem=problem, grid=grid, restart=None, coarse=coarse)
+        cycles = tuple(_of_seat(cycle, {load_point(state): state for state in states}) for cycle in self.cycles)
+        return replace(self, states=states, problem=problem, grid=grid, restart=None, cycles=cycles, coarse=coarse)
 
     def cycle(self, place: int = -1, *, first: int | None = None, last: int | None = None) -> LoadCycle:
         """The quantities over a cycle: ranges of slip and tractions, friction energy, loops of the loads.
@@ -350,6 +354,16 @@ class Result(Sequence[State]):
 
     def __iter__(self) -> Iterator[State]:
         return iter(self.states)
+
+
+def _of_seat(cycle: Cycle, states: dict[float, State]) -> Cycle:
+    """A cycle of a joint as one of its seat, whose `states` are given by their load points."""
+    first, last = (states.get(float(corner)) for corner in (cycle.corner + 1 - cycle.length, cycle.corner + 1))
+    if first is None or last is None:
+        return cycle._replace(dissipation=math.nan, rotation_change=math.nan)
+    return cycle._replace(
+        dissipation=last.dissipation - first.dissipation, rotation_change=last.rotation - first.rotation
+    )
 
 
 def without_restart(result: Result) -> Result:

@@ -32,6 +32,7 @@ from fastpin.model.units import DEGREE, Unit
 from fastpin.model.wear import Wear
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.error_bars import number_bar, value_bar
+from fastpin.states.load_cycle import NodeBehaviour
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
@@ -115,11 +116,13 @@ CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
         for ending, quantity in _hot_spot_quantities(criterion, body).items()
     },
     "regime": CycleQuantity("class", lambda result: _regime(result), REGIMES),
+    "sticking_part": CycleQuantity("", lambda result: _sticking_part(result)),
 }
 """The quantities of the last cycle, by name.
 
 The first four are those of :class:`fastpin.states.cycles.Cycle`. The next four are the largest values of a node in
-:class:`fastpin.states.LoadCycle`. "regime" is :attr:`fastpin.states.LoadCycle.regime`. The others belong to the hot
+:class:`fastpin.states.LoadCycle`. "regime" is :attr:`fastpin.states.LoadCycle.regime`. "sticking_part" is the part of
+the hole that sticks all the time. The others belong to the hot
 spot on the edge of the plate, see :func:`fastpin.damage.fatigue`. Names that end with "_seat", such as
 "smith_watson_topper_life_seat", belong to the plate round a bush, at the seat of the bush.
 """
@@ -398,8 +401,8 @@ def bar_of_taken(quantity: str, take: str, span: str, interface: str, result: Re
     return value_bar(quantity, value, _beside(kind, value, other), ends[take])
 
 
-def of_last_cycle(quantity: str, result: Result) -> float:
-    """The value of a name in :data:`CYCLE_QUANTITIES`.
+def of_last_cycle(quantity: str, interface: str, result: Result) -> float:
+    """The value of a name in :data:`CYCLE_QUANTITIES` at an interface of :data:`INTERFACES`; NaN without a seat.
 
     Raises
     ------
@@ -407,7 +410,8 @@ def of_last_cycle(quantity: str, result: Result) -> float:
         If the result has no cycle.
     """
     _check_cycles(result)
-    return CYCLE_QUANTITIES[quantity].of(result)
+    chosen = result if interface == "pin" else result.seat
+    return math.nan if chosen is None else CYCLE_QUANTITIES[quantity].of(chosen)
 
 
 def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Result) -> float:
@@ -513,6 +517,13 @@ def _slip_range(result: Result) -> tuple[float, float]:
     if cycle.largest_slip_range <= ROUNDING * size("dx", cycle.states[-1]):
         return 0.0, math.nan
     return cycle.largest_slip_range, cycle.largest_slip_range_angle
+
+
+def _sticking_part(result: Result) -> float:
+    """The part of the hole whose nodes are in contact and stick throughout the cycle. All corners must be kept."""
+    _states_of_cycle(result)
+    cycle, weights = result.cycle(), result.grid.weights
+    return float(weights @ (cycle.behaviour == NodeBehaviour.STICKS)) / (2.0 * math.pi)
 
 
 def _regime(result: Result) -> float:
