@@ -53,6 +53,7 @@ ELSEWHERE = {
     "interference.md": "test_teaching_pages.py",
     "reading-results.md": "test_teaching_pages.py",
     "superposition.md": "test_teaching_pages.py",
+    "bush.md": "test_bush_page.py",
     "wear.md": "test_wear_page.py",
 }
 """Pages whose blocks of Python run in another test of this folder, as some of them may come later."""
