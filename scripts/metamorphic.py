@@ -86,7 +86,7 @@ class Changed:
 
     def states(self) -> list[State]:
         """The states of the changed case at the corners of the first case."""
-        history = LoadHistory.from_array(_acting(self.problem, self.loads))
+        history = LoadHistory.from_array(acting_loads(self.problem, self.loads))
         if self.split:
             first = solve(self.problem, history[: self.split], grid=self.grid)
             states = [*first, *solve(self.problem, history[self.split :], start=first)]
@@ -109,7 +109,7 @@ class Changed:
         return Fields(arrays, np.array([self.sign * moved[0], moved[1], turned]), energies)
 
 
-def _acting(problem: Problem, loads: np.ndarray) -> np.ndarray:
+def acting_loads(problem: Problem, loads: np.ndarray) -> np.ndarray:
     """The loads with NaN for the ones that can't act in the problem. Forces push the pin."""
     loads = loads.copy()
     loads[:, [UX, UY]] = np.nan

@@ -1,4 +1,4 @@
-"""The accuracy of a bush that slips: the cases of docs/bush-accuracy.md on several grids.
+"""The accuracy of a bush that slips: the cases of docs/bush.md on several grids.
 
 ``python -m scripts.seat_accuracy [--nodes 64,128,256] [--cases A1,A3]`` prints the numbers of each case at the end of
 its history. They are dimensionless: tractions over F/R, displacements over F beta* of the pin in the bush.
@@ -74,7 +74,8 @@ def numbers(result: Result) -> dict[str, float]:
     seat = state.seat
     assert seat is not None
     for each in result.states:
-        assert each.seat is not None and each.seat.slip_distance is not None
+        assert each.seat is not None
+        assert each.seat.slip_distance is not None
         slid = slid + each.seat.slip_distance
     weights, around = state.grid.weights, seat.grid.weights
     return {

@@ -137,9 +137,7 @@ class Valid:
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
-        bush = fastpin.Problem.from_load_parameter(
-            pair, 0.1, 0.4, plate_body=bodies.Bushing(pair.pin, 2.0, 0.01, friction=0.2)
-        )
+        bush = fastpin.Problem.from_load_parameter(pair, 0.1, 0.4, plate_body=bodies.Bushing(pair.pin, 2.0, 0.01))
         bushed = fastpin.solve(bush, [{"P": 1.0}], nodes=NODES)[-1]
         self._bushed = bushed
         self.objects |= {

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from types import MappingProxyType
 from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
@@ -148,8 +147,6 @@ class BodyBase:
         The keys of its section in case files.
     arrays, named_arrays : tuple of str
         The fields that are arrays, and arrays by name.
-    refused : dict of str to str
-        More words on keys of other kinds in its section of a case file.
     controlled : tuple of str
         The names of its controls on the live page. Those of a material are not among them.
     """
@@ -158,7 +155,6 @@ class BodyBase:
     keys: ClassVar[tuple[str, ...]] = ()
     arrays: ClassVar[tuple[str, ...]] = ()
     named_arrays: ClassVar[tuple[str, ...]] = ()
-    refused: ClassVar[Mapping[str, str]] = MappingProxyType({})
     controlled: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
@@ -355,6 +351,13 @@ class PlateBody(BodyBase):
     def fitted(self, table: Table, radius: float, dimensionless: bool, pair: MaterialPair | None) -> PlateBody | None:
         """Return the part of the body that fits round the hole, for a case file. Other parts are reported."""
         return self if table.passes(lambda: self.check(radius, dimensionless)) else None
+
+    def contacts(self, pair: MaterialPair, radius: float) -> tuple[dict[str, Any], ...]:
+        """The fields of a problem that differ at the pin and at the seat of a bush that slips; none without one.
+
+        `radius` is that of the hole, m.
+        """
+        return ()
 
     # -- materials
 

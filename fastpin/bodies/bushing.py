@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
-from types import MappingProxyType
 from typing import Any, Self
 
 import numpy as np
 
-from fastpin.bodies.body import Control, Harmonics, InWords, PlateBody, Remote, Rim, Shape, Table, Uniform, check_outer
+from fastpin.bodies.body import (
+    THINNEST,
+    Control,
+    Harmonics,
+    InWords,
+    PlateBody,
+    Remote,
+    Rim,
+    Shape,
+    Table,
+    Uniform,
+    check_outer,
+)
+from fastpin.bodies.compliance import Compliance
 from fastpin.bodies.plate import Plate
 from fastpin.bodies.ring import Ring
+from fastpin.bodies.tube import SeatedBush
 from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, Wall, first_change, force_on, pairs_of, spectrum
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
@@ -43,8 +56,8 @@ class Bushing(PlateBody):
     interference : float
         Radial interference of the bush in the plate before it is pressed in, m, at least 0. The press fit makes the
         clearance of the pin smaller. In a dimensionless problem the unit is F beta*, as of the clearance.
-    inside : Plate or Ring
-        The body round the bush.
+    inside : Plate, Ring or Compliance
+        The body round the bush. A compliance is that of a hole of the outer radius; only round a bush that slips.
     friction : float, optional
         Coefficient of friction between bush and plate, of a bush that is not bonded.
     bonded : bool
@@ -59,16 +72,15 @@ class Bushing(PlateBody):
     kind = "bushing"
     keys = (
         *MATERIAL_KEYS, "outer_radius", "interference", "bonded", "friction", "ring_outer_radius", "support",
-        "reaction",
+        "reaction", "lug_file",
     )  # fmt: skip
     controlled = ("outer_radius", "interference")
     title = "plate with a bush"
-    refused = MappingProxyType({"file": "; a bush sits in an infinite plate or a ring"})
 
     material: Material
     outer_radius: float
     interference: float = 0.0
-    inside: Plate | Ring = field(default_factory=Plate)
+    inside: Plate | Ring | Compliance = field(default_factory=Plate)
     friction: float | None = None
     bonded: bool = True
 
@@ -78,8 +90,8 @@ class Bushing(PlateBody):
             raise InputError("material", "a rigid bush is a rigid plate: leave the bush out")
         object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
         object.__setattr__(self, "interference", not_negative("interference", self.interference))
-        if not isinstance(self.inside, (Plate, Ring)):
-            raise InputError("inside", "must be a Plate or a Ring: a bush sits in an infinite plate or a ring")
+        if not isinstance(self.inside, (Plate, Ring, Compliance)):
+            raise InputError("inside", "must be a Plate, a Ring or a Compliance")
         object.__setattr__(self, "bonded", true_or_false("bonded", self.bonded))
         if self.friction is not None:
             friction = number("friction", not_negative("friction", self.friction), 0.0, MOST_FRICTION)
@@ -88,6 +100,12 @@ class Bushing(PlateBody):
             raise InputError("friction", "a bonded bush does not slip: leave friction out, or set bonded = false")
         if not self.bonded and self.friction is None:
             raise InputError("friction", "a bush that is not bonded needs its friction in the plate")
+        if self.bonded and isinstance(self.inside, Compliance):
+            raise InputError(
+                "inside",
+                "a bonded bush sits in an infinite plate or a ring; in a lug of any outline give its friction, and set "
+                "bonded = false",
+            )
 
     @property
     def lug(self) -> PlateBody:
@@ -106,8 +124,13 @@ class Bushing(PlateBody):
         outer = table.checked("outer_radius", positive)
         interference, friction = (table.checked(key, not_negative) for key in ("interference", "friction"))
         bonded = table.checked("bonded", true_or_false)
-        inside: Plate | Ring | None
-        if "ring_outer_radius" in table:
+        inside: Plate | Ring | Compliance | None
+        if "lug_file" in table:
+            for key in ("ring_outer_radius", "support", "reaction"):
+                if key in table:
+                    table.report(f"{key}: can't be given together with lug_file", key)
+            inside = Compliance.read(table, "lug_file")
+        elif "ring_outer_radius" in table:
             if "reaction" in table:
                 table.report("reaction: can't be given together with ring_outer_radius", "reaction")
             inside = Ring.read(table, "ring_outer_radius")
@@ -142,6 +165,9 @@ class Bushing(PlateBody):
             del found["bonded"]  # as files of earlier versions have it
         return found
 
+    def as_json(self, material: Callable[[Material], Any]) -> dict[str, Any]:
+        return super().as_json(material) | {"inside": self.inside.as_json(material)}
+
     @classmethod
     def from_entries(cls, entries: Mapping[str, Any]) -> Self:
         if "bonded" not in entries:  # earlier versions knew the friction of a bonded bush, which changed no state
@@ -158,7 +184,7 @@ class Bushing(PlateBody):
     # -- checks and materials
 
     def check(self, radius: float, dimensionless: bool = False, name: str = "hole radius") -> None:
-        check_outer(self.outer_radius, radius, name, THINNEST_LAYER)
+        check_outer(self.outer_radius, radius, name, THINNEST_LAYER if self.bonded else THINNEST)
         self.inside.check(self.outer_radius, name="outer radius of the bush")
         if not dimensionless and self.interference >= self.outer_radius:
             limit = f"must be smaller than the outer radius {self.outer_radius:g} of the bush"
@@ -170,7 +196,18 @@ class Bushing(PlateBody):
 
     def check_pair(self, pair: MaterialPair, radius: float, dimensionless: bool) -> None:
         self.check_material(pair)
+        self.inside.check_pair(pair, self.outer_radius, dimensionless)
         number("interference", self.interference, 0.0, MOST_PARAMETER)
+
+    def contacts(self, pair: MaterialPair, radius: float) -> tuple[dict[str, Any], ...]:
+        if self.bonded:
+            return ()
+        seat = {
+            "pair": MaterialPair(self.material, pair.plate, pair.plane), "hole_radius": self.outer_radius,
+            "clearance": -self.interference, "friction": self.friction, "pin_body": SeatedBush(radius),
+            "plate_body": self.inside,
+        }  # fmt: skip
+        return {"pair": self.surface(pair), "plate_body": Ring(self.outer_radius, "uniform")}, seat
 
     def surface(self, pair: MaterialPair) -> MaterialPair:
         return MaterialPair(pair.pin, self.material, pair.plane)

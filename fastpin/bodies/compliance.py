@@ -233,15 +233,16 @@ class Compliance(PlateBody):
     # -- case files, stored files, words
 
     @classmethod
-    def read(cls, table: Table) -> Compliance | None:
-        table.require("file")
-        name = table.checked("file", any_text)
+    def read(cls, table: Table, key: str = "file") -> Compliance | None:
+        """Read the compliance whose file stands under `key`. None if it is wrong; all faults are reported."""
+        table.require(key)
+        name = table.checked(key, any_text)
         if name is None:
             return None
         try:
             return _read(table.folder / name)
         except InputError as error:
-            table.report(str(error), "file")
+            table.report(str(error) if key == "file" else f"{key}: {error.reason}", key)
             return None
 
     def toml(self) -> dict[str, Any]:

@@ -70,8 +70,7 @@ class BodySection(Section):
         for key in self.table:
             owners = [f'"{name}"' for name, made in kinds.items() if key in made.keys]
             if owners and f'"{kind}"' not in owners:
-                more = kinds[kind].refused.get(key, "")
-                self.report(f'{key}: belongs to kind = {" or ".join(owners)}, not to kind = "{kind}"{more}', key)
+                self.report(f'{key}: belongs to kind = {" or ".join(owners)}, not to kind = "{kind}"', key)
         return kinds[kind].read(self)
 
 

@@ -22,9 +22,6 @@ from fastpin.model.synonyms import closest
 LUG_EXAMPLE = Path(__file__).with_name("lug.toml").read_text(encoding="utf-8")
 """A commented lug file: a lug with a round end."""
 
-SHAPES = ("parts", "rectangle")
-"""Shapes of an outline; the first one is meant if none is given."""
-
 LUG_KEYS: dict[str, tuple[str, ...]] = {
     "plate": ("material", "nu", "plane", "hole_radius"),
     "outline": ("shape", "x", "y", "start"),
@@ -100,14 +97,11 @@ def _lug_file(source: CaseText) -> LugFile | None:
     try:
         lug = Lug(nu, plane, radius, outline, supports, tuple(given[0]), tuple(given[1]))  # type: ignore[arg-type]
     except InputError as error:
-        section, *key = PLACES.get(error.field, (error.field,))
+        places = {"holes": ("hole",), "radius": ("hole",), "hole_radius": ("plate", "hole_radius")}
+        section, *key = places.get(error.field, (error.field,))
         source.report(str(error), section, *key)
         return None
     return LugFile(lug, title, harmonics)
-
-
-PLACES = {"holes": ("hole",), "radius": ("hole",), "hole_radius": ("plate", "hole_radius")}
-"""Place in the file of a field of the lug, where it has another name."""
 
 
 def _in_brackets(section: str) -> str:
@@ -155,7 +149,7 @@ def _outline(source: CaseText) -> tuple[Part, ...] | None:
     section = source.section("outline", required=True)
     if not section.present:
         return None
-    shape = section.choice("shape", SHAPES)
+    shape = section.choice("shape", ("parts", "rectangle"))  # the first one is meant if none is given
     if shape == "rectangle":
         if "start" in section:
             section.report("start: has no meaning for a rectangle", "start")

@@ -36,9 +36,6 @@ IN_RADIANS = 2e-4
 It must also have three digits after the point, and its last digit less than one off. Hardly any other angle has both.
 """
 
-LAST_DIGIT = 1e-14
-"""Least distance that counts as a digit: multiples of pi/12 that were computed differ by rounding."""
-
 
 class Word(NamedTuple):
     """A kind of term in a case file.
@@ -69,7 +66,7 @@ def _degrees(field: str, value: object) -> float:
     parts = degrees / (15.0 * DEGREE)
     away = abs(parts - round(parts))
     digits = len(repr(degrees).partition(".")[2])
-    rounded = away <= min(IN_RADIANS * abs(parts), max(10.0**-digits, LAST_DIGIT) / (15.0 * DEGREE))
+    rounded = away <= min(IN_RADIANS * abs(parts), max(10.0**-digits, 1e-14) / (15.0 * DEGREE))
     if 1.0 <= abs(round(parts)) <= 24 and digits > 2 and rounded:
         words = f"{degrees:g} is {15 * round(parts)} degrees in rad"
         raise InputError(field, f"must be in degrees from the bottom of the hole; {words}")
@@ -127,9 +124,6 @@ WORDS = {
 
 WORD_KEYS = tuple(dict.fromkeys(key for word in WORDS.values() for key in word.keys))
 """All keys of the tables of terms."""
-
-_FIRST = ("depth", "height", "value", "order")
-"""Fields of terms whose key is the name of the kind."""
 
 
 class _Reader:
@@ -204,7 +198,8 @@ def _from_table(name: str, table: Mapping[str, Any]) -> Profile:
     try:
         return make(*values.values())
     except InputError as error:
-        field = kinds[0] if error.field in _FIRST else error.field
+        is_kind = error.field in ("depth", "height", "value", "order")  # their key is the name of the kind
+        field = kinds[0] if is_kind else error.field
         raise InputError(f"{name}.{field}", error.reason) from None
 
 

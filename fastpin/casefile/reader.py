@@ -17,8 +17,7 @@ from typing import Any, TypeVar
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
-from fastpin.casefile.material_files import known_materials
-from fastpin.casefile.materials import DUNDURS_KEYS, read_pair
+from fastpin.casefile.materials import DUNDURS_KEYS, known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
@@ -36,16 +35,15 @@ from fastpin.model.wear import WEAR_KEYS
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
 
-_OF_CONTACT = tuple(
-    name for name, each in FIELDS.items() if name not in ("hole_radius", "clearance") and not each.has_section
-)
-
 KEYS: dict[str, tuple[str, ...]] = {
     "about": tuple(field.name for field in fields(About)),
     "pin": MATERIAL_KEYS,
     "plate": MATERIAL_KEYS,
     "dundurs": DUNDURS_KEYS,
-    "contact": ("plane", "hole_radius", "clearance", "load_parameter", *_OF_CONTACT),
+    "contact": (
+        *("plane", "hole_radius", "clearance", "load_parameter"),
+        *(name for name, each in FIELDS.items() if name not in ("hole_radius", "clearance") and not each.has_section),
+    ),
     "gap": GAP_KEYS,
     **{section: keys_of(kinds) for section, kinds in BODY_KINDS.items()},
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
@@ -68,8 +66,6 @@ _SIZES: dict[str, Any] = {
     if each.name in FIELDS and isinstance(each.default, (float, type(None)))
 }
 del _SIZES["thickness"]  # it converts the others
-
-_STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # replaces a wrong pair, so that the rest is checked
 
 
 def builtin_case() -> Case:
@@ -284,7 +280,8 @@ def _problem(
     source: CaseText, folder: Path, given: MaterialPair | None, materials: Mapping[str, Material]
 ) -> Problem | None:
     """The problem. None if [contact] is missing, or pin_load, rotation or drive is wrong: the loads depend on them."""
-    contact, pair = source.section("contact", required=True), given or _STEEL
+    contact = source.section("contact", required=True)
+    pair = given or MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # replaces a wrong pair: the rest is checked
     if not contact.present:
         read_bodies(source, folder, None, given, materials)
         return None

@@ -16,9 +16,6 @@ from fastpin.model.checks import whole_number
 from fastpin.model.doubts import doubts_given
 from fastpin.model.grid import LEAST_NODES
 
-PACKAGES = "aiohttp", "segno"
-"""What the extra "live" installs."""
-
 SHARED = """\
 whoever reaches {host} over the network and has this whole address can open the page: up to {most} visitors
 nothing is encrypted: use a network that you trust, and give the address to your class only
@@ -35,7 +32,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         serve, host = live.serve, "" if options.host is None else live.address_of_machine(options.host)
     except ImportError as error:
-        if error.name not in PACKAGES:
+        if error.name not in ("aiohttp", "segno"):  # the extra "live" installs them
             raise
         return fail(f"the live page needs the package {error.name}: pip install 'fastpin[live]'", EXIT_FAILED)
     except InputError as error:

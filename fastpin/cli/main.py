@@ -23,9 +23,6 @@ from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT
 from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning, printable
 from fastpin.model.inputs import remembered_inputs
 
-COLLECT_AFTER = 50_000
-"""New objects after which garbage is looked for. Imports make no garbage, and Python's 700 objects cost them 30 ms."""
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line.
@@ -37,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         installation has failed, a file could not be written, or memory did not suffice. 2: input that can't be used.
         130: interrupted. 141: the reader of the output has closed it.
     """
-    gc.set_threshold(COLLECT_AFTER)
+    gc.set_threshold(50_000)  # Imports make no garbage, and Python's threshold of 700 new objects costs them 30 ms.
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # the encoding of a terminal or pipe may lack characters

@@ -21,9 +21,6 @@ from fastpin.runtime.threads import cores
 MOST_REASONS = 20
 """Most failed runs that are listed with their reasons."""
 
-MOST_ESTIMATED = 100
-"""Most runs whose times are estimated: reading a case takes a millisecond."""
-
 CLUSTER_SECONDS = 30
 """Longest wait for the answer of a scheduler."""
 
@@ -77,7 +74,7 @@ def _expected_seconds(
     """The seconds of the runs that wait. Some of the runs stand for all."""
     waiting = studies.sweep.status(plan, directory, shard).waiting
     points = list(plan.runs.values())
-    picked = points[:: -(-len(points) // MOST_ESTIMATED)]
+    picked = points[:: -(-len(points) // 100)]  # reading a case takes a millisecond
     cases = [plan.case(point) for point in picked]
     seconds = [solver.expected_seconds(case.problem, case.history, case.options) for case in cases]
     return waiting * sum(seconds) / len(seconds) / max(workers or cores(), 1)

@@ -11,7 +11,6 @@ from fastpin.errors import InputError, OutputError, printable
 from fastpin.storage.files import check_writable, no_figure, replacing
 
 EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
-FIGURE_FORMATS = (".png", ".pdf", ".svg")
 
 
 def say(*lines: str, file: TextIO | None = None) -> None:
@@ -37,7 +36,7 @@ def flag(name: str) -> str:
 
 def check_figure(option: str, path: Path) -> None:
     """Raise :class:`InputError` with the option as its field if a file's name does not end as a figure's."""
-    if path.suffix.lower() not in FIGURE_FORMATS:
+    if path.suffix.lower() not in (".png", ".pdf", ".svg"):
         raise no_figure(option, path)
 
 

@@ -34,9 +34,6 @@ CRITERIA = tuple(FATIGUE_CRITERIA)
 NO_CRACK = "the parameter is 0 everywhere: no crack is expected"
 """Words in place of a hot spot."""
 
-EVERYWHERE = 360
-"""Angles round the whole edge, besides the nodes and the ends of zones."""
-
 
 class HotSpot(NamedTuple):
     """The point with the largest parameter; without a place if the parameter is 0 everywhere.
@@ -199,7 +196,7 @@ def edge_angles(states: Sequence[State]) -> np.ndarray:
     They are the nodes, the ends of all contact and stick zones of the states, and each degree.
     """
     ends = [angle for state in states for interval in (*state.contact, *state.stick) for angle in interval]
-    degrees = np.linspace(-1.5 * np.pi, 0.5 * np.pi, EVERYWHERE, endpoint=False)
+    degrees = np.linspace(-1.5 * np.pi, 0.5 * np.pi, 360, endpoint=False)
     return np.unique([near_bottom(angle) for angle in np.concatenate([states[0].theta, ends, degrees])])
 
 

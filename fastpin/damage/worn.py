@@ -35,9 +35,6 @@ from fastpin.model.wear import cycles_text
 from fastpin.reading.stress import check_body
 from fastpin.states.state import State
 
-WORN_DEPTHS, DEPTHS = 8, 16
-"""Steps of the depths unless given: inside the material that is worn off, and below it."""
-
 
 @runtime_checkable
 class StoredCycle(Protocol):
@@ -307,8 +304,8 @@ def _depths(cycles: Sequence[StoredCycle], body: Body, worn: float) -> np.ndarra
     far = far_rim(problem, body)
     if far is not None:
         below = min(below, 0.5 * abs(far - near_rim(problem, body)) * problem.hole_radius)  # not the force in the pin
-    first = np.linspace(0.0, worn, WORN_DEPTHS + 1)
-    return np.unique(np.r_[first, worn + (below - worn) * np.linspace(0.0, 1.0, DEPTHS + 1) ** 2])
+    inside, beyond = np.linspace(0.0, worn, 9), np.linspace(0.0, 1.0, 17) ** 2
+    return np.unique(np.r_[inside, worn + (below - worn) * beyond])
 
 
 def _summed(cycles: np.ndarray, worn: np.ndarray, depth: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

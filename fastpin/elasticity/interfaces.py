@@ -145,8 +145,7 @@ class JointSystem(System):
 
     @cached_property
     def turning(self) -> tuple[slice, ...]:
-        free = self.motion_rows[TURN::3].any(axis=1)
-        return tuple(rim.nodes for rim, is_held in zip(self.interfaces, free, strict=True) if not is_held)
+        return tuple(each.nodes for each in self.interfaces if not self.motion_rows[each.motion + TURN].any())
 
     @cached_property
     def bore_shape(self) -> tuple[np.ndarray, np.ndarray]:

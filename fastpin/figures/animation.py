@@ -42,14 +42,8 @@ FORMATS = (".gif", ".mp4")
 RATE = 4.0
 """States a second, unless another rate is given."""
 
-SLOWEST, FASTEST = 0.1, 50.0
-"""Limits of the states a second. GIF has steps of a hundredth of a second."""
-
 DPI = 100.0
 """Dots per inch of a picture, unless others are given."""
-
-SIZE = (8.0, 4.3)
-"""Width and height of a picture, inches."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -143,7 +137,7 @@ def animation_plot(subject: Subject, states: StateChoice = None, rate: float = R
     """Return the animation of states, see :func:`animate`."""
     usual = "cycle" if states is None and subject.cycles else states
     drawn = subject.states(usual, most=MOST_FRAMES, in_a_row=True)
-    number("rate", rate, SLOWEST, FASTEST)
+    number("rate", rate, 0.1, 50.0)  # GIF has steps of a hundredth of a second
     if len(drawn) < 2:
         raise InputError("states", "an animation needs two states or more")
     return Film(lambda look: _Scene(drawn, look, float(rate)), notes=drawn.notes, frames=len(drawn))
@@ -163,7 +157,8 @@ class _Scene:
     def __init__(self, states: DrawnStates, look: Look, rate: float = RATE) -> None:
         self.states, self.frame = states, Frame(states)
         self.rate, self.dpi = rate, look.dpi
-        self.figure = new_figure(*SIZE)
+        width = 8.0  # inches
+        self.figure = new_figure(width, 4.3)
         self.figure.set_layout_engine("none")  # the panels must not move
         grid: dict[str, Any] = {"left": 0.42, "right": 0.98, "top": 0.82, "bottom": 0.13, "hspace": 0.12}
         rows = 1 if states[0].problem.frictionless else 2
@@ -173,7 +168,7 @@ class _Scene:
         self.joint = self.figure.add_axes((0.01, 0.17, 0.33, 0.67))
         self.heading = self.figure.text(0.02, 0.975, "", fontsize=HEADING, va="top", parse_math=False)
         self.title = look.title
-        small = "\n".join(wrapped_parts(caption(states[0].problem, states), SIZE[0] - 0.4))
+        small = "\n".join(wrapped_parts(caption(states[0].problem, states), width - 0.4))
         self.figure.text(0.02, 0.905, small, fontsize=CAPTION_SIZE, color="0.25", va="top", parse_math=False)
         self.names = acting_loads([state.load for state in states])
         self.factor, unit = units(states[0].problem)["traction"].scale([state.peak_pressure for state in states])

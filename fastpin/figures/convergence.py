@@ -47,10 +47,22 @@ ORDER_OF_PANELS = (
 _GUIDES: dict[int, Line] = {1: {"color": "0.55", "linestyle": (0, (4.0, 2.0)), "linewidth": 0.8},
            2: {"color": "0.55", "linestyle": (0, (1.0, 1.5)), "linewidth": 1.1}}  # fmt: skip
 
-_STYLES: dict[str, Line] = {"path": {**line(0), "marker": "o"}, "increment": {**line(1, 1), "marker": "s"}}
-_MARKS = {"path": "\N{BLACK CIRCLE}", "increment": "\N{BLACK SQUARE}"}
+
+class _Method(NamedTuple):
+    """The look of a solver: the words of the legend with the number of nodes, the mark in a text, and the lines."""
+
+    words: str
+    mark: str
+    style: Line
+
+
+_METHODS = {
+    "path": _Method("path solver, against nodes", "\N{BLACK CIRCLE}", {**line(0), "marker": "o"}),
+    "increment": _Method(
+        "increment solver, {} nodes, against increments a step", "\N{BLACK SQUARE}", {**line(1, 1), "marker": "s"}
+    ),
+}
 _BAR: Line = {"marker": "_", "markersize": 11.0, "markeredgewidth": 2.0}
-_NAMES = {"path": "path solver, against nodes", "increment": "increment solver, {} nodes, against increments a step"}
 
 
 def plot_convergence(
@@ -125,7 +137,7 @@ def _draw(look: Look, convergence: Convergence, corner: int) -> Sheet:
 def _add_legend(sheet: Sheet, convergence: Convergence, methods: set[str]) -> None:
     open_marks: Line = {"color": "0.3", "linestyle": "none", "marker": "o", "markersize": 5.0, "fillstyle": "none"}
     entries: list[tuple[str, Line]] = [
-        (_NAMES[study.method].format(study.nodes), {**_STYLES[study.method], "markersize": 5.0})
+        (_METHODS[study.method].words.format(study.nodes), {**_METHODS[study.method].style, "markersize": 5.0})
         for study in convergence.studies
         if study.method in methods
     ]
@@ -171,11 +183,11 @@ def _draw_panel(panel: Axes, sequences: dict[str, Sequence]) -> None:
     panel.set_xscale("log")
     panel.set_yscale("log")
     for place, (method, one) in enumerate(sequences.items()):
-        style = _STYLES[method]
+        _, mark, style = _METHODS[method]
         fillstyle = "full" if one.row.verdict == "observed" else "none"
         panel.plot(one.counts, one.distances, markersize=4.5, fillstyle=fillstyle, **style)
         panel.plot(one.counts[-1:], [one.bar], **_BAR, color=style["color"])
-        mark = f"{_MARKS[method]} " if len(sequences) > 1 else ""
+        mark = f"{mark} " if len(sequences) > 1 else ""
         panel.text(
             0.98, 0.98 - LINE * place, mark + one.row.words.replace("-", "\N{MINUS SIGN}"), color=style["color"],
             fontsize=LETTERS - 0.5, ha="right", va="top", transform=panel.transAxes,

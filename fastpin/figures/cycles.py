@@ -32,20 +32,8 @@ from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 """Marks of cycles of different lengths, which differ without colour."""
 
-FEW = 60
-"""Most cycles of one length that have a mark each."""
-
-SPARSE = 0.12
-"""Distance of the marks of more cycles, in parts of the diagonal of the panel."""
-
 CYCLE = "cycle (1: first of the history)"
 """Words of the axis of cycles."""
-
-LONG = 50
-"""Number of cycles of one block from which their axis is logarithmic: transients are short.
-
-With several blocks the axis is linear: a logarithmic one would squeeze all blocks but the first.
-"""
 
 PERIODIC: dict[str, Any] = {"color": "0.45", "linewidth": 0.8, "linestyle": (0, (1.0, 2.0))}
 """Line of the first periodic cycle of a block."""
@@ -198,8 +186,8 @@ def _parts(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
 def _style(kind: int, dashes: int, count: int) -> dict[str, Any]:
     """Return a line with marks. Each length of cycles has a mark of its own. Marks of shear are open."""
     marks: dict[str, Any] = {"marker": MARKERS[kind], "markersize": 3.8, "clip_on": False, "zorder": 3}
-    if count > FEW:
-        marks["markevery"] = SPARSE
+    if count > 60:  # of more cycles some have a mark
+        marks["markevery"] = 0.12  # distance of the marks, in diagonals of the panel
     if dashes:
         marks["markerfacecolor"] = "white"
     return {**line(kind, dashes), **marks}
@@ -243,10 +231,13 @@ def _mark_periodic(panels: Sequence[Axes], cycles: Sequence[Cycle], numbers: dic
 
 
 def _cycle_axis(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
-    """Set the axis of cycles: logarithmic for a long block, else with whole numbers."""
+    """Set the axis of cycles: logarithmic for one long block, since transients are short, else with whole numbers.
+
+    A logarithmic axis would squeeze all blocks but the first.
+    """
     last = len(cycles)
     panels[-1].set_xlabel(CYCLE)
-    if last > LONG and len(consecutive_cycles(cycles)) == 1:
+    if last > 50 and len(consecutive_cycles(cycles)) == 1:
         for panel in panels:
             panel.set_xscale("log")
             panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=15))

@@ -29,9 +29,6 @@ from fastpin.solver.wear_result import WearResult
 DECADES = 6
 """Decades of damage that a figure shows."""
 
-LEVELS = 4
-"""Colours of a map in each decade."""
-
 NEAR = 1e-4
 """Damage from which on a figure shows the damage 1, of a crack, too."""
 
@@ -96,7 +93,7 @@ def _draw_field(panel: Axes, found: WornFatigue) -> QuadContourSet | None:
     angle, depth, damage, worn = angles[order], length * found.depth, found.damage[-1][:, order], found.worn[-1][order]
     top, filled = float(damage.max()), None
     if top > 0.0:
-        levels = np.geomspace(top * 10.0**-DECADES, top, DECADES * LEVELS + 1)
+        levels = np.geomspace(top * 10.0**-DECADES, top, 4 * DECADES + 1)  # four colours in each decade
         drawn, scale = np.clip(damage, levels[0], top), LogNorm(levels[0], top)
         filled = panel.contourf(angle, depth, drawn, levels, norm=scale, cmap="viridis", extend="min")
         if damage.min() < 1.0 < top:

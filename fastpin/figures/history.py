@@ -21,18 +21,6 @@ from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 
-MOST_MARKED = 60
-"""Most corners that are marked by dots. More dots would hide the lines."""
-
-WORDS = {
-    "force": "force", "moment": "moment", "traction": "remote stress", "rotation": "prescribed", "displacement":
-    "prescribed",
-}  # fmt: skip
-"""Words before the names of loads, by kind."""
-
-MOST_NAMED_BLOCKS = 8
-"""Most repeated blocks that are named in the figure. More names would overlap."""
-
 
 def plot_history(
     problem: Problem,
@@ -90,11 +78,17 @@ def _draw(look: Look, problem: Problem, folded: Folded) -> Sheet:
         factor, label = units(problem)[kind].scale(np.concatenate(list(columns.values())).tolist())
         for name in names:
             style = line(len(entries) % MAX_NAMED, len(entries) % MAX_NAMED)
-            dots = {"marker": "o", "markersize": 2.2} if len(loads) <= MOST_MARKED else {}
+            dots = {"marker": "o", "markersize": 2.2} if len(loads) <= 60 else {}  # more dots would hide the lines
             panel.plot(np.arange(len(loads)), factor * columns[name], **style, **dots)
             entries.append((name, style))
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-        panel.set_ylabel(quantity(f"{WORDS[kind]} {', '.join(names)}", label))
+        other = {
+            "traction": "remote stress",
+            "rotation": "prescribed",
+            "displacement": "prescribed",
+            "ratio": "relative",
+        }
+        panel.set_ylabel(quantity(f"{other.get(kind, kind)} {', '.join(names)}", label))
         panel.set_xlim(0.0, len(loads) - 1.0)
         _shade(panel, repeated, panel is axes[0, 0])
     locator = MaxNLocator(nbins=9, integer=True, min_n_ticks=1)
@@ -132,7 +126,7 @@ def _shade(panel: Axes, repeated: list[tuple[int, int, int]], named: bool) -> No
     """Shade the repeated blocks, and name the number of times above the panel."""
     for place, (first, last, count) in enumerate(repeated):
         panel.axvspan(first, last, color="0.93" if place % 2 == 0 else "0.88", linewidth=0, zorder=-1)
-        if named and len(repeated) <= MOST_NAMED_BLOCKS:
+        if named and len(repeated) <= 8:  # more names would overlap
             panel.text(
                 0.5 * (first + last), 1.02, f"× {count:,}", transform=panel.get_xaxis_transform(), ha="center",
                 va="bottom", fontsize=8.0,

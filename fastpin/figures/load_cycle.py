@@ -50,13 +50,7 @@ SHADES = {NodeBehaviour.SLIPS: ("0.80", "slips at some time"), NodeBehaviour.OPE
 STRAIGHT = 3
 """States of a cycle, with both ends, between which a loop is a line. Its area tells nothing then."""
 
-SMALL = 0.1
-"""Displacement without a prefix below which the unit gets a power of ten: long numbers would overlap on the axis."""
-
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-TICKS = {1: 9, 2: 6, 3: 3}
-"""Most intervals on the axis of displacements, by the number of panels side by side."""
 
 ENERGY_DIGITS = 4
 """Significant digits of areas and energies."""
@@ -66,9 +60,6 @@ AREA_ERROR = 0.01
 
 Abscissa = Literal["prescribed", "pin"]
 """The displacement over which a reaction is drawn."""
-
-PRESCRIBED = {"Q": "ux", "P": "−uy"}
-"""Names of prescribed displacements along the reactions."""
 
 
 def plot_slip(
@@ -333,7 +324,13 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
     load, load_unit = unit[kind].scale(np.concatenate([loop.load for loop in loops]).tolist())
     words, conjugate = CONJUGATES[kind]
     words = "displacement of the pin" if kind == "force" else words
-    moves = [_abscissa_values(cycle, name, abscissa) for cycle in cycles]
+    sign, shift = (1.0, "ux") if name == "Q" else (-1.0, "uy")  # a displacement gets the sign of the load
+    moves = [
+        np.array([sign * state.load[shift] for state in cycle.states])
+        if _prescribed(cycle.states[0].problem, name, abscissa)
+        else loop.displacement
+        for cycle, loop in zip(cycles, loops, strict=True)
+    ]
     if prescribed := _prescribed(problem, name, abscissa):
         words = f"prescribed displacement {prescribed}"
     moved, moved_unit = _displacement_scale(np.concatenate(moves), unit[conjugate])
@@ -350,21 +347,13 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
             is_rounding = abs(loop.work) <= ROUNDING * float(np.abs(loop.load).max() * np.abs(loop.displacement).max())
             area = f"area {'0' if is_rounding else short(float(loop.work), unit['energy'])}"
         panel.text(0.0, 1.02, area, fontsize=8.0, ha="left", va="bottom", transform=panel.transAxes)
-    panel.xaxis.set_major_locator(MaxNLocator(TICKS[across], steps=[1, 2, 5, 10]))
+    panel.xaxis.set_major_locator(MaxNLocator({1: 9, 2: 6, 3: 3}[across], steps=[1, 2, 5, 10]))
 
 
 def _prescribed(problem: Problem, name: str, abscissa: Abscissa | None) -> str:
     """Words for the prescribed displacement over which a load is drawn; empty if it is drawn over that of the pin."""
     driven = dict(zip(("Q", "P"), problem.driven, strict=True)).get(name, False)
-    return PRESCRIBED[name] if driven and abscissa != "pin" else ""
-
-
-def _abscissa_values(cycle: LoadCycle, name: str, abscissa: Abscissa | None) -> np.ndarray:
-    """The displacements over which a load is drawn, with the sign of the load, shape (states,)."""
-    if not _prescribed(cycle.states[0].problem, name, abscissa):
-        return cycle.loops[name].displacement
-    sign, load = (1.0, "ux") if name == "Q" else (-1.0, "uy")
-    return np.array([sign * state.load[load] for state in cycle.states])
+    return {"Q": "ux", "P": "−uy"}[name] if driven and abscissa != "pin" else ""
 
 
 def dissipated_words(cycle: LoadCycle) -> str:
@@ -408,7 +397,7 @@ def _displacement_scale(values: np.ndarray, unit: Unit) -> tuple[float, str]:
     """As :meth:`fastpin.model.units.Unit.scale`; a unit without prefixes gets a power of ten for small values."""
     factor, label = unit.scale(values.tolist())
     largest = factor * float(np.abs(values).max())
-    if not 0.0 < largest < SMALL:
+    if not 0.0 < largest < 0.1:  # longer numbers would overlap on the axis
         return factor, label
     power = math.floor(math.log10(largest))
     return factor / 10.0**power, f"10{str(power).translate(SUPERSCRIPTS)} {label}"

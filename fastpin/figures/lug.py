@@ -19,9 +19,6 @@ from fastpin.model.lug import Lug, Part, PartLoad
 HOLD_WORDS = {"both": "held", "x": "held along x", "y": "held along y", "normal": "held along the normal"}
 """Words of the legend for supports."""
 
-POINTS = 61
-"""Points of a drawn part."""
-
 ARROWS = 5
 """Arrows of a load on each part."""
 
@@ -54,7 +51,7 @@ def _draw(look: Look, lug: Lug) -> Sheet:
         hold = lug.supports.get(part.name) if part.name else None
         place = 0 if hold is None else 1 + list(HOLD_WORDS).index(hold)
         kinds[place] = ("free", line(5, 0, 1.4)) if hold is None else (HOLD_WORDS[hold], line(place - 1, 0, 4.0))
-        z = 1e3 * part.at(np.linspace(0.0, 1.0, POINTS))
+        z = 1e3 * part.at(np.linspace(0.0, 1.0, 61))
         # Snapped to pixels, straight parts would not meet the arcs.
         panel.plot(z.real, z.imag, **kinds[place][1], zorder=3 if hold else 2, snap=False)
     _write_names(panel, lug)

@@ -15,9 +15,6 @@ from fastpin.report.states import state_table
 from fastpin.solver.result import Result
 from fastpin.states.state import State
 
-WIDTH = 5.6
-"""Width of the figure, inches."""
-
 
 def state_html(state: State) -> str:
     """Return the HTML of a state: a table with one row, and a figure of the tractions.
@@ -42,7 +39,7 @@ def result_html(result: Result) -> str:
 
 def _html(states: Sequence[State], note: str) -> str:
     picture = io.BytesIO()
-    plot_tractions(states, width=WIDTH).savefig(picture, format="png", dpi=SCREEN_DPI)
+    plot_tractions(states, width=5.6).savefig(picture, format="png", dpi=SCREEN_DPI)
     image = base64.b64encode(picture.getvalue()).decode("ascii")
     table = html.escape(state_table(states[0].problem, states))
     caption = f"<p>{html.escape(note)}</p>" if note else ""

@@ -31,14 +31,6 @@ HEIGHT = 0.9
 RINGS = 2
 """Circles of round values, about."""
 
-ANGLES = (-135, -90, -45, 0, 45, 90, 135, 180)
-"""Angles that are named, degrees from the bottom."""
-
-NAMED_AT = 157.5
-"""Angle at which the values of the circles stand, degrees from the bottom. Few joints touch there."""
-
-_TURN = np.linspace(0.0, 2.0 * math.pi, 361)
-
 
 def plot_polar(
     result: Sequence[State] | State,
@@ -108,18 +100,19 @@ def _draw_circle(panel: Axes, largest: float, height: float, label: str, both: b
     panel.set_yticks([])
     for spine in panel.spines.values():
         spine.set_visible(False)
+    turn = np.linspace(0.0, 2.0 * math.pi, 361)
     outer = 1.0 + (0.6 if both else 1.0) * HEIGHT
     for value in _round_values(largest):
         for sign in (1.0, -1.0) if both else (1.0,):
             radius = 1.0 + sign * value * height
-            panel.plot(radius * np.cos(_TURN), radius * np.sin(_TURN), color="0.85", linewidth=0.6, zorder=0)
+            panel.plot(radius * np.cos(turn), radius * np.sin(turn), color="0.85", linewidth=0.6, zorder=0)
             text = f"{sign * value:g}".replace("-", "−")
-            x, y = _over_circle(np.array([NAMED_AT]), np.array([radius - 1.0]))
+            x, y = _over_circle(np.array([157.5]), np.array([radius - 1.0]))  # few joints touch at this angle
             halo = [withStroke(linewidth=2.0, foreground="white")]  # hides less of the curves than a box
             style: Any = {"fontsize": 6.5, "color": "0.25", "ha": "center", "va": "center", "path_effects": halo}
             panel.text(x[0], y[0], f"{text} {shown_unit(label)}" if sign > 0.0 else text, **style)
-    panel.plot(np.cos(_TURN), np.sin(_TURN), color="0.2", linewidth=1.0, zorder=1)
-    for degrees in ANGLES:
+    panel.plot(np.cos(turn), np.sin(turn), color="0.2", linewidth=1.0, zorder=1)
+    for degrees in range(-135, 181, 45):
         x, y = _over_circle(np.array([degrees, degrees]), np.array([outer - 1.0, outer - 0.95]))
         panel.plot(x, y, color="0.6", linewidth=0.7)
         far = 1.14 * outer / math.hypot(x[1], y[1])

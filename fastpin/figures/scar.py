@@ -34,10 +34,11 @@ def scar_plot(subject: Subject) -> Plot:
     """Return the profiles of wear, and the pressure on them, after some of the stored cycles."""
     life = with_stored_cycles(subject)
     shown = _by_depth(life)
+    numbers = ", ".join(f"{each.cycle:,}" for each in shown)
     return Plot(
         lambda look: _draw_scar(look, life, shown),
         lambda path: write_csv(scar_curves(life), path),
-        f"Line charts of worn depth and pressure along the hole after {_numbers(shown)} cycles.",
+        f"Line charts of worn depth and pressure along the hole after {numbers} cycles.",
         "Depth worn off both bodies after some cycles, and the nodal pressure on these profiles at the end of one more "
         "cycle.",
         [f"{part} are drawn"] if (part := _part(life, shown)) else [],
@@ -88,10 +89,6 @@ def _by_depth(life: WearResult) -> list[WornCycle]:
     wanted = np.linspace(depths[0], depths[-1], MAX_NAMED)
     near = {0, len(life) - 1, *(int(np.argmin(np.abs(depths - depth))) for depth in wanted[1:-1])}
     return [life[k] for k in sorted(near)]
-
-
-def _numbers(cycles: Sequence[WornCycle]) -> str:
-    return ", ".join(f"{each.cycle:,}" for each in cycles)
 
 
 def _part(life: WearResult, shown: Sequence[WornCycle]) -> str:

@@ -34,17 +34,8 @@ WIDTH = 6.7
 HEADING = 9.5
 """Size of a title, points."""
 
-USUAL_ROWS, ROW = 4, 0.16
-"""Rows of a legend for which figures have room, and the height of a further row, inches."""
-
 SMALL: Any = {"font.size": 7.5}
 """Size of letters in given axes, points."""
-
-LEAST_CAPTION = 2.5
-"""Least width of given axes with a caption, inches."""
-
-BELOW = 0.45
-"""Distance from given axes to the legend below, inches. It holds the words of the axis of angles."""
 
 GAP = 0.14
 """Gap between panels inside given axes, in parts of the axes. It holds the numbers of an axis."""
@@ -180,7 +171,7 @@ class Sheet:
         text = "\n".join(row for line in lines for row in wrapped(line, width, HEADING))
         small = "\n".join(wrapped_parts(caption, width))
         if host is not None:
-            small = "" if width < LEAST_CAPTION else small
+            small = "" if width < 2.5 else small  # inches: narrow axes have no caption
             host.set_title("\n".join(filter(None, [text, small])), fontsize=CAPTION_SIZE, parse_math=False)
             return
         if self.axes.shape[1] == 1:
@@ -206,11 +197,13 @@ class Sheet:
             return
         if self.host is None:
             rows = -(-len(handles) // columns)
-            self.figure.set_figheight(self.figure.get_figheight() + ROW * max(rows - USUAL_ROWS, 0))
+            # Figures have room for four rows of a legend. A further one is 0.16 inches high.
+            self.figure.set_figheight(self.figure.get_figheight() + 0.16 * max(rows - 4, 0))
             fitted_legend(self.figure, list(handles), columns, title)
             return
         host = self.host
-        below = ScaledTranslation(0.0, -BELOW, self.figure.dpi_scale_trans)
+        # The words of the axis of angles have 0.45 inches between the axes and the legend below.
+        below = ScaledTranslation(0.0, -0.45, self.figure.dpi_scale_trans)
         host.legend(
             handles=[entry for entry in handles if str(entry.get_label()).strip()], fontsize=6.5, title=title or None,
             title_fontsize=6.5, loc="upper center", ncols=min(columns, 2), bbox_to_anchor=(0.5, 0.0),

@@ -48,21 +48,12 @@ ROUND = np.linspace(-math.pi, math.pi, 721)
 LONG, SHORT = 1.45, 0.55
 """Lengths of the arrow of a force and of a remote stress, in radii of the hole."""
 
-THICK = 0.07
-"""Half the thickness of the arc that shows a contact, in radii of the hole."""
-
-MARGIN = 1.25
-"""Room for the arrows of remote stresses, in radii of the hole."""
-
-SHORTEST = 0.35
-"""Length of the arrow of a small force, in parts of the longest: a shorter one has no shaft."""
-
-STEEL, ALLOY, BRASS = "#C9CDD3", "#E8EAED", "#EAD9A8"
-"""Shades of pin, plate and bush."""
+ALLOY = "#E8EAED"
+"""Shade of the plate."""
 
 PARTS: dict[str, dict[str, Any]] = {
     "lug": {"facecolor": ALLOY, "edgecolor": "0.25", "linewidth": 1.2},
-    "bush": {"facecolor": BRASS, "edgecolor": "0.25", "linewidth": 1.0},
+    "bush": {"facecolor": "#EAD9A8", "edgecolor": "0.25", "linewidth": 1.0},
     "hole": {"facecolor": "white", "edgecolor": "0.15", "linewidth": 1.2},
     "bore": {"facecolor": "white", "edgecolor": "0.15", "linewidth": 0.9},
 }
@@ -185,7 +176,7 @@ def draw_sketch(
     force = largest or max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
     beside = -1.0 if ranges.get("P", (0.0, 0.0))[0] < 0.0 else 1.0
     _draw_loads(panel, problem, ranges, Scale(outside, "sxy" in ranges, force, beside))
-    room = MARGIN if any(LOAD_KIND[name] not in ("force", "moment") for name in ranges) else 0.15
+    room = 1.25 if any(LOAD_KIND[name] not in ("force", "moment") for name in ranges) else 0.15
     panel.set_xlim(-outside - room, outside + room)
     panel.set_ylim(-outside - room, outside + room)
     if state is not None and state.in_contact:
@@ -230,7 +221,7 @@ def _draw_hole_and_pin(panel: Axes, problem: Problem, ranges: Mapping[str, LoadR
     ahead = along > 0.0
     away = push * float(((clearance + hole + pin)[ahead] / along[ahead]).min()) if clearance else 0j
     _draw_rim(panel, 1.0 + hole, 0j, zorder=1.0, **PARTS["hole"])
-    pin_style = {"facecolor": STEEL, "edgecolor": "0.15", "linewidth": 1.0}
+    pin_style = {"facecolor": "#C9CDD3", "edgecolor": "0.15", "linewidth": 1.0}
     # Without clearance the pin fills the hole.
     _draw_rim(panel, 1.0 - clearance - pin if clearance else 1.0 + hole, away, zorder=3, **pin_style)
     if problem.assembled_clearance < 0.0:  # the free pin is larger than the hole
@@ -260,7 +251,7 @@ def _draw_contact(panel: Axes, state: State) -> None:
         first, last = math.degrees(start), math.degrees(stop)
         colour, hatch, _ = zone_look(state.problem, int(status))
         panel.add_patch(
-            Wedge((0.0, 0.0), 1.0 + THICK, first, last, width=2.0 * THICK, facecolor=colour, hatch=hatch,
+            Wedge((0.0, 0.0), 1.07, first, last, width=0.14, facecolor=colour, hatch=hatch,
                   edgecolor="0.25", linewidth=0.0, zorder=5)
         )  # fmt: skip
 
@@ -301,7 +292,7 @@ def _arrow(panel: Axes, tail: complex, head: complex, span: LoadRange, colour: s
 
 def _draw_force(panel: Axes, name: str, span: LoadRange, words: str, scale: Scale) -> None:
     """Draw a force on the pin: from its centre, through it if the force changes its sign."""
-    length = LONG * max(_size(span) / scale.force, SHORTEST)
+    length = LONG * max(_size(span) / scale.force, 0.35)  # a shorter arrow has no shaft
     along = -1j if name == "P" else 1.0
     both = span[0] < 0.0 < span[1]
     if span[1] <= 0.0:

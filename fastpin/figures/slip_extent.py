@@ -21,13 +21,6 @@ GAP = 2.0
 """Distance of two load points, in usual distances, from which on nothing is drawn between them."""
 
 
-KINDS = {0.0: ("one state", "states"), 1.0: ("one cycle", "cycles")}
-"""Words for the parts that a column joins, by the share of the states that lie in cycles."""
-
-MIXED = ("one cycle, or one state outside of cycles", "cycles, or states outside of cycles")
-"""Words for the parts if some states lie in cycles."""
-
-
 class MapColumn(NamedTuple):
     """A column of the map.
 
@@ -83,7 +76,12 @@ def columns_of(points: np.ndarray, cycles: Sequence[Cycle], most: int) -> tuple[
         near = first - right <= GAP * max(usual, 1.0)
         columns.append(MapColumn(right if near else max(first - usual, 0.0), float(points[places[-1]]), places))
         right = columns[-1].right
-    single, several = KINDS.get(float(np.mean(units % 1.0 == 0.0)), MIXED)
+    single, several = "one cycle, or one state outside of cycles", "cycles, or states outside of cycles"
+    in_cycles = units % 1.0 == 0.0
+    if in_cycles.all():
+        single, several = "one cycle", "cycles"
+    elif not in_cycles.any():
+        single, several = "one state", "states"
     return columns, f"each column is {single}" if joined == 1 else f"each column joins {joined} {several}"
 
 

@@ -30,12 +30,6 @@ from fastpin.states.state import State
 from fastpin.storage.origin import marked_extremes
 from fastpin.storage.store import load, load_points
 
-STEPS = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0)
-"""Distances of the numbers on an axis of angles, degrees."""
-
-MOST_TICKS = 12
-"""Most numbers on an axis of angles, before its ends are moved to whole steps."""
-
 NEARLY_ROUND = 340.0
 """Length of an axis, degrees, from which on it goes all round: with further whole steps it would be more than that."""
 
@@ -44,9 +38,6 @@ SAME = 1e-3
 
 MOST_JOINED = 10_000
 """Most states that a map of a whole history joins in its columns. With 400 nodes they take 300 MB of memory."""
-
-LONG_ENTRY = 32
-"""Characters of an entry of the legend beyond which two columns of entries would need letters too small to read."""
 
 
 TRACTIONS: tuple[tuple[str, Side], ...] = (("peak_pressure", "largest"), ("peak_shear", "largest magnitude"))
@@ -280,7 +271,7 @@ class Frame:
         margin = 0.04 * (last - first) + 1.0
         self.limits = (max(first - margin, angle[0]) - turn, min(last + margin, angle[-1]) - turn)
         span = self.limits[1] - self.limits[0]
-        self.step = next(step for step in STEPS if span <= (MOST_TICKS - 1) * step)
+        self.step = next(step for step in (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0) if span <= 11.0 * step)  # 12 numbers
         if span < NEARLY_ROUND:  # both ends of the axis get a number
             self.limits = (
                 self.step * math.floor(self.limits[0] / self.step), self.step * math.ceil(self.limits[1] / self.step)
@@ -373,7 +364,8 @@ def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist
     if not states:
         return styles, max(len(styles), 1)
     longest = max(len(str(entry.get_label())) for entry in states)
-    rows = len(states) if len(states) <= 3 or longest > LONG_ENTRY else math.ceil(len(states) / 2)
+    is_single = len(states) <= 3 or longest > 32  # long entries in two columns would need letters too small to read
+    rows = len(states) if is_single else math.ceil(len(states) / 2)
     columns = [states[k : k + rows] for k in range(0, len(states), rows)]
     if styles:
         columns.append(styles)

@@ -51,9 +51,6 @@ EXTENTS = {
 }
 """Words for the behaviour of a node in a column that joins several states."""
 
-BOTH_WAYS_LOOK = ("#6FB58F", "xxxx", "")
-"""The look of nodes that slip both ways in a column."""
-
 MARKS = {SLIP_POSITIVE: "^", SLIP_NEGATIVE: "v"}
 """Marks of slip zones that are too narrow to be seen; they point along the slip of the pin."""
 
@@ -62,9 +59,6 @@ _MARK: dict[str, Any] = {
     "markeredgewidth": 0.8, "clip_on": False,
 }  # fmt: skip
 """Style of the marks: white with a black edge, which is seen on dark and on white."""
-
-NARROW = 0.015
-"""Width of a zone, in parts of the axis of angles, below which it gets a mark."""
 
 MOST_MARKS = 40
 """Most states whose narrow zones get marks. The marks of more columns would hide the map."""
@@ -224,7 +218,8 @@ def extent_look(problem: Problem, extent: int) -> ZoneLook:
     """Colour, hatch and words of nodes in a column that joins several states."""
     if problem.frictionless:
         return FRICTIONLESS
-    colour, hatch, words = LOOKS.get(extent, BOTH_WAYS_LOOK)
+    both_ways = ("#6FB58F", "xxxx", "")
+    colour, hatch, words = LOOKS.get(extent, both_ways)
     return colour, hatch, EXTENTS.get(extent, words)
 
 
@@ -271,8 +266,8 @@ def zone_patch(look: ZoneLook) -> Patch:
 
 
 def _draw_marks(panel: Axes, boxes: Sequence[ZoneBox], columns: int, limits: tuple[float, float]) -> bool:
-    """Mark narrow slip zones, and return whether there are any."""
-    least = NARROW * (limits[1] - limits[0])
+    """Mark slip zones that are narrower than 1.5 % of the axis, and return whether there are any."""
+    least = 0.015 * (limits[1] - limits[0])
     narrow = [box for box in boxes if box.status in MARKS and box.stop - box.start < least]
     if columns > MOST_MARKS:
         return False

@@ -41,9 +41,6 @@ LEVELS = 15
 FARTHEST = 0.995
 """Part of the points of a map whose values lie within the colours. The values beyond take the end colours."""
 
-SINGULAR = 0.3
-"""Radius round a point force at the pin's centre, in hole radii. The infinite stress there does not set the colours."""
-
 
 def plot_hoop_stress(
     result: Sequence[State] | State,
@@ -230,9 +227,8 @@ def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: st
     panel = sheet.axes[0, 0]
     unit, radius = units(state.problem)["traction"], state.problem.hole_radius
     distance, angle, value = curves[0].columns
-    nearest = (
-        SINGULAR * radius if not state.problem.pin_body.bore_radius and state.problem.pin_load == "centre" else 0.0
-    )
+    # The infinite stress at a point force at the pin's centre does not set the colours.
+    nearest = 0.3 * radius if not state.problem.pin_body.bore_radius and state.problem.pin_load == "centre" else 0.0
     every = np.concatenate([curve[value][curve[distance] >= nearest] for curve in curves])
     low, high = np.quantile(every, [1.0 - FARTHEST, FARTHEST])
     factor, label = unit.scale([low, high])

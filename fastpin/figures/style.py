@@ -46,14 +46,8 @@ DASHES: tuple[tuple[int, tuple[float, ...] | None], ...] = (
 MAX_NAMED = len(COLOURS)
 """Most curves that can be told apart in a panel."""
 
-LEAST_WIDTH, MOST_WIDTH = 1.0, 12.0
-"""Limits of a figure's width, inches."""
-
 LONGEST_TITLE = 2_000
 """Most characters of the title of a figure. The lines of ten times as many take seconds to draw."""
-
-LEAST_DPI, MOST_DPI = 10.0, 1200.0
-"""Limits of a bitmap's dots per inch. The largest bitmap takes less than 1 GB of memory."""
 
 SCREEN_DPI = 110.0
 """Dots per inch of a picture in a notebook."""
@@ -109,7 +103,7 @@ def number_of_dots(dpi: float) -> float:
     InputError
         If `dpi` is out of range.
     """
-    return number("dpi", dpi, LEAST_DPI, MOST_DPI)
+    return number("dpi", dpi, 10.0, 1200.0)  # the largest bitmap takes less than 1 GB of memory
 
 
 def check_figure_text(title: str, width: float) -> float:
@@ -122,7 +116,7 @@ def check_figure_text(title: str, width: float) -> float:
     """
     if len(string("title", title)) > LONGEST_TITLE:
         raise InputError("title", f"must have at most {LONGEST_TITLE:,} characters in a figure, not {len(title):,}")
-    return number("width", width, LEAST_WIDTH, MOST_WIDTH)
+    return number("width", width, 1.0, 12.0)
 
 
 def spread(count: int, most: int) -> list[int]:
@@ -155,14 +149,10 @@ Line = dict[str, Any]
 """Keywords of ``Axes.plot``: colour, dashes, width."""
 
 
-FAR = 1.0
-"""Distance of all curves from 0 beyond which 0 is not shown, in parts of their range."""
-
-
 def draw_zero(panel: Axes) -> None:
-    """Draw the line of 0 behind the curves of a panel. Curves that lie far from 0 are not flattened for it."""
+    """Draw the line of 0 behind the curves of a panel. Curves farther from 0 than their range are not flattened."""
     low, high = panel.dataLim.intervaly
-    if max(low, -high) <= FAR * (high - low):
+    if max(low, -high) <= high - low:
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
 
 

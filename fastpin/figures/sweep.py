@@ -36,17 +36,8 @@ _UNSURE: Any = {
     "linestyle": "none",
 }  # fmt: skip
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
-SIDE_BY_SIDE, PANEL = 7.6, 2.9
-"""Width of a figure of several charts, and the height of a row, inches."""
-
-MOST_COLUMNS = 3
-"""Most maps side by side."""
-
-MOST_ENTRIES = 4
-"""Most entries of a map's legend side by side."""
-
-LOG_RATIO = 30.0
-"""Ratio of the largest to the smallest value, all positive, from which on their scale is logarithmic."""
+SIDE_BY_SIDE = 7.6
+"""Width of a figure of several charts, inches."""
 
 MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 """Marks of the computed values, as many as colours. Crosses mark failed runs."""
@@ -54,20 +45,11 @@ MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 LEVELS = 7
 """Most contour lines of a map."""
 
-LABEL_GAP = 2.0
-"""Least distance of the labels of contour lines, points, from each one half."""
-
-LEAST_CELLS = 3
-"""Fewest cells along each axis of a map with contour lines."""
-
 DECADES = 1.7
 """Decades of an axis up to which its numbers stand at 1, 2 and 5 times powers of ten.
 
 Up to twice as many they stand at 1 and 3 times powers of ten, and beyond at powers of ten.
 """
-
-BODY_SECTIONS, BODY_FIELDS = ("pin", "plate", "dundurs", "pin_body", "plate_body"), ("contact.pin_load",)
-"""Sections and fields of a case that change the bodies. A caption leaves out the bodies if one of them varies."""
 
 CAPTION_WORDS = {
     "contact.friction": ("friction",),
@@ -77,9 +59,6 @@ CAPTION_WORDS = {
     "gap.pin": ("initial gap of the pin",),
 }
 """Words with which the parts of a caption begin that belong to a field."""
-
-PLAIN = 1e-3, 1e5
-"""Numbers between these are written in full, others as powers of ten."""
 
 
 def plot_sweep(
@@ -140,7 +119,7 @@ def sweeps_of(charts: Sequence[Chart]) -> Plot:
 def _draw_beside(look: Look, charts: Sequence[Chart]) -> Sheet:
     columns = min(len(charts), 2)
     with mpl.rc_context(SMALL):
-        sheet = look.sheet([PANEL] * -(-len(charts) // columns), columns, 0.5)
+        sheet = look.sheet([2.9] * -(-len(charts) // columns), columns, 0.5)
         for panel in sheet.axes.flat[len(charts) :]:
             panel.set_visible(False)
         for panel, chart in zip(sheet.axes.flat, charts, strict=False):
@@ -184,7 +163,7 @@ def cell_edges(axis: Axis) -> np.ndarray:
 
 def _draw_maps(look: Look, chart: Chart) -> Sheet:
     assert chart.y is not None
-    columns = min(len(chart.parts), MOST_COLUMNS)
+    columns = min(len(chart.parts), 3)
     rows = math.ceil(len(chart.parts) / columns)
     sheet = look.sheet([3.4 if columns == 1 else 2.5] * rows, columns, 0.6)
     if chart.classes:
@@ -231,7 +210,7 @@ def _thin_out(sheet: Sheet, labels: Sequence[Text]) -> None:
     sheet.figure.draw_without_rendering()
     kept: list[Bbox] = []
     for label in labels:
-        space = label.get_window_extent().padded(LABEL_GAP * sheet.figure.dpi / 72.0)
+        space = label.get_window_extent().padded(2.0 * sheet.figure.dpi / 72.0)  # two points on each side
         if any(space.overlaps(other) for other in kept):
             label.remove()
         else:
@@ -317,7 +296,7 @@ def _draw_contours(panel: Axes, chart: Chart, numbers: np.ndarray, levels: np.nd
     assert chart.y is not None
     known = np.isfinite(numbers)
     labels: list[Text] = []
-    if min(numbers.shape) < LEAST_CELLS or not known.any():
+    if min(numbers.shape) < 3 or not known.any():  # so few cells along an axis show no lines
         return labels
     inside = levels[(levels > numbers[known].min()) & (levels < numbers[known].max())]
     if inside.size:
@@ -338,8 +317,8 @@ def _known_values(chart: Chart) -> np.ndarray:
 
 
 def _spans_decades(values: np.ndarray) -> bool:
-    """Whether the values are positive, and too different for a linear scale."""
-    return bool(values.min() > 0.0 and values.max() >= LOG_RATIO * values.min())
+    """Whether the values are positive, and too different for a linear scale: from a ratio of 30 on."""
+    return bool(values.min() > 0.0 and values.max() >= 30.0 * values.min())
 
 
 def _explain(sheet: Sheet, chart: Chart) -> None:
@@ -351,7 +330,7 @@ def _explain(sheet: Sheet, chart: Chart) -> None:
     if any(unsure.any() for unsure in _unsure(chart)):
         words = "another class on the coarse grid" if chart.classes else "error bar above the differences to all sides"
         handles.append(Line2D([], [], label=words, **_UNSURE))
-    _add_legend(sheet, handles, MOST_ENTRIES)
+    _add_legend(sheet, handles, 4)
 
 
 def _draw_curves(look: Look, chart: Chart) -> Sheet:
@@ -400,7 +379,8 @@ def _fixed_parameters(chart: Chart) -> str:
     if chart.problem is None:
         return ""
     parts = re.split("(?<=[,;]) ", caption(chart.problem))
-    if any(field.split(".")[0] in BODY_SECTIONS or field in BODY_FIELDS for field in chart.varied):
+    of_bodies = ("pin", "plate", "dundurs", "pin_body", "plate_body")
+    if any(field.split(".")[0] in of_bodies or field == "contact.pin_load" for field in chart.varied):
         parts = parts[next(k for k, part in enumerate(parts) if part.startswith("plane ")) :]
     for field, words in CAPTION_WORDS.items():
         if any(name == field or name.startswith(f"{field}.") for name in chart.varied):
@@ -457,7 +437,7 @@ def _round_numbers(axis: MatplotlibAxis, values: np.ndarray) -> None:
 def _in_round_numbers(values: np.ndarray) -> Callable[[float], str]:
     """Return how round numbers like some values are written: all in full, or all as powers of ten."""
     sizes = np.abs(values[values != 0.0])
-    if not sizes.size or (PLAIN[0] <= sizes.min() and sizes.max() <= PLAIN[1]):
+    if not sizes.size or (sizes.min() >= 1e-3 and sizes.max() <= 1e5):
         return lambda value: f"{value:.6g}".replace("-", "−")
 
     def written(value: float) -> str:

@@ -30,9 +30,6 @@ from fastpin.states.curves import friction_along
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
-_BESIDE = (1.02, -0.05, 0.36, 1.1)
-"""Place of the sketch beside the panel of the pressure, in parts of the panel."""
-
 ARROWS = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}
 """The direction in which the pin slips over the plate."""
 
@@ -48,9 +45,6 @@ _BAR = 0.46
 """Height of the bars of a zone, in parts of a row. The arrows of narrow zones stand between the bars."""
 
 _STROKE: dict[str, Any] = {"arrowstyle": "-", "linewidth": 0.7, "color": "0.15", "shrinkA": 0, "shrinkB": 0}
-
-NARROW = 0.03
-"""Width of a zone, in parts of the axis, below which the arrow stands above the zone and points at it."""
 
 
 def plot_tractions(
@@ -139,7 +133,8 @@ def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve], sketch: bool
     sheet.figure.align_ylabels(list(axes))
     if sketch:
         ranges = load_ranges(states)
-        draw_sketch(states[0].problem, ranges, Look(ax=axes[0].inset_axes(_BESIDE)), words=False)
+        beside = axes[0].inset_axes((1.02, -0.05, 0.36, 1.1))
+        draw_sketch(states[0].problem, ranges, Look(ax=beside), words=False)
     name_states(sheet, states, [look.title], _styles(states, bars))
     return sheet
 
@@ -236,7 +231,7 @@ def _draw_zones(panel: Axes, states: DrawnStates, lines: Sequence[Line], frame: 
         for start, stop, sign in state.slip_zones:
             for left, width in frame.place(start, stop):
                 panel.barh(row, width, left=left, height=_BAR, color=colour, alpha=0.22, linewidth=0)
-                narrow = width < NARROW * (frame.limits[1] - frame.limits[0])
+                narrow = width < 0.03 * (frame.limits[1] - frame.limits[0])
                 _write_arrow(panel, left + 0.5 * width, row - 0.5 * _BAR * narrow, sign, panel.transData, above=narrow)
     panel.set_ylim(len(states) - 0.45, -0.75)
     panel.set_yticks(range(len(states)), [point_text(state) for state in states])

@@ -32,15 +32,6 @@ NUMBER = Unit(1.0, "")
 RIGID = "rigid"
 """The choice of a rigid material."""
 
-MOST_FRICTION = 1.2
-"""End of the slider of friction. Dry metals hardly have more; the field beside takes any."""
-
-USUAL_STRAIN = 1e-3
-"""Strain of a usual load, where the case has none to go by."""
-
-USUAL_CHANGE = 0.5
-"""End of the slider of a change of the friction."""
-
 MISFITS = 1.5
 """End of the sliders of clearance and initial gap, in parts of the larger of them, or of the displacement under the
 usual force."""
@@ -77,13 +68,13 @@ class ControlScales:
     def __init__(self, problem: Problem, history: LoadHistory) -> None:
         largest = dict(zip(LOADS, abs(history.distinct()).max(axis=0).tolist(), strict=True))
         natural = problem.natural_loads()
-        self.force = math.hypot(largest["P"], largest["Q"]) or USUAL_STRAIN * natural["force"]
+        self.force = math.hypot(largest["P"], largest["Q"]) or 1e-3 * natural["force"]  # a usual strain
         yielded = self.force * problem.surfaces.beta_star
         self.displacement = max(largest["ux"], largest["uy"]) or abs(problem.assembled_clearance) + yielded
         self.stress = max(0.5 * self.force / problem.hole_radius, *(largest[name] for name in ("sxx", "syy", "sxy")))
         self.moment = max(largest["M"], max(problem.most_friction, 0.1) * self.force * problem.hole_radius)
         self.rotation = max(largest["rotation"], yielded / problem.hole_radius)
-        self.ratio = USUAL_CHANGE
+        self.ratio = 0.5
         largest_gap = max(abs(each - problem.assembled_clearance) for each in problem.clearances)
         self.misfit = max(abs(problem.clearance), yielded)
         self.gap = max(abs(problem.clearance), largest_gap) or yielded
@@ -224,7 +215,8 @@ def _friction(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:
     """The controls of the friction: its coefficient, or the largest one and whether it varies along the rim."""
     varies = isinstance(problem.friction, Profile)
     name = "most_friction" if varies else "friction"
-    found = [_slider("contact", name, problem.most_friction, NUMBER, 0.0, MOST_FRICTION)]
+    # Dry metals hardly have more than 1.2. The field beside the slider takes any friction.
+    found = [_slider("contact", name, problem.most_friction, NUMBER, 0.0, 1.2)]
     if scales.has_varying_friction:
         found.append(_chooser("contact", "friction_along", "case" if varies else "uniform", FRICTION_ALONG))
     return found

@@ -21,8 +21,6 @@ CHARTS = "vendor/uPlot.iife.min.js"
 """The library of charts. It is no module: it defines the name ``uPlot``."""
 
 LICENCE = "vendor/uPlot-LICENSE.txt"
-KINDS = {".js": "text/javascript", ".css": "text/css", ".txt": "text/plain"}
-"""Types of the page's files by their suffixes."""
 
 SLOT = "<!-- {} -->"
 """A place in the HTML that is filled."""
@@ -42,7 +40,8 @@ def modules() -> list[str]:
 def page_files() -> dict[str, tuple[bytes, str]]:
     """The files that a server sends: content and type by name. The page itself is not among them."""
     names = [*(f"{name}.js" for name in modules()), *STYLES, CHARTS, LICENCE]
-    return {name: (page_text(name).encode(), KINDS[Path(name).suffix]) for name in names}
+    types = {".js": "text/javascript", ".css": "text/css", ".txt": "text/plain"}
+    return {name: (page_text(name).encode(), types[Path(name).suffix]) for name in names}
 
 
 def live_page() -> tuple[str, str]:

@@ -21,9 +21,6 @@ from fastpin.states.state import State
 EVERY = 2.0
 """Degrees between two points of the curve of the hoop stress."""
 
-BESIDE = (-0.4, -0.1, -0.02, 0.0, 0.02, 0.1, 0.4)
-"""Further points, in degrees from each border of contact and stick. The hoop stress has its sharp peaks there."""
-
 LEAST_IN_CONTACT = 41
 """Points in a contact at least: a narrow one is shown as large as a wide one."""
 
@@ -39,7 +36,8 @@ def packed(values: np.ndarray, kind: str = "<f4") -> str:
 def hoop_degrees(state: State) -> np.ndarray:
     """The angles of the curve of the hoop stress, degrees from the bottom, ascending from -180 to 180, float32."""
     borders = [degrees_from_bottom(angle) for ends in (*state.contact, *state.stick) for angle in ends]
-    beside = np.add.outer(borders, BESIDE).ravel()
+    # The hoop stress has sharp peaks beside the borders.
+    beside = np.add.outer(borders, (-0.4, -0.1, -0.02, 0.0, 0.02, 0.1, 0.4)).ravel()
     regular = np.linspace(-180.0, 180.0, round(360.0 / EVERY) + 1)
     narrow = [ends for ends in state.contact if math.degrees(ends[1] - ends[0]) < EVERY * LEAST_IN_CONTACT]
     inside = [np.degrees(np.linspace(*ends, LEAST_IN_CONTACT)) + 90.0 for ends in narrow]

@@ -60,26 +60,11 @@ MOST_A_SECOND = 240
 MOST_WAITING = 64
 """Most messages of a connection that wait. Loads of a drag count once."""
 
-MOST_CONNECTIONS = 16
-"""Most open connections. Each page has one."""
-
-MOST_SESSIONS = 8
-"""Most sessions, each of them a contact with its history: some 20 MB with 200 nodes."""
-
 MOST_PICTURES = 2_000
 """Pictures of a history that are remembered: a minute of dragging, up to 20 MB with 200 nodes."""
 
 MOST_UNDONE = 200
 """Gestures that can be undone."""
-
-MOST_UNDONE_NODES = 20_000
-"""Nodes of all states for undo together: 100 gestures with 200 nodes, 12 with 1,600. A state takes 4 kB a node."""
-
-MOST_LIVE_NODES = 1_600
-"""Most nodes of a live contact. A step then takes half a second."""
-
-MOST_NUMBER = 2**53
-"""Largest whole number that a page can send: beyond, JavaScript's numbers have gaps."""
 
 
 @dataclass(frozen=True)
@@ -88,17 +73,23 @@ class Limits:
 
     Attributes
     ----------
-    connections, sessions : int
-        Open connections of all pages; contacts.
-    pictures, undone_nodes, nodes : int
-        Of each contact: remembered pictures, nodes of all states for undo, nodes round the hole.
+    connections : int
+        Open connections. Each page has one.
+    sessions : int
+        Contacts, each with its history: some 20 MB with 200 nodes.
+    pictures : int
+        Pictures of a history that a contact remembers.
+    undone_nodes : int
+        Nodes of all states for undo together: 100 gestures with 200 nodes, 12 with 1,600. A state takes 4 kB a node.
+    nodes : int
+        Nodes round the hole. A step with 1,600 takes half a second.
     """
 
-    connections: int = MOST_CONNECTIONS
-    sessions: int = MOST_SESSIONS
+    connections: int = 16
+    sessions: int = 8
     pictures: int = MOST_PICTURES
-    undone_nodes: int = MOST_UNDONE_NODES
-    nodes: int = MOST_LIVE_NODES
+    undone_nodes: int = 20_000
+    nodes: int = 1_600
 
 
 ALONE = Limits()
@@ -106,9 +97,6 @@ ALONE = Limits()
 
 CLASS = Limits(connections=80, sessions=40, pictures=500, undone_nodes=2_000, nodes=400)
 """The limits of a page for a class: 40 visitors. A step of one of them keeps the others waiting for 30 ms at most."""
-
-FOLLOW = ("load", "history")
-"""What follows a change of the problem: one straight step to the present load, or all loads again."""
 
 
 @dataclass(frozen=True)
@@ -125,10 +113,6 @@ class Message:
         return self.kind == "load" and bool(self.fields["drag"])
 
 
-def _loads(name: str, value: object) -> dict[str, float]:
-    return {load: number(load, one) for load, one in _table(name, value).items()}
-
-
 def _table(name: str, value: object) -> dict[str, Any]:
     if not isinstance(value, dict) or not value:
         raise InputError(name, f"must be an object with at least one entry, not {as_toml(value)}")
@@ -136,19 +120,23 @@ def _table(name: str, value: object) -> dict[str, Any]:
 
 
 def _whole(name: str, value: object) -> int:
-    return whole_number(name, value, 0, MOST_NUMBER)
+    return whole_number(name, value, 0, 2**53)  # beyond, JavaScript's numbers have gaps
 
 
 def _follow(name: str, value: object) -> str:
-    return choice(name, value, FOLLOW)
+    return choice(name, value, ("load", "history"))  # one straight step to the load, or all loads again
 
 
 FIELDS: dict[str, dict[str, Any]] = {
     "hello": {"session": string},
-    "load": {"loads": _loads, "gesture": _whole, "drag": true_or_false},
+    "load": {
+        "loads": lambda name, value: {load: number(load, one) for load, one in _table(name, value).items()},
+        "gesture": _whole,
+        "drag": true_or_false,
+    },
     "change": {"changes": _table, "follow": _follow, "gesture": _whole},
     "nodes": {
-        "nodes": lambda name, value: whole_number(name, value, LEAST_NODES, MOST_LIVE_NODES),
+        "nodes": lambda name, value: whole_number(name, value, LEAST_NODES, ALONE.nodes),
         "follow": _follow,
         "gesture": _whole,
     },

@@ -39,17 +39,11 @@ from fastpin.version import __version__
 ADDRESS = "127.0.0.1"
 """The address on which the server listens unless another one is given: that of this machine, for this machine."""
 
-ELSEWHERE = "192.0.2.1", 9
-"""An address that belongs to nobody, for a question to the routing table. Nothing is sent there."""
-
 TURN = 0.05
 """Seconds after which a long history lets the work of other pages pass."""
 
 TOKEN_BYTES = 16
 """Random bytes of the token: 128 bits can't be guessed."""
-
-HEARTBEAT = 20.0
-"""Seconds between two pings of a websocket. A page that has gone without a word is noticed after this time."""
 
 LAST_WAIT = 1.0
 """Seconds that pages have to answer when the server ends."""
@@ -339,7 +333,8 @@ class Server:
     async def _talk(self, request: web.Request) -> web.StreamResponse:
         if request.headers.get("Origin") is None:
             return _refused(403, "Only the page may use this server.")
-        page = web.WebSocketResponse(max_msg_size=MOST_BYTES, heartbeat=HEARTBEAT, compress=False)
+        # A page that has gone without a word is noticed after 20 s.
+        page = web.WebSocketResponse(max_msg_size=MOST_BYTES, heartbeat=20.0, compress=False)
         if self._connections >= self._limits.connections:
             await page.prepare(request)  # a page can read messages, but not why a websocket was refused
             sentence = f"{self._limits.connections} pages are open, no more are served; close one, and reload"
@@ -506,7 +501,7 @@ def _such_as() -> str:
     """Return a sentence's part with the address of this machine in its network, or "" without one."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asking:
         try:
-            asking.connect(ELSEWHERE)
+            asking.connect(("192.0.2.1", 9))  # an address of nobody, for the routing table; nothing is sent
         except OSError:
             return ""
         return f", such as {asking.getsockname()[0]}"

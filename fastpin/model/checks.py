@@ -33,12 +33,6 @@ MOST_PARAMETER = 1e50
 LONGEST_TEXT = 60
 """Most characters of a value that a message repeats."""
 
-DEEPEST_LIST = 3
-"""Lists inside lists that a message repeats."""
-
-LONGEST_NAME, LONGEST_PATH = 255, 4095
-"""Most bytes of a file's name and of its whole path, as usual systems allow them."""
-
 _NUMBER_KINDS = "iuf"
 """Kinds of NumPy arrays and scalars that hold numbers: no truth values, complex numbers, times, texts or objects."""
 
@@ -146,7 +140,8 @@ def file_path(field: str, value: object) -> Path:
         name, encoded = None, b""
     if not isinstance(name, str) or not name or "\0" in name:
         raise InputError(field, f"must be the name of a file, not {as_toml(value)}")
-    if len(encoded) > LONGEST_PATH or max(map(len, encoded.split(os.fsencode(os.sep)))) > LONGEST_NAME:
+    # Usual systems allow so many bytes of a whole path, and of the name of a file.
+    if len(encoded) > 4095 or max(map(len, encoded.split(os.fsencode(os.sep)))) > 255:
         raise InputError(field, f"is too long for the name of a file: {as_toml(value)}")
     return Path(name)
 
@@ -269,7 +264,7 @@ def _as_toml(value: object, depth: int) -> str:
     if isinstance(value, Mapping):
         return "a table"
     if isinstance(value, (list, tuple)):
-        if len(value) > 6 or depth >= DEEPEST_LIST:
+        if len(value) > 6 or depth >= 3:
             return "a list"
         return f"[{', '.join(_as_toml(item, depth + 1) for item in value)}]"
     if isinstance(value, str):

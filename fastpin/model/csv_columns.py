@@ -127,9 +127,10 @@ def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) ->
             shown = ", ".join(as_toml(title) for title in titles[:MOST_SHOWN])
             shown += f" and {len(titles) - MOST_SHOWN} more" if len(titles) > MOST_SHOWN else ""
             fault = f"{len(places)} columns of the file are" if places else "the file has no column"
-            hint = (
-                "" if places else _hint(wanted, [*titles[:MOST_SEARCHED], *(name for name, _ in parts[:MOST_SEARCHED])])
-            )
+            hint = ""
+            if not places and len(wanted) < LONGEST_TEXT:
+                known = [*titles[:MOST_SEARCHED], *(name for name, _ in parts[:MOST_SEARCHED])]
+                hint = closest(wanted, [title for title in known if len(title) < LONGEST_TEXT])
             raise InputError(load, f"{fault} {as_toml(wanted)}; its columns are {shown}{hint}")
         place = places[0]
         unit = _one_unit(load, choice.unit, parts[place][1], "the header says")
@@ -188,9 +189,3 @@ def title_and_unit(title: str) -> tuple[str, str]:
             return name.strip(), unit_name(rest[:-1])
     name, slash, rest = title.partition(" / ")
     return (name.strip(), unit_name(rest)) if slash and is_unit(unit_name(rest)) else (title, "")
-
-
-def _hint(wanted: str, titles: Sequence[str]) -> str:
-    """A hint at the column that is meant. A search in a million headers would take minutes."""
-    known = [title for title in titles if len(title) < LONGEST_TEXT]
-    return closest(wanted, known) if len(wanted) < LONGEST_TEXT else ""

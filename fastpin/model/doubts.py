@@ -129,7 +129,8 @@ def doubts(
         by_sizes = [*_of_sizes(problem)]
         found += by_sizes
         if not {"clearance", "interference"} & {doubt.field for doubt in by_sizes}:
-            found += _of_assembly(problem)
+            stresses = problem.joint.assembly_stresses(problem.assembled_clearance)
+            found += filter(None, (yield_doubt(problem, *stress, "before any load") for stress in stresses.items()))
         by_loads = [] if history is None else [*_of_loads(problem, history)]
         found += by_loads
         if all(doubt.field != "E" for doubt in by_loads):
@@ -207,14 +208,6 @@ def yield_doubt(problem: Problem, edge: str, stress: float, where: str) -> Input
         f"{_mega(stress)} {words}, {where}, is above the yield strength {_mega(strength)} of the {name}; "
         f"fastpin is elastic, but a real {name} yields there",
     )
-
-
-def _of_assembly(problem: Problem) -> Iterator[InputWarning]:
-    """Doubts about the stresses of press fits, before any load."""
-    for edge, stress in problem.joint.assembly_stresses(problem.assembled_clearance).items():
-        found = yield_doubt(problem, edge, stress, "before any load")
-        if found is not None:
-            yield found
 
 
 def warn_of(found: Iterable[InputWarning], stacklevel: int) -> None:

@@ -10,8 +10,6 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, items, negative, positive, string
 from fastpin.model.synonyms import explains_keywords
 
-_EXPONENTS = ("strength_exponent", "ductility_exponent", "shear_strength_exponent", "shear_ductility_exponent")
-
 
 @explains_keywords
 @dataclass(frozen=True, repr=False)
@@ -73,7 +71,7 @@ class FatigueConstants:
         object.__setattr__(self, "source", string("source", self.source))
         for name, value in self.given().items():
             if name != "source":
-                check = negative if name in _EXPONENTS else positive
+                check = negative if name.endswith("_exponent") else positive
                 object.__setattr__(self, name, check(name, value))
 
     def __repr__(self) -> str:

@@ -208,10 +208,6 @@ def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:
     return even + 1j * sense * odd
 
 
-BESIDE = 2
-"""Coarse nodes added at each end of a halved arc: the contact may be wider on the coarse grid."""
-
-
 def halved(grid: Grid, direction: float | None) -> Grid:
     """The grid with half the intervals: every second node.
 
@@ -231,7 +227,7 @@ def halved(grid: Grid, direction: float | None) -> Grid:
     room = math.floor((2.0 * math.pi / spacing - (last - first)) / 4.0 - 0.5)  # at each end, in coarse nodes
     if room < 0:
         last -= 2
-    extra = 2 * max(0, min(BESIDE, room))
+    extra = 2 * max(0, min(2, room))  # at each end: the contact may be wider on the coarse grid
     first, last = first - extra, last + extra
     start = float(grid.theta[0]) + spacing * first
     return Grid.arc(start, start + spacing * (last - first), (last - first) // 2 + 1)

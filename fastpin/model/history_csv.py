@@ -157,7 +157,10 @@ class _Rows:
             is_empty = False
             try:
                 text = cell if self._separator == "," else self._with_point(line_number, LOADS[load], cell)
-                value = float(_shifted(text, power) if power else text) * factor
+                if power:  # the exponent is moved in the text: 1.005 kN are exactly 1005 N
+                    digits, _, exponent = text.strip().lower().partition("e")
+                    text = f"{digits}e{int(exponent or 0) + power}"
+                value = float(text) * factor
                 if "_" in cell:
                     raise ValueError
                 numbers[load] = value if value - value == 0.0 else number(LOADS[load], value)
@@ -233,12 +236,6 @@ def _is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _shifted(text: str, power: int) -> str:
-    """The text of a number times 10 to the `power`. So 1.005 kN are exactly 1005 N."""
-    digits, _, exponent = text.strip().lower().partition("e")
-    return f"{digits}e{int(exponent or 0) + power}"
 
 
 def _lines(file: TextIO, name: str, numbers: array[float]) -> Iterator[tuple[int, str]]:

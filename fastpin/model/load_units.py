@@ -29,38 +29,6 @@ class LoadUnit:
     factor: float = 1.0
 
 
-_FORCE = {
-    "N": LoadUnit(),
-    "kN": LoadUnit(3),
-    "MN": LoadUnit(6),
-    "daN": LoadUnit(1),
-    "kgf": LoadUnit(0, 9.80665),
-    "lbf": LoadUnit(0, POUND),
-    "kip": LoadUnit(3, POUND),
-}
-_FORCE_PER_LENGTH = {
-    "N/m": LoadUnit(),
-    "kN/m": LoadUnit(3),
-    "MN/m": LoadUnit(6),
-    "N/mm": LoadUnit(3),
-    "kN/mm": LoadUnit(6),
-    "lbf/in": LoadUnit(0, POUND / INCH),
-}
-_MOMENT = {
-    "N m": LoadUnit(),
-    "kN m": LoadUnit(3),
-    "N mm": LoadUnit(-3),
-    "lbf in": LoadUnit(0, POUND * INCH),
-    "lbf ft": LoadUnit(0, 12.0 * POUND * INCH),
-}
-_MOMENT_PER_LENGTH = {
-    "N": LoadUnit(),
-    "kN": LoadUnit(3),
-    "N m/m": LoadUnit(),
-    "kN m/m": LoadUnit(3),
-    "N mm/mm": LoadUnit(),
-    "lbf in/in": LoadUnit(0, POUND),
-}
 _UNITS = {
     "traction": {
         "Pa": LoadUnit(),
@@ -88,8 +56,44 @@ _UNITS = {
     },
     "ratio": {"%": LoadUnit(-2)},
 }
-_PER_METRE = {**_UNITS, "force": _FORCE_PER_LENGTH, "moment": _MOMENT_PER_LENGTH}
-_WITH_THICKNESS = {**_UNITS, "force": _FORCE, "moment": _MOMENT}
+_PER_METRE = {
+    **_UNITS,
+    "force": {
+        "N/m": LoadUnit(),
+        "kN/m": LoadUnit(3),
+        "MN/m": LoadUnit(6),
+        "N/mm": LoadUnit(3),
+        "kN/mm": LoadUnit(6),
+        "lbf/in": LoadUnit(0, POUND / INCH),
+    },
+    "moment": {
+        "N": LoadUnit(),
+        "kN": LoadUnit(3),
+        "N m/m": LoadUnit(),
+        "kN m/m": LoadUnit(3),
+        "N mm/mm": LoadUnit(),
+        "lbf in/in": LoadUnit(0, POUND),
+    },
+}
+_WITH_THICKNESS = {
+    **_UNITS,
+    "force": {
+        "N": LoadUnit(),
+        "kN": LoadUnit(3),
+        "MN": LoadUnit(6),
+        "daN": LoadUnit(1),
+        "kgf": LoadUnit(0, 9.80665),
+        "lbf": LoadUnit(0, POUND),
+        "kip": LoadUnit(3, POUND),
+    },
+    "moment": {
+        "N m": LoadUnit(),
+        "kN m": LoadUnit(3),
+        "N mm": LoadUnit(-3),
+        "lbf in": LoadUnit(0, POUND * INCH),
+        "lbf ft": LoadUnit(0, 12.0 * POUND * INCH),
+    },
+}
 
 _OTHER_WORDS = {
     "lb": "lbf",
@@ -115,8 +119,6 @@ _OTHER_WORDS = {
     "degrees": "deg",
 }
 _SIGNS = str.maketrans({"µ": "u", "μ": "u", "²": "2", "·": " ", "⋅": " ", "*": " ", "°": "deg", "-": " ", ".": " "})
-_KINDS = {"force": "force", "moment": "moment", "traction": "stress", "rotation": "rotation", "displacement": "length",
-          "ratio": "ratio"}  # fmt: skip
 
 
 def unit_name(text: str) -> str:
@@ -159,4 +161,5 @@ def load_unit(load: str, name: str, basis: Basis) -> LoadUnit:
         )
     *most, last = units
     allowed = f"in {', '.join(most)} or {last}" if most else f"a plain number or in {last}"
-    raise InputError(load, f"a {_KINDS[kind]} must be {allowed}, not {as_toml(name)}{hint}")
+    words = {"traction": "stress", "displacement": "length"}.get(kind, kind)
+    raise InputError(load, f"a {words} must be {allowed}, not {as_toml(name)}{hint}")

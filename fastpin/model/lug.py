@@ -23,12 +23,6 @@ from fastpin.model.read_only import ReadOnlyDict
 HOLD = ("both", "x", "y", "normal")
 """Components of the displacement that a support holds."""
 
-FLAT = 1e-9
-"""Distance of an arc's middle point from the chord, in parts of the chord, below which three points lie on a line."""
-
-CHORDS = 96
-"""Chords of a full circle in the search for crossings."""
-
 LEAST_LIGAMENT = 0.01
 """Least distance of the hole's edge from another edge, in hole radii. The harmonics decay too slowly below it."""
 
@@ -91,7 +85,7 @@ class Part:
         if self.through is None:
             return self.start == self.end
         a, b = self.through - self.start, self.end - self.start
-        return abs((a.conjugate() * b).imag) <= FLAT * max(abs(a), abs(b)) ** 2
+        return abs((a.conjugate() * b).imag) <= 1e-9 * max(abs(a), abs(b)) ** 2
 
     @property
     def length(self) -> float:
@@ -383,7 +377,7 @@ def _polygon(outline: Sequence[Part]) -> np.ndarray:
     pieces = []
     for part in outline:
         sweep = abs(part.circle[3]) if part.circle is not None else 0.0
-        count = max(1, math.ceil(CHORDS * sweep / (2.0 * math.pi)))
+        count = max(1, math.ceil(96 * sweep / (2.0 * math.pi)))  # 96 chords to a full circle
         pieces.append(part.at(np.arange(count) / count))
     return np.concatenate(pieces)
 

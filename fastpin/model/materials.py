@@ -36,9 +36,6 @@ PLANES = ("strain", "stress")
 Convention = Literal["usual", "paper"]
 """Sign conventions of Dundurs' parameters."""
 
-LEAST_MODULUS, MOST_MODULUS = 1e-60, 1e60
-"""Limits of Young's modulus, Pa. Squares of dimensional results are then still numbers, in any units."""
-
 MOST_RATIO = 1e30
 """Largest ratio of the two moduli. The stiffer body is rigid to the last digit long before."""
 
@@ -57,7 +54,7 @@ class Material:
     Parameters
     ----------
     E : float
-        Young's modulus, Pa, from :data:`LEAST_MODULUS` to :data:`MOST_MODULUS`; ``math.inf`` for a rigid body.
+        Young's modulus, Pa, from 1e-60 to 1e60; ``math.inf`` for a rigid body.
     nu : float
         Poisson's ratio, 0 to 0.5.
     name : str, optional
@@ -86,7 +83,7 @@ class Material:
         if modulus <= 0.0:
             raise InputError("E", f"Young's modulus must be positive, not {modulus:g}")
         if not rigid:
-            number("E", modulus, LEAST_MODULUS, MOST_MODULUS)
+            number("E", modulus, 1e-60, 1e60)  # squares of dimensional results are then still numbers, in any units
         ratio = number("nu", self.nu)
         if not 0.0 <= ratio <= 0.5:
             raise InputError("nu", f"Poisson's ratio must lie between 0 and 0.5, not {ratio:g}")

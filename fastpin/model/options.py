@@ -24,9 +24,6 @@ Method = Literal["path", "increment"]
 METHODS = ("path", "increment")
 """Names of the solvers."""
 
-DEFAULT_INCREMENTS = 80
-"""Increments of a step, by default, with the increment solver."""
-
 MOST_BETWEEN = 10_000
 """Most states inside a step."""
 
@@ -234,7 +231,7 @@ def _checked_increments(value: object, method: str) -> int | None:
         if value is not None:
             raise InputError("increments", 'has no effect with method "path"; leave it out, or choose "increment"')
         return None
-    return DEFAULT_INCREMENTS if value is None else whole_number("increments", value, 1)
+    return 80 if value is None else whole_number("increments", value, 1)
 
 
 def _checked_arc(value: object) -> tuple[float, float] | None:

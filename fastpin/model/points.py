@@ -121,7 +121,8 @@ class Points(ReadOnly):
             if far is not None and np.any(depth > wall + ROUNDING * max(1.0, wall)):
                 rim = "at least the bore" if body == "pin" else "at most the outer"
                 raise InputError("radius", f"must be {rim} radius of {far * radius:g} in the {body}")
-        if body == "plate" and problem.plate_body.edge_only and np.any(depth > 0.0):
+        known = problem.joint.bush - 1.0 if body == "plate" and problem.joint.bush else 0.0
+        if body != "pin" and problem.plate_body.lug.edge_only and np.any(depth > known):
             raise InputError("points", "a compliance gives the stress on the edge of the hole only")
         return np.minimum(depth, wall)
 

@@ -12,8 +12,6 @@ import numpy as np
 from fastpin.bodies.body import BodyBase, PinBody, PinLoad, PlateBody
 from fastpin.bodies.joint import Joint, check_bodies, without_units
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
-from fastpin.bodies.ring import Ring
-from fastpin.bodies.tube import SeatedBush
 from fastpin.errors import InputError
 from fastpin.model.checks import (
     MOST_FRICTION,
@@ -193,6 +191,7 @@ class Problem:
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "dimensionless", bool(self.dimensionless))
         object.__setattr__(self, "gap", checked_gap(self.gap, radius, self.dimensionless))
+        assert self.interfaces  # each contact of the joint is checked as a problem of its own
 
     def _checked_friction(self, radius: float) -> float | Profile:
         """The coefficient of friction: a number, or a profile if it varies. `radius` is the radius of the hole."""
@@ -330,16 +329,12 @@ class Problem:
         In the first one a bush that slips is a ring, free at its outer rim. In the second one it is a hollow pin, free
         at its bore. With a single contact it is this problem.
         """
-        bush = self.plate_body.bush
-        if bush is None or bush.bonded:
+        contacts = self.plate_body.contacts(self.pair, self.hole_radius)
+        if not contacts:
             return (self,)
-        assert bush.friction is not None
-        pin, seat = self.surfaces, replace(
-            self, pair=MaterialPair(bush.material, self.pair.plate, self.pair.plane), hole_radius=bush.outer_radius,
-            clearance=-bush.interference, friction=bush.friction, pin_load="centre", rotation="free", hub_radius=None,
-            hub_stiffness=None, pin_body=SeatedBush(self.hole_radius), plate_body=bush.inside, gap=NO_GAP,
-        )  # fmt: skip
-        return replace(self, pair=pin, plate_body=Ring(bush.outer_radius, "uniform")), seat
+        of_pin, of_seat = contacts
+        held: dict[str, Any] = {"pin_load": "centre", "rotation": "free", "hub_radius": None, "hub_stiffness": None}
+        return replace(self, **of_pin), replace(self, **held, gap=NO_GAP, **of_seat)
 
     @property
     def seat(self) -> Problem | None:

@@ -90,7 +90,10 @@ class Profile:
 
     @classmethod
     def ellipse(cls, size: float, axis: float = 0.0) -> Profile:
-        """An oval: `size` cos 2(theta - axis). Its half axes are larger and smaller by `size`, the larger at `axis`."""
+        """An oval: `size` cos 2(theta - axis). Its half axes are larger and smaller by `size`.
+
+        The half axis of a hole is the larger one at `axis`, that of a pin the smaller one: the gap opens there.
+        """
         return cls.lobes(2, size, axis)
 
     @classmethod
@@ -123,7 +126,7 @@ class Profile:
 
     @classmethod
     def zone(cls, value: float, start: float, stop: float) -> Profile:
-        """A `value` from the angle `start` counter-clockwise to `stop`, and 0 elsewhere. For friction only."""
+        """A `value` from the angle `start` counter-clockwise to `stop`, and 0 elsewhere. For friction and wear only."""
         return cls((Zone(value, start, stop),))
 
     @classmethod
@@ -147,8 +150,8 @@ class Profile:
         Parameters
         ----------
         path : str or Path
-        quantity : {"gap", "friction"}
-            What the values are. Friction has no unit.
+        quantity : {"gap", "friction", "wear"}
+            What the values are. Friction has no unit. Wear coefficients are in 1/Pa.
 
         Raises
         ------

@@ -185,9 +185,6 @@ def _plain(word: str) -> str:
 _KEYWORDS: dict[str, tuple[str, ...]] = {}
 """Names of the parameters of all classes and functions that explain their keywords."""
 
-_FIRST_OWNERS = ("Problem", "Material", "MaterialPair", "SolveOptions")
-"""Classes that a hint at a keyword elsewhere names before others: most cases need them."""
-
 
 def explains_keywords(made: T) -> T:
     """Make a class or function name the meant keyword in the :class:`TypeError` of an unknown one."""
@@ -217,6 +214,7 @@ def unknown_keyword(function: str, word: str, known: Iterable[str]) -> TypeError
     hint = closest(word, known)
     if not hint:
         owners = {owner: name for name in meant(word) for owner, names in _KEYWORDS.items() if name in names}
-        first = next((owner for owner in (*_FIRST_OWNERS, *owners) if owner in owners), None)
+        usual = ("Problem", "Material", "MaterialPair", "SolveOptions")  # most cases need them
+        first = next((owner for owner in (*usual, *owners) if owner in owners), None)
         hint = f", did you mean {owners[first]} of {first}?" if first else ""
     return TypeError(f"{function}() got an unexpected keyword argument {word!r}{hint}")

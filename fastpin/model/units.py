@@ -10,52 +10,50 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
 
-_SI = {
-    "force": "N/m",
-    "moment": "N",
-    "traction": "Pa",
-    "length": "m",
-    "displacement": "m",
-    "rotation": "rad",
-    "stiffness": "N/rad",
-    "energy": "J/m",
-    "ratio": "",
-    "energy density": "J/m^2",
-    "stress times strain": "Pa",
-    "life": "cycles",
-    "work per stress": "m^2",
-    "wear coefficient": "1/Pa",
+
+class _Kind(NamedTuple):
+    """The units of a kind of quantity: SI, those of a dimensionless problem, and those of a problem with a thickness.
+
+    The last one is empty unless the SI unit is per thickness.
+    """
+
+    si: str
+    dimensionless: str
+    whole: str = ""
+
+
+_KINDS = {
+    "force": _Kind("N/m", "F", "N"),
+    "moment": _Kind("N", "F R", "N m"),
+    "traction": _Kind("Pa", "F/R"),
+    "length": _Kind("m", "R"),
+    "displacement": _Kind("m", "F beta*"),
+    "rotation": _Kind("rad", "F beta*/R"),
+    "stiffness": _Kind("N/rad", "R^2/beta*", "N m/rad"),
+    "energy": _Kind("J/m", "F^2 beta*", "J"),
+    "ratio": _Kind("", ""),
+    "energy density": _Kind("J/m^2", "F^2 beta*/R"),
+    "stress times strain": _Kind("Pa", "F^2 beta*/R^2"),
+    "life": _Kind("cycles", "cycles"),
+    "work per stress": _Kind("m^2", "F R beta*", "m^3"),
+    "wear coefficient": _Kind("1/Pa", "R/F"),
 }
 
-PER_THICKNESS = {"force": "N", "moment": "N m", "stiffness": "N m/rad", "energy": "J", "work per stress": "m^3"}
+PER_THICKNESS = {name: kind.whole for name, kind in _KINDS.items() if kind.whole}
 """The kinds that are per thickness in Python, and their units in printed texts of a problem with a thickness."""
 
-_WITH_PREFIX = frozenset({*_SI.values(), *PER_THICKNESS.values(), "s"} - {"", "cycles", "1/Pa"})
+_WITH_PREFIX = frozenset(
+    {*(kind.si for kind in _KINDS.values()), *PER_THICKNESS.values(), "s"} - {"", "cycles", "1/Pa"}
+)
 """Units that may get an SI prefix."""
 
 _POWERS = {"m^2": (2, -2), "m^3": (3, -5)}
 """The power of a unit, to which a prefix is raised too: 1 mm^2 is 1e-6 m^2. Then the lowest decade of values in it."""
-
-_DIMENSIONLESS = {
-    "force": "F",
-    "moment": "F R",
-    "traction": "F/R",
-    "length": "R",
-    "displacement": "F beta*",
-    "rotation": "F beta*/R",
-    "stiffness": "R^2/beta*",
-    "energy": "F^2 beta*",
-    "ratio": "",
-    "energy density": "F^2 beta*/R",
-    "stress times strain": "F^2 beta*/R^2",
-    "life": "cycles",
-    "work per stress": "F R beta*",
-    "wear coefficient": "R/F",
-}
 
 FIXED_PREFIXES = {"kN, mm": {"N": 3, "N/m": 3, "N m": 0, "J": 0, "J/m": 0, "m": -3, "Pa": 6}}
 """Choices of prefixes that do not depend on the size of a value: a power of ten for each unit, by the choice's name.
@@ -111,7 +109,7 @@ def units(problem: Problem) -> dict[str, Unit]:
 
 def units_per_thickness(problem: Problem) -> dict[str, str]:
     """The unit of every kind of quantity in Python: SI, or the paper's units for a dimensionless problem."""
-    return dict(_DIMENSIONLESS if problem.dimensionless else _SI)
+    return {name: kind.dimensionless if problem.dimensionless else kind.si for name, kind in _KINDS.items()}
 
 
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:

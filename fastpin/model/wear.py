@@ -12,9 +12,6 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, items, not_negative, number, numbers, whole_number
 from fastpin.model.profile import Profile, ProfileLike
 
-LAWS = ("archard", "energy")
-"""Names of the laws of wear."""
-
 MOST_CYCLES = 10**12
 """Cycles, at most."""
 
@@ -23,12 +20,6 @@ MOST_CHOSEN = 10_000
 
 A_DECADE = 10
 """Cycles that are chosen in each decade, unless others are given."""
-
-LOOKED_AT = 1441
-"""Angles at which a coefficient is checked, four a degree."""
-
-LARGEST_TOLERANCE = 0.1
-"""Largest tolerance of a fat cycle."""
 
 
 @dataclass(frozen=True)
@@ -67,9 +58,12 @@ class Wear:
     tolerance: float = 1e-2
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "law", choice("law", self.law, LAWS))
-        object.__setattr__(self, "cycles", _whole_cycles(self.cycles))
-        object.__setattr__(self, "tolerance", number("tolerance", self.tolerance, 0.0, LARGEST_TOLERANCE))
+        object.__setattr__(self, "law", choice("law", self.law, ("archard", "energy")))
+        cycles = number("cycles", self.cycles, 1, MOST_CYCLES)  # 1e5 is a whole number too
+        if cycles != int(cycles):
+            raise InputError("cycles", f"must be a whole number, not {cycles:g}")
+        object.__setattr__(self, "cycles", int(cycles))
+        object.__setattr__(self, "tolerance", number("tolerance", self.tolerance, 0.0, 0.1))
         if self.coefficient is None and self.pin is None and self.plate is None:
             raise InputError("coefficient", "give the wear coefficient, or those of pin and plate")
         if self.coefficient is not None and (self.pin is not None or self.plate is not None):
@@ -77,7 +71,8 @@ class Wear:
         for name in ("coefficient", "pin", "plate"):
             if (given := getattr(self, name)) is not None:
                 profile = Profile.of(name, given)
-                not_negative(name, float(profile.at(np.linspace(-np.pi, np.pi, LOOKED_AT), 1.0).min()))
+                four_a_degree = np.linspace(-np.pi, np.pi, 1441)
+                not_negative(name, float(profile.at(four_a_degree, 1.0).min()))
                 object.__setattr__(self, name, profile)
         if self.at is not None:
             chosen = [whole_number("at", each, 1, self.cycles) for each in items("at", self.at, "a list of cycles")]
@@ -128,14 +123,6 @@ class Wear:
 def cycles_text(count: float) -> str:
     """A number of cycles as text: "1 cycle", "100,000 cycles"."""
     return f"{count:,.15g} cycle{'s' * (count != 1)}"
-
-
-def _whole_cycles(value: object) -> int:
-    """A number of cycles; 1e5 is one too."""
-    plain = number("cycles", value, 1, MOST_CYCLES)
-    if plain != int(plain):
-        raise InputError("cycles", f"must be a whole number, not {plain:g}")
-    return int(plain)
 
 
 COEFFICIENTS = ("coefficient", "pin", "plate")

@@ -20,13 +20,6 @@ MOST_SVG = 250_000
 WIDTH_OF_BITMAP = 340
 """Width of a bitmap on paper, points: some 120 mm."""
 
-_DROPPED = ("metadata", "style")
-"""Elements of Matplotlib's SVG that a page does not need. Its style sheet would hold for the whole page."""
-
-_SIZE = ("width", "height", "version")
-"""Attributes of the element ``svg`` that are left out. The style sheet of the page sets the size."""
-
-
 _LINK = re.compile(r"(?<=^#).+")
 """The id in a value of ``href``."""
 
@@ -113,9 +106,9 @@ def _svg(text: str, words: str, prefix: str) -> str:
         element.tag = _local(element.tag)
         element.attrib = {_local(name): value for name, value in element.attrib.items()}
         for child in list(element):
-            if _local(child.tag) in _DROPPED:
+            if _local(child.tag) in ("metadata", "style"):  # Matplotlib's style sheet would hold for the whole page
                 element.remove(child)
-    root.attrib = {name: value for name, value in root.attrib.items() if name not in _SIZE}
+    root.attrib = {name: value for name, value in root.attrib.items() if name not in ("width", "height", "version")}
     width = root.attrib["viewBox"].split()[2]  # in points; the style sheet makes the element as wide
     root.attrib |= {"role": "img", "aria-label": words, "style": f"--width: {width}"}
     used: dict[str, str] = {}  # ids that are referred to, and their new names

@@ -21,7 +21,7 @@ from fastpin.figures.stick_slip import stick_slip_plot
 from fastpin.figures.stress import hoop_plot, map_plot
 from fastpin.figures.subjects import InMemory
 from fastpin.figures.tractions import tractions_plot
-from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
+from fastpin.kernels.status import SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
@@ -312,10 +312,14 @@ def _zone_rows(state: State) -> list[tuple[str, ...]]:
     point = point_name(load_point(state))
     found = [("contact", start, stop, "") for start, stop in state.contact]
     found += [("stick", start, stop, "") for start, stop in state.stick]
-    found += [("slip", start, stop, _DIRECTIONS[int(sign)]) for start, stop, sign in state.slip_zones]
-    return [(point, zone, *_ends(start, stop), words) for zone, start, stop, words in found] or [
-        (point, "no contact", "-", "-", "")
-    ]
+    for start, stop, sign in state.slip_zones:
+        found.append(("slip", start, stop, "counter-clockwise" if sign == SLIP_POSITIVE else "clockwise"))
+    rows: list[tuple[str, ...]] = []
+    for zone, start, stop, words in found:
+        first, last = (f"{angle:z.2f}" for angle in interval_from_bottom(start, stop))
+        ends = ("all round", "all round") if is_all_round(stop - start) else (first, last)
+        rows.append((point, zone, *ends, words))
+    return rows or [(point, "no contact", "-", "-", "")]
 
 
 def seat(page: PageParts) -> PageSection:
@@ -345,16 +349,6 @@ def _seat_line(source: Source) -> str:
     ends = () if source.cycle is None else (source.cycle.states[0], source.cycle.states[-1])
     (last,) = source.read([source.points.size - 1])
     return seat_line(source.case.problem, source.peaks, last, ends)
-
-
-_DIRECTIONS = {SLIP_POSITIVE: "counter-clockwise", SLIP_NEGATIVE: "clockwise"}
-
-
-def _ends(start: float, stop: float) -> tuple[str, str]:
-    if is_all_round(stop - start):
-        return "all round", "all round"
-    first, last = interval_from_bottom(start, stop)
-    return f"{first:z.2f}", f"{last:z.2f}"
 
 
 def hysteresis(page: PageParts) -> PageSection:

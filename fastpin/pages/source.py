@@ -51,9 +51,6 @@ MOST_SUMMED = 60
 MOST_CORNERS = 100_000
 """Most corners in which a closed part without repeated blocks is looked for."""
 
-PIECE = 1 << 20
-"""Bytes of a file that are read at once for its hash."""
-
 
 @dataclass(frozen=True, eq=False)
 class Source:
@@ -113,7 +110,8 @@ class Source:
         """
         stored, known, error = storage.stored_case(path), storage.provenance(path), storage.stored_error(path)
         origin = [("solved by", _named_versions(known))]
-        origin += [(words, known[name]) for name, words in _PLACES.items() if name in known]
+        told = {"created": "begun", "host": "machine", "platform": "system", "run": "name of the run"}
+        origin += [(words, known[name]) for name, words in told.items() if name in known]
         content = packed_result(path)
         if content is None:
             origin += [("file", path.name), ("SHA-256 of the file", _digest(path))]
@@ -124,7 +122,11 @@ class Source:
             case = replace(source.case, about=stored.about, options=stored.options)
             return replace(source, case=case, origin=origin, error=error, path=path)
         result, points = storage.load(path, states=[]), storage.load_points(path)
-        case = replace(stored, options=_as_given(stored.options))
+        # The file holds the fractions of the states inside each step. Where they are equally spaced, their number gives
+        # the id of the case file and of a sweep.
+        spaced = stored.options.changed(between=stored.options.fractions.size - 1)
+        is_spaced = np.array_equal(spaced.fractions, stored.options.fractions)
+        case = replace(stored, options=spaced) if is_spaced else stored
 
         def read(places: Sequence[int]) -> list[State]:
             return storage.load(path, states=list(places)).states
@@ -134,8 +136,8 @@ class Source:
         def extremes() -> Found:
             return storage.marked_extremes(path)
 
-        told = "run" in known
-        return cls(case, result, points, read, extremes, origin, *largest, error, path, knows_options=told)
+        knows_options = "run" in known
+        return cls(case, result, points, read, extremes, origin, *largest, error, path, knows_options=knows_options)
 
     @classmethod
     def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:
@@ -323,26 +325,10 @@ def with_count(history: LoadHistory, count: int) -> LoadHistory:
     return LoadHistory.of_blocks([*before, replace(last, count=count)])
 
 
-_PLACES = {"created": "begun", "host": "machine", "platform": "system", "run": "name of the run"}
-"""Words for the attributes of a file that tell where it comes from."""
-
-LIBRARIES = ("python", "numpy", "scipy", "numba", "h5py")
-"""Libraries whose versions are named."""
-
-
-def _as_given(options: SolveOptions) -> SolveOptions:
-    """Return stored options with the number of states inside each step: a file holds their fractions.
-
-    The id of the input is then that of the case file and of a sweep.
-    """
-    count = options.fractions.size - 1
-    spaced = options.changed(between=count)
-    return spaced if np.array_equal(spaced.fractions, options.fractions) else options
-
-
 def _named_versions(known: dict[str, str]) -> str:
     """Return the versions of fastpin and the libraries as text."""
-    others = ", ".join(f"{name} {known[name]}" for name in LIBRARIES if name in known)
+    libraries = ("python", "numpy", "scipy", "numba", "h5py")
+    others = ", ".join(f"{name} {known[name]}" for name in libraries if name in known)
     return f"fastpin {known.get('fastpin', 'of an unknown version')}{f' ({others})' if others else ''}"
 
 
@@ -351,7 +337,7 @@ def _digest(path: Path) -> str:
     found = hashlib.sha256()
     try:
         with path.open("rb") as file:
-            while piece := file.read(PIECE):
+            while piece := file.read(1 << 20):
                 found.update(piece)
     except OSError as error:
         raise InputError(str(path), f"can't be read: {error.strerror or error}") from None

@@ -26,9 +26,6 @@ from fastpin.studies.plan import Plan, describe_values, parse_plan, read_plan
 from fastpin.studies.sweep import PLAN, rows
 from fastpin.version import __version__
 
-KEY_CHARTS = ("peak_pressure", "contact_width", "stick_width", "dissipation")
-"""Key figures that are drawn if the plan has no outcomes."""
-
 MOST_CHARTS = 8
 """Most outcomes that are drawn."""
 
@@ -163,7 +160,7 @@ def _first_case(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Pag
 
 
 def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
-    names = [*plan.outcomes] or list(KEY_CHARTS)
+    names = [*plan.outcomes] or ["peak_pressure", "contact_width", "stick_width", "dissipation"]
     parts: list[SectionPart] = []
     try:
         check_axes(plan, names[0], None, None)

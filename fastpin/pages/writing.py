@@ -11,9 +11,6 @@ from fastpin.pages.html import html_of
 from fastpin.pages.pdf import check_typst, pdf_of
 from fastpin.storage.files import check_writable, replacing
 
-SUFFIXES = (".html", ".htm", ".pdf")
-"""Endings of the name of a page."""
-
 
 def check_page(field: str, path: str | Path) -> Path:
     """Return the path of a page to be written.
@@ -25,7 +22,7 @@ def check_page(field: str, path: str | Path) -> Path:
         be written.
     """
     found = file_path(field, path)
-    if found.suffix.lower() not in SUFFIXES:
+    if found.suffix.lower() not in (".html", ".htm", ".pdf"):
         raise InputError(
             field, f"must be the name of a page, which ends in .html, .htm or .pdf, not {as_toml(found.name)}"
         )

@@ -9,6 +9,7 @@ that moves the edge of the hole by the clearance or interference. Squares: the f
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -46,9 +47,22 @@ COARSE, FINE = 40, 15
 ALL_ROUND = -1
 """Number of arcs that stands for a contact all round in the curves."""
 
-REGIMES = {0: "no contact", 1: "one arc", 2: "two arcs", 3: "three arcs", ALL_ROUND: "all round"}
-FILLS = {0: "#ffffff", 1: "#d6e6f5", 2: "#f2b15f", 3: "#c08fc0", ALL_ROUND: "#73988a"}
-"""Colours of the regimes. Their greys differ too, and every region has its name in it."""
+
+class MapRegion(NamedTuple):
+    """Words and colour of a region of the map. The greys differ too, and every region has its name in it."""
+
+    words: str
+    colour: str
+
+
+REGIMES = {
+    0: MapRegion("no contact", "#ffffff"),
+    1: MapRegion("one arc", "#d6e6f5"),
+    2: MapRegion("two arcs", "#f2b15f"),
+    3: MapRegion("three arcs", "#c08fc0"),
+    ALL_ROUND: MapRegion("all round", "#73988a"),
+}
+"""The regimes by the number of arcs."""
 
 
 Ray = list[tuple[float, int]]
@@ -213,7 +227,7 @@ def _add_sector(
     starts = np.array([[part * end for part, _ in ray] + [end] for ray, end in zip(rays, ends, strict=True)])
     for index, (_, kind) in enumerate(rays[0]):
         polygons.append(np.array([starts[0, index], starts[0, index + 1], starts[1, index + 1], starts[1, index]]))
-        fills.append(FILLS[kind])
+        fills.append(REGIMES[kind].colour)
         if index > 0:
             borders.append(starts[:, index])
 
@@ -251,7 +265,7 @@ def _write_names(panel: Axes, rays: dict[float, Ray], clear: float) -> None:
             depth = ndimage.distance_transform_edt(inside, sampling=(1.0, 0.28))[1:-1, 1:-1]
             row, column = np.unravel_index(int(depth.argmax()), depth.shape)
             if depth[row, column] > 2.0:
-                panel.text(raster[column], raster[row], REGIMES[kind], ha="center", va="center", fontsize=9.5)
+                panel.text(raster[column], raster[row], REGIMES[kind].words, ha="center", va="center", fontsize=9.5)
 
 
 def _turn(x: np.ndarray, y: np.ndarray) -> np.ndarray:

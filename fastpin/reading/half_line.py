@@ -87,7 +87,11 @@ def half_line(exponent: float, coupling: float | None = None) -> HalfLine:
     moments = np.array([smooth.sum(), -(order @ smooth), 0.5 * (order**2 @ smooth)])
     matching = np.zeros((TERMS, TERMS))
     for m in range(TERMS):
-        matching[: m + 1, m] = _far_field(moments, -exponent - m)[m::-1]
+        # Coefficients of exp(moments) ((1 - exp(-s))/s)^(-exponent - m) in powers of s.
+        logarithm, far = (-exponent - m) * _LOGARITHM, np.empty(TERMS)
+        logarithm[: moments.size] += moments
+        kernel.exponential(logarithm, far)
+        matching[: m + 1, m] = far[m::-1]
     return HalfLine(exponent, nodal, matching, coupling or 0.0)
 
 
@@ -182,14 +186,6 @@ def zeta_3(t: np.ndarray) -> np.ndarray:
     far = t + SUMMED
     rest = 0.5 / far**2 + 0.5 / far**3 + 0.25 / far**4 - 1.0 / (12.0 * far**6) + 1.0 / (12.0 * far**8) - 0.15 / far**10
     return np.asarray(((t + np.arange(SUMMED)[:, None]) ** -3.0).sum(axis=0) + rest)
-
-
-def _far_field(moments: np.ndarray, power: float) -> np.ndarray:
-    """Coefficients of exp(moments) ((1 - exp(-s))/s)^power in powers of s, shape (TERMS,)."""
-    logarithm, far = power * _LOGARITHM, np.empty(TERMS)
-    logarithm[: moments.size] += moments
-    kernel.exponential(logarithm, far)
-    return far
 
 
 class End(NamedTuple):

@@ -36,11 +36,8 @@ REACH = 20.0
 RIVAL = 0.6
 """Largest pressure at a cusp, in parts of the peak pressure. Where it is higher the hoop stress is no peak."""
 
-PIECES = 60
-"""Linear pieces of a power law."""
-
-GRADED = np.linspace(0.0, 1.0, PIECES + 1) ** 4
-"""The ends of these pieces. They gather at the edge."""
+GRADED = np.linspace(0.0, 1.0, 61) ** 4
+"""The ends of the linear pieces of a power law. They gather at the edge."""
 
 EXCESS = 1.1
 """Least |T| / (mu N) at a sticking edge that shows a slip zone between the edge and the outermost node."""

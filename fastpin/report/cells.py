@@ -6,10 +6,7 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-FORMULAS = ("=", "+", "-", "@", "\t", "\r")
-"""Beginnings of a cell that spreadsheets take for a formula, and may carry out."""
-
 
 def csv_cell(value: T) -> T | str:
     """Return the value of a cell. A text that a spreadsheet would take for a formula begins with an apostrophe."""
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULAS) else value
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")) else value

@@ -8,9 +8,6 @@ from itertools import groupby
 from fastpin.report.table import aligned
 from fastpin.verification.rows import Check
 
-UNITS = "Dimensionless (R = F = beta* = 1): N and T in F/R, angles in rad, moments in F R, energies in F^2 beta*."
-"""The first line of the table."""
-
 
 def table(checks: Sequence[Check]) -> str:
     """Return the checks as a table, grouped by topic. Of several checks of one case, the first one names the case."""
@@ -22,7 +19,8 @@ def table(checks: Sequence[Check]) -> str:
         rows.append(("" if same else check.case, *_cells(check)))
         above = check.topic, check.case
     first, *lines = aligned(rows, "llrrrrll")
-    text = [UNITS, "", first]
+    units = "Dimensionless (R = F = beta* = 1): N and T in F/R, angles in rad, moments in F R, energies in F^2 beta*."
+    text = [units, "", first]
     for topic, group in groupby(zip(checks, lines, strict=True), lambda pair: pair[0].topic):
         text += ["", topic, *(line for _, line in group)]
     return "\n".join(text)

@@ -40,9 +40,6 @@ is the value of the path solver on the grid of the increment solver.
 MOST_DECIMALS = 9
 """Most decimals of a value in the text tables. A value that needs more is written with an exponent."""
 
-LEAST_PLAIN = 1e-3
-"""Least scatter that is written without an exponent."""
-
 
 @dataclass(frozen=True)
 class ReportedSeries:
@@ -124,7 +121,7 @@ class ReportedSeries:
 def one_digit(value: float) -> str:
     """Return a number with one digit, such as 0.02 or 1e-6."""
     head, e, power = f"{value:.0e}".partition("e")
-    return f"{head}e{int(power)}" if e and value < LEAST_PLAIN and value > 0.0 else f"{value:.1g}"
+    return f"{head}e{int(power)}" if e and value < 1e-3 and value > 0.0 else f"{value:.1g}"
 
 
 def reported_series(study: Study, problem: Problem, corner: int) -> list[ReportedSeries]:
@@ -189,15 +186,10 @@ def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
     limit = "-" if row.verdict == "to rounding" else number(row.limit)
     cells = [row.label, unit, *map(number, row.values), row.words, limit, bar]
     if with_path:
-        cells += [number(row.path), _within(row)]
+        is_known = not (math.isnan(row.path) or math.isnan(row.bar))
+        is_within = abs(row.path - row.values[-1]) <= row.bar + row.negligible
+        cells += [number(row.path), ("yes" if is_within else "no") if is_known else "-"]
     return cells
-
-
-def _within(row: ReportedSeries) -> str:
-    """Whether the error bar of the last value in increments reaches the value of the path solver."""
-    if math.isnan(row.path) or math.isnan(row.bar):
-        return "-"
-    return "yes" if abs(row.path - row.values[-1]) <= row.bar + row.negligible else "no"
 
 
 def write_csv(convergence: Convergence, path: Path) -> None:

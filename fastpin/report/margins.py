@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 from fastpin.damage import Fatigue
 from fastpin.damage import fatigue as fatigue_of
-from fastpin.damage.criteria import Criterion
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import bodies_of, elastic_bodies, owner_of
@@ -22,9 +21,6 @@ from fastpin.states.extremes import Found
 from fastpin.states.quantities import point_name
 from fastpin.states.state import State
 from fastpin.states.yielding import PREFIX, circles, place_words, strength_of, von_mises_peak
-
-LIMITED: Criterion = "findley"
-"""The criterion of fatigue whose limit follows from the fatigue limits under bending and torsion."""
 
 HEADS = ("subject", "value", "allowable", "margin", "load point", "remark")
 """Headings of :func:`margin_rows`."""
@@ -132,7 +128,7 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
             rows.append(Margin(subject, remark=f"not known: {why[0].lower()}{why[1:]}"))
             continue
         try:
-            limited = fatigue_of(states, LIMITED, body)
+            limited = fatigue_of(states, "findley", body)  # its limit follows from the bending and the torsion limit
         except InputError:
             remark = f"not known: no bending_limit and torsion_limit of the {owner_of(problem, body)} given"
             life = one.hot_spot.life

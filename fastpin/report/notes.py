@@ -15,9 +15,6 @@ COUNTED = {
 }
 """Notes on counts of the statistics that are not zero."""
 
-STATISTICS = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
-"""Statistics of the solver that are named, see :class:`fastpin.Result`."""
-
 
 def note_lines(case: Case, result: Result) -> list[str]:
     """Return lines of text, one for each thing that a reader of a result must know; none for most results.
@@ -48,5 +45,6 @@ def way_on(path: Path | None, error: str | None) -> str:
 
 def solver_line(result: Result) -> str:
     """Return a line of text: the solver, the number of nodes, and the statistics that are not zero."""
-    known = [f"{result.statistics[name]:.4g} {name}" for name in STATISTICS if result.statistics.get(name)]
+    names = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
+    known = [f"{result.statistics[name]:.4g} {name}" for name in names if result.statistics.get(name)]
     return f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}"

@@ -38,12 +38,6 @@ from fastpin.version import __version__
 TableRow = dict[str, Any]
 """One point of a plan with its key figures, see :func:`fastpin.studies.sweep.rows`."""
 
-MOST_PANELS = 12
-"""Most maps in one figure."""
-
-MOST_CURVES = 20
-"""Most curves in one figure."""
-
 THICKNESS = "contact.thickness"
 """The field of the thickness."""
 
@@ -222,7 +216,7 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
         y = free.pop(0) if y is None and free else y
     others = [name for name, found in values.items() if len(found) > 1 and name not in (x, y)]
     parts = len(_different([[point.values.get(name) for name in others] for point in plan.points]))
-    most, what = (MOST_CURVES, "curves") if y is None else (MOST_PANELS, "maps")
+    most, what = (20, "curves") if y is None else (12, "maps")
     if parts > most:
         raise InputError("plot", f"the figure would have {parts} {what}, at most {most} fit; choose other axes")
     return x, y, others
@@ -337,13 +331,8 @@ def _column(name: str, values: Sequence[Any], unit: str, bars: Sequence[float | 
     values = [0.0 if value is not None and abs(value) < least else value for value in values]
     factor, label = scaled([value for value in values if value is not None], unit)
     cells = ["-" if value is None else f"{value * factor:.5g}" for value in values]
-    return name, label, [f"{cell}{_bar_words(factor, bar)}" for cell, bar in zip(cells, bars, strict=True)]
-
-
-def _bar_words(factor: float, bar: float | None) -> str:
-    if bar is None:
-        return ""
-    return f" +-{factor * bar:.2g}" if math.isfinite(bar) else " +-?"
+    tails = ["" if bar is None else f" +-{factor * bar:.2g}" if math.isfinite(bar) else " +-?" for bar in bars]
+    return name, label, [cell + tail for cell, tail in zip(cells, tails, strict=True)]
 
 
 def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRow], dict[str, str]]:

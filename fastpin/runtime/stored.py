@@ -25,9 +25,6 @@ from fastpin.runtime.source import SETTINGS, KernelSource
 
 SUFFIX = ".machine"
 
-UNRELATED = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
-"""Settings of Numba that do not change the code. All others belong to the code."""
-
 
 class StoredCode:
     """The files of a kernel for arguments of some types."""
@@ -133,6 +130,7 @@ def place_of(kernel: KernelSource, signature: str) -> StoredCode | None:
 def _environment() -> tuple[str, ...]:
     """Versions, the processor, and settings of Numba on which machine code depends."""
     settings = sorted(f"{name}={value}" for name, value in os.environ.items() if name.startswith("NUMBA_"))
-    chosen = [text for text in settings if text.partition("=")[0] not in UNRELATED]
+    unrelated = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")  # all others may change the code
+    chosen = [text for text in settings if text.partition("=")[0] not in unrelated]
     compilers = [(folder(name) / "_version.py").read_text(encoding="utf-8") for name in ("numba", "llvmlite")]
     return (sys.version, np.__version__, *compilers, *machine.target(), *chosen)

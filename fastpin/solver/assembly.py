@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from fastpin.elasticity.interfaces import SEAT, JointSystem
@@ -76,8 +78,9 @@ def _assembled_joint(joint: JointSystem) -> Configuration:
     """The configuration of a joint before any load: the bush pressed in its seat first, then the pin in the bush."""
     seat = unloaded_configuration(joint.alone[SEAT])
     n = joint.grid.size
+    nodal: dict[str, Any] = {name: np.zeros(n) for name in NODAL if name != "status"}
     whole = Configuration(
-        **{name: np.zeros(n) for name in NODAL if name != "status"}, status=np.full(n, OPEN, dtype=np.int8),
+        **nodal, status=np.full(n, OPEN, dtype=np.int8),
         motion=np.zeros(joint.motions), load=seat.load, origin=np.full(2, np.nan), rest=np.zeros(2),
     )  # fmt: skip
     view = PinView(joint, with_seat(joint, whole, seat))

@@ -11,6 +11,9 @@ CUT_OFF = "the contact reaches an end of the arc; give a wider one, or none"
 BEYOND = "the pin touches the hole beyond the arc; give a wider one, or none"
 """Message of an :class:`ArcError`."""
 
+NARROW = "at the first load the contact is narrower than the nodes can resolve; use more nodes or leave that load out"
+"""Message where the contact at the first load is narrower than the nodes."""
+
 UNHELD = "nothing holds the pin any more: it spins, slides away or loses contact"
 """Message of a :class:`NoEquilibriumError`."""
 

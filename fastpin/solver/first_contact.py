@@ -29,7 +29,7 @@ from fastpin.solver.configuration import (
     worst_residual,
 )
 from fastpin.solver.driven import rest_on_hole
-from fastpin.solver.errors import CUT_OFF, ArcError, NoEquilibriumError, ResolutionError
+from fastpin.solver.errors import CUT_OFF, NARROW, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.interfaces import PinView
 from fastpin.solver.path import PathStep, StepLostError
@@ -43,9 +43,6 @@ FIRST_NODES = (2, 4)
 
 FIRST_BESIDE = 2
 """Nodes on either side of the nearest node. The iteration for the first contact begins with all these closed."""
-
-NARROW = "at the first load the contact is narrower than the nodes can resolve; use more nodes or leave that load out"
-"""Message where the contact at the first load is narrower than the nodes."""
 
 OUTSIDE = 721
 """Points of the hole outside an arc at which it may grip a pin without force."""

@@ -29,7 +29,7 @@ from fastpin.solver.configuration import (
     solve_statuses,
     worst_residual,
 )
-from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
+from fastpin.solver.errors import NARROW, ConvergenceError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.settling import FiniteStep
@@ -134,6 +134,8 @@ class PinView:
         ------
         NoEquilibriumError
             If nothing holds the bush in its seat.
+        ResolutionError
+            If the pin touches at a single node.
         ConvergenceError
             If no tractions in the seat were found for it.
         """
@@ -154,6 +156,8 @@ class PinView:
         resting.status[self._seat] = self._resting_seat()
         found = _solved(joint, start, resting) if pin.closed.any() else self._without_pin(start)
         if found is None:
+            if pin.closed.sum() == 1:
+                raise ResolutionError(NARROW)
             raise ConvergenceError("the tractions between bush and plate were not found; use more nodes")
         done = elastic_energy(joint, found) - elastic_energy(joint, now)
         found.work = now.work + done + found.dissipation - now.dissipation
@@ -240,7 +244,7 @@ def _with_followed_seat(joint: JointSystem, start: Configuration) -> Configurati
 
     None if the seat can't follow them.
     """
-    pin, seat = (joint.interfaces[place].nodes for place in (PIN, SEAT))
+    pin = joint.interfaces[PIN].nodes
     tractions = np.r_[start.pressure[pin], start.shear[pin]]
     column = joint.operator.entries(joint.nodes.rows(SEAT), joint.nodes.rows(PIN)) @ tractions
     force = np.zeros(3)

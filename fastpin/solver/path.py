@@ -127,9 +127,8 @@ class PathStep:
             counts=np.zeros(exchange.COUNTS, dtype=np.int64),
             sums=np.zeros(exchange.SUMS),
         )
-        self._queue.sums[exchange.DISSIPATION] = configuration.dissipation
-        self._queue.sums[exchange.WORK] = configuration.work
-        self._queue.sums[exchange.SEAT_DISSIPATION] = configuration.seat_dissipation
+        sums = configuration.dissipation, configuration.work, configuration.seat_dissipation
+        self._queue.sums[[exchange.DISSIPATION, exchange.WORK, exchange.SEAT_DISSIPATION]] = sums
         self._all_at_once = max(32, n // 20)
         self._sample: slice | np.ndarray = slice(None)
         self._sampled: Operator | np.ndarray = system.operator

@@ -23,7 +23,7 @@ from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.solver.wear_result import WearResult
-from fastpin.states.choice import StateChoice, loaded_span_of, span_of, states_between
+from fastpin.states.choice import StateChoice, loaded_span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
@@ -145,20 +145,19 @@ class Result(Sequence[State]):
     def seat(self) -> Result | None:
         """The contact of a bush that slips in its seat, as a result of its own; None without such a bush.
 
-        Its states are ``State.seat`` of the states here. Dissipation and rotation of its cycles are those of the bush,
-        NaN where the states at the ends of a cycle were not kept. Nothing can continue from it.
+        Its states are ``State.seat`` of the states here. Nothing can continue from it. Its cycles have the dissipation
+        in the seat and the rotation of the bush, by which it walks; NaN where the states at their ends were not kept.
+        The changes of the tractions are those of the whole joint.
         """
         problem = self.problem.seat
         if problem is None:
             return None
         states = [state.seat for state in self.states if state.seat is not None]
-        corners = {load_point(state): state for state in states}
-        cycles = tuple(_between(cycle, *map(corners.get, span_of(cycle))) for cycle in self.cycles)
         grid = states[0].grid if states else seat_grid(self.problem, self.grid)
         coarse = None if self.coarse is None else self.coarse.seat
-        return replace(
-            self, states=states, problem=problem, grid=grid, restart=None, cycles=cycles, coarse=coarse
-        )  # fmt: skip
+        corners = {load_point(state): state for state in states}
+        cycles = tuple(_of_seat(cycle, corners) for cycle in self.cycles)
+        return replace(self, states=states, problem=problem, grid=grid, restart=None, cycles=cycles, coarse=coarse)
 
     def cycle(self, place: int = -1, *, first: int | None = None, last: int | None = None) -> LoadCycle:
         """The quantities over a cycle: ranges of slip and tractions, friction energy, loops of the loads.
@@ -358,12 +357,14 @@ class Result(Sequence[State]):
         return iter(self.states)
 
 
-def _between(cycle: Cycle, first: State | None, last: State | None) -> Cycle:
-    """The cycle with the dissipation and the rotation between the states at its ends; NaN without these states."""
-    dissipation = rotation = math.nan
-    if first is not None and last is not None:
-        dissipation, rotation = last.dissipation - first.dissipation, last.rotation - first.rotation
-    return cycle._replace(dissipation=dissipation, rotation_change=rotation)
+def _of_seat(cycle: Cycle, states: dict[float, State]) -> Cycle:
+    """A cycle of a joint as one of its seat, whose `states` are given by their load points."""
+    first, last = (states.get(float(corner)) for corner in (cycle.corner + 1 - cycle.length, cycle.corner + 1))
+    if first is None or last is None:
+        return cycle._replace(dissipation=math.nan, rotation_change=math.nan)
+    return cycle._replace(
+        dissipation=last.dissipation - first.dissipation, rotation_change=last.rotation - first.rotation
+    )
 
 
 def without_restart(result: Result) -> Result:

@@ -356,7 +356,8 @@ class Run:
     def _mark_borders(self) -> None:
         """Mark the borders at a corner, beside the old borders that are left."""
         now = self.now
-        friction, found = self.system.under(now.load).friction, {}
+        found: dict[str, Any] = {}
+        friction = self.system.under(now.load).friction
         for name, each in zip(MARKS, self.system.interfaces, strict=False):
             marks, nodes = marks_left(self.last_corner, now, each, name), each.nodes
             if not each.problem.frictionless:

@@ -33,9 +33,6 @@ MOST_CHOSEN = 100_000
 SAME_POINT = 1e-9
 """Largest difference of equal load points. Texts such as 2.333333333 name thirds of a step."""
 
-WORDS = ("last", "cycle", "all")
-"""Choices with a name."""
-
 NO_CYCLE = "no cycle of the history has ended; add repeat = 2 to a [[load]] block"
 """Refusal of a cycle where there is none."""
 
@@ -129,7 +126,7 @@ def check_choice(chosen: StateChoice, history: LoadHistory) -> None:
     """
     if isinstance(chosen, str) and chosen == "cycle" and not history.longest_cycle:
         raise InputError("states", NO_CYCLE)
-    if chosen is None or isinstance(chosen, slice) or (isinstance(chosen, str) and chosen in WORDS):
+    if chosen is None or isinstance(chosen, slice) or (isinstance(chosen, str) and chosen in ("last", "cycle", "all")):
         return
     for ends in _points_of(chosen):
         if not (ends.last > 0.0 and ends.first <= len(history)):

@@ -16,9 +16,6 @@ from fastpin.states.state import State
 FINEST = 0.5
 """Largest distance of the points of a curve, degrees."""
 
-THINNINGS = 4
-"""Passes that thin a curve out. Each one drops at most every other point."""
-
 
 def traction_patches(state: State) -> list[np.ndarray]:
     """The curve of each contact zone, shape (k, 3): degrees from the bottom, pressure and shear traction.
@@ -76,7 +73,7 @@ def _smoothed(points: np.ndarray) -> np.ndarray:
 
 def thinned(points: np.ndarray, error: float) -> np.ndarray:
     """A curve, shape (k, 3), with fewer points. Straight lines between them are wrong by at most `error` a pass."""
-    for _ in range(THINNINGS):
+    for _ in range(4):  # each pass drops at most every other point
         if len(points) < 3:
             break
         before, middle, after = points[:-2:2], points[1:-1:2], points[2::2]

@@ -48,9 +48,6 @@ def _seat_slip(state: State) -> float:
     return math.nan if state.seat is None else state.seat.peak_slip
 
 
-NODE_VALUES = ("pressure", "shear", "status")
-"""Fields of a state of which a block has all nodes."""
-
 READINGS: dict[str, Quantity] = {
     **{name: each for name, each in QUANTITIES.items() if each.kind not in ("angle", "ratio", "class")},
     "bush_least_friction": Quantity("bush least friction", "ratio", of_bush(lambda fit: fit.least_friction)),
@@ -152,15 +149,14 @@ class KeptStates:
 def _block_of(states: Sequence[State]) -> StateBlock:
     """The nodal values of some states on one grid, and those of their seats."""
     marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
-    pressure, shear, status = (np.array([getattr(state, name) for state in states]) for name in NODE_VALUES)
     seats = [state.seat for state in states if state.seat is not None]
     numbers = {name: np.array([getattr(state, name) for state in states]) for name in NUMBERS}
     if seats:
         numbers["seat_slip"] = np.array([seat.peak_slip for seat in seats])
     return StateBlock(
-        pressure,
-        shear,
-        status,
+        np.array([state.pressure for state in states]),
+        np.array([state.shear for state in states]),
+        np.array([state.status for state in states]),
         np.array([list(state.load.values()) for state in states]),
         tuple(np.array([arrays[k] for arrays in marks]) for k in range(2)),
         numbers,
@@ -336,8 +332,9 @@ class Different:
 
 def _keys(block: StateBlock) -> Iterator[bytes]:
     """Return a digest of the parts of each state that its readings depend on."""
+    parts = block.read_parts
     for row in range(len(block.pressure)):
         digest = hashlib.blake2b(digest_size=16)
-        for part in block.read_parts:
+        for part in parts:
             digest.update(part[row].tobytes())
         yield digest.digest()

@@ -26,9 +26,6 @@ from fastpin.states.state import State
 if TYPE_CHECKING:
     import pandas
 
-NEGLIGIBLE = 1e-12
-"""Slip distance that is rounding, in parts of the largest."""
-
 NO_SLIP = 1e-9
 """Slip that is rounding, in parts of R beta* times the largest pressure of the states that are looked at."""
 
@@ -152,7 +149,7 @@ class LoadCycle:
         slips = np.any(np.isin(self.status[1:], (SLIP_NEGATIVE, SLIP_POSITIVE)), axis=0)
         distance = self.slip_distance
         if distance is not None:
-            slips |= distance > NEGLIGIBLE * float(distance.max())
+            slips |= distance > 1e-12 * float(distance.max())  # less is rounding
         ever, always = ~np.isnan(self.slip_extremes[0]), closed.all(axis=0)
         behaviours = NodeBehaviour.NO_CONTACT, NodeBehaviour.SLIPS, NodeBehaviour.STICKS
         return np.select([~ever, always & slips, always], behaviours, NodeBehaviour.OPENS).astype(np.int8)

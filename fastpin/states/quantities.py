@@ -213,10 +213,11 @@ def matching_values(state: State, other: State) -> dict[str, float]:
         theirs |= {"peak_shear": -theirs["peak_shear"], "peak_shear_angle": math.nan}
     for zone in ZONES:
         theirs |= _ends(zone, _match_intervals(intervals(state, zone), intervals(other, zone)))
-    return {
-        name: _beside(value, theirs[name]) if quantity(name).kind == "angle" else theirs[name]
-        for name, value in mine.items()
-    }
+    for name, angle in mine.items():
+        if quantity(name).kind == "angle":
+            is_known = math.isfinite(angle) and math.isfinite(theirs[name])
+            theirs[name] = angle + math.remainder(theirs[name] - angle, 2.0 * math.pi) if is_known else math.nan
+    return {name: theirs[name] for name in mine}
 
 
 def size(name: str, state: State) -> float:
@@ -250,13 +251,6 @@ def _ends(zone: str, found: Sequence[Interval]) -> Iterator[tuple[str, float]]:
     for number, (start, stop) in enumerate(found, start=1):
         yield f"{zone}_{number}_start", start
         yield f"{zone}_{number}_stop", stop
-
-
-def _beside(angle: float, other: float) -> float:
-    """The angle `other` moved by whole turns next to `angle`; NaN if one of them is not finite."""
-    if not (math.isfinite(angle) and math.isfinite(other)):
-        return math.nan
-    return angle + math.remainder(other - angle, 2.0 * math.pi)
 
 
 def _match_intervals(mine: Sequence[Interval], theirs: Sequence[Interval]) -> list[Interval]:

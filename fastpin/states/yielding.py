@@ -27,9 +27,6 @@ if TYPE_CHECKING:  # this module imports compiled code
 AROUND = 180
 """Equally spaced angles of a circle."""
 
-MOST_NODES = 400
-"""Most nodes at which the edges of a contact are looked at besides, evenly chosen."""
-
 DEPTHS = tuple(0.01 * 2.0**k for k in range(6))
 """Depths of the circles below an edge, in units of the hole's radius."""
 
@@ -74,7 +71,8 @@ def circles(problem: Problem) -> Iterator[Circle]:
             yield from (Circle("bush", "plate", depth, "bore of the bush") for depth in _depths(wall))
             yield Circle("bush", "plate", wall, "rim of the bush")
         if not problem.pair.plate.is_rigid:
-            yield from (Circle("plate", "seat", depth, "seat") for depth in _depths(_wall(problem, "seat")))
+            depths = (0.0,) if problem.plate_body.lug.edge_only else _depths(_wall(problem, "seat"))
+            yield from (Circle("plate", "seat", depth, "seat") for depth in depths)
     elif problem.plate_body.edge_only:
         yield Circle("plate", "plate", 0.0, "hole")
     elif not problem.surfaces.plate.is_rigid:
@@ -117,7 +115,7 @@ class Places(NamedTuple):
     def of(cls, problem: Problem, grid: Grid, owner: str) -> Places:
         """The points of an owner of :data:`OWNERS`. An edge in contact has points at the nodes, too."""
         around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
-        nodes = grid.theta[:: -(-grid.size // MOST_NODES)]
+        nodes = grid.theta[:: -(-grid.size // 400)]  # at most 400, evenly chosen
         theta, depth, circle = [], [], []
         for one in circles(problem):
             if one.owner == owner:

@@ -37,9 +37,6 @@ if TYPE_CHECKING:
 SCALES = ("state", "theta", "load_name", "residual_name")
 """Variables that are the scale of a dimension of the same name."""
 
-COORDINATES = (*SCALES, "step", "fraction")
-"""Variables that are coordinates of a dataset."""
-
 Variables = dict[str, tuple[list[str], Any, dict[str, str]]]
 """Dimensions, values and attributes of each variable of a dataset."""
 
@@ -74,7 +71,7 @@ def to_xarray(source: Result | str | Path) -> xarray.Dataset:
         raise InputError("xarray", "is not installed: pip install 'fastpin[xarray]'") from None
     variables, attributes = _of_result(source) if isinstance(source, Result) else _of_file(file_path("source", source))
     dataset = xarray.Dataset(variables, attrs=attributes)
-    return dataset.set_coords([name for name in variables if name in COORDINATES])
+    return dataset.set_coords([name for name in variables if name in (*SCALES, "step", "fraction")])
 
 
 def _of_file(path: Path) -> tuple[Variables, dict[str, Any]]:

@@ -30,14 +30,11 @@ from fastpin.storage.layout import (
     read_history,
     read_problem,
     read_rows,
-    read_states,
 )
+from fastpin.storage.stored_states import read_states
 
 LEAST_STORED = 500
 """Least states of a result whose extremes are stored. Those of fewer states are found in a second."""
-
-EQUAL = 1e-9
-"""Relative difference of two readings of one state that is rounding."""
 
 
 class StoredStates:
@@ -61,6 +58,9 @@ class StoredStates:
             rows = read_rows(group, [*names, "loads", *(seated if "seat" in group else ())], some)
             for name in ("pressure", "shear", "loads", *NUMBERS):
                 check_finite(f"states/{name}", rows[name])
+            for name in seated if "seat" in group else ():
+                if not name.endswith(tuple(BORDER_FIELDS)):
+                    check_finite(f"states/{name}", rows[name])
             loads = all_loads(rows["loads"], 0.0)
             block = _block_of(rows, loads, marks)
             if "seat" in group:
@@ -121,7 +121,7 @@ def _stored(file: hdf5.Group, kept: StoredStates) -> Found | None:
         for name, place, value in zip(names, places, values, strict=True):
             (state,), pair = kept.read([place]), wanted[name]
             read = READINGS[pair[0]].of(state)
-            if not math.isclose(read, value, rel_tol=EQUAL):
+            if not math.isclose(read, value, rel_tol=1e-9):  # more than rounding
                 return None
             found[pair] = Extreme(read, place, float(kept.points[place]))
     except (KeyError, ValueError, TypeError):

@@ -36,8 +36,6 @@ BESIDE_INDEX = ("lock", f"{INDEX}-journal")
 NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 """Flag of :func:`os.open`: follow no link."""
 
-_TOKEN_BYTES = 8
-
 
 def check_writable(path: str | Path, result: bool = False) -> None:
     """Check that an output can be written. Call this before an hour of computing, not after.
@@ -174,7 +172,7 @@ def replacing(path: str | Path, result: bool = False) -> Iterator[Path]:
         target = Path(os.path.realpath(path))
         check_replaceable(target, result)
         # The suffix stays: writers choose their format by it.
-        temporary = target.with_name(f".{target.stem}.{os.urandom(_TOKEN_BYTES).hex()}{target.suffix}")
+        temporary = target.with_name(f".{target.stem}.{os.urandom(8).hex()}{target.suffix}")
         file = os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL | NO_LINK, 0o666)
         try:
             yield temporary

@@ -38,7 +38,7 @@ from fastpin.model.case import About
 from fastpin.model.fields import FIELDS
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
-from fastpin.model.loads import LOAD_KIND, LOADS, named_load
+from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MaterialPair
 from fastpin.model.options import OPTIONS, SolveOptions
 from fastpin.model.problem import Problem
@@ -52,8 +52,6 @@ from fastpin.storage.bodies import read_bodies, read_material, write_bodies, wri
 from fastpin.storage.damage import (
     as_python,
     check_between,
-    check_extremes,
-    check_finite,
     dataset_of,
     numbers_of,
     text_of,
@@ -138,13 +136,9 @@ CYCLE_FIELDS = {
 }
 """Kind of quantity of each field of a cycle."""
 
-WHOLE_NUMBERS = ("step", "corner", "length", "number")
-"""Fields of states and cycles that are whole numbers."""
-
 SMALL_NUMBERS = ("status", "old_borders")
 """Fields of states that are whole numbers of one byte."""
 
-_PROBLEM_FIELDS = (*FIELDS, "dimensionless")
 
 STATUS_LIMITS = (min(Status), max(Status))
 """Smallest and largest status of a node."""
@@ -152,7 +146,6 @@ STATUS_LIMITS = (min(Status), max(Status))
 DENSE = 8
 """Rows of a slice, in parts of the picked ones, up to which the slice is read: each row alone takes some 50 us."""
 
-_ROWS = 128  # rows in a chunk of an array without node values
 
 Rows = dict[str, np.ndarray]
 """Arrays of some states or cycles, by quantity. The first dimension counts the states or cycles."""
@@ -247,7 +240,7 @@ def read_problem(file: h5py.File) -> Problem:
     """Read the problem of a result."""
     group = file["problem"]
     pair = MaterialPair(read_material(group["pin"]), read_material(group["plate"]), group.attrs["plane"])
-    given = {name: as_python(group.attrs[name]) for name in _PROBLEM_FIELDS if name in group.attrs}
+    given = {name: as_python(group.attrs[name]) for name in (*FIELDS, "dimensionless") if name in group.attrs}
     return Problem(pair, **given, **read_profiles(group), **read_bodies(group))
 
 
@@ -287,10 +280,6 @@ def option_attributes(options: SolveOptions) -> dict[str, Any]:
     return {**attributes, "fractions": options.fractions}
 
 
-_OTHER_FORM = ("nodes", "method", "increments", "arc", "between")
-"""Options that a file holds in another form, or not always."""
-
-
 def read_options(file: h5py.File) -> SolveOptions:
     """Read the options of a result. A file of :func:`fastpin.save` has only the nodes and the method."""
     stored = {name: as_python(value) for name, value in file["solver"].attrs.items()}
@@ -303,7 +292,8 @@ def read_options(file: h5py.File) -> SolveOptions:
         start, stop = stored["arc"].tolist()
         # Earlier versions took an arc longer than 2 pi as a circle.
         options["arc"] = (start, min(stop, start + 2.0 * np.pi))
-    options |= {name: stored[name] for name in OPTIONS if name in stored and name not in _OTHER_FORM}
+    other_form = ("nodes", "method", "increments", "arc", "between")  # or not in every file
+    options |= {name: stored[name] for name in OPTIONS if name in stored and name not in other_form}
     return SolveOptions(**options)
 
 
@@ -332,7 +322,9 @@ def _dtype(name: str) -> type:
     name = name.removeprefix(SEATED[1])
     if name in SMALL_NUMBERS:
         return np.int8
-    return np.int64 if name in WHOLE_NUMBERS else bool if name == "solved" else float
+    if name in ("step", "corner", "length", "number"):
+        return np.int64
+    return bool if name == "solved" else float
 
 
 def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, unit: str | list[str]) -> h5py.Dataset:
@@ -341,7 +333,7 @@ def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, 
     Each row of node values is a chunk, compressed, and never written again.
     """
     nodes = name in NODE_FIELDS or name in BORDER_FIELDS or name in SLIP_FIELDS
-    chunks = (1 if nodes else _ROWS, *shape)
+    chunks = (1 if nodes else 128, *shape)
     dataset = group.create_dataset(
         name, (0, *shape), maxshape=(None, *shape), chunks=chunks, dtype=dtype, **(_PACKED if nodes else {})
     )
@@ -390,31 +382,6 @@ def _make_seat(states: h5py.Group, problem: Problem, grid: Grid, fields: Mapping
         dataset.dims[1].attach_scale(theta)
     for name in SEAT_NUMBERS:
         _growing(group, name, (), float, unit[NUMBER_FIELDS[name]]).dims[0].attach_scale(states["state"])
-
-
-def read_seat_grid(file: h5py.Group, problem: Problem, grid: Grid) -> Grid | None:
-    """Read the nodes of the seat of a bush that slips, beside the nodes `grid` of the pin; None without one.
-
-    Raises
-    ------
-    ValueError
-        If the file has a seat that the problem has not, or other nodes than the seat has.
-    """
-    if (problem.seat is None) != ("seat" not in file["states"]):
-        raise ValueError("states/seat does not fit the problem")
-    if problem.seat is None:
-        return None
-    made = seat_grid(problem, grid)
-    theta = dataset_of(file["states/seat"], "theta", float, ())
-    if theta.shape != made.theta.shape or not np.array_equal(theta[()], made.theta):
-        raise ValueError("states/seat/theta has other nodes than the seat")
-    return made
-
-
-def all_nodes(file: h5py.Group, problem: Problem, grid: Grid) -> int:
-    """The number of nodes of pin and seat in a file; `grid` has those of the pin."""
-    seat = read_seat_grid(file, problem, grid)
-    return grid.size + (0 if seat is None else seat.size)
 
 
 def load_units(problem: Problem) -> list[str]:
@@ -551,68 +518,6 @@ def check_growing(file: h5py.File, nodes: int) -> None:
                 raise ValueError(f"{part}/{name} can't grow")
             if len(dataset) != size:
                 raise ValueError(f"{part}/{name} has {len(dataset)} rows, not {size}")
-
-
-def read_states(
-    file: h5py.File, problem: Problem, grid: Grid, picked: slice | Sequence[int], corners: int
-) -> list[State]:
-    """Read some states of a result, by their places in the file.
-
-    `corners` is the number of corners of the history.
-
-    Raises
-    ------
-    ValueError
-        If the arrays don't fit each other or the nodes of `grid`, or a number is out of range or not finite.
-    """
-    group, seat = file["states"], read_seat_grid(file, problem, grid)
-    check_states(file, grid.size)
-    rows = read_rows(group, state_rows(group), picked)
-    check_finite("states/loads", rows["loads"])
-    # A life of wear has the state before the first corner, too, if its first cycle begins there.
-    check_between("states/step", rows["step"], -1 if "wear" in file else 0, corners - 1)
-    check_between("states/fraction", rows["fraction"], 0.0, 1.0)
-    loads = all_loads(rows["loads"], 0.0)
-    residuals = [zip(RESIDUALS, row, strict=True) for row in rows["residuals"].tolist()]
-    common = [
-        {"load": named_load(load), "residuals": {name: value for name, value in pairs if not np.isnan(value)}}
-        for load, pairs in zip(loads, residuals, strict=True)
-    ]
-    fields = [name for name in node_fields(group) if name not in BORDER_FIELDS]
-    seats: list[State] | list[None] = [None] * len(common)
-    if seat is not None and problem.seat is not None:
-        own = {name.removeprefix(SEATED[1]): array for name, array in rows.items() if name.startswith(SEATED[1])}
-        still = [{**each, "load": {**each["load"], "friction_change": 0.0}} for each in common]
-        seats = _states_of({**rows, **own}, fields, still, (problem.seat, seat), "states/seat", [None] * len(common))
-    return _states_of(rows, fields, common, (problem, grid), "states", seats)
-
-
-def _states_of(
-    rows: Rows, fields: list[str], common: list[dict[str, Any]], where: tuple[Problem, Grid], label: str,
-    seats: Sequence[State | None],
-) -> list[State]:  # fmt: skip
-    """The states of pin or seat from their checked rows. `common` are more fields of each, `where` problem and grid."""
-    for name in (*fields, *NUMBER_FIELDS):
-        if name not in EXTREMES:
-            check_finite(f"{label}/{name}", rows[name])
-    if EXTREMES[0] in rows:
-        lowest, highest = (rows[name] for name in EXTREMES)
-        check_extremes(f"{label}/slip_lowest", lowest, highest, np.isnan(lowest) & np.isnan(highest))
-    check_between(f"{label}/status", rows["status"], *STATUS_LIMITS)
-    if "old_borders" in rows:
-        check_finite(f"{label}/old_borders", rows["old_borders"])
-        check_old_borders(label, rows["old_borders"], rows["old_places"])
-    states, (problem, grid) = [], where
-    for k, (each, seat) in enumerate(zip(common, seats, strict=True)):
-        per_node = {name: rows[name][k] for name in fields}
-        for array in per_node.values():
-            array.setflags(write=False)
-        marks = Marks.stored(rows["old_borders"][k], rows["old_places"][k]) if "old_borders" in rows else None
-        numbers = {name: rows[name][k].item() for name in NUMBER_FIELDS}
-        states.append(
-            State(**per_node, **numbers, **each, theta=grid.theta, problem=problem, grid=grid, marks=marks, seat=seat)
-        )
-    return states
 
 
 def check_old_borders(label: str, marks: np.ndarray, places: np.ndarray) -> None:

@@ -16,9 +16,6 @@ from fastpin.storage.extremes import read_extremes
 from fastpin.storage.layout import RESIDUALS
 from fastpin.storage.store import load, open_result
 
-SOURCES = ("created", "host", "platform", "run")
-"""Attributes of a file that tell when and where its run began."""
-
 STATES_AT_ONCE = 1_000
 """States whose pressures are in memory at once."""
 
@@ -38,7 +35,7 @@ def provenance(path: str | Path) -> dict[str, str]:
         attributes = {text_of(name): text_of(value) for name, value in file.attrs.items()}
     versions = {name: value for name, value in attributes.items() if name.startswith("version_")}
     found = {name.removeprefix("version_"): value for name, value in versions.items()}
-    return found | {name: attributes[name] for name in SOURCES if name in attributes}
+    return found | {name: attributes[name] for name in ("created", "host", "platform", "run") if name in attributes}
 
 
 def largest_residuals(path: str | Path) -> dict[str, float]:

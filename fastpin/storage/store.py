@@ -42,7 +42,6 @@ from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import open_h5
 from fastpin.storage.layout import (
     SLIP_FIELDS,
-    all_nodes,
     append,
     check_format,
     count,
@@ -54,7 +53,6 @@ from fastpin.storage.layout import (
     read_history,
     read_options,
     read_problem,
-    read_states,
     read_statistics,
     rows_of,
     write_grid,
@@ -62,6 +60,7 @@ from fastpin.storage.layout import (
     write_statistics,
 )
 from fastpin.storage.restarts import read_restart, write_restart
+from fastpin.storage.stored_states import all_nodes, read_states
 
 ALL = slice(None)
 """All states of a file."""

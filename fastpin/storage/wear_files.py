@@ -436,9 +436,14 @@ def _check_same(path: Path, file: hdf5.Group, task: WearTask) -> None:
     if file.attrs["complete"]:
         raise InputError(str(path), "holds a finished life of wear: there is nothing to continue")
     group, grid = file["wear"], read_grid(file)
+    begun, wanted = read_history(file).blocks, task.stored_history.blocks
     same = {
         "problem": read_problem(file) == task.problem,
-        "history": _same_history(read_history(file), task.stored_history),
+        "history": len(begun) == len(wanted)
+        and all(
+            one.count == other.count and np.array_equal(one.given, other.given, equal_nan=True)
+            for one, other in zip(begun, wanted, strict=True)
+        ),
         "coefficient": np.array_equal(group["coefficients"][()], task.coefficients(grid.theta)),
         "law": text_of(group.attrs["law"]) == task.wear.law,
         "at": np.array_equal(group.attrs["chosen"], task.wear.chosen),
@@ -449,13 +454,6 @@ def _check_same(path: Path, file: hdf5.Group, task: WearTask) -> None:
     for name, is_same in same.items():
         if not is_same:
             raise InputError("resume", f"{path} was begun with another {name}")
-
-
-def _same_history(one: LoadHistory, other: LoadHistory) -> bool:
-    """Whether two histories have the same blocks."""
-    pairs = list(zip(one.blocks, other.blocks, strict=False))
-    same = all(a.count == b.count and np.array_equal(a.given, b.given, equal_nan=True) for a, b in pairs)
-    return same and len(one.blocks) == len(other.blocks)
 
 
 def _write_place(group: h5py.Group, place: Worn) -> None:

@@ -30,7 +30,6 @@ from fastpin.storage.files import forget_temporaries, replacing
 from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
 from fastpin.storage.layout import (
     Rows,
-    all_nodes,
     append,
     check_format,
     check_growing,
@@ -53,6 +52,7 @@ from fastpin.storage.layout import (
 )
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
+from fastpin.storage.stored_states import all_nodes
 
 log = logging.getLogger(__name__)
 

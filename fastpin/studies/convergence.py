@@ -35,20 +35,11 @@ from fastpin.studies.outcomes import OutcomeValue, StudyOutcome, check_loadable,
 LEAST_GRIDS = 3
 """Fewest grids, or numbers of increments, of a study."""
 
-LEAST_RATIO = 1.1
-"""Smallest ratio of two successive numbers of nodes."""
-
 LEAST_NODES = 51
 """Fewest nodes of a grid."""
 
 LEAST_CLOSED = 10
 """Fewest nodes in contact. A coarser grid says nothing about the quantities of finer grids."""
-
-SHORT = 6
-"""Corners of a short history. All its corners are studied; of a longer history the last corner is studied."""
-
-INCREMENT_NODES = 201
-"""Fewest nodes of the increment solver's grid. It is the first such grid of the study, or else the finest grid."""
 
 ROUNDING = 1e-9
 """Largest difference of equal values, in parts of the quantity's size."""
@@ -228,10 +219,10 @@ def converge(
     check_callable("progress", progress, 3)
     counts = _increasing("nodes", nodes, LEAST_NODES, MAX_NODES)
     for before, after in pairwise(counts):
-        if after < LEAST_RATIO * before:
+        if after < 1.1 * before:
             raise InputError("nodes", f"must grow by a tenth at least to show an order, but {after} follows {before}")
     steps = () if _is_empty(increments) else _increasing("increments", increments, 1)
-    single = next((count for count in counts if count >= INCREMENT_NODES), counts[-1])
+    single = next((count for count in counts if count >= 201), counts[-1])
     if increment_nodes is not None:
         if not steps:
             raise InputError("increment_nodes", "is for the increment solver: give increments, too")
@@ -290,7 +281,7 @@ class _Work:
         self.task, self.counts, self.increments, self.single = task, counts, increments, increment_nodes
         self.history = task.history if corner is None else task.history[:corner]
         corners = len(self.history)
-        self.every = corner is None and corners <= SHORT
+        self.every = corner is None and corners <= 6  # of a longer history the last corner is studied
         self.corners = range(1, corners + 1) if self.every else range(corners, corners + 1)
         self.keep = "corners" if self.every or outcomes else f"every {corners}"
         self.lost: StudyLostError | None = None

@@ -104,7 +104,9 @@ def estimate(
         return Estimate("to rounding", math.nan, last, float(np.ptp(f)), scatter)
     order, limit, deviation = _fit(h, f)
     if not LEAST_ORDER <= order <= MOST_ORDER or deviation >= MISFIT * np.ptp(f):
-        settled = scatter <= CONVERGED and not (scatter > ALIKE and _drifts(f))
+        steps = np.diff(f)
+        is_drift = (np.all(steps > 0.0) or np.all(steps < 0.0)) and abs(steps[-1]) >= np.abs(steps).max()
+        settled = scatter <= CONVERGED and not (scatter > ALIKE and is_drift)
         verdict: Verdict = "converged" if settled else "not converged"
         return Estimate(verdict, math.nan, math.nan, SAFETY_NOISE * scattered, scatter)
     if order > TRUSTED_ORDER:
@@ -112,12 +114,6 @@ def estimate(
     safety = SAFETY if len(f) > LATEST else SAFETY_NOISE
     least = pair_bar(last, float(f[-2]), 1.0, float(h[-2]))
     return Estimate("observed", order, limit, max(safety * abs(last - limit) + deviation, least), scatter)
-
-
-def _drifts(f: np.ndarray) -> bool:
-    """Whether all steps have one sign, and the last step is the largest step."""
-    steps = np.diff(f)
-    return bool(np.all(steps > 0.0) or np.all(steps < 0.0)) and bool(abs(steps[-1]) >= np.abs(steps).max())
 
 
 def _fit(h: np.ndarray, f: np.ndarray) -> tuple[float, float, float]:

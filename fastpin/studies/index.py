@@ -37,14 +37,6 @@ WAITING, DONE, FAILED = "waiting", "done", "failed"
 """Statuses of a run."""
 
 _END_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "host", "versions")
-_OUTCOMES_TABLE = (
-    "CREATE TABLE IF NOT EXISTS outcomes (run TEXT NOT NULL, name TEXT NOT NULL, definition TEXT NOT NULL, value REAL, "
-    "reason TEXT, PRIMARY KEY (run, name))"
-)
-_BARS_TABLE = (
-    "CREATE TABLE IF NOT EXISTS bars (run TEXT NOT NULL, name TEXT NOT NULL, bar REAL NOT NULL, "
-    "PRIMARY KEY (run, name))"
-)
 
 
 def has_index(directory: Path) -> bool:
@@ -254,7 +246,11 @@ class Index:
             for row in rows:
                 _check_row(row)
                 for name in fields:
-                    row[name] = _shown(_value(name, row[name]))
+                    cell = row[name]
+                    # Other texts of a load are the names of a CSV file or of one of its columns.
+                    may_be_list = name.startswith("load.") or name in ("solve.arc", "solve.between")
+                    is_list = may_be_list and isinstance(cell, str) and cell.startswith(("[", "{"))
+                    row[name] = _shown(json.loads(cell) if is_list else cell)
                 for name in ("versions", "input"):
                     row[name] = _shown(_table(row[name]))
             return rows
@@ -302,8 +298,15 @@ class Index:
 
     def _make_tables(self) -> None:
         """Add the tables that an index of an earlier version lacks."""
-        for table in (_OUTCOMES_TABLE, _BARS_TABLE, TABLE):
-            self._database.execute(table)
+        self._database.execute(
+            "CREATE TABLE IF NOT EXISTS outcomes (run TEXT NOT NULL, name TEXT NOT NULL, definition TEXT NOT NULL, "
+            "value REAL, reason TEXT, PRIMARY KEY (run, name))"
+        )
+        self._database.execute(
+            "CREATE TABLE IF NOT EXISTS bars (run TEXT NOT NULL, name TEXT NOT NULL, bar REAL NOT NULL, "
+            "PRIMARY KEY (run, name))"
+        )
+        self._database.execute(TABLE)
 
     def _write_result(self, run: str, content: bytes | None) -> None:
         """Write a packed result. Without one, the result has a file of its own, and an older one is removed."""
@@ -442,15 +445,6 @@ def _quoted(names: Iterable[str]) -> str:
 def _cell(value: Any) -> Any:
     """Return a value of a field for SQL. A list or table becomes JSON; a number or text stays."""
     return json.dumps(value) if isinstance(value, list | dict) else value
-
-
-def _value(name: str, cell: Any) -> Any:
-    """Return the value of a cell. Only loads, the ends of an arc and fractions of a step may be lists or tables.
-
-    Other texts of a load are the names of a CSV file or of one of its columns.
-    """
-    may_be_list = name.startswith("load.") or name in ("solve.arc", "solve.between")
-    return json.loads(cell) if may_be_list and isinstance(cell, str) and cell.startswith(("[", "{")) else cell
 
 
 def ensure_directory(directory: Path) -> Path:

@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 LISTED = "run"
 """The dimension of the [[list]] blocks of a plan."""
 
-TEXTS = ("status", "reason", "id")
-"""Variables that are text."""
-
 NamedAttributes = dict[str, Any]
 
 
@@ -50,7 +47,7 @@ def dataset(plan: Plan, rows: Sequence[Mapping[str, Any]]) -> xarray.Dataset:
         known = [row.get(name) if row["status"] == DONE else None for row in rows]
         numbers = [np.nan if value is None else value for value in known]
         variables[name] = dimensions, np.array(numbers, dtype=float).reshape(shape), _attributes(plan, rows, name)
-    for name in TEXTS:
+    for name in ("status", "reason", "id"):
         texts = np.array([row.get(name) or "" for row in rows], dtype=str)
         variables[name] = dimensions, texts.reshape(shape), {"long_name": f"{name} of the run"}
     return xarray.Dataset(variables, coordinates, {"title": plan.title} if plan.title else {})

@@ -49,7 +49,7 @@ Outcomes = dict[str, StudyOutcome]
 
 KEYS = {
     "quantity": ("quantity", "take", "over", "interface"),
-    "cycle": ("cycle",),
+    "cycle": ("cycle", "interface"),
     "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
     "function": ("function", "classes"),
 }
@@ -266,11 +266,12 @@ def _of_quantity(section: Section) -> StudyOutcome | None:
 
 
 def _of_cycle(section: Section) -> StudyOutcome | None:
-    quantity = _choice(section, "cycle", tuple(CYCLE_QUANTITIES))
-    if quantity is None:
+    quantity, interface = _choice(section, "cycle", tuple(CYCLE_QUANTITIES)), _choice(section, "interface", INTERFACES)
+    if quantity is None or interface is None:
         return None
     kind, classes = CYCLE_QUANTITIES[quantity].kind, dict(CYCLE_QUANTITIES[quantity].classes)
-    return StudyOutcome(kind, "", json.dumps({"cycle": quantity}), partial(of_last_cycle, quantity), classes)
+    definition = {"cycle": quantity} | ({} if interface == INTERFACES[0] else {"interface": interface})
+    return StudyOutcome(kind, "", json.dumps(definition), partial(of_last_cycle, quantity, interface), classes)
 
 
 def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutcome | None:

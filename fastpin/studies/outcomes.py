@@ -32,6 +32,7 @@ from fastpin.model.units import DEGREE, Unit
 from fastpin.model.wear import Wear
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.error_bars import number_bar, value_bar
+from fastpin.states.load_cycle import NodeBehaviour
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
@@ -55,13 +56,17 @@ INTERFACES = ("pin", "seat")
 ROUNDING = 1e-9
 """Largest slip range without slip, in parts of the natural size of displacements."""
 
-_PACKAGE = Path(__file__).parents[1]
 
-_WORN_LIVES: WeakKeyDictionary[Result, dict[Wear, WearResult]] = WeakKeyDictionary()
+@dataclass
+class _Known:
+    """What outcomes have read from a result: lives of wear, the damage of these lives, and hot spots."""
 
-_WORN_DAMAGES: WeakKeyDictionary[Result, dict[tuple[Wear, str, Body], WornFatigue]] = WeakKeyDictionary()
+    lives: dict[Wear, WearResult] = field(default_factory=dict)
+    damages: dict[tuple[Wear, str, Body], WornFatigue] = field(default_factory=dict)
+    spots: dict[tuple[str, Body], HotSpot] = field(default_factory=dict)
 
-_HOT_SPOTS: WeakKeyDictionary[Result, dict[tuple[str, Body], HotSpot]] = WeakKeyDictionary()
+
+_KNOWN: WeakKeyDictionary[Result, _Known] = WeakKeyDictionary()
 
 
 class CycleQuantity(NamedTuple):
@@ -111,11 +116,13 @@ CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
         for ending, quantity in _hot_spot_quantities(criterion, body).items()
     },
     "regime": CycleQuantity("class", lambda result: _regime(result), REGIMES),
+    "sticking_part": CycleQuantity("", lambda result: _sticking_part(result)),
 }
 """The quantities of the last cycle, by name.
 
 The first four are those of :class:`fastpin.states.cycles.Cycle`. The next four are the largest values of a node in
-:class:`fastpin.states.LoadCycle`. "regime" is :attr:`fastpin.states.LoadCycle.regime`. The others belong to the hot
+:class:`fastpin.states.LoadCycle`. "regime" is :attr:`fastpin.states.LoadCycle.regime`. "sticking_part" is the part of
+the hole that sticks all the time. The others belong to the hot
 spot on the edge of the plate, see :func:`fastpin.damage.fatigue`. Names that end with "_seat", such as
 "smith_watson_topper_life_seat", belong to the plate round a bush, at the seat of the bush.
 """
@@ -341,8 +348,11 @@ def taken(quantity: str, take: str, span: str, interface: str, result: Result) -
     values = values[np.isfinite(values)]
     if len(values) == 0:
         return math.nan
+    if take == "range" and kind == "angle":  # the smallest arc is a turn without the widest gap between two angles
+        turned = np.sort(np.mod(values, 2.0 * math.pi))
+        return 2.0 * math.pi - float(np.diff(turned, append=turned[0] + 2.0 * math.pi).max())
     if take == "range":
-        return _arc(values) if kind == "angle" else float(np.ptp(values))
+        return float(np.ptp(values))
     if take == "largest magnitude":
         values = np.abs(values)
     return float(values.min() if take == "smallest" else values.max())
@@ -391,8 +401,8 @@ def bar_of_taken(quantity: str, take: str, span: str, interface: str, result: Re
     return value_bar(quantity, value, _beside(kind, value, other), ends[take])
 
 
-def of_last_cycle(quantity: str, result: Result) -> float:
-    """The value of a name in :data:`CYCLE_QUANTITIES`.
+def of_last_cycle(quantity: str, interface: str, result: Result) -> float:
+    """The value of a name in :data:`CYCLE_QUANTITIES` at an interface of :data:`INTERFACES`; NaN without a seat.
 
     Raises
     ------
@@ -400,23 +410,23 @@ def of_last_cycle(quantity: str, result: Result) -> float:
         If the result has no cycle.
     """
     _check_cycles(result)
-    return CYCLE_QUANTITIES[quantity].of(result)
+    chosen = result if interface == "pin" else result.seat
+    return math.nan if chosen is None else CYCLE_QUANTITIES[quantity].of(chosen)
 
 
 def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Result) -> float:
     """The value of a name in :data:`WEAR_QUANTITIES`; NaN without a crack. Lives are kept while the result lives."""
-    lives = _WORN_LIVES.setdefault(result, {})
-    if wear not in lives:
+    known = _KNOWN.setdefault(result, _Known())
+    if wear not in known.lives:
         with doubts_given():
-            lives[wear] = result.wear(**wear.given)
-    life, chosen = lives[wear], WEAR_QUANTITIES[quantity]
+            known.lives[wear] = result.wear(**wear.given)
+    life, chosen = known.lives[wear], WEAR_QUANTITIES[quantity]
     if not chosen.is_damage:
         return chosen.of(life)
     key = (wear, criterion, body)
-    damages = _WORN_DAMAGES.setdefault(result, {})
-    if key not in damages:
-        damages[key] = life.fatigue(criterion, body)
-    return chosen.of(damages[key])
+    if key not in known.damages:
+        known.damages[key] = life.fatigue(criterion, body)
+    return chosen.of(known.damages[key])
 
 
 @dataclass(frozen=True)
@@ -509,6 +519,13 @@ def _slip_range(result: Result) -> tuple[float, float]:
     return cycle.largest_slip_range, cycle.largest_slip_range_angle
 
 
+def _sticking_part(result: Result) -> float:
+    """The part of the hole whose nodes are in contact and stick throughout the cycle. All corners must be kept."""
+    _states_of_cycle(result)
+    cycle, weights = result.cycle(), result.grid.weights
+    return float(weights @ (cycle.behaviour == NodeBehaviour.STICKS)) / (2.0 * math.pi)
+
+
 def _regime(result: Result) -> float:
     """The regime of the cycle. Unless slip sums are counted, all corners of the cycle must be kept."""
     cycle = result.cycle()
@@ -527,7 +544,7 @@ def _friction_energy(result: Result) -> tuple[float, float]:
 
 def _hot_spot(result: Result, criterion: str, body: Body) -> HotSpot:
     """The hot spot on the edge of a body. It is kept while the result lives: several outcomes read it."""
-    spots = _HOT_SPOTS.setdefault(result, {})
+    spots = _KNOWN.setdefault(result, _Known()).spots
     if (criterion, body) not in spots:
         _states_of_cycle(result)
         spots[criterion, body] = result.fatigue(criterion, body).hot_spot
@@ -548,16 +565,11 @@ def _finite(life: float) -> float:
     return life if math.isfinite(life) else math.nan
 
 
-def _arc(angles: np.ndarray) -> float:
-    """Length of the smallest arc that holds all angles, rad."""
-    turned = np.sort(np.mod(angles, 2.0 * math.pi))
-    return 2.0 * math.pi - float(np.diff(turned, append=turned[0] + 2.0 * math.pi).max())
-
-
 def reason_of(error: BaseException) -> str:
     """An error in one line, with the line of the user's code that raised it."""
     frames = traceback.extract_tb(error.__traceback__)
-    of_user = [frame for frame in frames if not Path(frame.filename).is_relative_to(_PACKAGE)]
+    package = Path(__file__).parents[1]
+    of_user = [frame for frame in frames if not Path(frame.filename).is_relative_to(package)]
     place = f" ({Path(of_user[0].filename).name}, line {of_user[0].lineno})" if of_user else ""
     words = str(error) if isinstance(error, FastpinError) else f"{type(error).__name__}: {error}"
     return printable(f"{words}{place}")

@@ -53,9 +53,6 @@ MAX_FAULTS = 50
 MOST_CASES = 5_000
 """Most cases that a plan keeps after it has checked them: some 20 MB. Reading a case again takes 1 ms."""
 
-DIGITS = 12
-"""Significant digits of the values between the ends of a range. Thus 0.3 in a range equals 0.3 in a list."""
-
 Spacing = Literal["linear", "log", "list"]
 """Spacing of the values of a field. "list": the values are listed one by one."""
 
@@ -276,16 +273,12 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     cases: dict[str, Case] = {}
     found: list[InputWarning] = []
     points = _points(source, base, places, rows or [{}], axes, (cases, found), progress)
-    found += _wear_doubts(base, outcomes)
-    fields = {name: spacings[name] for name in places}
-    return Plan(title, text, fields, axes, points, outcomes, found, labels, base, cases)
-
-
-def _wear_doubts(base: BaseCase, outcomes: Outcomes) -> list[InputWarning]:
-    """Warnings for coefficients of wear that are probably in another unit, in the outcomes of a plan."""
     wears = dict.fromkeys(each.wear for each in outcomes.values() if each.wear is not None)
     case = base.vary({})[1] if wears else None
-    return [] if case is None else [doubt for wear in wears for doubt in wear_doubts(case.problem, wear)]
+    if case is not None:
+        found += [doubt for wear in wears for doubt in wear_doubts(case.problem, wear)]
+    fields = {name: spacings[name] for name in places}
+    return Plan(title, text, fields, axes, points, outcomes, found, labels, base, cases)
 
 
 def _labels(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
@@ -469,7 +462,8 @@ def _range(source: CaseText, place: KeyPath, name: str, table: dict[str, Any]) -
         section.report(f"{name}: from and to must both be positive, or both negative, where spacing is log")
         return [], spacing
     values = (np.geomspace if spacing == "log" else np.linspace)(first, last, count)
-    rounded = [first, *(float(f"{value:.{DIGITS}g}") for value in values[1:-1]), last]
+    # With 12 digits 0.3 in a range equals 0.3 in a list.
+    rounded = [first, *(float(f"{value:.12g}") for value in values[1:-1]), last]
     if isinstance(table["from"], int) and isinstance(table["to"], int) and all(value % 1 == 0 for value in rounded):
         return [int(value) for value in rounded], spacing
     return rounded, spacing

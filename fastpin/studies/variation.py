@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
-from fastpin.casefile.material_files import known_materials
+from fastpin.casefile.materials import known_materials
 from fastpin.casefile.profiles import PROFILES, varied
 from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError

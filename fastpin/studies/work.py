@@ -124,7 +124,12 @@ class Work:
             try:
                 with closing(run_tasks(self._executor, self._workers, tasks, submit, size)) as ended:
                     for batch, ends in ended:
-                        yield [_as_end(run, ends) for run in batch] if isinstance(ends, BaseException) else ends
+                        if isinstance(ends, BaseException):
+                            died = type(ends).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
+                            reason = DIED if died else f"{type(ends).__name__}: {ends}"
+                            yield [RunEnd(run, reason) for run in batch]
+                        else:
+                            yield ends
             except BrokenError:
                 raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
 
@@ -149,12 +154,6 @@ class Pace:
             return 1
         by_time = BATCH_SECONDS * self._runs / max(self._seconds, 1e-3)
         return max(1, min(int(by_time), MOST_IN_BATCH, waiting // (4 * self._workers)))
-
-
-def _as_end(run: str, error: BaseException) -> RunEnd:
-    """Return the end of a run whose worker raised an exception: a failure."""
-    died = type(error).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
-    return RunEnd(run, DIED if died else f"{type(error).__name__}: {error}")
 
 
 def _check_end(end: RunEnd, path: Path) -> RunEnd:

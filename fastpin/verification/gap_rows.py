@@ -23,9 +23,6 @@ from fastpin.verification.sliding import solve_sliding
 WAVES = InitialGap(Profile((Harmonic(1, 0.01), Harmonic(2, 0.02, 0.01), Harmonic(3, 0.005))))
 """Waves of a fit that stays closed all round."""
 
-UNEVEN = InitialGap(Profile((Harmonic(2, 0.03, 0.02),)), Profile((Harmonic(3, 0.01),)))
-"""Profiles of hole and pin that leave one contact."""
-
 CIRCLE = Grid.circle(120)
 """Nodes of the exact relations."""
 
@@ -42,7 +39,8 @@ def waves(pair: MaterialPair, friction: float, hollow: bool, solving: Solving) -
 
 def sliding(solving: Solving) -> Checks:
     """A pin that slides over the whole contact in an uneven hole."""
-    problem = Problem.from_load_parameter(LIKE, 0.5, 0.3, "centre", "fixed", gap=UNEVEN)
+    uneven = InitialGap(Profile((Harmonic(2, 0.03, 0.02),)), Profile((Harmonic(3, 0.01),)))  # leaves one contact
+    problem = Problem.from_load_parameter(LIKE, 0.5, 0.3, "centre", "fixed", gap=uneven)
     state = solving(problem, [{"P": 1.0}, {"Q": 1.0}], nodes=201, arc=(BOTTOM - 1.1, BOTTOM + 1.4))[-1]
     series = solve_sliding(problem, {"P": 1.0, "Q": 1.0})
     yield relative_check("peak N", state.peak_pressure, series.peak_pressure)

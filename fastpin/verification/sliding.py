@@ -48,23 +48,11 @@ TERMS = (16, 32, 64, 128)
 NEGLIGIBLE = 1e-13
 """Largest of the last three coefficients, over the largest of all, at which no more terms are tried."""
 
-LEAST_TERMS = 4
-"""Least number of Jacobi polynomials."""
-
-MOST_TERMS = 2_000
-"""Most Jacobi polynomials. The matrix of the equations then takes 30 MB."""
-
 WIDER = (1.0, 2.0, 3.0)
 """Half-widths to start from with finite bodies, in parts of Hertz's: thin walls bend, and their contact is wider.
 
 A tube with the bore 0.8 R in a ring to 1.5 R has a contact 2.5 times as wide as Hertz's at L_p = 1.
 """
-
-# Half-widths, rad: a narrower contact can't be told from a point, a wider one has no two ends.
-_NARROWEST, _WIDEST = 1e-7, 0.995 * math.pi
-_MOST_STEPS = 200  # of a continuation from one case to another
-_LEAST_STEP = 1e-3  # of a continuation, in parts of the whole way
-_FAR_OFF = np.array([10.0, 10.0])  # residuals for ends that are out of range
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +168,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
     given = _checked_load(load)
     if isinstance(slip, bool) or not isinstance(slip, (int, np.integer)) or slip not in (1, -1):
         raise InputError("slip", f"must be 1 (counter-clockwise) or -1, not {as_toml(slip)}")
-    counts = TERMS if terms is None else (whole_number("terms", terms, LEAST_TERMS, MOST_TERMS),)
+    counts = TERMS if terms is None else (whole_number("terms", terms, 4, 2_000),)  # the matrix then takes 30 MB
     case = _Case.of(problem, given, -float(slip))
     ends: tuple[float, float] | None = None
     with threadpool_limits(limits=1, user_api="blas"):
@@ -457,7 +445,7 @@ def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float
     Clearance, stresses and initial gap change linearly from case to case, in steps of variable size.
     """
     done, step = 0.0, 1.0
-    for _ in range(_MOST_STEPS):
+    for _ in range(200):  # steps at most
         part = done + step
         between = replace(
             after,
@@ -475,7 +463,7 @@ def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float
             step = min(2.0 * step, 1.0 - done)
         else:
             step *= 0.5
-            if step < _LEAST_STEP:
+            if step < 1e-3:
                 break
     return None
 
@@ -483,14 +471,18 @@ def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float
 def _ends_near(case: _Case, basis: _Basis, start: tuple[float, float]) -> tuple[float, float] | None:
     """Return middle and half-width of a case's contact near `start`, None if the iteration does not converge."""
 
+    # A narrower contact can't be told from a point, and a wider one has no two ends.
+    narrowest, widest = 1e-7, 0.995 * math.pi
+    out_of_range = np.array([10.0, 10.0])
+
     def residuals(unknowns: np.ndarray) -> np.ndarray:
         half = 2.0 * math.atan(math.exp(min(unknowns[1], 50.0)))
-        if not (_NARROWEST < half < _WIDEST and abs(unknowns[0] - start[0]) < 1.0):
-            return _FAR_OFF
+        if not (narrowest < half < widest and abs(unknowns[0] - start[0]) < 1.0):
+            return out_of_range
         try:
             patch = _patch(case, basis, unknowns[0], half)
         except np.linalg.LinAlgError:
-            return _FAR_OFF
+            return out_of_range
         # In a loose fit the clearance varies like 1/half^2; so its residual is scaled by half^2.
         return np.array([(patch.clearance - case.clearance) * half**2, patch.unbalanced])
 

@@ -10,6 +10,7 @@ import pytest
 from fastpin.errors import InputError
 from fastpin.figures import plot_history
 from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOADS
 from tests.support.samples import sample_result
 
 PROBLEM = sample_result(nodes=21).problem
@@ -28,6 +29,14 @@ def test_a_repeated_block_is_drawn_once_with_its_times() -> None:
     assert [text.get_text() for text in forces.texts] == ["× 1,000"]
     assert [tick.get_text() for tick in stress.get_xticklabels()] == ["0", "1", "2", "3", "2,002"]
     assert forces.get_ylabel() == "force P, Q (MN/m)"
+
+
+def test_every_kind_of_load_has_a_panel() -> None:
+    figure = plot_history(PROBLEM, LoadHistory([dict.fromkeys(LOADS, 1.0)]))
+    assert [panel.get_ylabel() for panel in figure.axes] == [
+        "force P, Q (N/m)", "moment M (N)", "remote stress sxx, syy, sxy (Pa)", "prescribed rotation (rad)",
+        "prescribed ux, uy (m)", "relative friction_change",
+    ]  # fmt: skip
 
 
 def test_a_history_without_loads_has_an_axis() -> None:

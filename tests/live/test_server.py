@@ -30,8 +30,6 @@ from fastpin.live.protocol import (
     CLASS,
     MOST_A_SECOND,
     MOST_BYTES,
-    MOST_CONNECTIONS,
-    MOST_SESSIONS,
     Limits,
     Message,
 )
@@ -421,16 +419,16 @@ def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_hundred_connections_are_not_too_many() -> None:
     async def work(client: aiohttp.ClientSession) -> None:
         talks = [await connect(client, running) for _ in range(100)]
-        taken, others = talks[:MOST_CONNECTIONS], talks[MOST_CONNECTIONS:]
+        taken, others = talks[: ALONE.connections], talks[ALONE.connections :]
         for talk in others:
-            assert f"{MOST_CONNECTIONS} pages are open" in (await talk.answer(None))["sentence"]
+            assert f"{ALONE.connections} pages are open" in (await talk.answer(None))["sentence"]
             assert (await talk.page.receive()).data == aiohttp.WSCloseCode.TRY_AGAIN_LATER
         sentences = []
         for talk in taken:
             await talk.send("hello", session="")
             sentences.append(json.loads((await talk.page.receive()).data))
-        assert [one["kind"] for one in sentences].count("welcome") == MOST_SESSIONS
-        assert f"{MOST_SESSIONS} pages are open" in sentences[-1]["sentence"]
+        assert [one["kind"] for one in sentences].count("welcome") == ALONE.sessions
+        assert f"{ALONE.sessions} pages are open" in sentences[-1]["sentence"]
         for talk in taken:
             await talk.page.close()
         talk = await connect(client, running)  # the contacts of pages that have gone make room

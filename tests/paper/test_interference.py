@@ -155,7 +155,7 @@ def test_the_map_is_drawn_with_names_in_its_regions(mapped):
     assert len(figure.axes) == 4
     for panel, curve in zip(figure.axes, mapped, strict=True):
         names = {text.get_text() for text in panel.texts}
-        assert {regimes.REGIMES[kind] for kind in set(curve["arcs"].astype(int).tolist())} <= names
+        assert {regimes.REGIMES[kind].words for kind in set(curve["arcs"].astype(int).tolist())} <= names
         for text in panel.texts:
             box = text.get_window_extent()
             assert panel.bbox.x0 <= box.x0 < box.x1 <= panel.bbox.x1
@@ -165,7 +165,7 @@ def test_the_map_is_drawn_with_names_in_its_regions(mapped):
 def test_names_have_greys_that_differ():
     """Black text on each, and neighbours at least 8 % of white apart."""
     greys = []
-    for colour in regimes.FILLS.values():
+    for _, colour in regimes.REGIMES.values():
         red, green, blue = (int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
         greys.append(0.299 * red + 0.587 * green + 0.114 * blue)
     assert min(greys) > 0.5

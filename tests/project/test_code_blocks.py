@@ -29,7 +29,7 @@ import pytest
 import fastpin
 from fastpin.casefile import EXAMPLE, LUG_EXAMPLE, builtin_case, parse_lug
 from fastpin.casefile.lug import LUG_KEYS
-from fastpin.casefile.material_files import FILE_KEYS
+from fastpin.casefile.materials import FILE_KEYS
 from fastpin.casefile.reader import KEYS, ROOT_KEYS
 from fastpin.cli.options import join_words, parser
 from fastpin.elasticity import plate_compliance
@@ -53,6 +53,7 @@ ELSEWHERE = {
     "interference.md": "test_teaching_pages.py",
     "reading-results.md": "test_teaching_pages.py",
     "superposition.md": "test_teaching_pages.py",
+    "bush.md": "test_bush_page.py",
     "wear.md": "test_wear_page.py",
 }
 """Pages whose blocks of Python run in another test of this folder, as some of them may come later."""

@@ -170,6 +170,6 @@ def test_joint_and_bush_are_quantities_of_a_state():
     assert QUANTITIES["joint_uy"].of(state) == state.joint_displacement()["uy"] < 0.0
     assert QUANTITIES["joint_ux"].of(state) == pytest.approx(0.0, abs=1e-12)
     assert QUANTITIES["bush_open_margin"].of(state) == state.bush_fit().open_margin
-    assert math.isnan(QUANTITIES["bush_slip_margin"].of(state))
+    assert math.isnan(QUANTITIES["bush_slip_margin"].of(state))  # a bonded bush has no friction
     plain = solve(problem("solid pin, held ring"), [{"P": 1.0}], nodes=41)[-1]
     assert math.isnan(QUANTITIES["bush_open_margin"].of(plain))

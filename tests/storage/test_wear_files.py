@@ -21,7 +21,7 @@ from fastpin.solver.wear_result import WearResult
 from fastpin.storage import wear_files
 from fastpin.storage.journal import JournaledFile
 from tests.support.interrupts import StopAt
-from tests.support.wear_cases import WEAR_CASES, life
+from tests.support.wear_cases import BUMPED, BUMPED_TURNS, WEAR_CASES, life
 
 CASE = WEAR_CASES["unlike"]
 PARTS = ("pressure", "shear", "gap", "slip", "status", "slip_distance", "dissipation", "work", "energy", "step")
@@ -128,6 +128,17 @@ def test_a_life_that_ended_before_its_first_transaction_begins_anew(tmp_path, mo
     with pytest.raises(InputError, match="is empty, and no result; if its run was killed, start it again"):
         fastpin.load_wear(path)
     assert_same_life(life(path, cycles=2, resume=True), life(cycles=2))
+
+
+def test_a_life_whose_pin_touches_beyond_its_arc_later_begins_anew_there(tmp_path):
+    """Interrupted or not: a bump is touched in the fourth cycle."""
+    path = tmp_path / "life.h5"
+    given: dict[str, Any] = {"coefficient": 0.1, "cycles": 5, "tolerance": 0.0, "nodes": 31}
+    whole = fastpin.wear(BUMPED, BUMPED_TURNS, **given)
+    with pytest.raises(Interrupted) as caught:
+        fastpin.wear(BUMPED, BUMPED_TURNS, output=path, progress=StopAt(2), **given)
+    assert np.ptp(caught.value.result.grid.theta) < 0.7 * np.ptp(whole.theta)
+    assert_same_life(fastpin.wear(BUMPED, BUMPED_TURNS, output=path, resume=True, **given), whole)
 
 
 def test_a_life_of_another_kind_is_not_continued(tmp_path):

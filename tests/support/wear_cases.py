@@ -22,6 +22,16 @@ Loads = dict[str, float]
 
 LOBED = InitialGap(Profile((Harmonic(2, 0.02, 0.01), Harmonic(6, -0.02, 0.0))))
 
+BUMPED = Problem.from_load_parameter(
+    LIKE, 2.0, 0.05, "centre", "fixed", gap=InitialGap(Profile.crown(-1.05, -0.5 * np.pi + 1.3, 0.3))
+)
+"""A pin in a wide hole with a bump 74 degrees from the bottom. Wear lets the pin sink onto it."""
+
+BUMPED_TURNS = LoadHistory([{"P": 1.0, "rotation": 1.0}]) + LoadHistory(
+    [{"rotation": -1.0}, {"rotation": 1.0}]
+).repeated(1)
+"""The history of this pin: it turns to and fro."""
+
 
 class WearCase(NamedTuple):
     """A life of 40 equal fat cycles of 121 nodes, after one cycle without wear, and its known numbers.

@@ -21,6 +21,7 @@ from fastpin.states.state import State
 from fastpin.verification.comparisons import residuals_away
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.sliding import solve_sliding
+from scripts.histories import generate
 
 FRETTED = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}, {"P": 0.5}, {"P": 1.0, "Q": 0.2}]
 
@@ -104,6 +105,20 @@ def test_half_planes_slide_where_the_mean_friction_is_reached(nodes: int) -> Non
     for side, friction_there in ((right, 0.5), (~right, 0.3)):
         limit = friction_there * beyond.pressure[side]
         assert np.abs(beyond.shear[side]) == pytest.approx(limit, abs=1e-12 * limit.max())
+
+
+@pytest.mark.parametrize("kind", ["general", "fits", "fixed"])
+def test_equal_values_along_the_rim_give_the_bits_of_their_number(kind: str) -> None:
+    for seed in (2, 3, 4):
+        case = generate(kind, seed)
+        assert isinstance(case.problem.friction, float)
+        equal = Profile.constant(case.problem.friction) + Profile.zone(0.0, 0.0, 1.0)
+        varied = replace(case.problem, friction=equal)
+        assert isinstance(varied.friction, Profile)
+        ones, others = (solve(problem, case.history, **case.options) for problem in (case.problem, varied))
+        for one, other in zip(ones, others, strict=True):
+            for name in ("theta", "status", "pressure", "shear", "gap", "slip", "dissipation", "work", "energy"):
+                assert np.array_equal(getattr(one, name), getattr(other, name))
 
 
 def test_friction_where_nothing_touches_has_no_effect() -> None:
