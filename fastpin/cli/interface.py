@@ -7,8 +7,10 @@ from pathlib import Path
 from fastpin import solver, storage
 from fastpin.errors import InputError
 
-SEAT_WORDS = "seat of the bush"
-"""Words in titles, which tell the contact in the seat from the contact of the pin."""
+
+def seat_title(title: str) -> str:
+    """Return the title of a case with words that tell the contact in the seat from the contact of the pin."""
+    return f"{title}, seat of the bush" if title else "seat of the bush"
 
 
 def load_seat(path: Path) -> solver.Result:

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from fastpin import casefile, figures, storage
-from fastpin.cli.interface import SEAT_WORDS, load_seat
+from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_files
 from fastpin.errors import InputError
@@ -28,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
         figures.animation.check_animation("--output", figure)
     title = "" if is_case else storage.stored_case(options.result).title
     if options.interface == "seat":
-        title = f"{title}, {SEAT_WORDS}" if title else SEAT_WORDS
+        title = seat_title(title)
     check_outputs({"--output": figure, "--csv": options.csv}, figures=() if film else ("--output",))
     if is_case:
         case = casefile.read_case(options.result)

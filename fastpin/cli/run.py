@@ -16,7 +16,7 @@ import numpy as np
 
 from fastpin import casefile, figures, live, report, solver, storage
 from fastpin.cli import wear
-from fastpin.cli.interface import SEAT_WORDS, load_seat
+from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.options import literal
 from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration, progress_to
 from fastpin.cli.terminal import (
@@ -106,8 +106,8 @@ def show(options: argparse.Namespace) -> int:
     case = _stored_case(options)
     if options.interface == "seat":
         seat = load_seat(options.output)
-        title = f"{case.title}, {SEAT_WORDS}" if case.title else SEAT_WORDS
-        code = RunReport(dataclasses.replace(case, problem=seat.problem, title=title), None, seat, None).write(options)
+        shown = dataclasses.replace(case, problem=seat.problem, title=seat_title(case.title))
+        code = RunReport(shown, None, seat, None).write(options)
     else:
         code = _write_stored(case, options, None)
     if options.json != "-":

@@ -93,7 +93,7 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
 
 
 def _numbers(state: State) -> dict[str, Any]:
-    loops = LoadCycle((state, state)).loops
+    loops, seat = LoadCycle((state, state)).loops, state.seat
     return {
         "load": state.load,
         "moment": state.resultants["M"],
@@ -106,7 +106,14 @@ def _numbers(state: State) -> dict[str, Any]:
         "peak_shear": state.peak_shear,
         "peak_shear_angle": _degrees(state.peak_shear_angle),
         **_zones(state),
-        "seat": None if state.seat is None else _of_seat(state.seat),
+        "seat": seat
+        and {
+            "peak_slip": seat.peak_slip,
+            "rotation": seat.rotation,
+            "dissipation": seat.dissipation,
+            "frictionless": seat.problem.frictionless,
+            **_zones(seat),
+        },
         "residual": max(state.residuals.values()),
         "loops": {name: (float(loop.load[0]), float(loop.displacement[0])) for name, loop in loops.items()},
     }
@@ -119,12 +126,6 @@ def _zones(state: State) -> dict[str, Any]:
         "stick": [interval_from_bottom(*ends) for ends in state.stick],
         "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
     }
-
-
-def _of_seat(seat: State) -> dict[str, Any]:
-    """What the page shows of a bush in its seat."""
-    numbers = {"peak_slip": seat.peak_slip, "rotation": seat.rotation, "dissipation": seat.dissipation}
-    return {**numbers, **_zones(seat), "frictionless": seat.problem.frictionless}
 
 
 def _degrees(angle: float) -> float:

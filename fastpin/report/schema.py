@@ -75,7 +75,7 @@ def _summary() -> Schema:
             ),
             "solver": _object({each.name: {} for each in fields(SolveOptions)}),
             "statistics": _map_of(_NUMBER, "counters of the solver, and its time, s"),
-            "states": _list_of(_state()),
+            "states": _list_of(_state(seat=_state())),
             "extremes": _object(dict.fromkeys(READINGS, sides), required=()),
             "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN))),
             "cycles": _list_of(_object(of_cycle)),
@@ -122,12 +122,8 @@ def _field(field: Field) -> Schema:
     return _TEXT if field.choices else _UNKNOWN if field.is_optional else _NUMBER
 
 
-def _state() -> Schema:
-    seat = _object(_parts_of_state()) | {"description": "the contact of a bush that slips in its seat"}
-    return _object(_parts_of_state() | {"seat": seat}, without=["seat"])
-
-
-def _parts_of_state() -> dict[str, Schema]:
+def _state(seat: Schema | None = None) -> Schema:
+    """A state, perhaps with the state of a seat."""
     interval = _list_of(_NUMBER, 2)
     slip = {"description": "start and stop, deg, and the sign of the slip", **_list_of(_NUMBER, 3)}
     quantities = {
@@ -135,7 +131,7 @@ def _parts_of_state() -> dict[str, Schema]:
         for name, each in QUANTITIES.items()
         if name not in _RESULTANTS
     }
-    return {
+    parts: dict[str, Schema] = {
         "load_point": _NUMBER,
         "step": _WHOLE,
         "fraction": _NUMBER,
@@ -151,6 +147,10 @@ def _parts_of_state() -> dict[str, Schema]:
         "residuals": _map_of(_UNKNOWN, "errors of the contact conditions"),
         "error_bars": _or_null(_map_of(_UNKNOWN, "largest likely errors")),
     }
+    if seat is None:
+        return _object(parts)
+    words = {"description": "the contact of a bush that slips in its seat; left out without one"}
+    return _object(parts | {"seat": seat | words}, without=["seat"])
 
 
 def _last_cycle() -> Schema:

@@ -44,14 +44,12 @@ def _von_mises(owner: str) -> Quantity:
     return Quantity(f"largest von Mises stress of the {owner}", "traction", of)
 
 
-def _seat_slip(state: State) -> float:
-    return math.nan if state.seat is None else state.seat.peak_slip
-
-
 READINGS: dict[str, Quantity] = {
     **{name: each for name, each in QUANTITIES.items() if each.kind not in ("angle", "ratio", "class")},
     "bush_least_friction": Quantity("bush least friction", "ratio", of_bush(lambda fit: fit.least_friction)),
-    "seat_slip": Quantity("slip in the seat", "displacement", _seat_slip),
+    "seat_slip": Quantity(
+        "slip in the seat", "displacement", lambda state: math.nan if state.seat is None else state.seat.peak_slip
+    ),
     **{PREFIX + owner: _von_mises(owner) for owner in OWNERS},
 }
 """The quantities that have extremes.
@@ -186,17 +184,13 @@ def yield_extremes(kept: Kept) -> Found:
     owners = yielding_owners(kept.problem)
     if not owners:
         return {}
-    columns = [np.abs(np.column_stack(list(_sizes(block)))) for block in kept.blocks()]
+    columns = []
+    for block in kept.blocks():
+        tractions = [part for each in (block, block.seat or block) for part in (each.pressure, each.shear)]
+        columns.append(np.column_stack([np.abs(block.loads), *(np.abs(part).max(axis=1) for part in tractions)]))
     states = kept.read(sorted({int(np.argmax(column)) for column in np.concatenate(columns).T}))
     near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]
     return find_extremes(kept, [(PREFIX + owner, "largest") for owner in near])
-
-
-def _sizes(block: StateBlock) -> Iterator[np.ndarray]:
-    """Give the loads of some states and their largest tractions, also those in the seat of a bush."""
-    yield block.loads
-    for each in (block, *([] if block.seat is None else [block.seat])):
-        yield from (np.abs(part).max(axis=1) for part in (each.pressure, each.shear))
 
 
 def _is_near_yield(state: State, owner: str) -> bool:

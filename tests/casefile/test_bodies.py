@@ -178,7 +178,7 @@ def test_bodies_beside_dundurs_parameters(tmp_path):
         (
             BUSH + 'file = "lug.json"\nkind = "bushing"\n',
             5,
-            'file: belongs to kind = "compliance", not to kind = "bushing"; a bush sits in an infinite plate or a ring',
+            'file: belongs to kind = "compliance", not to kind = "bushing"',
         ),
         (BUSH + "interference = -1e-6\n", 5, "interference: must not be negative, not -1e-06"),
         (BUSH + "interference = 2e-2\n", 5, "interference: must be smaller than the outer radius 0.0125 of the bush"),
