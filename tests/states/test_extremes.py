@@ -90,6 +90,18 @@ def test_extremes_are_the_readings_of_all_states(result: Result) -> None:
             assert extreme.load_point == result[extreme.place].step + 1
 
 
+def test_readings_of_a_bush_that_slips_lie_within_their_bounds(result: Result) -> None:
+    if result.problem.seat is None:
+        return
+    names = {name for name in READINGS if extremes.exists(result.problem, name)} - {"seat_slip"}
+    bounds = reading_bounds.Bounds(result.problem, result.grid, names)
+    for block in KeptStates(result.states).blocks():
+        bounds.add(block, list(range(len(block.pressure))))
+    for name, (low, high) in bounds.found().items():
+        values = np.array([READINGS[name].of(state) for state in result])
+        assert np.all((low <= values) & (values <= high) | np.isnan(values)), name
+
+
 def test_few_states_are_read(readings: list[str]) -> None:
     corners = [{"P": 3e6 if k == 17 else 1e6 + 1e4 * k} for k in range(40)]
     joint = replace(JOINTS["bush"], pair=MaterialPair(replace(STEEL, yield_strength=3e8), MATERIALS["7075-T6"]))
