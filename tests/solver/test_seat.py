@@ -170,6 +170,39 @@ def test_conditions_hold_at_both_interfaces_all_life_long(name, clearance):
     _check(solve(problem, HISTORIES[name], nodes=48).states)
 
 
+LOOSE = {
+    "loose": (-0.1, {}, [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]),
+    "neat": (0.0, {}, [{"P": 1.0}, {"Q": 0.4}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]),
+    "remote": (-0.1, {}, [{"sxx": 0.1}, {"P": 1.0}, {"Q": 0.4}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]),
+    "moment": (-0.1, {"pin_load": "centre"}, [{"P": 1.0, "M": 0.05}, {"Q": 0.4}, {"P": 0.0, "Q": 0.0, "M": 0.0}]),
+}
+
+
+@pytest.mark.parametrize("name", LOOSE)
+def test_a_loose_bush_begins_two_contacts_at_once_and_lets_go_of_both(name):
+    interference, changes, corners = LOOSE[name]
+    states = solve(joint(0.2, interference, **changes), corners, nodes=48).states
+    _check(states)
+    for state in states:
+        is_loaded = any(state.load[load] for load in "PQ")
+        assert state.in_contact == state.seat.in_contact == is_loaded
+        if is_loaded:
+            assert state.seat.resultants["P"] == pytest.approx(state.load["P"], abs=1e-12)
+    assert len(states[1].seat.contact) <= 1
+
+
+def test_a_held_pin_in_a_loose_bush_is_held_over_the_lug():
+    body = Bushing(BRONZE, 1.25, -0.1, friction=0.2, bonded=False)
+    problem = Problem.from_load_parameter(PAIR, 0.28, 0.2, rotation="fixed", plate_body=body)
+    _check(solve(problem, [{"P": 1.0}, {"rotation": 0.1, "Q": 0.2}, {"P": 0.0, "Q": 0.0}, {"P": 0.5}], nodes=48).states)
+
+
+def test_a_loose_bush_with_a_vanishing_clearance_is_a_neat_one():
+    loose, neat = (solve(joint(0.2, size), [{"P": 1.0}, {"Q": 0.3}], nodes=64)[-1] for size in (-1e-5, 0.0))
+    assert loose.peak_pressure == pytest.approx(neat.peak_pressure, rel=1e-3)
+    assert loose.seat.peak_pressure == pytest.approx(neat.seat.peak_pressure, rel=2e-3)
+
+
 def test_conditions_hold_in_a_lug_of_any_outline_and_an_oval_bore():
     compliance = lug(0.33, "strain")
     oval = replace(joint(0.28, 0.26, inside=compliance), gap=InitialGap(Profile.ellipse(0.05)))
@@ -255,6 +288,7 @@ def test_a_bush_that_walks_never_repeats():
         ({"outer_radius": 1.01}, "outer_radius", "must lie between"),
         ({"friction": -1.0}, "friction", "must not be negative"),
         ({"inside": Ring(1.26)}, "outer_radius", "must lie between"),
+        ({"bonded": True, "friction": None, "interference": -0.1}, "interference", "must not be negative"),
     ],
 )
 def test_a_bush_that_cannot_be(changes, field, words):
@@ -262,3 +296,9 @@ def test_a_bush_that_cannot_be(changes, field, words):
     with pytest.raises(InputError, match=words) as caught:
         Problem.from_load_parameter(PAIR, 0.3, 0.2, plate_body=Bushing(**given))
     assert caught.value.field == field
+
+
+def test_a_loose_bush_needs_a_pin_with_clearance():
+    body = Bushing(BRONZE, 1.25, -0.1, friction=0.2, bonded=False)
+    with pytest.raises(InputError, match="interference: must be positive where the pin has an interference fit"):
+        Problem.from_load_parameter(PAIR, -0.1, 0.2, plate_body=body)
