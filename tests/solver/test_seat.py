@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fastpin import LoadHistory, MaterialPair, Problem, Session, load, record, resume, solve
-from fastpin.bodies import Bushing, Ring
+from fastpin.bodies import Bushing, Disk, Ring
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.profile import InitialGap, Profile
@@ -94,23 +94,25 @@ def test_the_hub_of_a_held_pin_turns_over_the_lug(rotation):
         assert state.seat.resultants["M"] == pytest.approx(state.resultants["M"], abs=1e-12)
 
 
-@pytest.mark.parametrize(("nodes", "bound"), [(64, 3e-4), pytest.param(128, 6e-5, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("nodes", "bound"), [(64, 1.2e-5), pytest.param(128, 1.5e-6, marks=pytest.mark.slow)])
 def test_a_pin_stuck_in_a_bush_of_its_material_is_a_solid_pin(nodes, bound):
-    outer, friction = 1.25, 0.2
-    body = Bushing(BRONZE, outer, 0.1, friction=friction, bonded=False)
-    joined = Problem.from_load_parameter(MaterialPair(BRONZE, ALUMINIUM, "strain"), -0.6, 1e3, plate_body=body)
-    corners = [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"P": 0.3}, *({"P": c["P"], "Q": c["Q"]} for c in turns(1, 12))]
-    states = solve(joined, [{}, *corners], nodes=nodes)
-    pressure = float(states[0].seat.pressure.mean())
-    solid = replace(joined.seat, pin_body=type(joined.pin_body)(), clearance=-1.0)
-    solid = replace(solid, clearance=-pressure / outer * outer * solid.joint.uniform_compliance * outer)
+    """It slips, walks and dissipates as the solid pin of the radius of the seat."""
+    body = Bushing(BRONZE, 1.25, 1e-3, friction=0.05, bonded=False)
+    joined = Problem.from_load_parameter(MaterialPair(BRONZE, ALUMINIUM, "strain"), -0.25, 1e3, plate_body=body)
+    corners = [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"P": 0.3}, *turns(1, 12)]
+    assembled, *states = solve(joined, [{}, *corners], nodes=nodes)
+    pressure = float(assembled.seat.pressure.mean())
+    solid = replace(joined.seat, pin_body=Disk(), clearance=-1.0)
+    solid = replace(solid, clearance=-pressure * solid.joint.uniform_compliance * 1.25)
     alone = solve(solid, corners, nodes=nodes, shortcut=False)
-    assert all((state.status != OPEN).all() for state in states)
-    for state, expected in zip(list(states)[1:], alone, strict=True):
+    for state, expected in zip(states, alone, strict=True):
+        assert np.all(state.status != OPEN)
         np.testing.assert_array_equal(state.seat.status, expected.status)
         np.testing.assert_allclose(state.seat.pressure, expected.pressure, atol=bound)
         np.testing.assert_allclose(state.seat.shear, expected.shear, atol=bound)
-    assert states[-1].seat.dissipation == pytest.approx(alone[-1].dissipation, rel=40 * bound)
+    assert states[-1].seat.dissipation == pytest.approx(alone[-1].dissipation, rel=1e-4)
+    assert states[-1].seat.rotation == pytest.approx(alone[-1].rotation, rel=1e-4)
+    assert abs(alone[-1].rotation) > 0.03
 
 
 def test_without_friction_in_the_seat_there_is_no_shear():
