@@ -462,6 +462,8 @@ def bush(rng: np.random.Generator, seed: int) -> RandomCase:
     shrinks = -trial.assembled_clearance * interference
     gap = float(10.0 ** rng.uniform(-2.0, 0.5)) * (-0.1 if rng.random() < 0.2 else 1.0)
     found = problem(interference, shrinks + gap)
+    if gap > 0.0 and rng.random() < 0.15:  # a loose bush, or a neat one
+        found = problem(rng.choice([0.0, -0.3]) * rng.uniform(0.1, 1.0), gap)
     stress = 0.3 if rng.random() < 0.2 and not _is_held(found) else 0.0
     corners = _extreme_loads(rng, found, int(rng.integers(1, 7)), 0.0)
     for corner in corners:

@@ -150,7 +150,8 @@ def check_joint(states: Sequence[State]) -> list[dict[str, float]]:
         size = max(size, abs(state.work), abs(state.energy), abs(state.dissipation), 1e-300)
         conditions["energy"] = abs(energy - state.energy) / size
         conditions["balance"] = abs(state.work - state.energy - state.dissipation) / size
-        conditions["dissipation >= 0"] = max(-state.dissipation / size, -seat.dissipation / size, 0.0)
+        conditions["dissipation >= 0"] = max(-state.dissipation / size, 0.0)
+        conditions["dissipation in the seat >= 0"] = max(-seat.dissipation / size, 0.0)
     return found
 
 
@@ -173,10 +174,11 @@ def _check(checked: list[Checked], found: list[dict[str, float]], place: int, he
     columns = np.column_stack([np.cos(theta), np.sin(theta)])
     datum = np.zeros(theta.size)
     touching = [one for one in checked if one.touches]
-    if touching and place == 0:
+    is_pressed = place == 1 and checked[0].problem.is_gripped
+    if touching and not is_pressed:
         best = min(touching, key=lambda one: one.length)
         datum = columns @ np.linalg.lstsq(columns, best.gap - best.state.gap, rcond=None)[0]
-    last: np.ndarray | None = np.zeros(theta.size) if place == 1 else None
+    last: np.ndarray | None = np.zeros(theta.size) if is_pressed else None
     previous: Checked | None = None
     for one, conditions in zip(checked, found, strict=True):
         own = dict(one.conditions)
@@ -190,14 +192,14 @@ def _check(checked: list[Checked], found: list[dict[str, float]], place: int, he
         if one.touches and not one.problem.frictionless:
             difference = one.slip - one.state.slip
             floats = (
-                place == 0
+                not is_pressed
                 and previous is not None
                 and may_lose_contact(previous.state, one.state, room_of(one.problem))
             )
             if last is not None and not floats:
                 own["slip"] = float(np.abs(difference - last).max()) / one.length
             last = difference
-        elif place == 0:
+        elif not is_pressed:
             last = None
         previous = one
         for name, value in own.items():

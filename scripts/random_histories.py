@@ -33,10 +33,14 @@ from scripts.joint_conditions import check_joint
 BETWEEN = 39
 """States inside each step with ``--dense``."""
 
-TOLERANCES = collections.defaultdict(lambda: TOLERANCE, {"balance": 0.05, "dissipated": 0.02, "dissipation >= 0": 1e-6})
+TOLERANCES = collections.defaultdict(
+    lambda: TOLERANCE,
+    {"balance": 0.05, "dissipated": 0.02, "dissipation >= 0": 1e-6, "dissipation in the seat >= 0": 1e-3},
+)
 """Largest violations that are not reported. The energies are sums over the nodes: second order in their distance.
 
-The first nodes of a contact get their slip from a fit, so their dissipation may be slightly negative.
+The first nodes of a contact get their slip from a fit, so their dissipation may be slightly negative. One increment
+loads the seat of a loose bush with them.
 """
 
 LONGEST = 60

@@ -54,8 +54,9 @@ class Bushing(PlateBody):
     outer_radius : float
         Outer radius of the bush, m, more than the hole radius. The hole radius is the inner radius of the bush.
     interference : float
-        Radial interference of the bush in the plate before it is pressed in, m, at least 0. The press fit makes the
-        clearance of the pin smaller. In a dimensionless problem the unit is F beta*, as of the clearance.
+        Radial interference of the bush in the plate before it is pressed in, m. The press fit makes the clearance of
+        the pin smaller. A bush that slips may be loose: a negative interference is its clearance in the plate. In a
+        dimensionless problem the unit is F beta*, as of the clearance.
     inside : Plate, Ring or Compliance
         The body round the bush. A compliance is that of a hole of the outer radius; only round a bush that slips.
     friction : float, optional
@@ -89,10 +90,11 @@ class Bushing(PlateBody):
         if self.material.is_rigid:
             raise InputError("material", "a rigid bush is a rigid plate: leave the bush out")
         object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
-        object.__setattr__(self, "interference", not_negative("interference", self.interference))
+        object.__setattr__(self, "bonded", true_or_false("bonded", self.bonded))
+        checked = not_negative if self.bonded else number
+        object.__setattr__(self, "interference", checked("interference", self.interference))
         if not isinstance(self.inside, (Plate, Ring, Compliance)):
             raise InputError("inside", "must be a Plate, a Ring or a Compliance")
-        object.__setattr__(self, "bonded", true_or_false("bonded", self.bonded))
         if self.friction is not None:
             friction = number("friction", not_negative("friction", self.friction), 0.0, MOST_FRICTION)
             object.__setattr__(self, "friction", friction)
@@ -122,8 +124,9 @@ class Bushing(PlateBody):
         material = table.material()
         table.require("outer_radius")
         outer = table.checked("outer_radius", positive)
-        interference, friction = (table.checked(key, not_negative) for key in ("interference", "friction"))
         bonded = table.checked("bonded", true_or_false)
+        interference = table.checked("interference", number if bonded is False else not_negative)
+        friction = table.checked("friction", not_negative)
         inside: Plate | Ring | Compliance | None
         if "lug_file" in table:
             for key in ("ring_outer_radius", "support", "reaction"):
@@ -186,7 +189,7 @@ class Bushing(PlateBody):
     def check(self, radius: float, dimensionless: bool = False, name: str = "hole radius") -> None:
         check_outer(self.outer_radius, radius, name, THINNEST_LAYER if self.bonded else THINNEST)
         self.inside.check(self.outer_radius, name="outer radius of the bush")
-        if not dimensionless and self.interference >= self.outer_radius:
+        if not dimensionless and abs(self.interference) >= self.outer_radius:
             limit = f"must be smaller than the outer radius {self.outer_radius:g} of the bush"
             raise InputError("interference", f"{limit}, not {self.interference:g}")
 
@@ -197,7 +200,7 @@ class Bushing(PlateBody):
     def check_pair(self, pair: MaterialPair, radius: float, dimensionless: bool) -> None:
         self.check_material(pair)
         self.inside.check_pair(pair, self.outer_radius, dimensionless)
-        number("interference", self.interference, 0.0, MOST_PARAMETER)
+        number("interference", self.interference, -MOST_PARAMETER, MOST_PARAMETER)
 
     def contacts(self, pair: MaterialPair, radius: float) -> tuple[dict[str, Any], ...]:
         if self.bonded:
@@ -237,7 +240,7 @@ class Bushing(PlateBody):
         return harmonics.uniform_of_layer(seat.ratio, bore.kolosov, bore.compliance, self.inside.pressed(seat))
 
     def press_fit(self, rim: Rim) -> tuple[float, float]:
-        if self.interference == 0.0:
+        if self.interference <= 0.0:
             return 0.0, 0.0
         (bore, seat), inner = self.around(rim), rim.hole / self.outer_radius
         pressure, moved = harmonics.press_fit(inner, bore.kolosov, bore.compliance, -self.inside.pressed(seat))

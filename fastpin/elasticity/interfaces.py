@@ -153,6 +153,21 @@ class JointSystem(System):
         around = Grid.circle(AROUND)
         return around.theta, _coupling(self.problem, (around, self.nodes.grids[SEAT]), PIN)[:AROUND]
 
+    def without_friction(self) -> System:
+        """The same system without friction at both interfaces. Neither turns."""
+        equilibrium, motion_rows, forces = self.equilibrium.copy(), self.motion_rows.copy(), self.forces.copy()
+        for row in (each.motion + TURN for each in self.interfaces):
+            equilibrium[row], motion_rows[row], forces[row] = 0.0, 0.0, 0.0
+            motion_rows[row, row] = 1.0
+        return replace(
+            self, friction=np.zeros_like(self.friction), equilibrium=equilibrium, motion_rows=motion_rows, forces=forces
+        )
+
+    @property
+    def is_pressed(self) -> bool:
+        """Whether a press fit holds the bush in its seat before any load."""
+        return self.alone[SEAT].problem.is_gripped
+
     def under(self, load: np.ndarray) -> System:
         """The system with the friction under a load (loads,). ``friction_change`` acts on the pin in the bush."""
         friction = self.alone[PIN].friction * (1.0 + float(load[FRICTION_CHANGE]))
@@ -172,7 +187,9 @@ def _without_remote(system: System) -> System:
     """The system of the pin in the bush. The remote stress acts on the lug alone."""
     loads = system.loads.copy()
     loads[:, REMOTE] = 0.0
-    return replace(system, loads=loads, drive=Drive(system.motion[:, :2], loads))
+    assert system.bodies is not None
+    bodies = replace(system.bodies, columns={})  # of forces it has none
+    return replace(system, loads=loads, drive=Drive(system.motion[:, :2], loads), bodies=bodies)
 
 
 def _scaled(seat: System, pin: System, radius: float) -> System:
@@ -181,6 +198,10 @@ def _scaled(seat: System, pin: System, radius: float) -> System:
     loads, motion = stretch * seat.loads, seat.motion.copy()
     loads[:, REMOTE] *= radius
     motion[:, TURN] *= radius
+    assert seat.bodies is not None
+    columns = {
+        place: stretch * (radius if place in REMOTE else 1.0) * each for place, each in seat.bodies.columns.items()
+    }
     equilibrium, motion_rows, forces = radius * seat.equilibrium, seat.motion_rows.copy(), seat.forces.copy()
     if seat.problem.frictionless:
         equilibrium[TURN], forces[TURN] = 0.0, 0.0
@@ -190,7 +211,7 @@ def _scaled(seat: System, pin: System, radius: float) -> System:
         seat, operator=DenseOperator(stretch * radius * seat.operator.entries()), motion=motion, loads=loads,
         equilibrium=equilibrium, motion_rows=motion_rows, forces=forces, drive=Drive(motion[:, :2], loads),
         rest_clearance=stretch * seat.rest_clearance, scales=pin.scales,
-        weights=radius * seat.weights, radius=radius,
+        bodies=replace(seat.bodies, columns=columns), weights=radius * seat.weights, radius=radius,
     )  # fmt: skip
 
 

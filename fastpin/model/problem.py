@@ -191,7 +191,10 @@ class Problem:
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "dimensionless", bool(self.dimensionless))
         object.__setattr__(self, "gap", checked_gap(self.gap, radius, self.dimensionless))
-        assert self.interfaces  # each contact of the joint is checked as a problem of its own
+        pin, *seats = self.interfaces  # each contact of the joint is checked as a problem of its own
+        if pin.is_gripped and any(not seat.is_gripped for seat in seats):
+            words = "must be positive where the pin has an interference fit: a loose bush needs a pin with clearance"
+            raise InputError("interference", words)
 
     def _checked_friction(self, radius: float) -> float | Profile:
         """The coefficient of friction: a number, or a profile if it varies. `radius` is the radius of the hole."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.elasticity.interfaces import SEAT, JointSystem
+from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import LOADS
@@ -24,7 +24,7 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.errors import ConvergenceError
 from fastpin.solver.increment import implicit_step
-from fastpin.solver.interfaces import PinView, with_seat
+from fastpin.solver.interfaces import PinView, with_part
 from fastpin.solver.rest import place_between
 from fastpin.solver.settling import FiniteStep
 
@@ -81,9 +81,12 @@ def _assembled_joint(joint: JointSystem) -> Configuration:
     nodal: dict[str, Any] = {name: np.zeros(n) for name in NODAL if name != "status"}
     whole = Configuration(
         **nodal, status=np.full(n, OPEN, dtype=np.int8),
-        motion=np.zeros(joint.motions), load=seat.load, origin=np.full(2, np.nan), rest=np.zeros(2),
+        motion=np.zeros(joint.motions), load=seat.load, origin=np.full(4, np.nan), rest=np.zeros(4),
     )  # fmt: skip
-    view = PinView(joint, with_seat(joint, whole, seat))
+    whole = with_part(joint, whole, SEAT, seat)
+    if not joint.is_pressed:
+        return with_part(joint, whole, PIN, unloaded_configuration(joint.alone[PIN]))
+    view = PinView(joint, whole)
     found = view.whole(unloaded_configuration(view.system))
     found.dissipation = found.seat_dissipation = 0.0
     found.work = elastic_energy(joint, found)

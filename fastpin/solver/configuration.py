@@ -49,7 +49,7 @@ class Configuration:
         The first ``rest`` of the history; NaN before the pin has come to rest.
     rest : ndarray, shape (2,)
         Position of the pin's centre where the pin came to rest on the hole. It counts from the concentric position,
-        without the remote stress.
+        without the remote stress. With two interfaces that of the bush follows, also in ``origin``.
     rest_gap : ndarray, shape (n,)
         Gap in the position ``rest``, without the remote stress.
     rest_slip : ndarray, shape (n,)
@@ -294,7 +294,8 @@ def marks_left(before: Configuration, now: Configuration, interface: Interface, 
 
     They are those of an `interface`, the field `name` of a configuration.
     """
-    if name == MARKS[0] and not np.array_equal(now.rest, before.rest):  # the pin was released: slip counts anew
+    at = slice(2 * MARKS.index(name), 2 * MARKS.index(name) + 2)
+    if not np.array_equal(now.rest[at], before.rest[at]):  # the pin, or a bush, was released: slip counts anew
         return Marks()
     nodes, marks = interface.nodes, getattr(before, name)
     found: Marks = marks.left(now.status[nodes], now.slip[nodes], before.slip[nodes])

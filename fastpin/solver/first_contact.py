@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fastpin.elasticity.interfaces import JointSystem
+from fastpin.elasticity.interfaces import SEAT, JointSystem
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
@@ -31,7 +31,7 @@ from fastpin.solver.configuration import (
 from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import CUT_OFF, NARROW, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
-from fastpin.solver.interfaces import PinView
+from fastpin.solver.interfaces import PinView, part_of, with_part
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import bend, hole_gap, place_between, put_at_rest, release, rest_position
 from fastpin.solver.settling import FiniteStep
@@ -120,7 +120,7 @@ def at_rest(
         begins, rest, lowest = gripped
         rest_gap = system.concentric_gap + system.drive.translation[: system.grid.size] @ rest
     else:
-        tangential = -after[M] / size if system.problem.rotation == "free" else 0.0
+        tangential = -after[M] / (size * system.radius) if system.problem.rotation == "free" else 0.0
         angle = math.atan2(force[1], force[0]) + math.asin(max(-1.0, min(tangential, 1.0)))
         friction = float(system.friction[np.argmin(np.abs(angle_between(system.grid.theta, angle)))])
         limit = friction / math.hypot(1.0, friction)
@@ -202,8 +202,19 @@ def first_contact(
         If the pin touches the hole outside the arc or at its end.
     """
     if isinstance(system, JointSystem):
-        view = PinView(system, replace(floating, load=before))
+        floating, begins = replace(floating, load=before), 0.0
+        if not floating.closed[system.interfaces[SEAT].nodes].any():  # a loose bush comes to rest first
+            alone = system.alone[SEAT]
+            most = 1.0 if alone.concentric_gap.any() else CONFORMING_PART  # a neat one touches all round
+            begun = before + most * (after - before)
+            seat, part = first_contact(alone, part_of(system, floating, SEAT), before, begun, strict)
+            if not seat.closed.any():
+                return release(system, floating, after), part
+            floating, begins = with_part(system, floating, SEAT, seat), most * part
+        view = PinView(system, floating)
         pin, part = first_contact(view.system, view.pin, before, after, strict)
+        if begins > part:  # the wider of two first contacts gives the load of both
+            pin, part = replace(pin, load=seat.load), begins
         return view.whole(pin), part
     found = at_rest(system, floating, before, after)
     if found is None:

@@ -19,6 +19,7 @@ from fastpin.kernels.status import OPEN
 from fastpin.model.loads import REMOTE, M, P, Q
 from fastpin.model.profile import InitialGap, Profile
 from fastpin.solver.configuration import (
+    MARKS,
     MAX_RESIDUAL,
     NODAL,
     Configuration,
@@ -36,7 +37,7 @@ from fastpin.solver.settling import FiniteStep
 from fastpin.solver.unknowns import DenseUnknowns
 
 ROUND = 1e-12
-"""Largest difference of a bore from a circle that is rounding, in parts of the largest displacement of the seat."""
+"""Rounding: of a bore's shape, in parts of the largest traction in the seat; of a pressure, in parts of the peak."""
 
 
 class PinView:
@@ -119,12 +120,12 @@ class PinView:
     @property
     def pin(self) -> Configuration:
         """The contact of the pin."""
-        part = self._now.part(self._nodes)
-        motion = self._now.motion[: self.system.motions].copy()
+        part = part_of(self._joint, self._now, PIN)
+        motion = part.motion.copy()
         motion[TURN] += self._turned
         return replace(
-            part, motion=motion, marks=self._now.marks, slip=part.slip - self._slip,
-            rest_gap=part.rest_gap + self._gap, rest_slip=part.rest_slip - self._slip,
+            part, motion=motion, slip=part.slip - self._slip, rest_gap=part.rest_gap + self._gap,
+            rest_slip=part.rest_slip - self._slip,
         )  # fmt: skip
 
     def whole(self, pin: Configuration) -> Configuration:
@@ -140,21 +141,20 @@ class PinView:
             If no tractions in the seat were found for it.
         """
         joint, now = self._joint, self._now
-        start = now.copy()
-        for name in NODAL:
-            values = getattr(start, name).copy()
-            values[self._nodes] = getattr(pin, name)
-            setattr(start, name, values)
-        start.slip[self._nodes] += self._slip
-        start.rest_slip[self._nodes] += self._slip
-        start.rest_gap[self._nodes] -= self._gap
-        start.motion[: self.system.motions] = pin.motion
-        start.motion[TURN] -= self._turned
-        start.slip_tally = start.slip_tally.with_part(self._nodes, pin.slip_tally)
-        start = replace(start, load=pin.load.copy(), origin=pin.origin, rest=pin.rest, dissipation=pin.dissipation)
+        motion = pin.motion.copy()
+        motion[TURN] -= self._turned
+        part = replace(
+            pin, motion=motion, slip=pin.slip + self._slip, rest_gap=pin.rest_gap - self._gap,
+            rest_slip=pin.rest_slip + self._slip,
+        )  # fmt: skip
+        start = with_part(joint, now, PIN, part)
         resting = start.copy()
         resting.status[self._seat] = self._resting_seat()
-        found = _solved(joint, start, resting) if pin.closed.any() else self._without_pin(start)
+        if not pin.closed.any():
+            found = self._without_pin(start)
+        else:
+            found = None if joint.is_pressed else _begun_together(joint, start)
+            found = found or _solved(joint, start, resting)
         if found is None:
             if pin.closed.sum() == 1:
                 raise ResolutionError(NARROW)
@@ -165,7 +165,7 @@ class PinView:
 
     def _without_pin(self, start: Configuration) -> Configuration | None:
         """The configuration `start`, whose pin floats, with the tractions that are then left in the seat."""
-        seat, own = self._joint.alone[SEAT], seat_of(self._joint, start)
+        seat, own = self._joint.alone[SEAT], part_of(self._joint, start, SEAT)
         unloaded = without_force(start.load)
         solution = solve_statuses(seat, own.status, own.slip, unloaded, own.rest_gap)
         found = None if solution is None else accept_solution(own, solution, own.status, unloaded)
@@ -175,7 +175,7 @@ class PinView:
                 return None
             add_dissipation(seat, own, found)
         found.load = start.load
-        return with_seat(self._joint, start, found)
+        return with_part(self._joint, start, SEAT, found)
 
 
 def without_force(load: np.ndarray) -> np.ndarray:
@@ -185,27 +185,33 @@ def without_force(load: np.ndarray) -> np.ndarray:
     return left
 
 
-def seat_of(joint: JointSystem, configuration: Configuration) -> Configuration:
-    """The contact of the bush in its seat, of a configuration of all interfaces."""
-    nodes = np.arange(joint.grid.size)[joint.interfaces[SEAT].nodes]
-    begin = joint.interfaces[SEAT].motion
-    part = configuration.part(nodes)
-    return replace(part, motion=configuration.motion[begin : begin + 3], marks=configuration.seat_marks)
+def part_of(joint: JointSystem, configuration: Configuration, place: int) -> Configuration:
+    """The contact of the interface `place`, of a configuration of all interfaces."""
+    own, at = joint.interfaces[place], slice(2 * place, 2 * place + 2)
+    part = configuration.part(np.arange(joint.grid.size)[own.nodes])
+    return replace(
+        part, motion=configuration.motion[own.motion : own.motion + 3], rest=configuration.rest[at],
+        origin=configuration.origin[at], marks=getattr(configuration, MARKS[place]),
+    )  # fmt: skip
 
 
-def with_seat(joint: JointSystem, configuration: Configuration, seat: Configuration) -> Configuration:
-    """The configuration of all interfaces with another contact of the bush in its seat."""
-    nodes, begin = np.arange(joint.grid.size)[joint.interfaces[SEAT].nodes], joint.interfaces[SEAT].motion
-    whole = configuration.copy()
+def with_part(joint: JointSystem, configuration: Configuration, place: int, part: Configuration) -> Configuration:
+    """The configuration of all interfaces with another contact of one, and with its load, work and dissipation."""
+    own, at, whole = joint.interfaces[place], slice(2 * place, 2 * place + 2), configuration.copy()
     for name in NODAL:
         values = getattr(whole, name).copy()
-        values[nodes] = getattr(seat, name)
+        values[own.nodes] = getattr(part, name)
         setattr(whole, name, values)
-    whole.motion[begin : begin + 3] = seat.motion
-    lost, tally = seat.dissipation - whole.dissipation, whole.slip_tally.with_part(nodes, seat.slip_tally)
+    whole.motion[own.motion : own.motion + 3] = part.motion
+    for name in ("rest", "origin"):
+        values = getattr(whole, name).copy()
+        values[at] = getattr(part, name)
+        setattr(whole, name, values)
+    lost = part.dissipation - whole.dissipation if place == SEAT else 0.0
+    tally = whole.slip_tally.with_part(np.arange(joint.grid.size)[own.nodes], part.slip_tally)
     return replace(
-        whole, load=seat.load, dissipation=seat.dissipation, seat_dissipation=whole.seat_dissipation + lost,
-        work=seat.work, slip_tally=tally,
+        whole, load=part.load.copy(), dissipation=part.dissipation, work=part.work, slip_tally=tally,
+        seat_dissipation=whole.seat_dissipation + lost,
     )  # fmt: skip
 
 
@@ -228,6 +234,32 @@ def _solved(joint: JointSystem, start: Configuration, resting: Configuration) ->
     if followed is None:
         raise NoEquilibriumError("nothing holds the bush in its seat: it spins or loses contact")
     return None
+
+
+def _begun_together(joint: JointSystem, start: Configuration) -> Configuration | None:
+    """The configuration `start` with two contacts that begin at once, without shear; their closed nodes then stick.
+
+    None if a moment acts on a free pin, or if no such contacts were found.
+    """
+    if start.load[M] != 0.0:
+        return None
+    smooth, begun = joint.without_friction(), start.copy()
+    begun.status[begun.closed] = resting_status(smooth)[begun.closed]
+    found = implicit_step(smooth, begun, start.load)
+    if found is None:
+        return None
+    turns = start.motion.copy()
+    if joint.problem.held:  # without shear nothing twists
+        unit = joint.motion_rows[TURN, TURN]
+        turns[TURN] = joint.load_forces(start.load)[TURN] / unit - turns[3 + TURN]
+    for each in joint.interfaces:
+        turned = turns[each.motion + TURN]
+        found.motion[each.motion + TURN] = turned
+        found.slip[each.nodes] += each.radius * turned
+        pressure = found.pressure[each.nodes]
+        pressed = found.closed[each.nodes] & (pressure > ROUND * pressure.max())
+        found.status[each.nodes] = np.where(pressed, resting_status(joint)[each.nodes], OPEN)
+    return found if worst_residual(joint, found) <= MAX_RESIDUAL else None
 
 
 def _of_statuses(joint: JointSystem, start: Configuration) -> Configuration | None:
@@ -255,13 +287,13 @@ def _with_followed_seat(joint: JointSystem, start: Configuration) -> Configurati
     grown = replace(
         alone, loads=loads, forces=np.column_stack([alone.forces, force]), drive=Drive(alone.motion[:, :2], loads)
     )
-    own = seat_of(joint, start)
+    own = part_of(joint, start, SEAT)
     begin, end = np.r_[without_force(start.load), 0.0], np.r_[start.load, 1.0]
     try:
         followed = PathStep(grown, replace(own, load=begin), end).follow(1.0)
     except StepLostError:
         return None
-    return with_seat(joint, start, replace(followed, load=start.load, work=start.work))
+    return with_part(joint, start, SEAT, replace(followed, load=start.load, work=start.work))
 
 
 def _moved_bore(bodies: BodyTerms | None, columns: np.ndarray) -> BodyTerms | None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fastpin.elasticity.interfaces import SEAT, JointSystem
+from fastpin.elasticity.interfaces import PIN, SEAT, TURN, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import ACTING, REMOTE, ROTATION, SXX, SXY, SYY
@@ -15,7 +15,7 @@ from fastpin.model.room import widest_place
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration, elastic_energy
 from fastpin.solver.errors import NoEquilibriumError
-from fastpin.solver.interfaces import PinView, seat_of, with_seat, without_force
+from fastpin.solver.interfaces import PinView, part_of, with_part, without_force
 from fastpin.solver.path import PathStep, StepLostError
 
 FINE = 1441
@@ -48,8 +48,7 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
         Dimensionless.
     """
     if isinstance(system, JointSystem):
-        view = PinView(system, last)
-        return view.whole(release(view.system, view.pin, load))
+        return _release_pin(system, last, load)
     n = system.grid.size
     new = last.copy()
     new.work -= elastic_energy(system, last)  # the elastic energy that is left goes back to the loads
@@ -68,23 +67,45 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
     return new
 
 
+def _release_pin(joint: JointSystem, last: Configuration, load: np.ndarray) -> Configuration:
+    """Release the pin in a bush. A bush that no press fit holds lets go, too."""
+    if joint.is_pressed:
+        view = PinView(joint, last)
+        return view.whole(release(view.system, view.pin, load))
+    pin, seat = (release(joint.alone[place], part_of(joint, last, place), load) for place in (PIN, SEAT))
+    if joint.problem.held:  # the pin is held over the lug: it turns back in the bush by as much as the bush has turned
+        turned = seat.motion[TURN]
+        motion = pin.motion - np.array([0.0, 0.0, turned])
+        pin = replace(pin, motion=motion, slip=pin.slip - turned, rest_slip=pin.rest_slip - turned)
+    found = with_part(joint, with_part(joint, last, PIN, pin), SEAT, seat)
+    return replace(
+        found, dissipation=last.dissipation, seat_dissipation=last.seat_dissipation,
+        work=last.work - elastic_energy(joint, last),
+    )  # fmt: skip
+
+
 def follow_floating(joint: JointSystem, now: Configuration, load: np.ndarray) -> Configuration:
     """Take a floating pin to a `load` (loads,), or to where the bore grips it. The bush alone follows its load.
 
     Raises
     ------
     NoEquilibriumError
-        If nothing holds the bush.
+        If nothing holds the bush, or if the lug closes on a loose one.
     """
-    own = seat_of(joint, now)
+    own = part_of(joint, now, SEAT)
     start = replace(own, load=without_force(own.load))
+    if not joint.is_pressed:
+        found, theta = release(joint, now, load), np.linspace(-math.pi, math.pi, FINE)
+        if widest_place(theta, hole_gap(joint.alone[SEAT], load, theta)[0], (False, False))[0] < 0.0:
+            raise NoEquilibriumError("the remote stress closes the hole of the plate on a loose bush")
+        return found
 
     def at(part: float) -> Configuration:
         reached = start.load + part * (load - start.load)
         seat = start
         if not np.array_equal(start.load, load):
             seat = PathStep(joint.alone[SEAT], start, load).follow(part)
-        view = PinView(joint, with_seat(joint, now, replace(seat, load=reached)))
+        view = PinView(joint, with_part(joint, now, SEAT, replace(seat, load=reached)))
         return view.whole(release(view.system, view.pin, reached))
 
     try:

@@ -531,7 +531,7 @@ class Run:
         system, now = self.system, self.now
         drive, way = system.drive, now.rest - now.origin
         way, tractions = np.where(np.isnan(way), 0.0, way), np.r_[now.pressure, now.shear]
-        moved = drive.position(tractions, now.motion, now.load, way)
+        moved = drive.position(tractions, now.motion, now.load, way[:2])
         load = drive.with_reactions(now.motion, now.load)
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
         is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
@@ -545,8 +545,8 @@ class Run:
         }
         seat = None
         for place in reversed(range(len(system.interfaces))):
-            turned = now.motion[system.interfaces[place].motion :][:3]
-            turned = np.r_[moved, turned[2]] if place == 0 else turned
+            turned = now.motion[system.interfaces[place].motion :][:3].copy()
+            turned[:2] = moved if place == 0 else way[2 * place : 2 * place + 2] + turned[:2]
             seat = self._state_of(place, common, turned, seat)
         assert seat is not None
         return seat

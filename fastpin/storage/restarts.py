@@ -139,7 +139,7 @@ def _read_slip_tally(group: h5py.Group, nodes: int) -> SlipTally:
 
 def _read_configurations(group: h5py.Group, name: str, nodes: int, motions: int) -> np.ndarray:
     """Read one array of all configurations of a restart, shape (configurations, ...)."""
-    size = {"motion": motions, "origin": 2, "rest": 2}.get(name, nodes)
+    size = {"motion": motions, "origin": 2 * motions // 3, "rest": 2 * motions // 3}.get(name, nodes)
     if name in BORDER_FIELDS and name not in group:  # a file of an earlier version
         value, dtype = (0, np.int8) if name == "old_borders" else (np.nan, float)
         return np.full((len(group["status"]), nodes), value, dtype=dtype)

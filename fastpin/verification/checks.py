@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from fastpin.bodies import Plate, Ring
 from fastpin.model.angles import BOTTOM
 from fastpin.model.checks import check_callable
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
@@ -21,7 +22,7 @@ from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.profile_terms import Harmonic
 from fastpin.states.state import State
-from fastpin.verification import body_cases, body_rows, closed_forms, friction_rows, gap_rows, wear_rows
+from fastpin.verification import body_cases, body_rows, closed_forms, friction_rows, gap_rows, seat_rows, wear_rows
 from fastpin.verification.comparisons import (
     cattaneo_mindlin,
     cattaneo_mindlin_differences,
@@ -476,6 +477,16 @@ TOPICS = {
             "cut bush": body_rows.cut_layer,
         },
         {"peak N": 4e-14, "N, T": 3e-11, "compliance": 1e-15},
+    ),
+    "seats": Topic(
+        "A bush that slips in its seat: a solid pin, a bonded bush, the largest torque",
+        {
+            "pin and bush of one material": seat_rows.solid_pin,
+            "much friction, infinite plate": partial(seat_rows.bonded, Plate()),
+            "much friction, ring": partial(seat_rows.bonded, Ring(2.5, "half")),
+            "torque": seat_rows.torque,
+        },
+        {"N, T, solid pin": 8e-5, "dissipated": 3e-4, "peak N, bonded": 3e-4, "displacement": 1e-4, "torque": 1.5e-9},
     ),
     "gaps": Topic(
         "Initial gaps: interference fits with waves, and full sliding by Eq. (58)",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fastpin import LoadHistory, MaterialPair, Problem, Session, load, record, resume, solve
-from fastpin.bodies import Bushing, Ring
+from fastpin.bodies import Bushing, Disk, Ring
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.profile import InitialGap, Profile
@@ -94,23 +94,25 @@ def test_the_hub_of_a_held_pin_turns_over_the_lug(rotation):
         assert state.seat.resultants["M"] == pytest.approx(state.resultants["M"], abs=1e-12)
 
 
-@pytest.mark.parametrize(("nodes", "bound"), [(64, 3e-4), pytest.param(128, 6e-5, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("nodes", "bound"), [(64, 1.2e-5), pytest.param(128, 1.5e-6, marks=pytest.mark.slow)])
 def test_a_pin_stuck_in_a_bush_of_its_material_is_a_solid_pin(nodes, bound):
-    outer, friction = 1.25, 0.2
-    body = Bushing(BRONZE, outer, 0.1, friction=friction, bonded=False)
-    joined = Problem.from_load_parameter(MaterialPair(BRONZE, ALUMINIUM, "strain"), -0.6, 1e3, plate_body=body)
-    corners = [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"P": 0.3}, *({"P": c["P"], "Q": c["Q"]} for c in turns(1, 12))]
-    states = solve(joined, [{}, *corners], nodes=nodes)
-    pressure = float(states[0].seat.pressure.mean())
-    solid = replace(joined.seat, pin_body=type(joined.pin_body)(), clearance=-1.0)
-    solid = replace(solid, clearance=-pressure / outer * outer * solid.joint.uniform_compliance * outer)
+    """It slips, walks and dissipates as the solid pin of the radius of the seat."""
+    body = Bushing(BRONZE, 1.25, 1e-3, friction=0.05, bonded=False)
+    joined = Problem.from_load_parameter(MaterialPair(BRONZE, ALUMINIUM, "strain"), -0.25, 1e3, plate_body=body)
+    corners = [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"P": 0.3}, *turns(1, 12)]
+    assembled, *states = solve(joined, [{}, *corners], nodes=nodes)
+    pressure = float(assembled.seat.pressure.mean())
+    solid = replace(joined.seat, pin_body=Disk(), clearance=-1.0)
+    solid = replace(solid, clearance=-pressure * solid.joint.uniform_compliance * 1.25)
     alone = solve(solid, corners, nodes=nodes, shortcut=False)
-    assert all((state.status != OPEN).all() for state in states)
-    for state, expected in zip(list(states)[1:], alone, strict=True):
+    for state, expected in zip(states, alone, strict=True):
+        assert np.all(state.status != OPEN)
         np.testing.assert_array_equal(state.seat.status, expected.status)
         np.testing.assert_allclose(state.seat.pressure, expected.pressure, atol=bound)
         np.testing.assert_allclose(state.seat.shear, expected.shear, atol=bound)
-    assert states[-1].seat.dissipation == pytest.approx(alone[-1].dissipation, rel=40 * bound)
+    assert states[-1].seat.dissipation == pytest.approx(alone[-1].dissipation, rel=1e-4)
+    assert states[-1].seat.rotation == pytest.approx(alone[-1].rotation, rel=1e-4)
+    assert abs(alone[-1].rotation) > 0.03
 
 
 def test_without_friction_in_the_seat_there_is_no_shear():
@@ -168,6 +170,39 @@ HISTORIES = {
 def test_conditions_hold_at_both_interfaces_all_life_long(name, clearance):
     problem = joint(clearance, 0.26, pin_load="centre")
     _check(solve(problem, HISTORIES[name], nodes=48).states)
+
+
+LOOSE = {
+    "loose": (-0.1, {}, [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]),
+    "neat": (0.0, {}, [{"P": 1.0}, {"Q": 0.4}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]),
+    "remote": (-0.1, {}, [{"sxx": 0.1}, {"P": 1.0}, {"Q": 0.4}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]),
+    "moment": (-0.1, {"pin_load": "centre"}, [{"P": 1.0, "M": 0.05}, {"Q": 0.4}, {"P": 0.0, "Q": 0.0, "M": 0.0}]),
+}
+
+
+@pytest.mark.parametrize("name", LOOSE)
+def test_a_loose_bush_begins_two_contacts_at_once_and_lets_go_of_both(name):
+    interference, changes, corners = LOOSE[name]
+    states = solve(joint(0.2, interference, **changes), corners, nodes=48).states
+    _check(states)
+    for state in states:
+        is_loaded = any(state.load[load] for load in "PQ")
+        assert state.in_contact == state.seat.in_contact == is_loaded
+        if is_loaded:
+            assert state.seat.resultants["P"] == pytest.approx(state.load["P"], abs=1e-12)
+    assert len(states[1].seat.contact) <= 1
+
+
+def test_a_held_pin_in_a_loose_bush_is_held_over_the_lug():
+    body = Bushing(BRONZE, 1.25, -0.1, friction=0.2, bonded=False)
+    problem = Problem.from_load_parameter(PAIR, 0.28, 0.2, rotation="fixed", plate_body=body)
+    _check(solve(problem, [{"P": 1.0}, {"rotation": 0.1, "Q": 0.2}, {"P": 0.0, "Q": 0.0}, {"P": 0.5}], nodes=48).states)
+
+
+def test_a_loose_bush_with_a_vanishing_clearance_is_a_neat_one():
+    loose, neat = (solve(joint(0.2, size), [{"P": 1.0}, {"Q": 0.3}], nodes=64)[-1] for size in (-1e-5, 0.0))
+    assert loose.peak_pressure == pytest.approx(neat.peak_pressure, rel=1e-3)
+    assert loose.seat.peak_pressure == pytest.approx(neat.seat.peak_pressure, rel=2e-3)
 
 
 def test_conditions_hold_in_a_lug_of_any_outline_and_an_oval_bore():
@@ -255,6 +290,7 @@ def test_a_bush_that_walks_never_repeats():
         ({"outer_radius": 1.01}, "outer_radius", "must lie between"),
         ({"friction": -1.0}, "friction", "must not be negative"),
         ({"inside": Ring(1.26)}, "outer_radius", "must lie between"),
+        ({"bonded": True, "friction": None, "interference": -0.1}, "interference", "must not be negative"),
     ],
 )
 def test_a_bush_that_cannot_be(changes, field, words):
@@ -262,3 +298,9 @@ def test_a_bush_that_cannot_be(changes, field, words):
     with pytest.raises(InputError, match=words) as caught:
         Problem.from_load_parameter(PAIR, 0.3, 0.2, plate_body=Bushing(**given))
     assert caught.value.field == field
+
+
+def test_a_loose_bush_needs_a_pin_with_clearance():
+    body = Bushing(BRONZE, 1.25, -0.1, friction=0.2, bonded=False)
+    with pytest.raises(InputError, match="interference: must be positive where the pin has an interference fit"):
+        Problem.from_load_parameter(PAIR, -0.1, 0.2, plate_body=body)

@@ -1,0 +1,71 @@
+"""Checks of a bush that slips in its seat."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from fastpin.bodies import Bushing, Disk
+from fastpin.bodies.body import PlateBody
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.verification.rows import Checks, Solving, difference_check, relative_check
+
+PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"], "strain")
+
+BRONZE = MATERIALS["C93200"]
+
+OUTER = 1.25
+"""Outer radius of the bush, over R."""
+
+NODES = 128
+"""Nodes of the pin, and of the seat."""
+
+
+def solid_pin(solving: Solving) -> Checks:
+    """A pin that sticks in a bush of its own material: together they are a solid pin in the hole of the seat."""
+    bush = Bushing(BRONZE, OUTER, 1e-3, friction=0.05, bonded=False)
+    pair = MaterialPair(BRONZE, PAIR.plate, PAIR.plane)
+    joint = Problem.from_load_parameter(pair, -0.25, 1e3, plate_body=bush)
+    corners = [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"P": 0.3}]
+    assembled, *states = solving(joint, [{}, *corners], nodes=NODES)
+    seat = joint.interfaces[1]
+    assert assembled.seat is not None
+    pressure = float(assembled.seat.pressure.mean())
+    solid = replace(seat, pin_body=Disk(), clearance=-1.0)
+    solid = replace(solid, clearance=-pressure * solid.joint.uniform_compliance * seat.hole_radius)
+    expected = solving(solid, corners, nodes=NODES)
+    seats = [state.seat for state in states if state.seat is not None]
+    size = max(state.peak_pressure for state in expected)
+    differences = [
+        max(float(np.abs(getattr(one, name) - getattr(other, name)).max()) for name in ("pressure", "shear"))
+        for one, other in zip(seats, expected, strict=True)
+    ]
+    yield difference_check("N, T, solid pin", max(differences) / size, "peak N")
+    yield relative_check("dissipated", seats[-1].dissipation, expected[-1].dissipation)
+
+
+def bonded(inside: PlateBody, solving: Solving) -> Checks:
+    """A bush of much friction in its seat, against the bonded bush."""
+    slipping = Bushing(BRONZE, OUTER, 0.26, inside, 1e3, bonded=False)  # type: ignore[arg-type]
+    bodies = slipping, replace(slipping, friction=None, bonded=True)
+    problems = (Problem.from_load_parameter(PAIR, 0.28, 0.2, plate_body=body) for body in bodies)
+    ours, expected = (solving(each, [{"P": 1.0}, {"Q": 0.3}], nodes=NODES)[-1] for each in problems)
+    yield relative_check("peak N, bonded", ours.peak_pressure, expected.peak_pressure)
+    for name in ("ux", "uy"):
+        moved = ours.joint_displacement(0.5, 2.0)[name], expected.joint_displacement(0.5, 2.0)[name]
+        yield difference_check("displacement", abs(moved[0] - moved[1]), "F beta*", name)
+
+
+def torque(solving: Solving) -> Checks:
+    """A torque near the largest one that the seat holds: the pressure of the fit, times friction."""
+    bush = Bushing(BRONZE, OUTER, 0.3, friction=0.1, bonded=False)
+    joint = Problem.from_load_parameter(PAIR, -0.5, 1.0, plate_body=bush)
+    (assembled,) = solving(joint, [{}], nodes=NODES)
+    assert assembled.seat is not None
+    most = 2.0 * math.pi * OUTER**2 * 0.1 * float(assembled.seat.pressure.mean())
+    (turned,) = solving(joint, [{"M": (1.0 - 1e-9) * most}], nodes=NODES)
+    assert turned.seat is not None
+    yield relative_check("torque", turned.seat.resultants["M"], most)
