@@ -380,11 +380,11 @@ class Bushing(PlateBody):
         return cls(MATERIALS["steel"] if material.is_rigid else material, 1.25 * radius)
 
     def page_controls(self, radius: float, clearance: float, dimensionless: bool) -> list[Control]:
-        most = max(2.0 * self.interference, abs(clearance), 1e-3 * radius * (not dimensionless))
+        most = max(2.0 * abs(self.interference), abs(clearance), 1e-3 * radius * (not dimensionless))
         found = super().page_controls(radius, clearance, dimensionless)
         return [
             *found,
-            Control("interference", self.interference, "displacement", 0.0, most),
+            Control("interference", self.interference, "displacement", 0.0 if self.bonded else -most, most),
             Control("bush", self.material),
         ]
 

@@ -118,7 +118,11 @@ def _bodies(problem: Problem) -> list[tuple[str, str]]:
     unit, bush, rows = units(problem), problem.plate_body.bush, []
     for body in (problem.pin_body, problem.plate_body):
         rows += body.rows(unit["length"].text, lambda material: _material(material, problem.dimensionless))
-    if bush is not None and bush.interference:
+    if bush is not None and bush.interference < 0.0:
+        rows.append(
+            ("loose fit", f"clearance {unit['displacement'].text(-bush.interference)} of the bush in the plate")
+        )
+    elif bush is not None and bush.interference:
         words = f"interference {unit['displacement'].text(bush.interference)}"
         words += f", pressure {unit['traction'].text(problem.press_fit_pressure, 4)}"
         words += f", clearance after it {unit['displacement'].text(problem.assembled_clearance)}"

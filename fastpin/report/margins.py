@@ -97,7 +97,8 @@ def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], lis
     fit = state.bush_fit()
     smallest = f"smallest pressure {pressure}" if least.value > 0.0 or problem.seat is None else "the bush opens"
     where = f"{smallest} at {from_bottom(fit.open_angle):z.1f} deg"
-    opened = Margin(opening, "traction", fit.pressure_to_close, fit.press_fit_pressure, least.load_point, where)
+    needed = fit.pressure_to_close or math.nan  # of a loose bush it is not known: without pressure it is open anyhow
+    opened = Margin(opening, "traction", needed, fit.press_fit_pressure, least.load_point, where)
     slip = found.get(("seat_slip", "largest magnitude"))
     if slip is not None:
         seat = read([slip.place])[0].seat

@@ -100,6 +100,11 @@ def test_a_bush_that_slips_has_its_largest_slip() -> None:
     loose = of(solved(LoadHistory([{"P": 9e6}]), lug=replace(lug, interference=8e-6)))
     assert loose["bush: opening, press fit needed"].remark.startswith("the bush opens at ")
     assert loose["bush: opening, press fit needed"].margin == 0.0
+    free = of(solved(LoadHistory([{"P": 2e6}]), lug=replace(lug, interference=-5e-6)))[
+        "bush: opening, press fit needed"
+    ]
+    assert free.remark.startswith("the bush opens at ")
+    assert math.isnan(free.margin)
 
 
 def test_fatigue_is_of_the_last_cycle_and_says_so() -> None:
