@@ -105,7 +105,7 @@ def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], lis
         angle = math.nan if seat is None else from_bottom(seat.peak_slip_angle)
         words = f"no limit of the slip is known; largest at {angle:z.1f} deg"
         return [Margin(turning, "displacement", abs(slip.value), load_point=slip.load_point, remark=words), opened]
-    words = "not known: a bonded bush has no friction" if least.value > 0.0 else "the bush opens"
+    words = "not known: no friction between bush and plate given" if least.value > 0.0 else "the bush opens"
     return [Margin(turning, "ratio", slipping.value, load_point=slipping.load_point, remark=words), opened]
 
 

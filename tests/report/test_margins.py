@@ -62,7 +62,7 @@ def test_what_is_not_known_says_why() -> None:
     for subject, words in {
         "pin: yield, von Mises": "not known: no yield strength given",
         "plate: yield, von Mises": "not known: no yield strength given",
-        "bush: rotation, friction needed": "not known: a bonded bush has no friction",
+        "bush: rotation, friction needed": "not known: no friction between bush and plate given",
     }.items():
         assert rows[subject].remark == words
         assert math.isnan(rows[subject].margin)

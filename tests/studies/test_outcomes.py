@@ -260,7 +260,7 @@ take = "most"
         (7, 'c: cycle: must be "dissipation", '),
         (8, 'd: unknown key "tak", did you mean "take"?'),
         (8, 'd: unknown key "of"; beside quantity there may be take and over'),
-        (9, 'e: unknown key "over"; beside cycle there is no other key'),
+        (9, 'e: unknown key "over"; beside cycle there may be interface'),
         (10, "f: must have one of the keys quantity, cycle, wear, function, such as {"),
         (11, "g: must have one of the keys quantity, cycle, wear, function, such as {"),
         (12, 'h: must be a table such as { quantity = "peak_shear", take = "largest" }'),
