@@ -211,7 +211,11 @@ class PinBody(BodyBase):
         Radius of the bore, m; 0 of a solid pin.
     load : str
         How the load enters at the bore; "" for a solid pin, whose load is one of :data:`PinLoad`.
+    is_bush : bool
+        Whether it is a bush in its seat, a part of a joint whose pin loads its bore.
     """
+
+    is_bush: ClassVar[bool] = False
 
     bore_radius: float
     load: str = ""

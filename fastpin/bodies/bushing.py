@@ -26,7 +26,7 @@ from fastpin.bodies.body import (
 from fastpin.bodies.compliance import Compliance
 from fastpin.bodies.plate import Plate
 from fastpin.bodies.ring import Ring
-from fastpin.bodies.tube import Tube
+from fastpin.bodies.tube import SeatedBush
 from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, Wall, first_change, force_on, pairs_of, spectrum
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
@@ -141,7 +141,8 @@ class Bushing(PlateBody):
             if "support" in table:
                 table.report("support: needs ring_outer_radius, the outer radius of the ring round the bush", "support")
             inside = Plate.read(table)
-        if material is None or outer is None:
+        is_wrong = any(value is None and key in table for key, value in (("friction", friction), ("bonded", bonded)))
+        if material is None or outer is None or is_wrong:
             return None
         values = {"material": material, "outer_radius": outer, "inside": inside or Plate(), "friction": friction}
         values["bonded"] = bonded is not False
@@ -206,7 +207,7 @@ class Bushing(PlateBody):
             return ()
         seat = {
             "pair": MaterialPair(self.material, pair.plate, pair.plane), "hole_radius": self.outer_radius,
-            "clearance": -self.interference, "friction": self.friction, "pin_body": Tube(radius),
+            "clearance": -self.interference, "friction": self.friction, "pin_body": SeatedBush(radius),
             "plate_body": self.inside,
         }  # fmt: skip
         return {"pair": self.surface(pair), "plate_body": Ring(self.outer_radius, "uniform")}, seat
@@ -359,13 +360,16 @@ class Bushing(PlateBody):
     # -- words, drawing, controls
 
     def rows(self, length: InWords, material: InWords) -> list[tuple[str, str]]:
-        grip = "" if self.friction is None else f", friction {self.friction:g} in the plate"
         size = f"outer radius {length(self.outer_radius)}"
-        return [("plate body", self.inside.words(length)), ("bush", f"{material(self.material)}, {size}{grip}")]
+        return [("plate body", self.inside.words(length)), ("bush", f"{material(self.material)}, {size}{self._grip()}")]
 
     def caption(self, length: InWords, material: InWords) -> str:
         bush = f" with bush of {material(self.material)} to radius {length(self.outer_radius)}"
-        return bush + self.inside.caption(length, material)
+        return bush + self._grip(" that") + self.inside.caption(length, material)
+
+    def _grip(self, that: str = ",") -> str:
+        """Words on a bush that slips, for texts on the bush; none on a bonded one."""
+        return "" if self.bonded else f"{that} slips, friction {self.friction:g} in the plate"
 
     def drawing(self, rim: Rim) -> list[Shape]:
         seat = self.around(rim)[1]
@@ -376,11 +380,11 @@ class Bushing(PlateBody):
         return cls(MATERIALS["steel"] if material.is_rigid else material, 1.25 * radius)
 
     def page_controls(self, radius: float, clearance: float, dimensionless: bool) -> list[Control]:
-        most = max(2.0 * self.interference, abs(clearance), 1e-3 * radius * (not dimensionless))
+        most = max(2.0 * abs(self.interference), abs(clearance), 1e-3 * radius * (not dimensionless))
         found = super().page_controls(radius, clearance, dimensionless)
         return [
             *found,
-            Control("interference", self.interference, "displacement", 0.0, most),
+            Control("interference", self.interference, "displacement", 0.0 if self.bonded else -most, most),
             Control("bush", self.material),
         ]
 

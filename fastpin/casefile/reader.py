@@ -21,7 +21,7 @@ from fastpin.casefile.materials import DUNDURS_KEYS, known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
-from fastpin.model.case import About, Case, check_arc, check_keep
+from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
 from fastpin.model.checks import file_path, string
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOADS
@@ -172,6 +172,8 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     how = source.section("wear")
     count = {} if history is None else {"cycles": history.blocks[-1].count}
     wear = read_wear(how, folder, count) if how.present else None
+    if problem is not None and wear is not None:
+        _check_together(source, lambda: check_wear(problem), "plate_body")
     return Case(problem, history, options, title, about, wear) if problem is not None and history is not None else None
 
 
@@ -198,12 +200,12 @@ def _given_of_pair(tables: Mapping[str, Any], materials: Mapping[str, Material])
     return repr([bodies, contact.get("plane"), [*contact]]), named
 
 
-def _check_together(source: CaseText, check: Callable[[], None]) -> None:
-    """Report an option of the solver that contradicts the problem or the history."""
+def _check_together(source: CaseText, check: Callable[[], None], section: str = "solve") -> None:
+    """Report a key of a section that contradicts another part of the case."""
     try:
         check()
     except InputError as error:
-        source.report(str(error), "solve", error.field)
+        source.report(str(error), section, error.field)
 
 
 def _check_keys(source: CaseText) -> None:

@@ -179,6 +179,7 @@ def add_stored_commands(commands: Any) -> None:
     show.add_argument(
         "output", metavar="FILE", type=Path, help="HDF5 file (run or wear -o FILE); the run may still be going"
     )
+    _add_interface(show)
     _add_outputs(show)
 
 
@@ -227,6 +228,7 @@ def add_plot(commands: Any) -> None:
         help="the figure (png, pdf or svg; default KIND.png), or the animation (gif, or mp4 by ffmpeg)",
     )
     plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
+    _add_interface(plot)
     plot.add_argument(
         "--after",
         metavar="N",
@@ -239,6 +241,12 @@ def add_plot(commands: Any) -> None:
         else:
             read = literal if option.type == "number" else str
             plot.add_argument(f"--{name}", metavar=option.metavar, type=read, help=option.words)
+
+
+def _add_interface(command: argparse.ArgumentParser) -> None:
+    """Add the option that chooses one of the interfaces of a joint."""
+    words = "of a joint whose bush slips: the contact of the pin (default), or that of the bush in its seat"
+    command.add_argument("--interface", choices=("pin", "seat"), default="pin", help=words)
 
 
 _ABOUT = {

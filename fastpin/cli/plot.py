@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from fastpin import casefile, figures, storage
+from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_files
 from fastpin.errors import InputError
@@ -26,6 +27,8 @@ def run(options: argparse.Namespace) -> int:
     if film:
         figures.animation.check_animation("--output", figure)
     title = "" if is_case else storage.stored_case(options.result).title
+    if options.interface == "seat":
+        title = seat_title(title)
     check_outputs({"--output": figure, "--csv": options.csv}, figures=() if film else ("--output",))
     if is_case:
         case = casefile.read_case(options.result)
@@ -50,6 +53,8 @@ def _check(options: argparse.Namespace, is_case: bool) -> None:
         raise InputError(str(options.result), f"is a case file; {options.kind} needs {needed} CASE -o FILE")
     if is_case and options.states is not None:
         raise InputError("--states", "chooses a state of a result; a case file has none")
+    if is_case and options.interface == "seat":
+        raise InputError("--interface", "chooses a contact of a result; a case file has none")
     if is_case and options.after is not None:
         raise InputError("--after", "chooses a profile of a life of wear; a case file has none")
     known = KINDS[options.kind].options
@@ -67,8 +72,12 @@ def _plot(options: argparse.Namespace) -> figures.sheet.Plot:
     }
     if options.after is not None:
         given["after"] = options.after
+    if options.interface == "seat":
+        subject: figures.subjects.Subject = figures.subjects.InMemory(load_seat(options.result))
+    else:
+        subject = figures.subjects.stored_subject(options.result)
     try:
-        plot = figures.plotting.plot_of(options.kind, figures.subjects.stored_subject(options.result), **given)
+        plot = figures.plotting.plot_of(options.kind, subject, **given)
     except InputError as error:
         raise InputError(flag(error.field) if error.field in given else error.field, error.reason) from None
     say(*plot.notes)

@@ -16,6 +16,7 @@ import numpy as np
 
 from fastpin import casefile, figures, live, report, solver, storage
 from fastpin.cli import wear
+from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.options import literal
 from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration, progress_to
 from fastpin.cli.terminal import (
@@ -35,9 +36,19 @@ from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
 from fastpin.report.notes import note_lines, solver_line, way_on
-from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
+from fastpin.report.states import (
+    TableRows,
+    bush_line,
+    cycle_lines,
+    hoop_line,
+    seat_line,
+    state_table,
+    stored_rows,
+    table_rows,
+)
 from fastpin.states.choice import check_choice, span_of
 from fastpin.states.extremes import KeptStates, marked_extremes, marked_places, yield_doubts_of
+from fastpin.states.quantities import load_point
 
 if TYPE_CHECKING:  # it imports compiled code
     from fastpin.states.load_cycle import LoadCycle
@@ -93,7 +104,12 @@ def show(options: argparse.Namespace) -> int:
     if storage.holds_wear(options.output):
         return wear.show(options)
     case = _stored_case(options)
-    code = _write_stored(case, options, None)
+    if options.interface == "seat":
+        seat = load_seat(options.output)
+        shown = dataclasses.replace(case, problem=seat.problem, title=seat_title(case.title))
+        code = RunReport(shown, None, seat, None).write(options)
+    else:
+        code = _write_stored(case, options, None)
     if options.json != "-":
         _note_unfinished(case, options.output)
     return code
@@ -250,11 +266,14 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     points, cycles = storage.load_points(path), storage.load(path, states=[]).cycles
     peaks = marked_places(storage.marked_extremes(path))
     rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(path, places).states, peaks)
-    places = {*rows.printed, *peaks}
+    places, ends = {*rows.printed, *peaks}, [*range(points.size)[-1:]]
     if cycles:
         last = range(points.size)[storage.places_between(path, *span_of(cycles[-1]))]
         if len(last) <= report.cycle.MOST_STOPS:
             places |= set(last)  # the fatigue over the last cycle is printed
+        ends = [*ends, *last[:1], *last[-1:]]
+    if case.problem.seat is not None:
+        places |= set(ends)
     if options.record is not None:
         places |= set(live.recorded_places(points.size))
     part = ShownPart(rows, sorted(places), list(peaks))
@@ -376,7 +395,11 @@ class RunReport:
         say(*state_table(case.problem, [found[place] for place in rows.printed], rows).split("\n"))
         peaks = [found[place] for place in places]
         lines = [hoop_line(case.problem, peaks, body) for body in EDGES]
-        say(*(line for line in (*lines, *bush_line(case.problem, peaks).splitlines()) if line))
+        lines += bush_line(case.problem, peaks).splitlines()
+        ends = span_of(result.cycles[-1]) if result.cycles else ()
+        turning = [state for state in result.states if load_point(state) in ends]
+        lines.append(seat_line(case.problem, peaks, result.states[-1], turning))
+        say(*(line for line in lines if line))
         say(*cycle_lines(case.problem, result.cycles, peaks))
         if cycle is not None:
             say(report.cycle.cycle_line(cycle))

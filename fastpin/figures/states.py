@@ -80,6 +80,12 @@ class DrawnStates(list[State]):
         self.chosen = chosen or len(self)
 
     @property
+    def seats(self) -> DrawnStates:
+        """The states of the seat of a bush that slips, drawn in the same way."""
+        seats = [state.seat for state in self if state.seat is not None]
+        return DrawnStates(seats, self.total, self.cycles, self.marks, self.chosen)
+
+    @property
     def note(self) -> str:
         """Which states are drawn of how many, as text; empty if all are."""
         if len(self) == self.total:

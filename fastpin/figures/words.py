@@ -11,6 +11,7 @@ import numpy as np
 from fastpin.model.checks import shortened
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
+from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import PASCAL, Unit, acting_loads, units
@@ -88,7 +89,9 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
     plate_body = problem.plate_body.caption(
         lambda length: short(length, unit["length"]), lambda material: _material(material, problem)
     )
-    parts = [f"pin: {_material(pair.pin, problem)}{pin_body}; plate: {_material(pair.plate, problem)}"]
+    parts = [
+        f"{owner_of(problem, 'pin')}: {_material(pair.pin, problem)}{pin_body}; plate: {_material(pair.plate, problem)}"
+    ]
     parts[0] += f"{plate_body}; plane {pair.plane}"
     parts.append(f"friction coefficient {problem.friction_words(DIGITS)}")
     if isinstance(problem.friction, Profile):

@@ -64,10 +64,11 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
     -------
     dict
         Numbers in SI units, or in the units of a dimensionless problem. Angles are in degrees from the bottom of the
-        hole. The entry "doubt" is a warning of a pressure above the yield strength, or "". The entry "loops" has a pair
-        for each load: the load, and the displacement on which it does work. The entry "rounding" has a value for each
-        kind of quantity: smaller ones are shown as 0, as in tables. The entry "curves" has the tractions as figures
-        draw them, with NaN between two contact zones; "pressure" and "shear" are those of the nodes.
+        hole. The entry "seat" has zones, slip, rotation and dissipation of a bush that slips, or None. The entry
+        "doubt" is a warning of a pressure above the yield strength, or "". The entry "loops" has a pair for each load:
+        the load, and the displacement on which it does work. The entry "rounding" has a value for each kind of
+        quantity: smaller ones are shown as 0, as in tables. The entry "curves" has the tractions as figures draw them,
+        with NaN between two contact zones; "pressure" and "shear" are those of the nodes.
     """
     curves = one_turn([thinned(points, CURVE_ERROR * state.peak_pressure) for points in traction_patches(state)]).T
     hoop = None
@@ -92,7 +93,7 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
 
 
 def _numbers(state: State) -> dict[str, Any]:
-    loops = LoadCycle((state, state)).loops
+    loops, seat = LoadCycle((state, state)).loops, state.seat
     return {
         "load": state.load,
         "moment": state.resultants["M"],
@@ -104,11 +105,26 @@ def _numbers(state: State) -> dict[str, Any]:
         "peak_pressure_angle": _degrees(state.peak_pressure_angle),
         "peak_shear": state.peak_shear,
         "peak_shear_angle": _degrees(state.peak_shear_angle),
+        **_zones(state),
+        "seat": seat
+        and {
+            "peak_slip": seat.peak_slip,
+            "rotation": seat.rotation,
+            "dissipation": seat.dissipation,
+            "frictionless": seat.problem.frictionless,
+            **_zones(seat),
+        },
+        "residual": max(state.residuals.values()),
+        "loops": {name: (float(loop.load[0]), float(loop.displacement[0])) for name, loop in loops.items()},
+    }
+
+
+def _zones(state: State) -> dict[str, Any]:
+    """The zones of a state, in degrees from the bottom."""
+    return {
         "contact": [interval_from_bottom(*ends) for ends in state.contact],
         "stick": [interval_from_bottom(*ends) for ends in state.stick],
         "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
-        "residual": max(state.residuals.values()),
-        "loops": {name: (float(loop.load[0]), float(loop.displacement[0])) for name, loop in loops.items()},
     }
 
 

@@ -92,6 +92,12 @@ def check_arc(problem: Problem, options: SolveOptions) -> None:
         raise InputError("arc", f"{reason}: the arc must span 2 pi, or be left out")
 
 
+def check_wear(problem: Problem) -> None:
+    """Raise :class:`InputError` if no wear can be followed in a joint: its bush slips in its seat."""
+    if problem.seat is not None or problem.pin_body.is_bush:
+        raise InputError("bonded", "must be true: the wear in a bush that slips in its seat is not known")
+
+
 def check_keep(history: LoadHistory, options: SolveOptions) -> None:
     """Raise :class:`InputError` if the ends of cycles are to be kept, but the history has no cycles."""
     if options.keep == "cycles" and not history.longest_cycle:

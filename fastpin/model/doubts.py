@@ -172,7 +172,10 @@ def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[
                 f"contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?",
             )
         )
-    for name, material in (("pin", problem.pair.pin), (owner_of(problem, "plate"), problem.surfaces.plate)):
+    for name, material in (
+        (owner_of(problem, "pin"), problem.pair.pin),
+        (owner_of(problem, "plate"), problem.surfaces.plate),
+    ):
         strength = material.known_yield_strength
         if strength is not None and peak > strength >= LEAST_STRENGTH * material.E:
             found.append(

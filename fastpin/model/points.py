@@ -129,6 +129,8 @@ class Points(ReadOnly):
 
 def bodies_of(problem: Problem) -> tuple[Body, ...]:
     """The bodies of :data:`BODIES` that a problem has, from the hole outwards, then the pin."""
+    if problem.pin_body.is_bush:
+        return ("plate",)  # the stress of the bush is that of its joint
     return ("plate", "pin") if problem.joint.bush is None else ("plate", "seat", "pin")
 
 
@@ -140,16 +142,20 @@ def material_of(problem: Problem, body: Body) -> Material:
     InputError
         If there is no such body.
     """
-    if choice("body", body, BODIES) != "seat":
+    if choice("body", body, BODIES) == "pin" and problem.pin_body.is_bush:
+        raise InputError(
+            "body", "the pin of a seat is its bush: its stress is that of the joint, whose pin loads it, too"
+        )
+    if body != "seat":
         return problem.surfaces.pin if body == "pin" else problem.surfaces.plate
     if problem.joint.bush is None:
         raise InputError("body", '"seat" is the edge of the plate round a bush; this plate has no bush')
     return problem.pair.plate
 
 
-def owner_of(problem: Problem, body: Body) -> str:
+def owner_of(problem: Problem, body: str) -> str:
     """The word for the body that the material of :func:`material_of` belongs to: "pin", "plate" or "bush"."""
-    if body == "plate" and problem.joint.bush is not None:
+    if problem.pin_body.is_bush if body == "pin" else body == "plate" and problem.joint.bush is not None:
         return "bush"
     return "plate" if body == "seat" else body
 

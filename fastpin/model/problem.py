@@ -236,7 +236,12 @@ class Problem:
             raise InputError("hub_stiffness", 'a pin with rotation = "spring" needs the stiffness of the spring')
 
     def _check_drive(self, radius: float) -> None:
-        """Check the radius of the gauge circle. `radius` is the radius of the hole."""
+        """Check the drive and the radius of the gauge circle. `radius` is the radius of the hole."""
+        bush = self.plate_body.bush
+        if self.drive != "force" and bush is not None and not bush.bonded:
+            raise InputError(
+                "drive", 'must be "force" in a bush that slips: its pin can\'t be driven by a displacement'
+            )
         if self.gauge_radius is not None:
             gauge = number("gauge_radius", self.gauge_radius)
             if self.drive == "force":

@@ -14,7 +14,7 @@ from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.album import Album
 from fastpin.pages.content import Page
-from fastpin.pages.sections import SECTIONS, PageParts
+from fastpin.pages.sections import SECTIONS, PageParts, seat
 from fastpin.pages.source import Source, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
 from fastpin.pages.writing import check_page, write_page
@@ -104,7 +104,9 @@ def write_source(
     """Write the page of a source, see :func:`write_report`."""
     report = progress or (lambda done, total: None)
     page, sections = PageParts(source, Album(), convergence), []
-    makers = SECTIONS if source.life is None else WEAR_SECTIONS
+    makers = WEAR_SECTIONS
+    if source.life is None:
+        makers = [make for make in SECTIONS if make is not seat or source.case.problem.seat is not None]
     for number, make in enumerate(makers):
         report(number, len(makers))
         sections.append(make(page))

@@ -16,6 +16,7 @@ from fastpin.figures.gap import gap_of
 from fastpin.figures.history import history_of
 from fastpin.figures.load_cycle import STRAIGHT, loops_of, slip_of
 from fastpin.figures.sketch import sketch_of
+from fastpin.figures.states import DrawnStates
 from fastpin.figures.stick_slip import stick_slip_plot
 from fastpin.figures.stress import hoop_plot, map_plot
 from fastpin.figures.subjects import InMemory
@@ -38,7 +39,7 @@ from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.cycle import cycle_line, hot_spot_line
 from fastpin.report.margins import HEADS, fatigue_margins, margin_rows, static_margins
 from fastpin.report.notes import note_lines, solver_line, way_on
-from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, state_columns
+from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_line, state_columns
 from fastpin.report.table import MAX_ROWS, Column
 from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
@@ -99,7 +100,7 @@ def overview(page: PageParts) -> PageSection:
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
         sentences = [f"largest contact pressure in all kept states: {pressure}, load point {point}"]
         sentences += [hoop_line(problem, source.peaks, body) for body in EDGES]
-        sentences += [*bush_line(problem, source.peaks).splitlines()]
+        sentences += [*bush_line(problem, source.peaks).splitlines(), _seat_line(source)]
         lines = cycle_lines(problem, source.result.cycles, source.peaks)
         many = f"{len(lines):,} blocks of cycles: see hysteresis and slip"
         sentences += lines if len(lines) <= MOST_BLOCKS else [many]
@@ -253,16 +254,7 @@ def key_figures(page: PageParts) -> PageSection:
     if not states:
         return PageSection("figures", "Key figures", [Text(NO_STATE, "missing")])
     parts: list[SectionPart] = [Table("States", state_columns(problem, states), gaps)]
-    drawn = source.drawn
-    natural = {name: max(size(name, state) for state in drawn) for name in QUANTITIES}
-    cells = [quantity_column(problem, drawn, name, natural=natural[name]) for name in QUANTITIES]
-    shown = [(each.words, *cell[1:]) for each, cell in zip(QUANTITIES.values(), cells, strict=True)]
-    shown = [row for row in shown if not all(cell in ("nan", "-") for cell in row[2])]
-    columns: list[Column] = [("quantity", "", [row[0] for row in shown]), ("unit", "", [row[1] for row in shown])]
-    for place, state in enumerate(drawn):
-        values = ["-" if row[2][place] == "nan" else row[2][place] for row in shown]
-        columns.append((point_name(load_point(state)), "", values))
-    parts.append(Table("All quantities, by load point", columns))
+    parts.append(_all_quantities(source.drawn))
     if states[0].error_bars is None:
         how = (
             "There are no error bars. fastpin report CASE.toml --error-bars solves the case with them, and "
@@ -275,6 +267,19 @@ def key_figures(page: PageParts) -> PageSection:
         words = "Error bars stand behind ±. The true value lies within the bar in some 95 of 100 cases."
         parts.append(Text(f"{words} A ? stands for a bar that is not known."))
     return PageSection("figures", "Key figures", parts)
+
+
+def _all_quantities(drawn: Sequence[State]) -> Table:
+    """Return the table of all quantities that the drawn states have."""
+    natural = {name: max(size(name, state) for state in drawn) for name in QUANTITIES}
+    cells = [quantity_column(drawn[0].problem, drawn, name, natural=natural[name]) for name in QUANTITIES]
+    shown = [(each.words, *cell[1:]) for each, cell in zip(QUANTITIES.values(), cells, strict=True)]
+    shown = [row for row in shown if not all(cell in ("nan", "-") for cell in row[2])]
+    columns: list[Column] = [("quantity", "", [row[0] for row in shown]), ("unit", "", [row[1] for row in shown])]
+    for place, state in enumerate(drawn):
+        values = ["-" if row[2][place] == "nan" else row[2][place] for row in shown]
+        columns.append((point_name(load_point(state)), "", values))
+    return Table("All quantities, by load point", columns)
 
 
 def tractions(page: PageParts) -> PageSection:
@@ -315,6 +320,35 @@ def _zone_rows(state: State) -> list[tuple[str, ...]]:
         ends = ("all round", "all round") if is_all_round(stop - start) else (first, last)
         rows.append((point, zone, *ends, words))
     return rows or [(point, "no contact", "-", "-", "")]
+
+
+def seat(page: PageParts) -> PageSection:
+    """Return the contact of a bush that slips in its seat: tractions, stick and slip, states and quantities."""
+    source = page.source
+    drawn, mapped = source.drawn.seats, source.mapped.seats
+    if not drawn:
+        return PageSection("seat", "Seat of the bush", [Text(NO_STATE, "missing")])
+    words = (
+        "Here the bush is the pin, and its seat in the plate the hole: the motion is that of the bush over the plate."
+    )
+    words += " Work is that of the whole joint."
+    parts: list[SectionPart] = [Text(sentence(_seat_line(source))), Text(words)]
+    parts += drawn_or_reason(lambda: page.album.figure(tractions_plot(InMemory(drawn))))
+    if len(mapped) > 1:
+        parts += drawn_or_reason(lambda: page.album.figure(stick_slip_plot(InMemory(mapped))))
+    if source.cycle is not None:
+        parts += slip_parts(page, LoadCycle(tuple(DrawnStates(source.cycle.states, 0).seats)))
+    states, gaps = source.rows
+    seats = DrawnStates(states, len(states)).seats
+    parts.append(Table("States of the seat", state_columns(seats[0].problem, seats), gaps))
+    parts.append(_all_quantities(drawn))
+    return PageSection("seat", "Seat of the bush", parts)
+
+
+def _seat_line(source: Source) -> str:
+    ends = () if source.cycle is None else (source.cycle.states[0], source.cycle.states[-1])
+    (last,) = source.read([source.points.size - 1])
+    return seat_line(source.case.problem, source.peaks, last, ends)
 
 
 def hysteresis(page: PageParts) -> PageSection:
@@ -460,7 +494,7 @@ def _shortened(text: str) -> str:
 
 
 SECTIONS: Sequence[Callable[[PageParts], PageSection]] = (
-    overview, margins, case, materials, loads, key_figures, tractions, zones, hysteresis, stresses, fatigue,
-    convergence, checks, provenance,
+    overview, margins, case, materials, loads, key_figures, tractions, zones, seat, hysteresis, stresses,
+    fatigue, convergence, checks, provenance,
 )  # fmt: skip
-"""All sections, in the order of the page."""
+"""All sections, in the order of the page. Only a joint whose bush slips has a seat."""

@@ -63,7 +63,7 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         where = f"arc from {options.arc[0]:g} to {options.arc[1]:g} rad"
     method = options.method if options.method == "path" else f"increment, {options.increments} a corner"
     rows = [
-        ("pin", _material(pair.pin, problem.dimensionless)),
+        (owner_of(problem, "pin"), _material(pair.pin, problem.dimensionless)),
         ("plate", _material(pair.plate, problem.dimensionless)),
         *_bodies(problem),
         ("pair", f"plane {pair.plane}, {contact}Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),
@@ -110,7 +110,7 @@ def profile_words(problem: Problem) -> list[tuple[str, str]]:
 
 def edge_body(problem: Problem, body: str) -> str:
     """Return words for the body whose edge "plate", "seat" or "pin" names: the hole may be in a bush."""
-    return {"plate": owner_of(problem, "plate"), "seat": "plate at the seat"}.get(body, body)
+    return "plate at the seat" if body == "seat" else owner_of(problem, body)
 
 
 def _bodies(problem: Problem) -> list[tuple[str, str]]:
@@ -118,7 +118,11 @@ def _bodies(problem: Problem) -> list[tuple[str, str]]:
     unit, bush, rows = units(problem), problem.plate_body.bush, []
     for body in (problem.pin_body, problem.plate_body):
         rows += body.rows(unit["length"].text, lambda material: _material(material, problem.dimensionless))
-    if bush is not None and bush.interference:
+    if bush is not None and bush.interference < 0.0:
+        rows.append(
+            ("loose fit", f"clearance {unit['displacement'].text(-bush.interference)} of the bush in the plate")
+        )
+    elif bush is not None and bush.interference:
         words = f"interference {unit['displacement'].text(bush.interference)}"
         words += f", pressure {unit['traction'].text(problem.press_fit_pressure, 4)}"
         words += f", clearance after it {unit['displacement'].text(problem.assembled_clearance)}"

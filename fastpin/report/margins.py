@@ -9,8 +9,6 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from fastpin.damage import Fatigue
 from fastpin.damage import fatigue as fatigue_of
 from fastpin.errors import InputError
@@ -87,24 +85,28 @@ def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]
 
 
 def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
-    """Return the margins against rotation and opening of a bush in its seat."""
+    """Return the margins against rotation and opening of a bush in its seat. One that slips has its largest slip."""
     turning, opening = "bush: rotation, friction needed", "bush: opening, press fit needed"
+    if problem.seat is not None:
+        turning = "bush: slip in its seat"
     least, slipping = found.get(("bush_open_margin", "smallest")), found.get(("bush_least_friction", "largest"))
     if least is None or slipping is None:
         none = "not known: there is no state"
         return [Margin(turning, remark=none), Margin(opening, remark=none)]
     (state,), pressure = read([least.place]), units(problem)["traction"].text(least.value, 4)
     fit = state.bush_fit()
-    where = f"smallest pressure {pressure} at {from_bottom(fit.open_angle):z.1f} deg"
-    opened = Margin(opening, "traction", fit.pressure_to_close, fit.press_fit_pressure, least.load_point, where)
-    friction = fit.friction
-    if friction is None:
-        words = "not known: no friction between bush and plate given"
-        return [Margin(turning, "ratio", slipping.value, load_point=slipping.load_point, remark=words), opened]
-    fit, words = read([slipping.place])[0].bush_fit(), "the bush opens"
-    if fit.open_margin > 0.0:
-        words = f"at {from_bottom(float(fit.theta[np.argmax(np.abs(fit.shear) / fit.pressure)])):z.1f} deg"
-    return [Margin(turning, "ratio", slipping.value, friction, slipping.load_point, words), opened]
+    smallest = f"smallest pressure {pressure}" if least.value > 0.0 or problem.seat is None else "the bush opens"
+    where = f"{smallest} at {from_bottom(fit.open_angle):z.1f} deg"
+    needed = fit.pressure_to_close or math.nan  # of a loose bush it is not known: without pressure it is open anyhow
+    opened = Margin(opening, "traction", needed, fit.press_fit_pressure, least.load_point, where)
+    slip = found.get(("seat_slip", "largest magnitude"))
+    if slip is not None:
+        seat = read([slip.place])[0].seat
+        angle = math.nan if seat is None else from_bottom(seat.peak_slip_angle)
+        words = f"no limit of the slip is known; largest at {angle:z.1f} deg"
+        return [Margin(turning, "displacement", abs(slip.value), load_point=slip.load_point, remark=words), opened]
+    words = "not known: a bonded bush has no friction" if least.value > 0.0 else "the bush opens"
+    return [Margin(turning, "ratio", slipping.value, load_point=slipping.load_point, remark=words), opened]
 
 
 def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Sequence[State]) -> list[Margin]:

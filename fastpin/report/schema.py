@@ -75,7 +75,7 @@ def _summary() -> Schema:
             ),
             "solver": _object({each.name: {} for each in fields(SolveOptions)}),
             "statistics": _map_of(_NUMBER, "counters of the solver, and its time, s"),
-            "states": _list_of(_state()),
+            "states": _list_of(_state(seat=_state())),
             "extremes": _object(dict.fromkeys(READINGS, sides), required=()),
             "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN))),
             "cycles": _list_of(_object(of_cycle)),
@@ -122,7 +122,8 @@ def _field(field: Field) -> Schema:
     return _TEXT if field.choices else _UNKNOWN if field.is_optional else _NUMBER
 
 
-def _state() -> Schema:
+def _state(seat: Schema | None = None) -> Schema:
+    """A state, perhaps with the state of a seat."""
     interval = _list_of(_NUMBER, 2)
     slip = {"description": "start and stop, deg, and the sign of the slip", **_list_of(_NUMBER, 3)}
     quantities = {
@@ -130,24 +131,26 @@ def _state() -> Schema:
         for name, each in QUANTITIES.items()
         if name not in _RESULTANTS
     }
-    return _object(
-        {
-            "load_point": _NUMBER,
-            "step": _WHOLE,
-            "fraction": _NUMBER,
-            "load": _object(dict.fromkeys(LOADS, _NUMBER), LOADS[:ACTING]),
-            "in_contact": _TRUTH,
-            **quantities,
-            "peak_hoop_resolved": {"type": ["boolean", "null"]},
-            "contact": _list_of(interval),
-            "stick": _list_of(interval),
-            "slip": _list_of(slip),
-            "energy": _UNKNOWN,
-            "resultants": _object(dict.fromkeys(_RESULTANTS, _NUMBER)),
-            "residuals": _map_of(_UNKNOWN, "errors of the contact conditions"),
-            "error_bars": _or_null(_map_of(_UNKNOWN, "largest likely errors")),
-        }
-    )
+    parts: dict[str, Schema] = {
+        "load_point": _NUMBER,
+        "step": _WHOLE,
+        "fraction": _NUMBER,
+        "load": _object(dict.fromkeys(LOADS, _NUMBER), LOADS[:ACTING]),
+        "in_contact": _TRUTH,
+        **quantities,
+        "peak_hoop_resolved": {"type": ["boolean", "null"]},
+        "contact": _list_of(interval),
+        "stick": _list_of(interval),
+        "slip": _list_of(slip),
+        "energy": _UNKNOWN,
+        "resultants": _object(dict.fromkeys(_RESULTANTS, _NUMBER)),
+        "residuals": _map_of(_UNKNOWN, "errors of the contact conditions"),
+        "error_bars": _or_null(_map_of(_UNKNOWN, "largest likely errors")),
+    }
+    if seat is None:
+        return _object(parts)
+    words = {"description": "the contact of a bush that slips in its seat; left out without one"}
+    return _object(parts | {"seat": seat | words}, without=["seat"])
 
 
 def _last_cycle() -> Schema:

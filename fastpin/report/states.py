@@ -179,7 +179,8 @@ def _identity(state: State) -> tuple[Hashable, ...]:
     marks = () if state.marks is None else tuple(part.tobytes() for part in state.marks.arrays(state.grid.size))
     arrays = [part.tobytes() for part in (state.pressure, state.shear, state.status)]
     coarse = _identity(state.error_bars.coarse) if state.error_bars is not None else ()
-    return (*arrays, *marks, state.rotation, *state.load.values(), *coarse)
+    seat = () if state.seat is None else _identity(state.seat)
+    return (*arrays, *marks, state.rotation, *state.load.values(), *coarse, *seat)
 
 
 def state_table(problem: Problem, states: Sequence[State], rows: TableRows | None = None) -> str:
@@ -319,7 +320,8 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
 def bush_line(problem: Problem, states: Sequence[State]) -> str:
     """Return a line of text: whether the press fit holds the bush in all kept states; empty without a bush or contact.
 
-    `states` are all kept states, or those of their extremes.
+    `states` are all kept states, or those of their extremes. Of a bush that slips it is the smallest pressure only:
+    see :func:`seat_line`.
     """
     if problem.joint.bush is None or not any(state.in_contact for state in states):
         return ""
@@ -327,17 +329,54 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     state, fit = min(fits, key=lambda pair: pair[1].open_margin)
     unit = units(problem)["traction"]
     where = f"at {_angle(fit.open_angle)} deg, load point {_point(state)}"
+    if problem.seat is not None and fit.open_margin <= 0.0:
+        return f"the bush opens in its seat {where}"
     if fit.open_margin < 0.0:
         return (
             f"note: the bush would open {where}: it needs a press-fit pressure of "
             f"{unit.text(fit.pressure_to_close, 4)}, not {unit.text(fit.press_fit_pressure, 4)}; "
             "these states hold for a bonded bush"
         )
-    needed = max(fit.least_friction for _, fit in fits)
     text = f"smallest pressure between bush and plate in all kept states: {unit.text(fit.open_margin, 4)} {where}"
-    if fit.friction is None or fit.friction >= needed:
-        return f"{text}; the bush sticks with a friction of {needed:.3g} or more"
-    return f"{text}\nnote: the bush would slip: it needs a friction of {needed:.3g}, not {fit.friction:g}"
+    if problem.seat is not None:
+        return text
+    needed = max(fit.least_friction for _, fit in fits)
+    return f"{text}; the bush sticks with a friction of {needed:.3g} or more"
+
+
+def seat_line(problem: Problem, states: Sequence[State], last: State, cycle: Sequence[State] = ()) -> str:
+    """Return a line of text on a bush that slips: its zones, largest slip, rotation and dissipation; empty without one.
+
+    Parameters
+    ----------
+    problem : Problem
+    states : sequence of State
+        All kept states, or those of their extremes.
+    last : State
+        The last kept state.
+    cycle : sequence of State
+        The states at the two ends of the last cycle; fewer if they are not known.
+    """
+    seats = [state.seat for state in states if state.seat is not None]
+    seat, unit = last.seat, units(problem)
+    if seat is None or not seats:
+        return ""
+    most = max(seats, key=lambda each: abs(each.peak_slip))
+    natural = sizes(seat)
+
+    def shown(kind: str, value: float, digits: int) -> str:
+        return unit[kind].text(0.0 if abs(value) <= ROUNDING * natural[kind] else value, digits)
+
+    text = (
+        f"bush in its seat at load point {_point(last)}: contact {_intervals(seat, 'contact')}, "
+        f"stick {_intervals(seat, 'stick')} (deg); largest slip in all kept states: "
+        f"{shown('displacement', most.peak_slip, 4)} at {_angle(most.peak_slip_angle)} deg, load point {_point(most)}; "
+        f"turned {shown('rotation', seat.rotation, 4)} so far"
+    )
+    turned = [state.seat.rotation for state in cycle if state.seat is not None]
+    if len(turned) == 2:
+        text += f", {shown('rotation', turned[1] - turned[0], 3)} in the last cycle"
+    return f"{text}; dissipated {shown('energy', seat.dissipation, 4)} of {shown('energy', last.dissipation, 4)}"
 
 
 def cycle_lines(problem: Problem, cycles: Sequence[Cycle], states: Sequence[State] = ()) -> list[str]:

@@ -149,6 +149,7 @@ def _state_summary(state: State) -> dict[str, Any]:
         "resultants": printed_loads(state.problem, resultants),
         "residuals": state.residuals,
         "error_bars": bars and {name: _in_units(unit, name, bar_in_degrees(name, bar)) for name, bar in bars.items()},
+        **({} if state.seat is None else {"seat": _state_summary(state.seat)}),
     }
 
 

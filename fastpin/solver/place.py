@@ -131,6 +131,8 @@ def followed_problem(problem: Problem, changes: dict[str, Any]) -> Problem:
     if changes.keys() != {"friction"}:
         raise InputError("replay", '"follow" is for a change of the friction alone')
     changed = changed_problem(problem, changes)
+    if problem.seat is not None:
+        raise InputError("replay", '"follow" needs a bush that is bonded: in one that slips, no friction is followed')
     if problem.frictionless or changed.frictionless:
         raise InputError("friction", "can't be followed to or from 0: friction must stay on both sides")
     return changed
@@ -150,6 +152,8 @@ def changed_system(system: System, problem: Problem) -> System | None:
         if field.name not in IN_PLACE
     )
     if not alike or old.frictionless != problem.frictionless:  # without friction nothing carries a moment
+        return None
+    if problem.seat is not None:  # the system of a joint holds systems of its parts
         return None
     rest_clearance = problem.assembled_clearance / system.scales.displacement
     return replace(

@@ -155,7 +155,8 @@ class Result(Sequence[State]):
         states = [state.seat for state in self.states if state.seat is not None]
         grid = states[0].grid if states else seat_grid(self.problem, self.grid)
         coarse = None if self.coarse is None else self.coarse.seat
-        cycles = tuple(_of_seat(cycle, {load_point(state): state for state in states}) for cycle in self.cycles)
+        corners = {load_point(state): state for state in states}
+        cycles = tuple(_of_seat(cycle, corners) for cycle in self.cycles)
         return replace(self, states=states, problem=problem, grid=grid, restart=None, cycles=cycles, coarse=coarse)
 
     def cycle(self, place: int = -1, *, first: int | None = None, last: int | None = None) -> LoadCycle:

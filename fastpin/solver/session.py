@@ -430,7 +430,7 @@ class Session(InTurns):
     def _arrive(self, place: Place, run: Run) -> None:
         """Make the end of a run the present place."""
         system = run.system
-        reached = replace(place, grid=system.grid, force=system.scales.force, restart=run.bookmark())
+        reached = replace(place, grid=run.grid, force=system.scales.force, restart=run.bookmark())
         self._leave_for(replace(reached, state=self._recorder.states[-1]))
         self._run, self._system = run if run.strict else None, system
 
@@ -457,7 +457,7 @@ class Session(InTurns):
         """The matrices of a place: the present ones, if they do."""
         known = self._system
         assert place.grid is not None
-        if known is not None and known.grid is place.grid and known.scales.force == place.force:
+        if known is not None and known.interfaces[0].grid is place.grid and known.scales.force == place.force:
             if known.problem == place.problem:
                 return known
             changed = changed_system(known, place.problem)

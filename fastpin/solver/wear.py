@@ -11,6 +11,7 @@ import numpy as np
 
 from fastpin.elasticity.large import build_system
 from fastpin.errors import InputError
+from fastpin.model.case import check_wear
 from fastpin.model.checks import number_array
 from fastpin.model.doubts import warn_of
 from fastpin.model.grid import Grid
@@ -122,6 +123,7 @@ class WearTask:
 
     def __post_init__(self) -> None:
         self._task()
+        check_wear(self.problem)
         if self.options.method != "path":
             raise InputError("method", 'wear is followed by method = "path" only')
         if not self.history.blocks[-1].cycle:

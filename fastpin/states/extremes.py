@@ -47,6 +47,9 @@ def _von_mises(owner: str) -> Quantity:
 READINGS: dict[str, Quantity] = {
     **{name: each for name, each in QUANTITIES.items() if each.kind not in ("angle", "ratio", "class")},
     "bush_least_friction": Quantity("bush least friction", "ratio", of_bush(lambda fit: fit.least_friction)),
+    "seat_slip": Quantity(
+        "slip in the seat", "displacement", lambda state: math.nan if state.seat is None else state.seat.peak_slip
+    ),
     **{PREFIX + owner: _von_mises(owner) for owner in OWNERS},
 }
 """The quantities that have extremes.
@@ -62,6 +65,7 @@ MARKS: dict[tuple[str, Side], str] = {
     ("peak_hoop_seat", "largest"): "largest hoop stress at the seat",
     ("bush_open_margin", "smallest"): "bush nearest to opening",
     ("bush_least_friction", "largest"): "bush nearest to slip",
+    ("seat_slip", "largest magnitude"): "largest slip of the bush",
     **{(PREFIX + owner, "largest"): f"largest von Mises stress of the {owner}" for owner in OWNERS},
 }
 """The extremes that texts, tables and figures show, with their words."""
@@ -133,20 +137,29 @@ class KeptStates:
     def blocks(self) -> Iterator[StateBlock]:
         """Give the nodal values of all states, in order."""
         for begin in range(0, len(self._states), AT_ONCE):
-            some = self._states[begin : begin + AT_ONCE]
-            marks = [(state.marks or Marks()).arrays(self.grid.size) for state in some]
-            yield StateBlock(
-                np.array([state.pressure for state in some]),
-                np.array([state.shear for state in some]),
-                np.array([state.status for state in some]),
-                np.array([list(state.load.values()) for state in some]),
-                tuple(np.array([arrays[k] for arrays in marks]) for k in range(2)),
-                {name: np.array([getattr(state, name) for state in some]) for name in NUMBERS},
-            )
+            yield _block_of(self._states[begin : begin + AT_ONCE])
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Read the states at these places."""
         return [self._states[place] for place in places]
+
+
+def _block_of(states: Sequence[State]) -> StateBlock:
+    """The nodal values of some states on one grid, and those of their seats."""
+    marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
+    seats = [state.seat for state in states if state.seat is not None]
+    numbers = {name: np.array([getattr(state, name) for state in states]) for name in NUMBERS}
+    if seats:
+        numbers["seat_slip"] = np.array([seat.peak_slip for seat in seats])
+    return StateBlock(
+        np.array([state.pressure for state in states]),
+        np.array([state.shear for state in states]),
+        np.array([state.status for state in states]),
+        np.array([list(state.load.values()) for state in states]),
+        tuple(np.array([arrays[k] for arrays in marks]) for k in range(2)),
+        numbers,
+        _block_of(seats) if seats else None,
+    )
 
 
 def all_extremes(kept: Kept) -> dict[str, Extremes]:
@@ -171,7 +184,10 @@ def yield_extremes(kept: Kept) -> Found:
     owners = yielding_owners(kept.problem)
     if not owners:
         return {}
-    columns = [np.abs(np.c_[b.pressure.max(axis=1), np.abs(b.shear).max(axis=1), b.loads]) for b in kept.blocks()]
+    columns = []
+    for block in kept.blocks():
+        tractions = [part for each in (block, block.seat or block) for part in (each.pressure, each.shear)]
+        columns.append(np.column_stack([np.abs(block.loads), *(np.abs(part).max(axis=1) for part in tractions)]))
     states = kept.read(sorted({int(np.argmax(column)) for column in np.concatenate(columns).T}))
     near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]
     return find_extremes(kept, [(PREFIX + owner, "largest") for owner in near])
@@ -246,8 +262,8 @@ def exists(problem: Problem, name: str) -> bool:
     """Whether the states of a problem have a quantity."""
     if name.startswith(PREFIX):
         return name.removeprefix(PREFIX) in yielding_owners(problem)
-    if name == "bush_slip_margin":
-        return problem.joint.bush is not None and problem.plate_body.bush.friction is not None
+    if name in ("bush_slip_margin", "seat_slip"):
+        return problem.seat is not None
     if name.startswith("bush_"):
         return problem.joint.bush is not None
     edges = {"peak_hoop": "plate", "peak_hoop_seat": "seat"}
@@ -275,7 +291,7 @@ class Different:
     def __init__(self, kept: Kept, names: set[str]) -> None:
         self._kept = kept
         first: dict[bytes, int] = {}
-        numbers: dict[str, list[np.ndarray]] = {name: [] for name in NUMBERS if name in names}
+        numbers: dict[str, list[np.ndarray]] = {name: [] for name in (*NUMBERS, "seat_slip") if name in names}
         bounds, begin = Bounds(kept.problem, kept.grid, names), 0
         for block in kept.blocks():
             rows = [row for row, key in enumerate(_keys(block)) if first.setdefault(key, begin + row) == begin + row]
@@ -310,8 +326,7 @@ class Different:
 
 def _keys(block: StateBlock) -> Iterator[bytes]:
     """Return a digest of the parts of each state that its readings depend on."""
-    parts = [block.pressure, block.shear, block.status, block.loads, *block.marks]
-    parts += [block.numbers[name] for name in ("dx", "dy", "rotation")]
+    parts = block.read_parts
     for row in range(len(block.pressure)):
         digest = hashlib.blake2b(digest_size=16)
         for part in parts:

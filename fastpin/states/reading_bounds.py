@@ -81,7 +81,9 @@ class StateBlock(NamedTuple):
     marks : tuple of ndarray, shape (k, n)
         The arrays of :class:`fastpin.reading.marks.Marks`; empty if the states have none.
     numbers : dict of str to ndarray, shape (k,)
-        Of :data:`NUMBERS`.
+        Of :data:`NUMBERS`, and "seat_slip" of states with a seat.
+    seat : StateBlock or None
+        The states of the seat of a bush that slips.
     """
 
     pressure: np.ndarray
@@ -90,6 +92,14 @@ class StateBlock(NamedTuple):
     loads: np.ndarray
     marks: tuple[np.ndarray, ...]
     numbers: dict[str, np.ndarray]
+    seat: StateBlock | None = None
+
+    @property
+    def read_parts(self) -> list[np.ndarray]:
+        """The arrays (k, ...) on which the readings of the states depend, without those that are numbers."""
+        own = [self.pressure, self.shear, self.status, self.loads, *self.marks]
+        own += [self.numbers[name] for name in ("dx", "dy")]
+        return own if self.seat is None else own + self.seat.read_parts
 
 
 class Bounds:
@@ -342,13 +352,14 @@ class StressBounds:
         Its plate is not rigid if a reading of the plate is asked for.
     grid : Grid
     names : set of str
-        The readings.
+        The readings. Bush and plate have no bounds where the bush slips: their stresses depend on its seat, too.
     """
 
     HOOP, SEAT = "peak_hoop", "peak_hoop_seat"
-    BUSH = ("bush_open_margin", "bush_slip_margin", "bush_least_friction")
+    BUSH = ("bush_open_margin", "bush_least_friction")
 
     def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
+        names = names if problem.seat is None else names & {f"{PREFIX}pin"}
         owners = {name: name.removeprefix(PREFIX) for name in sorted(names) if name.startswith(PREFIX)}
         self.names = names & {self.HOOP, self.SEAT, *self.BUSH, *owners}
         self._owners, self._hats = owners, Hats(problem, grid)
@@ -371,7 +382,7 @@ class StressBounds:
         if self._bush is not None and self.names & {*self.BUSH}:
             interface = slice(self._rim, self._rim + self._round)
             normal, along = (plate.component(k, interface, *values) for k in (0, 2))
-            found |= zip(self.BUSH, _interface_bounds(-normal, along, self._bush.friction), strict=True)
+            found |= zip(self.BUSH, _interface_bounds(-normal, along), strict=True)
         if self.SEAT in self.names:
             hoop = plate.component(1, slice(self._rim + self._round, None), *values)
             found[self.SEAT] = _seat_bounds(hoop) if self._is_thick else _unbounded(len(hoop))
@@ -435,8 +446,8 @@ def _seat_bounds(hoop: np.ndarray) -> Pair:
     return top - slack, top + slack
 
 
-def _interface_bounds(normal: np.ndarray, along: np.ndarray, friction: float | None) -> tuple[Pair, Pair, Pair]:
-    """Bounds of the least pressure, the least reserve and the least friction at the interface of a bush.
+def _interface_bounds(normal: np.ndarray, along: np.ndarray) -> tuple[Pair, Pair]:
+    """Bounds of the least pressure and the least friction at the interface of a bonded bush.
 
     `normal` and `along` are pressure and shear at equally spaced points, shape (k, m). Between the points they differ
     by a part of their second differences.
@@ -447,13 +458,8 @@ def _interface_bounds(normal: np.ndarray, along: np.ndarray, friction: float | N
         slack += 0.5 * bends + ROUNDING * np.abs(values).max(axis=1)
     size, least = np.abs(along), normal.min(axis=1)
     open_pair = least - slack, least + slack
-    unbounded = np.full(len(normal), math.inf)
-    slip_pair = -unbounded, unbounded
-    if friction:
-        reserve, doubt = (normal - size / friction).min(axis=1), slack * (1.0 + 1.0 / friction)
-        slip_pair = reserve - doubt, reserve + doubt
     wide = slack[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         high = np.where(least > slack, ((size + wide) / np.maximum(normal - wide, 0.0)).max(axis=1), math.inf)
         ratios = np.maximum(size - wide, 0.0) / np.maximum(normal + wide, 0.0)
-    return open_pair, slip_pair, (np.nan_to_num(ratios, nan=0.0).max(axis=1), high)
+    return open_pair, (np.nan_to_num(ratios, nan=0.0).max(axis=1), high)

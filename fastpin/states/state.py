@@ -246,6 +246,23 @@ class State(ReadOnly):
         """Angle of the shear traction of largest magnitude, rad; NaN without shear."""
         return self._shear_peak[1]
 
+    @property
+    def peak_slip(self) -> float:
+        """Slip of largest magnitude of the closed nodes, with its sign, m; 0 without contact."""
+        return self._slip_peak[0]
+
+    @property
+    def peak_slip_angle(self) -> float:
+        """Angle of the slip of largest magnitude, rad; NaN without contact."""
+        return self._slip_peak[1]
+
+    @cached_property
+    def _slip_peak(self) -> tuple[float, float]:
+        if not self.in_contact:
+            return 0.0, math.nan
+        (slip,) = peak_slips(self.slip[None], self.status[None])
+        return float(slip), near_bottom(float(self.theta[np.argmax(self.slip == slip)]))
+
     @cached_property
     def _pressure_peak(self) -> tuple[float, float]:
         if not self.in_contact:
@@ -552,6 +569,12 @@ class ErrorBars(Mapping[str, float]):
 
 
 _FIELDS = tuple(field.name for field in fields(State))
+
+
+def peak_slips(slip: np.ndarray, status: np.ndarray) -> np.ndarray:
+    """The :attr:`State.peak_slip` of many states, shape (k,), from slip and status of their nodes, shape (k, n)."""
+    size = np.where(status != OPEN, np.abs(slip), 0.0)
+    return np.where(size.any(axis=1), np.take_along_axis(slip, size.argmax(axis=1)[:, None], axis=1)[:, 0], 0.0)
 
 
 def state_again(state: State, step: int, dissipation: float, work: float) -> State:

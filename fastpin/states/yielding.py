@@ -16,7 +16,7 @@ from fastpin.elasticity.stress import pin_stress, plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.model.angles import from_bottom
 from fastpin.model.grid import Grid
-from fastpin.model.points import Body, Points, far_rim, material_of, near_rim
+from fastpin.model.points import Body, Points, elastic_bodies, far_rim, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.reading.stress import Stress
@@ -77,7 +77,7 @@ def circles(problem: Problem) -> Iterator[Circle]:
         yield Circle("plate", "plate", 0.0, "hole")
     elif not problem.surfaces.plate.is_rigid:
         yield from (Circle("plate", "plate", depth, "hole") for depth in _depths(_wall(problem, "plate")))
-    if not problem.pair.pin.is_rigid:
+    if "pin" in elastic_bodies(problem):
         wall = _wall(problem, "pin")
         yield from (Circle("pin", "pin", depth, "pin") for depth in _depths(wall))
         if problem.pin_body.bore_radius:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from fastpin.storage.layout import (
     FIELD_KINDS,
     NODE_FIELDS,
     RESIDUALS,
+    SEATED,
     SLIP_FIELDS,
     check_states,
     load_units,
@@ -43,7 +45,8 @@ def to_xarray(source: Result | str | Path) -> xarray.Dataset:
     """Return all states as an xarray.Dataset with the dimensions "state" and "theta".
 
     The attribute "units" of a variable names its unit. xarray also reads a finished file piece by piece, without
-    fastpin: ``xarray.open_dataset(path, group="states")``.
+    fastpin: ``xarray.open_dataset(path, group="states")``. Of a joint whose bush slips, the dataset has the contact of
+    the pin. The dataset of its seat is ``to_xarray(result.seat)``.
 
     Parameters
     ----------
@@ -76,7 +79,7 @@ def _of_file(path: Path) -> tuple[Variables, dict[str, Any]]:
     with open_result(path) as file:
         group = file["states"]
         check_states(file, read_grid(file).size)
-        for name in (*SCALES, *state_rows(group)):
+        for name in (*SCALES, *_own(state_rows(group))):
             dataset = group[name]
             values = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
             unit = dataset.attrs.get("unit", "")
@@ -87,6 +90,11 @@ def _of_file(path: Path) -> tuple[Variables, dict[str, Any]]:
             if values.shape != tuple(sizes[dimension] for dimension in dimensions):
                 raise ValueError(f"states/{name} has the shape {values.shape}")
         return variables, {name: as_python(value) for name, value in file.attrs.items()}
+
+
+def _own(names: Iterable[str]) -> list[str]:
+    """The arrays of the pin's contact. The seat of a bush has other nodes, and a dataset of its own."""
+    return [name for name in names if not name.startswith(SEATED[1])]
 
 
 def _dimensions(name: str) -> list[str]:
@@ -109,7 +117,8 @@ def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
         "load_name": (["load_name"], list(LOADS), {"units": ""}),
         "residual_name": (["residual_name"], list(RESIDUALS), {"units": ""}),
     }
-    for name, values in rows_of(list(result)).items():
+    rows = rows_of(list(result))
+    for name, values in ((name, rows[name]) for name in _own(rows)):
         dimensions = _dimensions(name)
         label = ", ".join(load_units(result.problem)) if name == "loads" else unit.get(FIELD_KINDS.get(name, ""), "")
         if len(dimensions) == 2:

@@ -14,11 +14,14 @@ import numpy as np
 from fastpin.states import extremes
 from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Kept
 from fastpin.states.reading_bounds import NUMBERS, StateBlock
-from fastpin.states.state import State
+from fastpin.states.state import State, peak_slips
 from fastpin.storage import hdf5
 from fastpin.storage.damage import check_finite, dataset_of, text_of
 from fastpin.storage.layout import (
     BORDER_FIELDS,
+    SEAT_NUMBERS,
+    SEATED,
+    Rows,
     all_loads,
     check_states,
     count,
@@ -48,19 +51,35 @@ class StoredStates:
         """Give the nodal values of all states, in order."""
         group = self._file["states"]
         marks = [name for name in BORDER_FIELDS if name in node_fields(group)]
-        names = ["pressure", "shear", "status", "loads", *marks, *NUMBERS]
+        names = ["pressure", "shear", "status", *marks, *NUMBERS]
+        seated = [f"{SEATED[1]}{name}" for name in ("pressure", "shear", "status", "slip", *marks, *SEAT_NUMBERS)]
         for begin in range(0, self.points.size, AT_ONCE):
-            rows = read_rows(group, names, slice(begin, begin + AT_ONCE))
+            some = slice(begin, begin + AT_ONCE)
+            rows = read_rows(group, [*names, "loads", *(seated if "seat" in group else ())], some)
             for name in ("pressure", "shear", "loads", *NUMBERS):
                 check_finite(f"states/{name}", rows[name])
-            yield StateBlock(
-                rows["pressure"], rows["shear"], rows["status"], all_loads(rows["loads"], 0.0),
-                tuple(rows[name] for name in marks), {name: rows[name] for name in NUMBERS},
-            )  # fmt: skip
+            for name in seated if "seat" in group else ():
+                if not name.endswith(tuple(BORDER_FIELDS)):
+                    check_finite(f"states/{name}", rows[name])
+            loads = all_loads(rows["loads"], 0.0)
+            block = _block_of(rows, loads, marks)
+            if "seat" in group:
+                own = {name.removeprefix(SEATED[1]): rows[name] for name in seated}
+                block.numbers["seat_slip"] = peak_slips(own["slip"], own["status"])
+                block = block._replace(seat=_block_of({**rows, **own}, loads, marks))
+            yield block
 
     def read(self, places: Sequence[int]) -> list[State]:
         """Read the states at these places."""
         return read_states(self._file, self.problem, self.grid, places, self._corners)
+
+
+def _block_of(rows: Rows, loads: np.ndarray, marks: list[str]) -> StateBlock:
+    """The nodal values of some states from their rows. `marks` are the names of the arrays of old borders."""
+    numbers = {name: rows[name] for name in NUMBERS}
+    return StateBlock(
+        rows["pressure"], rows["shear"], rows["status"], loads, tuple(rows[name] for name in marks), numbers
+    )
 
 
 def read_extremes(file: h5py.File, find: Callable[[Kept], Found] = extremes.marked_extremes) -> Found:

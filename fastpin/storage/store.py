@@ -86,7 +86,7 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
     ------
     InputError
         If `path` must not be replaced: it holds an unfinished run or no result, or another run is writing to it. Also
-        if a state of the result is on another grid.
+        if a state of the result is on another grid, or the result is the seat of a bush.
     OutputError
         If the file can't be written.
     """
@@ -100,6 +100,8 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
         raise InputError(str(path), "holds an unfinished run; resume it, or remove it")
     if any(not np.array_equal(state.theta, result.grid.theta) for state in result):
         raise InputError("result", "all states must be on the grid of the result")
+    if result.problem.pin_body.is_bush:
+        raise InputError("result", "is the seat of a bush: save the result of its joint, which holds the seat")
     if path.exists() and not path.is_file():
         raise InputError(str(path), "must be an ordinary file")
     large = len(result) * result.grid.size > MOST_IN_MEMORY

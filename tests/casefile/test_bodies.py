@@ -69,7 +69,11 @@ def test_bodies_of_the_pin(text, body):
         ("outer_radius = 2e-2", Ring(0.02)),
         ('kind = "ring"\nouter_radius = 2e-2\nsupport = "half"', Ring(0.02, "half")),
         ('material = "steel"\nouter_radius = 12e-3', Bushing(MATERIALS["steel"], 0.012)),
-        ("E = 110e9\nnu = 0.34\nouter_radius = 12e-3\nfriction = 0.2", Bushing(BRONZE, 0.012, friction=0.2)),
+        ("E = 110e9\nnu = 0.34\nouter_radius = 12e-3\nbonded = true", Bushing(BRONZE, 0.012)),
+        (
+            "E = 110e9\nnu = 0.34\nouter_radius = 12e-3\nfriction = 0.2\nbonded = false",
+            Bushing(BRONZE, 0.012, friction=0.2, bonded=False),
+        ),
         (
             'kind = "bushing"\nE = 110e9\nnu = 0.34\nouter_radius = 12e-3\ninterference = 2e-5\n'
             'ring_outer_radius = 2e-2\nsupport = "normal"',
@@ -174,7 +178,7 @@ def test_bodies_beside_dundurs_parameters(tmp_path):
         (
             BUSH + 'file = "lug.json"\nkind = "bushing"\n',
             5,
-            'file: belongs to kind = "compliance", not to kind = "bushing"; a bush sits in an infinite plate or a ring',
+            'file: belongs to kind = "compliance", not to kind = "bushing"',
         ),
         (BUSH + "interference = -1e-6\n", 5, "interference: must not be negative, not -1e-06"),
         (BUSH + "interference = 2e-2\n", 5, "interference: must be smaller than the outer radius 0.0125 of the bush"),

@@ -32,7 +32,10 @@ BODIES: dict[str, dict[str, Any]] = {
     "tube": {"pin_load": "centre", "pin_body": Tube(4e-3 * THIRD, "normal")},
     "reaction": {"plate_body": Plate((0.0, 0.06 * THIRD))},
     "ring": {"plate_body": Ring(0.06 * THIRD, "half")},
-    "bush": {"plate_body": Bushing(Material(110e9, THIRD), 0.0125, 2e-5 * THIRD, friction=0.2)},
+    "bush": {"plate_body": Bushing(Material(110e9, THIRD), 0.0125, 2e-5 * THIRD)},
+    "bush that slips": {
+        "plate_body": Bushing(Material(110e9, THIRD), 0.0125, 2e-5 * THIRD, friction=0.2 * THIRD, bonded=False)
+    },
     "bush in a ring": {"plate_body": Bushing(STEEL, 0.0125, inside=Ring(0.02, "normal"))},
 }
 

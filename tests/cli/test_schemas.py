@@ -16,6 +16,7 @@ from fastpin.errors import InputError
 from fastpin.report import json_schema
 from fastpin.report.schema import COMMANDS
 from fastpin.verification.rows import Check
+from tests.support import seats
 from tests.support.case_texts import PRESSED
 
 BUSHED = PRESSED + '[plate_body]\nmaterial = "C93200"\nouter_radius = 0.012\ninterference = 1e-5\n'
@@ -26,6 +27,7 @@ CASES = {
     "dimensionless": "[dundurs]\nalpha = 0.1\nbeta = 0.0\nnu_pin = 0.3\n[contact]\nload_parameter = 0.1\n"
     "friction = 0.3\n[[load]]\nP = 1.0\n[[load]]\nQ = [0.1, -0.1]\nrepeat = 2\n",
     "bushed": BUSHED,
+    "bush that slips": seats.TEXT,
     "rigid": PRESSED.replace('[pin]\nmaterial = "steel"', "[pin]\nrigid = true"),
     "lug": PRESSED + "[plate_body]\nouter_radius = 0.02\n[pin_body]\nbore_radius = 0.004\n",
     "not followed": PRESSED + "[[load]]\nM = 1e5\n",

@@ -37,6 +37,7 @@ from fastpin.live.server import Server
 from fastpin.model.units import units
 from fastpin.solver import WearResult
 from fastpin.states.curves import traction_patches
+from tests.support import seats
 from tests.support.live_pages import FREE, contact, served
 from tests.support.lives import fretting
 
@@ -493,6 +494,18 @@ def test_rounding_is_shown_as_zero(chrome: webdriver.Chrome) -> None:
         numbers = tab.run("return document.getElementById('numbers').innerText").replace("\t", " ")
         assert "pin turns 0 rad" in numbers
         assert "pin moves right 0 m" in numbers
+
+
+def test_a_bush_that_slips_is_drawn_with_its_zones(chrome: webdriver.Chrome) -> None:
+    with served(lambda: contact(seats.TEXT, 48)) as running:
+        tab = Tab(chrome, running)
+        tab.set("Q", "20")
+        tab.settle()
+        numbers = tab.run("return document.getElementById('numbers').innerText").replace("\t", " ")
+        assert "bush turns" in numbers
+        assert "bush slips up to" in numbers
+        assert tab.run("return fastpin.history.shown.seat.zones.length") > 1
+        assert tab.trouble() == []
 
 
 @pytest.mark.parametrize("thickness", ["", "thickness = 0.01\n"])

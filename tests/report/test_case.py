@@ -54,7 +54,6 @@ E = 110e9
 nu = 0.34
 outer_radius = 12.5e-3
 interference = 20e-6
-friction = 0.2
 """
 
 
@@ -99,7 +98,11 @@ def test_a_bush_is_described_with_its_press_fit() -> None:
     case = parse_case(JOINED + BUSH)
     said, problem = lines(JOINED + BUSH), case.problem
     assert said["plate body"] == "infinite plate"
-    assert said["bush"] == "E = 110 GPa, nu = 0.34, outer radius 12.5 mm, friction 0.2 in the plate"
+    assert said["bush"] == "E = 110 GPa, nu = 0.34, outer radius 12.5 mm"
+    slipping = lines(JOINED + BUSH + "bonded = false\nfriction = 0.2\n")
+    assert slipping["bush"] == f"{said['bush']}, slips, friction 0.2 in the plate"
+    loose = BUSH.replace("interference = 20e-6", "interference = -5e-6") + "bonded = false\nfriction = 0.2\n"
+    assert lines(JOINED + loose)["loose fit"] == "clearance 5 um of the bush in the plate"
     pressure, clearance = problem.press_fit_pressure / 1e6, problem.assembled_clearance * 1e6
     assert said["press fit"] == (
         f"interference 20 um, pressure {pressure:.4g} MPa, clearance after it {clearance:.6g} um"

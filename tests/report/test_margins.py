@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fastpin import LoadHistory, Material, MaterialPair, Problem, Result, solve
@@ -21,7 +22,7 @@ from fastpin.states.yielding import von_mises_peak
 STEEL, BRONZE = Material(210e9, 0.3), Material(103e9, 0.34, yield_strength=300e6)
 LIMITS = FatigueConstants(bending_limit=150e6, torsion_limit=90e6)
 ALUMINIUM = Material(71e9, 0.33, "sheet", LIMITS, yield_strength=503e6)
-LUG = Bushing(BRONZE, 12.5e-3, 20e-6, inside=Ring(0.03), friction=0.2)
+LUG = Bushing(BRONZE, 12.5e-3, 20e-6, inside=Ring(0.03))
 HISTORY = LoadHistory([{"P": 2e6}]) + LoadHistory([{"P": 3e6, "Q": 5e5}, {"P": 2e6, "Q": 0.0}]).repeated(2)
 
 
@@ -49,19 +50,19 @@ def test_margins_are_allowable_over_value_of_the_governing_state() -> None:
     fits = [state.bush_fit() for state in result]
     turning, opening = rows["bush: rotation, friction needed"], rows["bush: opening, press fit needed"]
     assert turning.value == max(fit.least_friction for fit in fits)
-    assert turning.margin == pytest.approx(0.2 / turning.value - 1.0)
+    assert math.isnan(turning.margin)
     least = min(fits, key=lambda fit: fit.open_margin)
     assert opening.margin == pytest.approx(least.press_fit_pressure / least.pressure_to_close - 1.0)
     assert opening.load_point == fits.index(least) + 1
 
 
 def test_what_is_not_known_says_why() -> None:
-    result = solved(pair=MaterialPair(STEEL, replace(ALUMINIUM, yield_strength=None)), lug=replace(LUG, friction=None))
+    result = solved(pair=MaterialPair(STEEL, replace(ALUMINIUM, yield_strength=None)))
     rows = of(result)
     for subject, words in {
         "pin: yield, von Mises": "not known: no yield strength given",
         "plate: yield, von Mises": "not known: no yield strength given",
-        "bush: rotation, friction needed": "not known: no friction between bush and plate given",
+        "bush: rotation, friction needed": "not known: a bonded bush has no friction",
     }.items():
         assert rows[subject].remark == words
         assert math.isnan(rows[subject].margin)
@@ -82,8 +83,28 @@ def test_a_dimensionless_problem_has_no_margin_of_yield() -> None:
 def test_a_bush_that_opens_has_a_negative_margin() -> None:
     rows = of(solved(LoadHistory([{"P": 9e6}]), lug=replace(LUG, interference=2e-6)))
     assert rows["bush: opening, press fit needed"].margin < 0.0
-    assert rows["bush: rotation, friction needed"].margin == -1.0
     assert rows["bush: rotation, friction needed"].remark == "the bush opens"
+
+
+def test_a_bush_that_slips_has_its_largest_slip() -> None:
+    lug = replace(LUG, friction=0.2, bonded=False)
+    result = solved(LoadHistory([{"P": 2e6}, {"Q": 1e6}, {"Q": -1e6}]), lug=lug)
+    rows, slips = of(result), [state.seat.peak_slip for state in result if state.seat is not None]
+    slip, opening = rows["bush: slip in its seat"], rows["bush: opening, press fit needed"]
+    top = int(np.argmax(np.abs(slips)))
+    assert (slip.value, slip.load_point) == (abs(slips[top]), top + 1.0)
+    assert slip.value > 0.0
+    assert slip.remark.startswith("no limit of the slip is known; largest at ")
+    assert opening.margin >= 0.0
+    assert "bush: rotation, friction needed" not in rows
+    loose = of(solved(LoadHistory([{"P": 9e6}]), lug=replace(lug, interference=8e-6)))
+    assert loose["bush: opening, press fit needed"].remark.startswith("the bush opens at ")
+    assert loose["bush: opening, press fit needed"].margin == 0.0
+    free = of(solved(LoadHistory([{"P": 2e6}]), lug=replace(lug, interference=-5e-6)))[
+        "bush: opening, press fit needed"
+    ]
+    assert free.remark.startswith("the bush opens at ")
+    assert math.isnan(free.margin)
 
 
 def test_fatigue_is_of_the_last_cycle_and_says_so() -> None:

@@ -82,7 +82,7 @@ def test_everything_comes_back(result: Result, tmp_path: Path) -> None:
 
 
 def test_a_bush_and_constants_of_fatigue_come_back() -> None:
-    bush = Bushing(MATERIALS["2024-T3"], 0.0125, 2e-5, friction=0.2)
+    bush = Bushing(MATERIALS["2024-T3"], 0.0125, 2e-5)
     problem = Problem(MaterialPair(STEEL, MATERIALS["2024-T3"]), hole_radius=0.01, clearance=2e-5, friction=0.4,
                       plate_body=bush)  # fmt: skip
     result = fastpin.solve(problem, [{"P": 1e5}], nodes=21)

@@ -40,7 +40,7 @@ BODIES: list[dict[str, Any]] = [
     {"pin_body": Tube(1.0 / 300.0, "held"), "plate_body": Ring(0.02, "half")},
     {"plate_body": Plate((1.0 / 30.0, -0.06))},
     {"plate_body": BUSH},
-    {"plate_body": Bushing(MATERIALS["2024-T3"], 0.0125, 1e-5 / 3.0, Ring(0.02, "normal"), 0.2)},
+    {"plate_body": Bushing(MATERIALS["2024-T3"], 0.0125, 1e-5 / 3.0, Ring(0.02, "normal"))},
     {"plate_body": Bushing(MATERIALS["steel"], 0.0125, inside=Plate((0.0, 0.05)))},
     {"plate_body": plate()},
 ]

@@ -201,8 +201,8 @@ def test_fields_of_bodies_have_their_units(tmp_path):
         tmp_path,
         BUSH,
         "[grid]\npin_body.bore_radius = [5e-3]\nplate_body.outer_radius = [12e-3]\nplate_body.interference = [2e-6]\n"
-        'plate_body.E = [110e9]\nplate_body.support = ["held"]\n'
-        'contact.rotation = ["free"]\nload.1.P = [2e6]\n',
+        'plate_body.E = [110e9]\nplate_body.support = ["held"]\nplate_body.friction = [0.2]\n'
+        'plate_body.bonded = [false]\ncontact.rotation = ["free"]\nload.1.P = [2e6]\n',
     )
     rows = [{"id": point.id, **point.values, "status": "to do", "dimensionless": False} for point in plan.points]
     head, unit, numbers = sweep_text(plan, rows).splitlines()[:3]
@@ -217,6 +217,8 @@ def test_fields_of_bodies_have_their_units(tmp_path):
         "plate_body.interference": "2 um",
         "plate_body.E": "110 GPa",
         "plate_body.support": "held",
+        "plate_body.friction": "0.2",
+        "plate_body.bonded": "false",
         "contact.rotation": "free",
         "load.1.P": "2 MN/m",
     }

@@ -83,7 +83,8 @@ export class Drawing {
       const { reference } = this.history;
       if (reference) this.pressure(pen, frame, reference, null, REFERENCE);
       this.pressure(pen, frame, picture, "rgba(125,147,165,.35)", PRESSURE);
-      this.zones(pen, frame, picture);
+      if (picture.seat) this.seat(pen, frame, picture.seat);
+      this.zones(pen, frame, picture.zones, frame.edge);
       this.shear(pen, frame, picture);
       this.remote(pen, frame, picture);
     }
@@ -199,12 +200,26 @@ export class Drawing {
     }
   }
 
-  // A band along the edge of the hole in the colours of stick and slip.
-  zones(pen, frame, picture) {
-    pen.lineWidth = Math.max(5, 0.028 * frame.radius);
-    for (const [start, stop, status] of picture.zones) {
+  // A bush that slips: its zones in the seat, and four marks that turn with it.
+  seat(pen, frame, { zones, rotation }) {
+    const { case: given } = this.history, { x, y, radius, times } = frame, outer = given.bush / given.radius;
+    pen.strokeStyle = "#a48f5f";
+    pen.lineWidth = 1.5;
+    for (let quarter = 0; quarter < 4; quarter++) {
+      const angle = rotation * times + (quarter * Math.PI) / 2, [right, up] = [Math.cos(angle), Math.sin(angle)];
       pen.beginPath();
-      trace(pen, frame, frame.edge, start, stop);
+      for (const size of [0.5 * (1 + outer), outer]) pen.lineTo(x + size * radius * right, y - size * radius * up);
+      pen.stroke();
+    }
+    this.zones(pen, frame, zones, () => outer);
+  }
+
+  // A band along an edge in the colours of stick and slip.
+  zones(pen, frame, zones, edge) {
+    pen.lineWidth = Math.max(5, 0.028 * frame.radius);
+    for (const [start, stop, status] of zones) {
+      pen.beginPath();
+      trace(pen, frame, edge, start, stop);
       pen.strokeStyle = ofStatus(status);
       pen.stroke();
     }

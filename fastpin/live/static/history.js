@@ -69,8 +69,8 @@ export class History {
       // without friction there is neither stick nor slip
       found.status = found.status.map((status) => (status === OPEN ? OPEN : SLIDES));
     }
-    // The zones of the contact: start and stop in degrees, and the status.
-    found.zones = [...picture.stick.map((ends) => [...ends, 0]), ...picture.slip].map(([start, stop, status]) => [start, stop, this.case.friction === 0 ? SLIDES : status]);
+    found.zones = zonesOf(picture, this.case.friction === 0);
+    if (picture.seat) found.seat = { ...picture.seat, zones: zonesOf(picture.seat, picture.seat.frictionless) };
     found.hoop = picture.hoop && unpackedAll(picture.hoop);
     found.curves = unpackedAll(picture.curves);
     return found;
@@ -87,6 +87,12 @@ export class History {
   get isLatest() {
     return this.place === this.pictures.length - 1;
   }
+}
+
+// The zones of a contact: start and stop in degrees, and the status.
+function zonesOf({ stick, slip }, isFrictionless) {
+  const found = [...stick.map((ends) => [...ends, 0]), ...slip];
+  return found.map(([start, stop, status]) => [start, stop, isFrictionless ? SLIDES : status]);
 }
 
 function unpackedAll(arrays) {

@@ -43,6 +43,7 @@ function cells(picture, { units, loads, axes }) {
     ["pin moves up", unit("displacement", picture.dy)],
     ["pin turns", unit("rotation", picture.rotation)],
     ["dissipated", unit("energy", picture.dissipation)],
+    ...(picture.seat ? seatCells(picture.seat, unit) : []),
     ...(picture.hoop ? hoopCells(picture.hoop, unit) : []),
     ["nodes closed", `${picture.status.filter((one) => one !== OPEN).length} of ${picture.status.length}`],
     ["residual", digits(picture.residual, 1)],
@@ -56,6 +57,16 @@ function lifeCells({ life, cycle, case: { units } }) {
   const share = cycle.pin_share === null ? [] : [["of it the pin", `${digits(100 * cycle.pin_share, 3)} %`]];
   const rows = [["cycles", count(cycle.cycle)], found[0], ...share, ...found.slice(1)];
   return rows.length % 2 ? [...rows, ["", ""]] : rows;
+}
+
+// The numbers of a bush that slips in its seat.
+function seatCells({ rotation, dissipation, peak_slip, contact, stick }, unit) {
+  return [
+    ["bush turns", unit("rotation", rotation)],
+    ["dissipated in its seat", unit("energy", dissipation)],
+    ["bush slips up to", unit("displacement", Math.abs(peak_slip))],
+    ["of its seat sticks", share(stick, contact)],
+  ];
 }
 
 function hoopCells({ degrees: angles, stress }, unit) {

@@ -1,0 +1,193 @@
+"""``fastpin run``, ``show`` and ``plot`` of a joint whose bush slips in its seat."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from fastpin import solve, wear
+from fastpin.casefile import parse_case
+from fastpin.cli.main import main
+from fastpin.errors import CaseFileError, InputError
+from fastpin.figures.kinds import KINDS
+from fastpin.model.angles import from_bottom
+from fastpin.model.problem import Problem
+from fastpin.report.states import bush_line, seat_line
+from tests.support.drawing import draw_roughly
+from tests.support.seats import BONDED, LOADS, SLIPS, TEXT, sample_case, sample_seat, stored_sample
+
+NOT_OF_STATES = {"scar", "wear", "damage", "animation", "gap"}
+"""Kinds that need a life of wear, write a film, or have nothing to show of this joint."""
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return stored_sample(tmp_path_factory.mktemp("seat") / "joint.h5")
+
+
+# --- text ------------------------------------------------------------------------------------------------------
+
+
+def test_run_and_show_say_the_same_of_the_seat(stored: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = []
+    for words in (["run", str(stored.with_suffix(".toml"))], ["show", str(stored)]):
+        assert main(words) == 0
+        out = capsys.readouterr().out
+        assert "would slip" not in out
+        assert "bonded bush" not in out
+        lines.append([line for line in out.splitlines() if line.startswith("bush in its seat")])
+    assert lines[0] == lines[1]
+    result = sample_seat()
+    seats = [state.seat for state in result if state.seat is not None]
+    (line,) = lines[0]
+    most = max(seats, key=lambda seat: abs(seat.peak_slip))
+    assert line.startswith("bush in its seat at load point 10: contact all round, stick ")
+    slip = f"{most.peak_slip * 1e6:.4g} um at {from_bottom(most.peak_slip_angle):.2f} deg, load point {most.step + 1}"
+    assert f"largest slip in all kept states: {slip}; " in line
+    walked = seats[-1].rotation - seats[-4].rotation
+    assert f"turned {seats[-1].rotation * 1e6:.4g} urad so far, {walked * 1e9:.3g} nrad in the last cycle; " in line
+    dissipated = f"{seats[-1].dissipation * 10.0:.4g} mJ of {result[-1].dissipation * 10.0:.4g} mJ"
+    assert line.endswith(f"dissipated {dissipated}")
+
+
+def test_a_bush_that_opens_says_where() -> None:
+    case = parse_case(TEXT.replace("interference = 20e-6", "interference = 4e-6"))
+    states = solve(case.problem, [{"P": 4e6}], nodes=48).states
+    assert re.match(r"the bush opens in its seat at -?[\d.]+ deg, load point 1$", bush_line(case.problem, states))
+
+
+def test_without_a_seat_there_is_no_line() -> None:
+    problem = parse_case(BONDED + LOADS).problem
+    (state,) = solve(problem, [{"P": 2e6}], nodes=48).states
+    assert seat_line(problem, [state], state) == ""
+    assert "the bush sticks with a friction of" in bush_line(problem, [state])
+
+
+def test_check_says_that_the_bush_slips(stored: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(stored.with_suffix(".toml"))]) == 0
+    assert "outer radius 12.5 mm, slips, friction 0.15 in the plate\n" in capsys.readouterr().out
+
+
+# --- the seat alone --------------------------------------------------------------------------------------------
+
+
+def test_show_prints_the_table_of_the_seat(stored: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "seat.json"
+    assert main(["show", str(stored), "--interface", "seat", "--json", str(file)]) == 0
+    out = capsys.readouterr().out.splitlines()
+    assert out[0] == "seat of the bush"
+    last, seat = next(line.split() for line in out if line.split()[:1] == ["10"]), sample_seat()[-1].seat
+    assert seat is not None
+    assert last[3:5] == [f"{seat.peak_pressure / 1e6:.5g}", f"{from_bottom(seat.peak_pressure_angle):.2f}"]
+    turned = next(line for line in out if line.startswith("to corner 10"))
+    found = sample_seat().seat
+    assert found is not None
+    assert turned.endswith(f"turned {found.cycles[-1].rotation_change * 1e9:.3g} nrad")
+    document = json.loads(file.read_text(encoding="utf-8"))
+    assert document["states"][-1]["rotation"] == seat.rotation
+    assert "seat" not in document["states"][-1]
+
+
+def test_the_summary_of_a_state_has_its_seat(stored: Path, tmp_path: Path) -> None:
+    file = tmp_path / "joint.json"
+    assert main(["show", str(stored), "--json", str(file)]) == 0
+    document = json.loads(file.read_text(encoding="utf-8"))
+    seats = [state.seat for state in sample_seat() if state.seat is not None]
+    for told, seat in zip(document["states"], seats, strict=True):
+        assert told["seat"]["rotation"] == seat.rotation
+        assert told["seat"]["peak_pressure"] == seat.peak_pressure
+        assert len(told["seat"]["stick"]) == len(seat.stick)
+        assert told["seat"]["dissipation"] == pytest.approx(0.01 * seat.dissipation, rel=1e-15)
+    slip = document["extremes"]["seat_slip"]
+    assert max(abs(slip[side]["value"]) for side in slip) == max(abs(seat.peak_slip) for seat in seats)
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS.keys() - NOT_OF_STATES))
+def test_every_kind_of_figure_shows_the_seat(
+    kind: str, stored: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    draw_roughly(monkeypatch)
+    figure = tmp_path / "a.png"
+    assert main(["plot", str(stored), kind, "--interface", "seat", "-o", str(figure)]) == 0
+    assert figure.stat().st_size > 1000
+    seat = sample_seat().seat
+    assert seat is not None
+    seat.plot(tmp_path / "b.png", kind=kind)
+    assert (tmp_path / "b.png").stat().st_size > 1000
+
+
+def test_the_numbers_of_a_figure_are_those_of_the_seat(stored: Path, tmp_path: Path) -> None:
+    table = tmp_path / "a.csv"
+    words = ["plot", str(stored), "tractions", "--interface", "seat", "--states", "last"]
+    assert main([*words, "-o", str(tmp_path / "a.png"), "--csv", str(table)]) == 0
+    seat = sample_seat()[-1].seat
+    assert seat is not None
+    head, *rows = [line.split(",") for line in table.read_text(encoding="utf-8").splitlines()]
+    pressure = [float(row[next(k for k, name in enumerate(head) if "pressure" in name)] or "nan") for row in rows]
+    assert max(pressure) == pytest.approx(seat.pressure.max(), rel=1e-2)
+
+
+def test_other_files_have_no_seat(stored: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    bonded = tmp_path / "bonded.toml"
+    bonded.write_text(BONDED + "[solve]\nnodes = 48\n[[load]]\nP = 40e3\n", encoding="utf-8")
+    assert main(["run", str(bonded), "-o", str(tmp_path / "bonded.h5")]) == 0
+    capsys.readouterr()
+    for command in ("show", "plot"):
+        assert main([command, str(tmp_path / "bonded.h5"), "--interface", "seat"]) == 2
+        words = "--interface: {}: the joint has no seat of a bush that slips (bonded = false)"
+        assert words.format(tmp_path / "bonded.h5") in capsys.readouterr().err
+    assert main(["plot", str(stored.with_suffix(".toml")), "--interface", "seat"]) == 2
+    assert "--interface: chooses a contact of a result; a case file has none" in capsys.readouterr().err
+
+
+# --- what is refused, in Python and in files -------------------------------------------------------------------
+
+
+def fault(text: str) -> tuple[int, str]:
+    with pytest.raises(CaseFileError) as caught:
+        parse_case(text)
+    (found,) = caught.value.problems
+    return found
+
+
+def line_of(text: str, start: str) -> int:
+    return next(number for number, line in enumerate(text.splitlines(), 1) if line.startswith(start))
+
+
+def test_friction_and_bonded_go_together() -> None:
+    bonded, free = BONDED + "friction = 0.15\n" + LOADS, BONDED + "bonded = false\n" + LOADS
+    words = "friction: a bonded bush does not slip: leave friction out, or set bonded = false"
+    assert fault(bonded)[1] == words
+    assert fault(free)[1] == "friction: a bush that is not bonded needs its friction in the plate"
+    assert fault(BONDED + 'bonded = "no"\nfriction = 0.15\n' + LOADS)[1] == 'bonded: must be true or false, not "no"'
+    assert fault(BONDED + "bonded = false\nfriction = -1\n" + LOADS)[1] == "friction: must not be negative, not -1"
+
+
+@pytest.mark.parametrize("drive", ["ux", "uy", "both"])
+def test_a_displacement_does_not_drive_a_pin_in_a_bush_that_slips(drive: str) -> None:
+    words = 'drive: must be "force" in a bush that slips: its pin can\'t be driven by a displacement'
+    text = (BONDED + SLIPS + LOADS).replace("friction = 0.2\n", f'friction = 0.2\ndrive = "{drive}"\n', 1)
+    assert fault(text) == (line_of(text, "drive"), words)
+    problem = sample_case().problem
+    with pytest.raises(InputError) as caught:
+        Problem(
+            problem.pair, problem.hole_radius, problem.clearance, 0.2, drive=drive, plate_body=problem.plate_body
+        )  # fmt: skip
+    assert str(caught.value) == words
+
+
+def test_wear_needs_a_bonded_bush(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = "bonded: must be true: the wear in a bush that slips in its seat is not known"
+    text = TEXT + "[wear]\ncoefficient = 1e-15\ncycles = 10\n"
+    assert fault(text) == (line_of(text, "bonded"), words)
+    (tmp_path / "case.toml").write_text(TEXT, encoding="utf-8")
+    assert main(["wear", str(tmp_path / "case.toml"), "--coefficient", "1e-15"]) == 2
+    assert capsys.readouterr().err == f"fastpin: {words}\n"
+    case = sample_case()
+    for problem in (case.problem, case.problem.interfaces[1]):
+        with pytest.raises(InputError) as caught:
+            wear(problem, case.history, coefficient=1e-15)
+        assert str(caught.value) == words
