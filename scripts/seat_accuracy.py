@@ -22,6 +22,9 @@ from fastpin.solver.solving import solve
 
 STEEL, BRONZE, ALUMINIUM = Material(210.0, 0.3), Material(110.0, 0.34), Material(69.0, 0.33)
 
+ALL_ROUND = -1.5 * math.pi, 0.5 * math.pi
+"""An arc of nodes that is the whole circle."""
+
 Corners = list[dict[str, float]]
 
 
@@ -101,7 +104,7 @@ def main() -> None:
     for name in options.cases.split(","):
         make, corners = CASES[name]
         for nodes in map(int, options.nodes.split(",")):
-            found = numbers(solve(make(), corners, nodes=nodes, slip_sums=True))
+            found = numbers(solve(make(), corners, nodes=nodes, arc=ALL_ROUND, slip_sums=True))
             print(f"{name:4}{nodes:5}  " + "  ".join(f"{key} {value:.7g}" for key, value in found.items()), flush=True)
 
 

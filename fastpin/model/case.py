@@ -87,9 +87,9 @@ class Case:
 
 
 def check_arc(problem: Problem, options: SolveOptions) -> None:
-    """Raise :class:`InputError` if the arc is too short for an interference fit."""
-    if problem.is_gripped and options.arc is not None and not options.is_full_turn:
-        raise InputError("arc", "an interference fit is in contact all round: the arc must span 2 pi, or be left out")
+    """Raise :class:`InputError` if the arc is too short: the nodes must go all round."""
+    if options.arc is not None and not options.is_full_turn and (reason := problem.needs_circle):
+        raise InputError("arc", f"{reason}: the arc must span 2 pi, or be left out")
 
 
 def check_wear(problem: Problem) -> None:

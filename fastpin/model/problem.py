@@ -492,6 +492,15 @@ class Problem:
         room = widest_place(self.gap_angles, gap, self.driven)[0]
         return room < -LEAST_GRIP * float(np.abs(gap).max())
 
+    @property
+    def needs_circle(self) -> str:
+        """Why the nodes of the pin must go all round; an empty string if they may lie on an arc."""
+        if self.is_gripped:
+            return "an interference fit is in contact all round"
+        if self.seat is not None and self.gap:
+            return "a pin with an initial gap may touch a bush that slips anywhere"
+        return ""
+
     def load_parameter(self, force: float) -> float:
         """Load parameter L_p = (R - R_D) / (F beta*) for a force F, N/m."""
         displacement = number("force", force) * self.surfaces.beta_star

@@ -83,8 +83,7 @@ def candidate_grids(
         If the number of nodes is out of range.
     """
     Grid.circle(nodes)  # checks the number of nodes before anything is computed
-    is_whole = problem.is_gripped or problem.seat is not None
-    arc = None if is_whole else _touched_arc(problem, values, force, nodes, progress)
+    arc = None if problem.needs_circle else _touched_arc(problem, values, force, nodes, progress)
     while arc is not None and arc[1] - arc[0] < WHOLE:
         shift = _shift_to_node(problem, arc[0], (arc[1] - arc[0]) / (nodes - 1), values)
         yield Grid.arc(arc[0] + shift, arc[1] + shift, nodes)

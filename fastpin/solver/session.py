@@ -72,6 +72,7 @@ class Session(InTurns):
     * Where the contact reaches an end of the arc, the arc gets more nodes in the same spacing, up to the whole circle.
       The other nodes stay in their places. States then equal those of :func:`fastpin.solve` up to rounding.
     * The gap beyond the arc is watched at every load. If the pin touches there, the arc becomes the whole circle.
+    * In a bush that slips the nodes go all round from the first load on.
     * New nodes are chosen for the whole history, and the history is followed again, in three cases: the arc would get
       more than 4 times `nodes` or 3,000 nodes; the spacing does not divide the circle; or the contact gets too narrow
       for the nodes. A narrow contact is an error if `arc` or `grid` is given.
@@ -131,6 +132,7 @@ class Session(InTurns):
         self._options = SolveOptions(nodes=nodes, arc=arc, slip_sums=slip_sums, keep=keep)
         check_options(self._options, grid, None)
         Task(problem, NO_HISTORY, self._options, grid)
+        _check_nodes(problem, self._options, grid)
         warn_of(doubts(problem, None, self._options), 2)
         self._expected = None if expected is None else as_history(expected, "expected")
         if self._expected is not None:
@@ -265,8 +267,10 @@ class Session(InTurns):
             loads = loads.with_load(np.where(never, np.nan, here.restart.load))
         history = loads.history() if loads.count else NO_HISTORY
         Task(problem, history, self._options, self._grid)
+        _check_nodes(problem, self._options, self._grid)
         place = Place(problem, loads)
-        if here.grid is not None and not new_arc and (here.grid.closed or not problem.is_gripped):
+        may_stay = problem.seat is None and not problem.needs_circle
+        if here.grid is not None and not new_arc and (here.grid.closed or may_stay):
             force = here.force if changes.keys() <= IN_PLACE else reference_force(problem, history.distinct())
             place = replace(place, grid=here.grid, force=force)
         if loads.count:
@@ -507,7 +511,8 @@ class Session(InTurns):
 
     def _on_first_nodes(self, problem: Problem, history: LoadHistory, work: Callable[[System, bool], Run]) -> Run:
         """Do some work on the nodes for a history. Only one arc is tried: it grows with the contact."""
-        attempts = Task(problem, history, self._options, self._grid).attempts(self._check_request)
+        options = self._options if problem.seat is None else self._options.changed(arc=ALL_ROUND)
+        attempts = Task(problem, history, options, self._grid).attempts(self._check_request)
         arc = next(attempts.arcs())
         if self._grid is None:
             arc = dividing_the_circle(arc, first_direction(problem, attempts.values))
@@ -598,3 +603,14 @@ class Session(InTurns):
                 assert self._recorder.run is not None
                 return self._recorder.run
             arc = ALL_ROUND
+
+
+def _check_nodes(problem: Problem, options: SolveOptions, grid: Grid | None) -> None:
+    """Raise :class:`InputError` if a bush slips, and its pin would start on an arc that can't grow."""
+    if problem.seat is None:
+        return
+    reason = "must be the whole circle: in a session, the nodes in a bush that slips go all round"
+    if grid is not None and not grid.closed:
+        raise InputError("grid", reason)
+    if options.arc is not None and not options.is_full_turn:
+        raise InputError("arc", reason)

@@ -79,8 +79,8 @@ class Task:
         object.__setattr__(self, "history", as_history(self.history))
         if self.grid is not None:
             instance("grid", self.grid, Grid, "a Grid")
-            if self.problem.is_gripped and not self.grid.closed:
-                raise InputError("grid", "an interference fit is in contact all round: it needs the whole circle")
+            if not self.grid.closed and (reason := self.problem.needs_circle):
+                raise InputError("grid", f"{reason}: it needs the whole circle")
         check_callable("progress", self.progress)
         check_loads(self.problem, self.history)
         check_arc(self.problem, self.options)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin import LoadHistory, MaterialPair, Problem, Session, load, record, resume, solve
+from fastpin import Grid, LoadHistory, MaterialPair, Problem, Session, load, record, resume, solve
 from fastpin.bodies import Bushing, Disk, Ring
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
@@ -16,7 +16,7 @@ from fastpin.solver.errors import NoEquilibriumError
 from scripts.histories import generate, lug
 from scripts.joint_conditions import check_joint
 from scripts.random_histories import TOLERANCES
-from scripts.seat_accuracy import ALUMINIUM, BRONZE, CASES, STEEL, joint, numbers, turns
+from scripts.seat_accuracy import ALL_ROUND, ALUMINIUM, BRONZE, CASES, STEEL, joint, numbers, turns
 
 PAIR = MaterialPair(STEEL, ALUMINIUM, "strain")
 
@@ -50,7 +50,7 @@ COARSE = {"peak N1": 0.012, "D2": 0.022, "int |T2|": 0.015, "slip": 0.008, "stic
 @pytest.mark.parametrize("name", REFERENCE)
 def test_the_reference_table(name):
     make, corners = CASES[name]
-    found = numbers(solve(make(), corners, nodes=96, slip_sums=True))
+    found = numbers(solve(make(), corners, nodes=96, arc=ALL_ROUND, slip_sums=True))
     for quantity, expected in REFERENCE[name].items():
         assert found[quantity] == pytest.approx(expected, rel=COARSE.get(quantity, 0.006)), quantity
 
@@ -172,6 +172,17 @@ def test_conditions_hold_at_both_interfaces_all_life_long(name, clearance):
     _check(solve(problem, HISTORIES[name], nodes=48).states)
 
 
+def test_the_pin_takes_nodes_on_an_arc_and_the_seat_all_round():
+    problem, corners = joint(2.0, 0.26), [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"syy": 0.1}]
+    on_arc, all_round = (solve(problem, corners, nodes=nodes, arc=arc) for nodes, arc in ((48, None), (192, ALL_ROUND)))
+    assert not on_arc.grid.closed
+    assert on_arc[0].seat.grid.closed
+    assert on_arc[0].seat.rotation == pytest.approx(0.0, abs=1e-12)
+    assert on_arc[-1].peak_pressure == pytest.approx(all_round[-1].peak_pressure, rel=3e-3)
+    assert on_arc[-1].seat.peak_pressure == pytest.approx(all_round[-1].seat.peak_pressure, rel=6e-3)
+    _check(on_arc.states)
+
+
 LOOSE = {
     "loose": (-0.1, {}, [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]),
     "neat": (0.0, {}, [{"P": 1.0}, {"Q": 0.4}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]),
@@ -258,8 +269,9 @@ def test_files_resumed_runs_branches_and_sessions_have_the_same_bits(tmp_path):
     for states in (stored, [*[*whole][:4], *branch]):
         for state, expected in zip(states, whole, strict=True):
             _assert_same(state, expected)
-    last = session.state
-    np.testing.assert_array_equal(last.seat.slip, whole[-1].seat.slip)
+            np.testing.assert_array_equal(state.seat.slip_distance, expected.seat.slip_distance)
+    assert session.grid.closed
+    _assert_same(session.state, solve(problem, corners, grid=session.grid)[-1])
     copied = pickle.loads(pickle.dumps(whole[-1]))
     _assert_same(copied, whole[-1])
     with pytest.raises(InputError, match="finished"):
@@ -268,15 +280,14 @@ def test_files_resumed_runs_branches_and_sessions_have_the_same_bits(tmp_path):
 
 def _assert_same(state, expected):
     for one, other in ((state, expected), (state.seat, expected.seat)):
-        for name in ("pressure", "shear", "gap", "slip", "status", "slip_distance"):
+        for name in ("pressure", "shear", "gap", "slip", "status"):
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
         for name in ("dx", "dy", "rotation", "dissipation"):
             assert getattr(one, name) == getattr(other, name)
 
 
 def test_a_bush_that_walks_never_repeats():
-    history = LoadHistory.from_dicts(turns(0, 12)) if hasattr(LoadHistory, "from_dicts") else LoadHistory(turns(0))
-    history = history + LoadHistory(turns(1, 12)[1:]).repeated(3)
+    history = LoadHistory(turns(0, 12)) + LoadHistory(turns(1, 12)[1:]).repeated(3)
     result = solve(joint(0.280496, 0.261450), history, nodes=48)
     assert result.statistics["repeated"] == 0
     assert [cycle.number for cycle in result.cycles] == [1, 2, 3]
@@ -304,3 +315,29 @@ def test_a_loose_bush_needs_a_pin_with_clearance():
     body = Bushing(BRONZE, 1.25, -0.1, friction=0.2, bonded=False)
     with pytest.raises(InputError, match="interference: must be positive where the pin has an interference fit"):
         Problem.from_load_parameter(PAIR, -0.1, 0.2, plate_body=body)
+
+
+BONDED = Bushing(BRONZE, 1.25, 0.26)
+
+
+def test_nodes_on_an_arc_are_refused_where_the_pin_may_touch_anywhere():
+    problem = joint(2.0, 0.26)
+    oval = replace(problem, gap=InitialGap(Profile.ellipse(0.05)))
+    arc, grid = (-2.5, -0.6), Grid.arc(-2.5, -0.6, 31)
+    for field, given in (("arc", {"arc": arc}), ("grid", {"grid": grid})):
+        with pytest.raises(InputError, match=f"{field}: a pin with an initial gap may touch a bush that slips anywhere"):
+            solve(oval, [{"P": 1.0}], **given)
+        with pytest.raises(InputError, match=f"{field}: must be the whole circle: in a session"):
+            Session(problem, **given)
+    with pytest.raises(InputError, match="grid: must be the whole circle"):
+        Session(replace(problem, plate_body=BONDED), grid=grid).change(plate_body=problem.plate_body)
+
+
+def test_a_session_goes_all_round_when_its_bush_begins_to_slip():
+    problem = joint(2.0, 0.26)
+    session = Session(replace(problem, plate_body=BONDED), nodes=32)
+    session.advance({"P": 1.0})
+    assert not session.grid.closed
+    session.change(plate_body=problem.plate_body)
+    assert session.grid.closed
+    _assert_same(session.state, solve(problem, [{"P": 1.0}], grid=session.grid)[-1])
