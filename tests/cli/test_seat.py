@@ -15,6 +15,7 @@ from fastpin.errors import CaseFileError, InputError
 from fastpin.figures.kinds import KINDS
 from fastpin.model.angles import from_bottom
 from fastpin.model.problem import Problem
+from fastpin.model.units import units
 from fastpin.report.states import bush_line, seat_line
 from tests.support.drawing import draw_roughly
 from tests.support.seats import BONDED, LOADS, SLIPS, TEXT, sample_case, sample_seat, stored_sample
@@ -48,7 +49,9 @@ def test_run_and_show_say_the_same_of_the_seat(stored: Path, capsys: pytest.Capt
     slip = f"{most.peak_slip * 1e6:.4g} um at {from_bottom(most.peak_slip_angle):.2f} deg, load point {most.step + 1}"
     assert f"largest slip in all kept states: {slip}; " in line
     walked = seats[-1].rotation - seats[-4].rotation
-    assert f"turned {seats[-1].rotation * 1e6:.4g} urad so far, {walked * 1e9:.3g} nrad in the last cycle; " in line
+    turned = units(result.problem)["rotation"]
+    words = f"turned {turned.text(seats[-1].rotation, 4)} so far, {turned.text(walked, 3)} in the last cycle; "
+    assert words in line
     dissipated = f"{seats[-1].dissipation * 10.0:.4g} mJ of {result[-1].dissipation * 10.0:.4g} mJ"
     assert line.endswith(f"dissipated {dissipated}")
 
@@ -85,7 +88,8 @@ def test_show_prints_the_table_of_the_seat(stored: Path, tmp_path: Path, capsys:
     turned = next(line for line in out if line.startswith("to corner 10"))
     found = sample_seat().seat
     assert found is not None
-    assert turned.endswith(f"turned {found.cycles[-1].rotation_change * 1e9:.3g} nrad")
+    walked = units(found.problem)["rotation"].text(found.cycles[-1].rotation_change, 3)
+    assert turned.endswith(f"turned {walked}")
     document = json.loads(file.read_text(encoding="utf-8"))
     assert document["states"][-1]["rotation"] == seat.rotation
     assert "seat" not in document["states"][-1]
