@@ -16,14 +16,12 @@ import numpy as np
 from fastpin.bodies import Bushing, Ring
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.options import ALL_ROUND
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 
 STEEL, BRONZE, ALUMINIUM = Material(210.0, 0.3), Material(110.0, 0.34), Material(69.0, 0.33)
-
-ALL_ROUND = -1.5 * math.pi, 0.5 * math.pi
-"""An arc of nodes that is the whole circle."""
 
 Corners = list[dict[str, float]]
 

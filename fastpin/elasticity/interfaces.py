@@ -105,10 +105,13 @@ class JointSystem(System):
             motion[rows, own], loads[rows] = system.motion, system.loads
             equilibrium[own, rows], motion_rows[own, own] = system.equilibrium, system.motion_rows
         if problem.held:
-            # The rotations add up to that of the pin over the lug, and both interfaces carry the same moment.
-            unit = motion_rows[TURN, TURN]
+            # The rotations add up to that of the pin over the lug, and both interfaces carry the same moment. The
+            # rotation of the seat is that of a solid pin at the paper's datum: the bush's outer rim turns by more.
+            unit, bush = motion_rows[TURN, TURN], seat_problem.pair.pin
             motion_rows[TURN, 3 + TURN] = unit
-            equilibrium[TURN, nodes.rows(SEAT)[grids[SEAT].size :]] = unit * _twist(problem, grids[SEAT])
+            twist = bush.kolosov(seat_problem.pair.plane) / (4.0 * math.pi * bush.shear_modulus)
+            per_shear = twist / pin_problem.surfaces.beta_star * grids[SEAT].weights
+            equilibrium[TURN, nodes.rows(SEAT)[grids[SEAT].size :]] = unit * per_shear
             if not seat_problem.frictionless:
                 equilibrium[3 + TURN, nodes.rows(PIN)[grids[PIN].size :]] = pin.weights
         stacked: dict[str, Any] = {
@@ -218,16 +221,6 @@ def _scaled(seat: System, pin: System, radius: float) -> System:
         rest_clearance=stretch * seat.rest_clearance, scales=pin.scales,
         bodies=replace(seat.bodies, columns=columns), weights=radius * seat.weights, radius=radius,
     )  # fmt: skip
-
-
-def _twist(problem: Problem, grid: Grid) -> np.ndarray:
-    """Rotation of the bush's outer rim beyond its own, per shear at the nodes of the seat, shape (k,).
-
-    The rotation of the seat is that of a solid pin at the paper's datum; its rim turns by this much more.
-    """
-    pin, seat = problem.interfaces
-    kolosov = seat.pair.pin.kolosov(seat.pair.plane)
-    return kolosov / (4.0 * math.pi * seat.pair.pin.shear_modulus * pin.surfaces.beta_star) * grid.weights
 
 
 def _coupling(problem: Problem, grids: tuple[Grid, Grid], place: int) -> np.ndarray:

@@ -26,13 +26,13 @@ from fastpin.model.case import Case
 from fastpin.model.doubts import doubts
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
-from fastpin.model.options import SolveOptions
+from fastpin.model.options import ALL_ROUND, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.profile import CALLED
 from fastpin.model.units import FIXED_PREFIXES, units
 from fastpin.report.case import profile_words
 from fastpin.solver.errors import ConvergenceError, SolveError
-from fastpin.solver.session import ALL_ROUND, Session
+from fastpin.solver.session import Session
 from fastpin.states.state import State
 from fastpin.version import __version__
 

@@ -33,6 +33,9 @@ LEAST_FRACTION = 1e-9
 FULL_TURN = 2.0 * math.pi - 1e-5
 """Length of an arc from which on it is the whole circle, rad. An angle may be written with six digits."""
 
+ALL_ROUND = -1.5 * math.pi, 0.5 * math.pi
+"""The whole circle as an arc, rad."""
+
 MOST_TURN = 2.01 * math.pi
 """Greatest length of an arc, rad: a full turn with room for rounding. Angles in degrees by mistake exceed it."""
 

@@ -16,6 +16,7 @@ from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
+from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 from fastpin.solver.result import Restart
@@ -160,3 +161,14 @@ def changed_system(system: System, problem: Problem) -> System | None:
         system, problem=problem, friction=problem.friction_at(system.grid.theta), rest_clearance=rest_clearance,
         initial_gap=problem.gap_at(system.grid.theta)[0] / system.scales.displacement,
     )  # fmt: skip
+
+
+def check_nodes(problem: Problem, options: SolveOptions, grid: Grid | None) -> None:
+    """Raise :class:`InputError` if a bush slips, and its pin would start on an arc that can't grow."""
+    if problem.seat is None:
+        return
+    reason = "must be the whole circle: in a session, the nodes in a bush that slips go all round"
+    if grid is not None and not grid.closed:
+        raise InputError("grid", reason)
+    if options.arc is not None and not options.is_full_turn:
+        raise InputError("arc", reason)

@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
 from collections.abc import Callable, Iterator, MutableSequence, Sequence
 from contextlib import contextmanager, suppress
@@ -23,14 +22,14 @@ from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import MAX_CORNERS, MOST_LOAD, LoadHistory, check_loads
 from fastpin.model.loads import ACTING, LOAD_KIND, LOADS, Corner, complete_load
-from fastpin.model.options import KeepRule, SolveOptions
+from fastpin.model.options import ALL_ROUND, KeepRule, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.growth import carried, dividing_the_circle, most_nodes, wider_grid
 from fastpin.solver.latest import LatestState, touches_outside
-from fastpin.solver.place import IN_PLACE, Loads, Place, changed_problem, changed_system, followed_problem
+from fastpin.solver.place import IN_PLACE, Loads, Place, changed_problem, changed_system, check_nodes, followed_problem
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Run
@@ -49,9 +48,6 @@ from fastpin.states.state import State
 
 Replay = Literal["history", "load", "none", "follow"]
 """What a change of the problem means: the same history, the last load in one step, no load, or a step of its own."""
-
-ALL_ROUND = (-1.5 * math.pi, 0.5 * math.pi)
-"""The whole circle as an arc, rad."""
 
 LAST_ONLY = f"every {MAX_CORNERS}"
 """The rule that keeps only the last state of a history."""
@@ -132,7 +128,7 @@ class Session(InTurns):
         self._options = SolveOptions(nodes=nodes, arc=arc, slip_sums=slip_sums, keep=keep)
         check_options(self._options, grid, None)
         Task(problem, NO_HISTORY, self._options, grid)
-        _check_nodes(problem, self._options, grid)
+        check_nodes(problem, self._options, grid)
         warn_of(doubts(problem, None, self._options), 2)
         self._expected = None if expected is None else as_history(expected, "expected")
         if self._expected is not None:
@@ -267,10 +263,9 @@ class Session(InTurns):
             loads = loads.with_load(np.where(never, np.nan, here.restart.load))
         history = loads.history() if loads.count else NO_HISTORY
         Task(problem, history, self._options, self._grid)
-        _check_nodes(problem, self._options, self._grid)
+        check_nodes(problem, self._options, self._grid)
         place = Place(problem, loads)
-        may_stay = problem.seat is None and not problem.needs_circle
-        if here.grid is not None and not new_arc and (here.grid.closed or may_stay):
+        if here.grid is not None and not new_arc and (here.grid.closed or not (problem.needs_circle or problem.seat)):
             force = here.force if changes.keys() <= IN_PLACE else reference_force(problem, history.distinct())
             place = replace(place, grid=here.grid, force=force)
         if loads.count:
@@ -603,14 +598,3 @@ class Session(InTurns):
                 assert self._recorder.run is not None
                 return self._recorder.run
             arc = ALL_ROUND
-
-
-def _check_nodes(problem: Problem, options: SolveOptions, grid: Grid | None) -> None:
-    """Raise :class:`InputError` if a bush slips, and its pin would start on an arc that can't grow."""
-    if problem.seat is None:
-        return
-    reason = "must be the whole circle: in a session, the nodes in a bush that slips go all round"
-    if grid is not None and not grid.closed:
-        raise InputError("grid", reason)
-    if options.arc is not None and not options.is_full_turn:
-        raise InputError("arc", reason)

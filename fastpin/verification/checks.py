@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from fastpin.bodies import Plate, Ring
+from fastpin.bodies import Plate
 from fastpin.model.angles import BOTTOM
 from fastpin.model.checks import check_callable
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
@@ -483,7 +483,7 @@ TOPICS = {
         {
             "pin and bush of one material": seat_rows.solid_pin,
             "much friction, infinite plate": partial(seat_rows.bonded, Plate()),
-            "much friction, ring": partial(seat_rows.bonded, Ring(2.5, "half")),
+            "much friction, ring": partial(seat_rows.bonded, body_cases.RING.plate_body),
             "torque": seat_rows.torque,
         },
         {"N, T, solid pin": 8e-5, "dissipated": 3e-4, "peak N, bonded": 3e-4, "displacement": 1e-4, "torque": 1.5e-9},
