@@ -21,6 +21,7 @@ from fastpin.figures.style import line
 from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.words import LOAD_POINT, caption, load_text, loads_by_change, short_load
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Status
+from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
 from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
@@ -35,19 +36,22 @@ ZoneLook = tuple[str, str, str]
 
 LOOKS: dict[int, ZoneLook] = {
     STICK: ("#0B3C5D", "", "sticks"),
-    SLIP_POSITIVE: ("#F2A541", "////", "pin slips counter-clockwise"),
-    SLIP_NEGATIVE: ("#A8D8F0", "\\\\\\\\", "pin slips clockwise"),
+    SLIP_POSITIVE: ("#F2A541", "////", "{body} slips counter-clockwise"),
+    SLIP_NEGATIVE: ("#A8D8F0", "\\\\\\\\", "{body} slips clockwise"),
 }
-"""The look of a zone by its status. The hatches tell the two directions apart without colour."""
+"""The look of a zone by its status. The body is the pin, or the bush in its seat.
+
+The hatches tell the two directions apart without colour.
+"""
 
 FRICTIONLESS = ("#A6A6A6", "", "slips without friction")
 """The look of a contact without friction. Its status tells no direction."""
 
 EXTENTS = {
     STICK: "sticks whenever it touches",
-    SLIP_POSITIVE: "pin slips counter-clockwise at some time",
-    SLIP_NEGATIVE: "pin slips clockwise at some time",
-    BOTH_WAYS: "pin slips both ways",
+    SLIP_POSITIVE: "{body} slips counter-clockwise at some time",
+    SLIP_NEGATIVE: "{body} slips clockwise at some time",
+    BOTH_WAYS: "{body} slips both ways",
 }
 """Words for the behaviour of a node in a column that joins several states."""
 
@@ -153,7 +157,10 @@ def zone_boxes(states: Sequence[State], frame: Frame | None = None) -> Iterator[
 
 def zone_look(problem: Problem, status: int) -> ZoneLook:
     """Colour, hatch and words of a zone of this status."""
-    return FRICTIONLESS if problem.frictionless else LOOKS[status]
+    if problem.frictionless:
+        return FRICTIONLESS
+    colour, hatch, words = LOOKS[status]
+    return colour, hatch, words.format(body=owner_of(problem, "pin"))
 
 
 def column_ends(points: np.ndarray) -> np.ndarray:
@@ -220,7 +227,7 @@ def extent_look(problem: Problem, extent: int) -> ZoneLook:
         return FRICTIONLESS
     both_ways = ("#6FB58F", "xxxx", "")
     colour, hatch, words = LOOKS.get(extent, both_ways)
-    return colour, hatch, EXTENTS.get(extent, words)
+    return colour, hatch, EXTENTS.get(extent, words).format(body=owner_of(problem, "pin"))
 
 
 def _sheet(look: Look, differing: Sequence[str]) -> Sheet:

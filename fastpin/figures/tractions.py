@@ -23,6 +23,7 @@ from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.words import ANGLE, point_text, points_text, quantity
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.checks import true_or_false
+from fastpin.model.points import owner_of
 from fastpin.model.units import units
 from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
@@ -208,7 +209,7 @@ def _styles(states: DrawnStates, bars: bool) -> list[Artist]:
             styles.append(Patch(color="0.35", linewidth=0, label="dark: stick"))
             styles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="light: slip"))
         styles.append(Line2D([], [], linestyle="none", marker=r"$→$", markersize=8.0, color="0.25",
-                             label="pin slips counter-clockwise"))  # fmt: skip
+                             label=f"{owner_of(states[0].problem, 'pin')} slips counter-clockwise"))  # fmt: skip
     return styles
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fastpin import Grid, LoadHistory, MaterialPair, Problem, Session, load, record, resume, solve
-from fastpin.bodies import Bushing, Disk, Ring
+from fastpin.bodies import Bushing, Disk, Ring, Tube
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.options import ALL_ROUND
@@ -20,6 +20,11 @@ from scripts.random_histories import TOLERANCES
 from scripts.seat_accuracy import ALUMINIUM, BRONZE, CASES, STEEL, joint, numbers, turns
 
 PAIR = MaterialPair(STEEL, ALUMINIUM, "strain")
+
+
+def _bonded(problem):
+    return replace(problem, plate_body=replace(problem.plate_body, bonded=True, friction=None))
+
 
 REFERENCE = {
     "A1": {"peak N1": 0.1228, "int N1": 0.109309, "min N2": 0.18274, "max N2": 0.28693, "int |T2|": 0.10479,
@@ -173,6 +178,23 @@ def test_conditions_hold_at_both_interfaces_all_life_long(name, clearance):
     _check(solve(problem, HISTORIES[name], nodes=48).states)
 
 
+@pytest.mark.parametrize(("clearance", "interference"), [(0.28, 0.26), (-0.3, 0.26), (0.28, -0.1)])
+def test_a_hollow_pin_bends_in_the_bush(clearance, interference):
+    solid = joint(clearance, interference, pin_load="centre")
+    hollow = replace(solid, pin_body=Tube(0.5))
+    corners = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]
+    states, others = (solve(problem, corners, nodes=48).states for problem in (hollow, solid))
+    _check(states)
+    assert states[1].peak_pressure < 0.95 * others[1].peak_pressure
+
+
+def test_a_hollow_pin_in_a_bush_of_much_friction_is_that_in_the_bonded_bush():
+    hollow = replace(joint(0.28, 0.26, pin_load="centre", seat_friction=1e3), pin_body=Tube(0.5))
+    bonded = _bonded(hollow)
+    ours, expected = (solve(problem, [{"P": 1.0}, {"Q": 0.3}], nodes=128)[-1] for problem in (hollow, bonded))
+    assert ours.peak_pressure == pytest.approx(expected.peak_pressure, rel=1e-4)
+
+
 def test_the_pin_takes_nodes_on_an_arc_and_the_seat_all_round():
     problem, corners = joint(2.0, 0.26), [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"syy": 0.1}]
     on_arc, all_round = (solve(problem, corners, nodes=nodes, arc=arc) for nodes, arc in ((48, None), (192, ALL_ROUND)))
@@ -318,9 +340,6 @@ def test_a_loose_bush_needs_a_pin_with_clearance():
         Problem.from_load_parameter(PAIR, -0.1, 0.2, plate_body=body)
 
 
-BONDED = Bushing(BRONZE, 1.25, 0.26)
-
-
 def test_nodes_on_an_arc_are_refused_where_the_pin_may_touch_anywhere():
     problem = joint(2.0, 0.26)
     oval = replace(problem, gap=InitialGap(Profile.ellipse(0.05)))
@@ -331,12 +350,12 @@ def test_nodes_on_an_arc_are_refused_where_the_pin_may_touch_anywhere():
         with pytest.raises(InputError, match=f"{field}: must be the whole circle: in a session"):
             Session(problem, **given)
     with pytest.raises(InputError, match="grid: must be the whole circle"):
-        Session(replace(problem, plate_body=BONDED), grid=grid).change(plate_body=problem.plate_body)
+        Session(_bonded(problem), grid=grid).change(plate_body=problem.plate_body)
 
 
 def test_a_session_goes_all_round_when_its_bush_begins_to_slip():
     problem = joint(2.0, 0.26)
-    session = Session(replace(problem, plate_body=BONDED), nodes=32)
+    session = Session(_bonded(problem), nodes=32)
     session.advance({"P": 1.0})
     assert not session.grid.closed
     session.change(plate_body=problem.plate_body)
