@@ -52,11 +52,11 @@ class Check:
 
 
 class Solving:
-    """The solver with a record of its states: their number and their largest residual."""
+    """The solver with a record of its states: their number, and the largest residuals without and with a seat."""
 
     def __init__(self) -> None:
         self.states = 0
-        self.largest = 0.0
+        self.largest = self.largest_with_seat = 0.0
 
     def __call__(self, problem: Problem, history: Sequence[dict[str, float]], **options: Any) -> Result:
         result = solve(problem, history, **{"nodes": NODES, **options})
@@ -66,8 +66,9 @@ class Solving:
     def note(self, states: Sequence[State]) -> None:
         """Note the residuals of states."""
         self.states += len(states)
-        residuals = [residual for state in states for residual in state.residuals.values()]
-        self.largest = float(np.max([self.largest, *residuals]))
+        for state in states:
+            name = "largest" if state.seat is None else "largest_with_seat"
+            setattr(self, name, float(np.max([getattr(self, name), *state.residuals.values()])))
 
 
 Checks = Iterator[Check]

@@ -28,7 +28,7 @@ def solid_pin(solving: Solving) -> Checks:
     """A pin that sticks in a bush of its own material: together they are a solid pin in the hole of the seat."""
     bush = Bushing(BRONZE, OUTER, 1e-3, friction=0.05, bonded=False)
     pair = MaterialPair(BRONZE, PAIR.plate, PAIR.plane)
-    joint = Problem.from_load_parameter(pair, -0.25, 1e3, plate_body=bush)
+    joint = Problem.from_load_parameter(pair, -0.25, 5.0, plate_body=bush)
     corners = [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"P": 0.3}]
     assembled, *states = solving(joint, [{}, *corners], nodes=NODES)
     seat = joint.interfaces[1]
@@ -43,8 +43,8 @@ def solid_pin(solving: Solving) -> Checks:
         max(float(np.abs(getattr(one, name) - getattr(other, name)).max()) for name in ("pressure", "shear"))
         for one, other in zip(seats, expected, strict=True)
     ]
-    yield difference_check("N, T, solid pin", max(differences) / size, "peak N")
-    yield relative_check("dissipated", seats[-1].dissipation, expected[-1].dissipation)
+    yield difference_check("N, T", max(differences) / size, "peak N")
+    yield difference_check("dissipated", abs(seats[-1].dissipation / expected[-1].dissipation - 1.0), "relative")
 
 
 def bonded(inside: PlateBody, solving: Solving) -> Checks:
@@ -53,10 +53,10 @@ def bonded(inside: PlateBody, solving: Solving) -> Checks:
     bodies = slipping, replace(slipping, friction=None, bonded=True)
     problems = (Problem.from_load_parameter(PAIR, 0.28, 0.2, plate_body=body) for body in bodies)
     ours, expected = (solving(each, [{"P": 1.0}, {"Q": 0.3}], nodes=NODES)[-1] for each in problems)
-    yield relative_check("peak N, bonded", ours.peak_pressure, expected.peak_pressure)
+    yield relative_check("peak N", ours.peak_pressure, expected.peak_pressure)
     for name in ("ux", "uy"):
         moved = ours.joint_displacement(0.5, 2.0)[name], expected.joint_displacement(0.5, 2.0)[name]
-        yield difference_check("displacement", abs(moved[0] - moved[1]), "F beta*", name)
+        yield difference_check(name, abs(moved[0] - moved[1]), "F beta*")
 
 
 def torque(solving: Solving) -> Checks:
