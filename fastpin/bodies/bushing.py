@@ -1,4 +1,4 @@
-"""A bush that is bonded into the hole of an infinite plate or a ring."""
+"""A bush in the hole of a plate, bonded or held by friction."""
 
 from __future__ import annotations
 
@@ -39,13 +39,17 @@ from fastpin.model.synonyms import explains_keywords
 THINNEST_LAYER = 0.01
 """Least wall of a bush, in parts of its outer radius. It is bonded and does not bend; a thinner one is a coating."""
 
+STUCK = 1e3
+"""Coefficient of friction in the seat of a bonded bush in a lug of any outline. Nothing slips there."""
+
 
 @explains_keywords
 @dataclass(frozen=True)
 class Bushing(PlateBody):
     """A bush in the hole of the plate, bonded to it or held by friction. The pin touches the bush.
 
-    A bush that is not bonded sticks, slips, opens and walks: its seat is an interface of its own.
+    A bush that is not bonded sticks, slips, opens and walks: its seat is an interface of its own. That of a bonded bush
+    in a lug of any outline is one, too.
 
     Parameters
     ----------
@@ -58,11 +62,12 @@ class Bushing(PlateBody):
         the pin smaller. A bush that slips may be loose: a negative interference is its clearance in the plate. In a
         dimensionless problem the unit is F beta*, as of the clearance.
     inside : Plate, Ring or Compliance
-        The body round the bush. A compliance is that of a hole of the outer radius; only round a bush that slips.
+        The body round the bush. A compliance is that of a hole of the outer radius.
     friction : float, optional
         Coefficient of friction between bush and plate, of a bush that is not bonded.
     bonded : bool
-        Whether the bush is bonded to the plate.
+        Whether the bush is bonded to the plate. In a lug of any outline, a :class:`Compliance`, the press fit must
+        hold it: its interference must be positive, and no state is returned in which it would open.
 
     Raises
     ------
@@ -102,12 +107,11 @@ class Bushing(PlateBody):
             raise InputError("friction", "a bonded bush does not slip: leave friction out, or set bonded = false")
         if not self.bonded and self.friction is None:
             raise InputError("friction", "a bush that is not bonded needs its friction in the plate")
-        if self.bonded and isinstance(self.inside, Compliance):
-            raise InputError(
-                "inside",
-                "a bonded bush sits in an infinite plate or a ring; in a lug of any outline give its friction, and set "
-                "bonded = false",
-            )
+
+    @property
+    def has_seat(self) -> bool:
+        """Whether its seat is an interface of its own. That of a bonded bush is one in a lug of any outline."""
+        return not self.bonded or isinstance(self.inside, Compliance)
 
     @property
     def lug(self) -> PlateBody:
@@ -187,7 +191,7 @@ class Bushing(PlateBody):
     # -- checks and materials
 
     def check(self, radius: float, dimensionless: bool = False, name: str = "hole radius") -> None:
-        check_outer(self.outer_radius, radius, name, THINNEST_LAYER if self.bonded else THINNEST)
+        check_outer(self.outer_radius, radius, name, THINNEST if self.has_seat else THINNEST_LAYER)
         self.inside.check(self.outer_radius, name="outer radius of the bush")
         if not dimensionless and abs(self.interference) >= self.outer_radius:
             limit = f"must be smaller than the outer radius {self.outer_radius:g} of the bush"
@@ -200,15 +204,18 @@ class Bushing(PlateBody):
     def check_pair(self, pair: MaterialPair, radius: float, dimensionless: bool) -> None:
         self.check_material(pair)
         self.inside.check_pair(pair, self.outer_radius, dimensionless)
+        if self.bonded and self.has_seat and not self.interference > 0.0:
+            words = "must be positive: a bonded bush in a lug of any outline is held by its press fit"
+            raise InputError("interference", words)
         number("interference", self.interference, -MOST_PARAMETER, MOST_PARAMETER)
 
     def contacts(self, pair: MaterialPair, radius: float) -> tuple[dict[str, Any], ...]:
-        if self.bonded:
+        if not self.has_seat:
             return ()
         seat = {
             "pair": MaterialPair(self.material, pair.plate, pair.plane), "hole_radius": self.outer_radius,
-            "clearance": -self.interference, "friction": self.friction, "pin_body": SeatedBush(radius),
-            "plate_body": self.inside,
+            "clearance": -self.interference, "friction": STUCK if self.bonded else self.friction,
+            "pin_body": SeatedBush(radius), "plate_body": self.inside,
         }  # fmt: skip
         return {"pair": self.surface(pair), "plate_body": Ring(self.outer_radius, "uniform")}, seat
 

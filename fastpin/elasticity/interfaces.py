@@ -172,6 +172,12 @@ class JointSystem(System):
         """Whether a press fit holds the bush in its seat before any load."""
         return self.alone[SEAT].problem.is_gripped
 
+    @property
+    def is_bonded(self) -> bool:
+        """Whether the bush is bonded, in a lug of any outline: it must not open in its seat."""
+        bush = self.problem.plate_body.bush
+        return bush is not None and bush.bonded
+
     def under(self, load: np.ndarray) -> System:
         """The system with the friction under a load (loads,). ``friction_change`` acts on the pin in the bush."""
         friction = self.alone[PIN].friction * (1.0 + float(load[FRICTION_CHANGE]))

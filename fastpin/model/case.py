@@ -95,7 +95,10 @@ def check_arc(problem: Problem, options: SolveOptions) -> None:
 def check_wear(problem: Problem) -> None:
     """Raise :class:`InputError` if no wear can be followed in a joint: its bush slips in its seat."""
     if problem.seat is not None or problem.pin_body.is_bush:
-        raise InputError("bonded", "must be true: the wear in a bush that slips in its seat is not known")
+        raise InputError(
+            "bonded",
+            "must be true, in an infinite plate or a ring: the wear in other bushes is not known",
+        )
 
 
 def check_keep(history: LoadHistory, options: SolveOptions) -> None:

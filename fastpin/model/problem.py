@@ -237,10 +237,9 @@ class Problem:
 
     def _check_drive(self, radius: float) -> None:
         """Check the drive and the radius of the gauge circle. `radius` is the radius of the hole."""
-        bush = self.plate_body.bush
-        if self.drive != "force" and bush is not None and not bush.bonded:
+        if self.drive != "force" and self.plate_body.contacts(self.pair, radius):
             raise InputError(
-                "drive", 'must be "force" in a bush that slips: its pin can\'t be driven by a displacement'
+                "drive", 'must be "force" in a bush that slips, or in a lug of any outline: its pin can\'t be driven'
             )
         if self.gauge_radius is not None:
             gauge = number("gauge_radius", self.gauge_radius)
@@ -491,6 +490,12 @@ class Problem:
         gap = clearance + self.gap_at(self.gap_angles)[0]
         room = widest_place(self.gap_angles, gap, self.driven)[0]
         return room < -LEAST_GRIP * float(np.abs(gap).max())
+
+    @property
+    def bush_slips(self) -> bool:
+        """Whether a bush may slip in its seat."""
+        bush = self.plate_body.bush
+        return bush is not None and not bush.bonded
 
     @property
     def needs_circle(self) -> str:

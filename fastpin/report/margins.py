@@ -87,7 +87,7 @@ def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]
 def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
     """Return the margins against rotation and opening of a bush in its seat. One that slips has its largest slip."""
     turning, opening = "bush: rotation, friction needed", "bush: opening, press fit needed"
-    if problem.seat is not None:
+    if problem.bush_slips:
         turning = "bush: slip in its seat"
     least, slipping = found.get(("bush_open_margin", "smallest")), found.get(("bush_least_friction", "largest"))
     if least is None or slipping is None:
@@ -95,12 +95,12 @@ def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], lis
         return [Margin(turning, remark=none), Margin(opening, remark=none)]
     (state,), pressure = read([least.place]), units(problem)["traction"].text(least.value, 4)
     fit = state.bush_fit()
-    smallest = f"smallest pressure {pressure}" if least.value > 0.0 or problem.seat is None else "the bush opens"
+    smallest = f"smallest pressure {pressure}" if least.value > 0.0 or not problem.bush_slips else "the bush opens"
     where = f"{smallest} at {from_bottom(fit.open_angle):z.1f} deg"
     needed = fit.pressure_to_close or math.nan  # of a loose bush it is not known: without pressure it is open anyhow
     opened = Margin(opening, "traction", needed, fit.press_fit_pressure, least.load_point, where)
     slip = found.get(("seat_slip", "largest magnitude"))
-    if slip is not None:
+    if slip is not None and problem.bush_slips:
         seat = read([slip.place])[0].seat
         angle = math.nan if seat is None else from_bottom(seat.peak_slip_angle)
         words = f"no limit of the slip is known; largest at {angle:z.1f} deg"

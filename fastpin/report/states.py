@@ -329,7 +329,7 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     state, fit = min(fits, key=lambda pair: pair[1].open_margin)
     unit = units(problem)["traction"]
     where = f"at {_angle(fit.open_angle)} deg, load point {_point(state)}"
-    if problem.seat is not None and fit.open_margin <= 0.0:
+    if problem.bush_slips and fit.open_margin <= 0.0:
         return f"the bush opens in its seat {where}"
     if fit.open_margin < 0.0:
         return (
@@ -338,7 +338,7 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
             "these states hold for a bonded bush"
         )
     text = f"smallest pressure between bush and plate in all kept states: {unit.text(fit.open_margin, 4)} {where}"
-    if problem.seat is not None:
+    if problem.bush_slips:
         return text
     needed = max(fit.least_friction for _, fit in fits)
     return f"{text}; the bush sticks with a friction of {needed:.3g} or more"
@@ -359,7 +359,7 @@ def seat_line(problem: Problem, states: Sequence[State], last: State, cycle: Seq
     """
     seats = [state.seat for state in states if state.seat is not None]
     seat, unit = last.seat, units(problem)
-    if seat is None or not seats:
+    if seat is None or not seats or not problem.bush_slips:
         return ""
     most = max(seats, key=lambda each: abs(each.peak_slip))
     natural = sizes(seat)

@@ -37,6 +37,7 @@ from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, NoEquilibr
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.growth import OutsideGap
 from fastpin.solver.increment_stepper import IncrementStepper
+from fastpin.solver.interfaces import check_bond
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.place import system_with_friction
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
@@ -391,6 +392,7 @@ class Run:
                     self.stepper.advance(position, piece, stop, lambda reached: self._report(step, reached))
                 else:
                     self._touch_down(load, stop)
+                check_bond(self.system, self.now)
             position.reached = stop
             self._release_if_unloaded(piece, load)
             if stop in kept and stop < 1.0 and self.recorder is not None:

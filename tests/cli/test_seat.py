@@ -172,7 +172,7 @@ def test_friction_and_bonded_go_together() -> None:
 
 @pytest.mark.parametrize("drive", ["ux", "uy", "both"])
 def test_a_displacement_does_not_drive_a_pin_in_a_bush_that_slips(drive: str) -> None:
-    words = 'drive: must be "force" in a bush that slips: its pin can\'t be driven by a displacement'
+    words = 'drive: must be "force" in a bush that slips, or in a lug of any outline: its pin can\'t be driven'
     text = (BONDED + SLIPS + LOADS).replace("friction = 0.2\n", f'friction = 0.2\ndrive = "{drive}"\n', 1)
     assert fault(text) == (line_of(text, "drive"), words)
     problem = sample_case().problem
@@ -184,7 +184,7 @@ def test_a_displacement_does_not_drive_a_pin_in_a_bush_that_slips(drive: str) ->
 
 
 def test_wear_needs_a_bonded_bush(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = "bonded: must be true: the wear in a bush that slips in its seat is not known"
+    words = "bonded: must be true, in an infinite plate or a ring: the wear in other bushes is not known"
     text = TEXT + "[wear]\ncoefficient = 1e-15\ncycles = 10\n"
     assert fault(text) == (line_of(text, "bonded"), words)
     (tmp_path / "case.toml").write_text(TEXT, encoding="utf-8")

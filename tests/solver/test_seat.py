@@ -14,6 +14,7 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.options import ALL_ROUND
 from fastpin.model.profile import InitialGap, Profile
 from fastpin.solver.errors import NoEquilibriumError
+from fastpin.verification.body_cases import ring_compliance
 from scripts.histories import generate, lug
 from scripts.joint_conditions import check_joint
 from scripts.random_histories import TOLERANCES
@@ -361,3 +362,32 @@ def test_a_session_goes_all_round_when_its_bush_begins_to_slip():
     session.change(plate_body=problem.plate_body)
     assert session.grid.closed
     _assert_same(session.state, solve(problem, [{"P": 1.0}], grid=session.grid)[-1])
+
+
+def test_a_bonded_bush_sits_in_a_lug_of_any_outline():
+    """Against the same bush in the same ring by closed forms."""
+    ring = Ring(2.5, "normal")
+    by_closed_forms = _bonded(joint(0.28, 0.26, inside=ring))
+    alone = replace(by_closed_forms, plate_body=Ring(2.0, "normal"))
+    by_compliance = _bonded(joint(0.28, 0.26, inside=ring_compliance(alone, 32)))
+    corners = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}]
+    results = [solve(problem, corners, nodes=96) for problem in (by_compliance, by_closed_forms)]
+    for ours, expected in zip(*results, strict=True):
+        assert ours.peak_pressure == pytest.approx(expected.peak_pressure, rel=2e-4)
+        fits = ours.bush_fit(), expected.bush_fit()
+        assert fits[0].open_margin == pytest.approx(fits[1].open_margin, abs=2e-3)
+        assert not ours.seat.slip_zones
+        assert ours.seat.dissipation == 0.0
+    _check(results[0].states)
+
+
+@pytest.mark.parametrize("method", [{}, {"method": "increment", "increments": 20}])
+def test_a_bonded_bush_must_be_held_by_its_press_fit(method):
+    problem = _bonded(joint(0.28, 0.1, inside=lug(0.33, "strain")))
+    words = r"^step 2, at \d.*: the press fit does not hold the bonded bush, it opens in its seat: give friction"
+    with pytest.raises(NoEquilibriumError, match=words) as caught:
+        solve(problem, [{"P": 0.1}, {"P": 1.0}], nodes=48, between=9, **method)
+    assert all(state.seat.pressure.min() > 0.0 for state in caught.value.result)
+    assert len(caught.value.result) > 1
+    with pytest.raises(InputError, match="interference: must be positive: a bonded bush in a lug of any outline"):
+        replace(problem, plate_body=replace(problem.plate_body, interference=0.0))
