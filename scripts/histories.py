@@ -438,7 +438,10 @@ def drift(rng: np.random.Generator, seed: int) -> RandomCase:
 
 
 def bush(rng: np.random.Generator, seed: int) -> RandomCase:
-    """A bush that slips in a plate, a ring or a lug: press fits from light to heavy, all fits of the pin, all loads."""
+    """A bush that slips in a plate, a ring or a lug: press fits from light to heavy, all fits of the pin, all loads.
+
+    One pin of six is hollow. One bush of eight sits in a lug of any outline, a third of these bonded.
+    """
     del seed
     plane: Plane = "strain" if rng.random() < 0.5 else "stress"
     pin, plate, layer = (Material(10.0 ** rng.uniform(-0.7, 0.7), rng.uniform(0.1, 0.45)) for _ in range(3))
@@ -449,9 +452,16 @@ def bush(rng: np.random.Generator, seed: int) -> RandomCase:
         _support(rng) if rng.random() < 0.8 else {"pin_load": "centre", "rotation": "spring", "hub_stiffness": 1.0}
     )
     support |= {"hub_radius": None}
+    bonded = False
+    if rng.random() < 0.125:
+        plate = replace(plate, nu=float(rng.choice((0.2, 0.33, 0.45))))
+        inside, bonded = lug(plate.nu, plane), bool(rng.random() < 0.3)
+    if rng.random() < 0.17:
+        support |= {"pin_load": "centre", "pin_body": Tube(rng.uniform(0.1, 0.9))}
 
     def problem(interference: float, clearance: float) -> Problem:
-        body = Bushing(layer, outer, interference, inside, float(10.0**friction), bonded=False)  # type: ignore[arg-type]
+        mu = None if bonded else float(10.0**friction)
+        body = Bushing(layer, outer, interference, inside, mu, bonded)  # type: ignore[arg-type]
         return Problem.from_load_parameter(
             MaterialPair(pin, plate, plane), clearance, _any_friction(rng), plate_body=body, **support
         )
@@ -462,7 +472,7 @@ def bush(rng: np.random.Generator, seed: int) -> RandomCase:
     shrinks = -trial.assembled_clearance * interference
     gap = float(10.0 ** rng.uniform(-2.0, 0.5)) * (-0.1 if rng.random() < 0.2 else 1.0)
     found = problem(interference, shrinks + gap)
-    if gap > 0.0 and rng.random() < 0.15:  # a loose bush, or a neat one
+    if gap > 0.0 and not bonded and rng.random() < 0.15:  # a loose bush, or a neat one
         found = problem(rng.choice([0.0, -0.3]) * rng.uniform(0.1, 1.0), gap)
     stress = 0.3 if rng.random() < 0.2 and not _is_held(found) else 0.0
     corners = _extreme_loads(rng, found, int(rng.integers(1, 7)), 0.0)

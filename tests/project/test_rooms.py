@@ -18,7 +18,7 @@ MOST = {
     "drive is None, or not": 0,
     "classes defined twice": 0,
     "small private functions used once": 65,
-    "constants of modules": 1_194,
+    "constants of modules": 1_195,
     "hidden imports": 0,
     "lines of code": 39_850,
 }
