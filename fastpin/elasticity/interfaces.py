@@ -172,11 +172,9 @@ class JointSystem(System):
         """Whether a press fit holds the bush in its seat before any load."""
         return self.alone[SEAT].problem.is_gripped
 
-    @property
-    def is_bonded(self) -> bool:
-        """Whether the bush is bonded, in a lug of any outline: it must not open in its seat."""
-        bush = self.problem.plate_body.bush
-        return bush is not None and bush.bonded
+    @cached_property
+    def bonded(self) -> slice:
+        return slice(0) if self.problem.bush_slips else self.nodes.parts[SEAT]
 
     def under(self, load: np.ndarray) -> System:
         """The system with the friction under a load (loads,). ``friction_change`` acts on the pin in the bush."""

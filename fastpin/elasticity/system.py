@@ -221,6 +221,11 @@ class System:
         return tuple(each.nodes for each in self.interfaces if is_free)
 
     @cached_property
+    def bonded(self) -> slice:
+        """The nodes that must not open: those of a bonded bush whose seat is an interface of its own."""
+        return slice(0)
+
+    @cached_property
     def concentric_gap(self) -> np.ndarray:
         """Gap of the unloaded, concentric pin at each node, shape (n,)."""
         return self.rest_clearance + self.initial_gap

@@ -14,7 +14,6 @@ import numpy as np
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.interfaces import PIN, SEAT, TURN, JointSystem
 from fastpin.elasticity.operator import DenseOperator
-from fastpin.elasticity.system import System
 from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import REMOTE, M, P, Q
@@ -307,11 +306,3 @@ def _moved_bore(bodies: BodyTerms | None, columns: np.ndarray) -> BodyTerms | No
         series = np.fft.rfft(columns[:, place])[: angles // 2] / angles * start
         moved[place] = np.r_[series[:0:-1].conj(), series]
     return replace(bodies, columns=moved)
-
-
-def check_bond(system: System, now: Configuration) -> None:
-    """Raise :class:`NoEquilibriumError` if a bonded bush has opened in its seat."""
-    if isinstance(system, JointSystem) and system.is_bonded and not now.closed[system.interfaces[SEAT].nodes].all():
-        raise NoEquilibriumError(
-            "the press fit does not hold the bonded bush, it opens in its seat: give friction, set bonded = false"
-        )

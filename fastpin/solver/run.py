@@ -37,14 +37,13 @@ from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, NoEquilibr
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.growth import OutsideGap
 from fastpin.solver.increment_stepper import IncrementStepper
-from fastpin.solver.interfaces import check_bond
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.place import system_with_friction
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import follow_floating, release
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
-from fastpin.solver.step import Piece, Position, Stepper, force_of, force_on_pin, is_pushed, pieces
+from fastpin.solver.step import Piece, Position, Stepper, check_bond, force_of, force_on_pin, is_pushed, pieces
 from fastpin.solver.window import WindowStepper
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State

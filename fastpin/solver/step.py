@@ -16,6 +16,7 @@ from fastpin.elasticity.system import System
 from fastpin.model.loads import UX, UY, P, Q
 from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration
+from fastpin.solver.errors import NoEquilibriumError
 
 StepReport = Callable[[float], None]
 """Called with the fraction of the step that is done."""
@@ -138,3 +139,11 @@ class Stepper(Protocol):
 
     def leave(self, position: Position) -> None:
         """End the present piece: note the nodes that it touched, and update the statistics."""
+
+
+def check_bond(system: System, now: Configuration) -> None:
+    """Raise :class:`NoEquilibriumError` if a bonded bush has opened in its seat."""
+    if not now.closed[system.bonded].all():
+        raise NoEquilibriumError(
+            "the press fit does not hold the bonded bush, it opens in its seat: give friction, set bonded = false"
+        )
