@@ -158,8 +158,11 @@ def check_joint(states: Sequence[State]) -> list[dict[str, float]]:
 def _held_together(state: State, seat: State, pin: Checked) -> dict[str, float]:
     """Violations of the moment that both interfaces share, and of the rotation that is prescribed for both together."""
     moments = state.resultants["M"], seat.resultants["M"]
-    one, two = (float(each.grid.weights @ np.abs(each.shear)) * each.problem.hole_radius**2 for each in (state, seat))
-    found = {"moment": abs(moments[0] - moments[1]) / max(one, two, 1e-300)}
+    size = max(
+        float(each.grid.weights @ np.hypot(each.pressure, each.shear)) * each.problem.hole_radius**2
+        for each in (state, seat)
+    )
+    found = {"moment": abs(moments[0] - moments[1]) / max(size, 1e-300)}
     bush, shear = seat.problem.pair.pin, float(seat.grid.weights @ seat.shear)
     rim = bush.kolosov(seat.problem.pair.plane) / (4.0 * math.pi * bush.shear_modulus) * shear
     hub = pin.hub_turn(-state.resultants["M"] / state.problem.hole_radius)

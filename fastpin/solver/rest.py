@@ -72,6 +72,10 @@ def _release_pin(joint: JointSystem, last: Configuration, load: np.ndarray) -> C
     if joint.is_pressed:
         view = PinView(joint, last)
         return view.whole(release(view.system, view.pin, load))
+    last = last.copy()
+    for each in joint.interfaces:  # without friction nothing turns: what is left of it is rounding
+        if not joint.equilibrium[each.motion + TURN].any() and not joint.load_forces(load)[each.motion + TURN]:
+            last.motion[each.motion + TURN] = 0.0
     pin, seat = (release(joint.alone[place], part_of(joint, last, place), load) for place in (PIN, SEAT))
     if joint.problem.held:  # the pin is held over the lug: it turns back in the bush by as much as the bush has turned
         turned = seat.motion[TURN]
