@@ -58,7 +58,7 @@ RESIDUAL_WORDS = {
 }
 """Words for the residuals of a :class:`fastpin.State`."""
 
-NO_SLIP = "from corner {0.first:,} to {0.last:,} nothing slips beyond rounding"
+NO_SLIP = "from corner {0.first:,} to {0.last:,} the pin does not slip beyond rounding"
 """In place of the slip of a cycle."""
 
 MOST_CHARACTERS = 20_000
