@@ -154,8 +154,13 @@ class JointSystem(System):
     @cached_property
     def bore_shape(self) -> tuple[np.ndarray, np.ndarray]:
         """Angles (a,) round the bore, rad, and its radial displacement there per traction in the seat, (a, 2k)."""
-        around = Grid.circle(AROUND)
-        return around.theta, _coupling(self.problem, (around, self.nodes.grids[SEAT]), PIN)[:AROUND]
+        theta = Grid.circle(AROUND).theta
+        return theta, self.bore_at(theta)
+
+    def bore_at(self, theta: np.ndarray) -> np.ndarray:
+        """Radial displacement of the bore at angles (a,), rad, per traction in the seat, shape (a, 2k)."""
+        around = Grid(theta, closed=True)
+        return _coupling(self.problem, (around, self.nodes.grids[SEAT]), PIN)[: theta.size]
 
     def without_friction(self) -> System:
         """The same system without friction at both interfaces. Neither turns."""

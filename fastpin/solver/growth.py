@@ -10,10 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid
+from fastpin.model.loads import REMOTE
 from fastpin.solver.configuration import Configuration, embedded
+from fastpin.solver.interfaces import part_of
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
@@ -148,6 +151,8 @@ def _rest_slip_at(system: System, now: Configuration, columns: np.ndarray) -> np
 class OutsideGap:
     """The gap beyond an arc of nodes, at up to :data:`MOST_OUTSIDE` angles: a pin may touch there too.
 
+    Where a bush slips, the tractions in its seat bend its bore.
+
     Parameters
     ----------
     system : System
@@ -160,21 +165,35 @@ class OutsideGap:
     """
 
     def __init__(self, system: System) -> None:
-        grid = system.grid
         self.of: object = system.operator
+        self._joint = system if isinstance(system, JointSystem) else None
+        system = self._own(system)
+        grid = system.grid
         n, ends = grid.size, (grid.theta[-1], grid.theta[0] + 2.0 * math.pi)
         count = min(math.ceil((ends[1] - ends[0]) / _spacing(grid)) - 1, MOST_OUTSIDE)
         self._theta = np.linspace(*ends, max(count, 1) + 2)[1:-1]
         around = System.build(system.problem, Grid(np.r_[grid.theta, self._theta], closed=True), system.scales.force)
         rows, nodes = np.arange(n, around.grid.size), np.arange(n)
         self._operator = around.operator.entries(rows, np.r_[nodes, around.grid.size + nodes])
-        self._moved, self._loads = around.motion[rows], around.loads[rows]
+        self._moved, self._loads = around.motion[rows], around.loads[rows].copy()
+        if self._joint is not None:  # the remote stress acts on the lug alone
+            self._loads[:, REMOTE] = 0.0
+            self._bore = self._joint.bore_at(self._theta)
+
+    @staticmethod
+    def _own(system: System) -> System:
+        """The system of the pin."""
+        return system.alone[PIN] if isinstance(system, JointSystem) else system
 
     def is_closed(self, system: System, now: Configuration) -> bool:
         """Whether the pin, in contact on the arc, penetrates the hole beyond it by more than rounding."""
+        bent: float | np.ndarray = 0.0
+        if self._joint is not None:
+            bent = self._bore @ np.r_[now.pressure, now.shear][self._joint.nodes.rows(SEAT)]
+            system, now = self._own(system), part_of(self._joint, now, PIN)
         if not now.closed.any():  # a floating pin is looked after by the first contact
             return False
-        elastic = self._operator @ np.r_[now.pressure, now.shear]
+        elastic = self._operator @ np.r_[now.pressure, now.shear] + bent
         moved = self._moved @ now.motion + self._loads @ now.load[: self._loads.shape[1]]
         gap = elastic + moved + rest_gap_at(system, now, self._theta)
         return bool(gap.min() < -PENETRATION * max(float(np.abs(elastic).max()), float(np.abs(moved).max())))

@@ -174,9 +174,9 @@ class Run:
         self._no_slip = SlipTally.empty(system.grid.size, self.wears) if counts else NOT_COUNTED
         self.statistics = dict.fromkeys(COUNTED, 0.0)
         self.stepper = _stepper(system, options, self.statistics, strict)
-        # Round a hole that is not round the pin may touch anywhere.
-        may_touch = (bool(system.problem.gap) or self.wears) and bool(system.ends.any())
-        self._outside = OutsideGap(system) if may_touch else None
+        # Round a hole that is not round, or the bore of a bush that its seat bends, the pin may touch anywhere.
+        may_touch = bool(system.problem.gap) or self.wears or isinstance(system, JointSystem)
+        self._outside = OutsideGap(system) if may_touch and bool(system.ends.any()) else None
         self._begin_at(start)
 
     def _begin_at(self, start: Restart) -> None:

@@ -13,7 +13,7 @@ from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.options import ALL_ROUND
 from fastpin.model.profile import InitialGap, Profile
-from fastpin.solver.errors import NoEquilibriumError
+from fastpin.solver.errors import ArcError, NoEquilibriumError
 from fastpin.verification.body_cases import ring_compliance
 from scripts.histories import generate, lug
 from scripts.joint_conditions import check_joint
@@ -391,3 +391,13 @@ def test_a_bonded_bush_must_be_held_by_its_press_fit(method):
     assert len(caught.value.result) > 1
     with pytest.raises(InputError, match="interference: must be positive: a bonded bush in a lug of any outline"):
         replace(problem, plate_body=replace(problem.plate_body, interference=0.0))
+
+
+def test_a_pin_that_touches_the_bent_bore_beyond_its_arc_gets_a_wider_one():
+    """A neat bush under remote stress: the lug presses its bore on the pin at the side, too."""
+    case = generate("bush", 111)
+    found, all_round = (solve(case.problem, case.history, nodes=61, arc=arc)[0] for arc in (None, ALL_ROUND))
+    assert len(found.contact) == len(all_round.contact) == 2
+    assert found.peak_pressure == pytest.approx(all_round.peak_pressure, rel=2e-3)
+    with pytest.raises(ArcError, match="the pin touches the hole beyond the arc"):
+        solve(case.problem, case.history, nodes=61, arc=(-3.07, -0.68))
