@@ -1,0 +1,12 @@
+from .growth import EdgeGrowth as EdgeGrowth
+from .growth import Growth as Growth
+from .growth import growth as growth
+from .growth import growth_along_edge as growth_along_edge
+from .intensity import Crack as Crack
+from .intensity import StressIntensity as StressIntensity
+from .intensity import stress_intensity as stress_intensity
+from .laws import GrowthLaw as GrowthLaw
+from .laws import Nasgro as Nasgro
+from .laws import Walker as Walker
+from .laws import intrinsic_length as intrinsic_length
+from .laws import paris as paris
