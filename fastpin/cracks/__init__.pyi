@@ -1,7 +1,7 @@
-from .growth import EdgeGrowth as EdgeGrowth
-from .growth import Growth as Growth
-from .growth import growth as growth
-from .growth import growth_along_edge as growth_along_edge
+from .growing import EdgeGrowth as EdgeGrowth
+from .growing import Growth as Growth
+from .growing import growth as growth
+from .growing import growth_along_edge as growth_along_edge
 from .intensity import Crack as Crack
 from .intensity import StressIntensity as StressIntensity
 from .intensity import stress_intensity as stress_intensity

@@ -120,9 +120,9 @@ class Growth(ReadOnly):
         if stop == self.length[0]:
             return f"no growth at {first}"
         if not math.isnan(stop):
-            return f"grows from {first} and stops at {length.text(stop)}"
+            return f"grows from {first} and stops at {length.text(stop, 4)}"
         if not math.isnan(self.fracture):
-            return f"grows from {first} to fracture at {length.text(self.fracture)} in {self.life:.3g} cycles"
+            return f"grows from {first} to fracture at {length.text(self.fracture, 4)} in {self.life:.3g} cycles"
         return f"grows from {first} to {last} in {self.life:.3g} cycles"
 
 
