@@ -286,7 +286,7 @@ def histories(
     if residual_stress is not None:
         s = np.array([[line.length * rule(n).place for line in row] for row in rows]) * edge.radius
         given = numbers("residual_stress", residual_stress(s))
-        if np.broadcast_shapes(given.shape, s.shape) != s.shape:
+        if given.shape not in ((), s.shape):
             raise InputError("residual_stress", f"must return numbers of the shape {s.shape}, not {given.shape}")
         added = given
 
