@@ -31,11 +31,8 @@ OBLIQUE = math.radians(10.0)
 DIGITS = 30.0
 """Logarithm of the part of a harmonic of the outer rim that is left out."""
 
-MOST_HARMONICS = 4096
-"""Most harmonics of the outer rim: a tip closer to the rim is refused by its callers."""
 
-
-class Line(NamedTuple):
+class CrackLine(NamedTuple):
     """A crack at the rim r = 1.
 
     `mouth` is the angle of its mouth, and `angle` its direction from the radius, counter-clockwise, rad. `length` is in
@@ -103,12 +100,12 @@ def _zeros_of_second_kind(n: int, v: np.ndarray) -> np.ndarray:
     return 0.5 * (low + high)
 
 
-def needed_points(lines: tuple[Line, ...], far: float) -> int:
+def needed_points(lines: tuple[CrackLine, ...], far: float) -> int:
     """Return the number n of points for these cracks in a plate with the free rim `far`."""
     return MANY if math.isfinite(far) or any(abs(line.angle) > OBLIQUE for line in lines) else FEW
 
 
-def places(line: Line, n: int) -> tuple[np.ndarray, np.ndarray]:
+def places(line: CrackLine, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Depths below the edge and angles from the mouth of the points of collocation, both (n/2,)."""
     s = line.length * rule(n).place
     z = 1.0 + s * cmath.exp(1j * line.angle)
@@ -116,7 +113,7 @@ def places(line: Line, n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=4096)
-def weights(lines: tuple[Line, ...], far: float, n: int) -> np.ndarray:
+def weights(lines: tuple[CrackLine, ...], far: float, n: int) -> np.ndarray:
     """Weights of the tractions on the lines of cracks, shape (cracks, 2, cracks, n/2, 2).
 
     The stress intensities (K_I, K_II) of each crack are the sums of the weights times (s_nn, s_tn) at the points of
@@ -124,10 +121,10 @@ def weights(lines: tuple[Line, ...], far: float, n: int) -> np.ndarray:
 
     Parameters
     ----------
-    lines : tuple of Line
+    lines : tuple of CrackLine
         Only the differences of their mouths count. They do not touch one another.
     far : float
-        Radius of the free outer rim; infinite for an infinite plate.
+        Radius of the free outer rim; infinite for an infinite plate. A tip closer to the rim needs more harmonics.
     n : int
         Number of points, even; see :func:`needed_points`.
     """
@@ -194,7 +191,7 @@ def _rim_influence(
     """The coefficients of g and of conj(g) in the tractions of the fields that free the outer rim, each (m, m)."""
     (z, direction), (z0, source_direction) = receiver, source
     nearest = math.log(far / float(np.abs(z0).max()))
-    count = 2 ** math.ceil(math.log2(min(max(DIGITS / nearest, 32.0), MOST_HARMONICS)))
+    count = 2 ** math.ceil(math.log2(max(DIGITS / nearest, 32.0)))
     rim = far * np.exp(2j * math.pi * np.arange(2 * count) / (2 * count))
     answers = []
     for g in (1.0, 1j):

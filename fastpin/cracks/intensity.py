@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.cracks.dislocations import Line, needed_points, places, rule, weights
+from fastpin.cracks.dislocations import CrackLine, needed_points, places, rule, weights
 from fastpin.errors import InputError, InputWarning
 from fastpin.kernels.harmonics import FREE
 from fastpin.model.angles import from_bottom
@@ -207,10 +207,10 @@ class CrackedEdge(NamedTuple):
         """Radius of the free outer rim in radii of the edge; infinite if there is none."""
         return 1.0 + self.wall if self.is_free else math.inf
 
-    def lines(self, cracks: Sequence[Crack], lengths: ArrayLike) -> tuple[Line, ...]:
+    def lines(self, cracks: Sequence[Crack], lengths: ArrayLike) -> tuple[CrackLine, ...]:
         """The lines of cracks of these lengths, m, for the kernel."""
         each = zip(cracks, np.broadcast_to(lengths, len(cracks)), strict=True)
-        return tuple(Line(crack.theta, crack.angle, float(length) / self.radius) for crack, length in each)
+        return tuple(CrackLine(crack.theta, crack.angle, float(length) / self.radius) for crack, length in each)
 
     def depth(self, angle: float, length: float) -> float:
         """Depth of a tip, in radii of the edge, of a crack of this length, m."""
@@ -257,7 +257,7 @@ def sliding_doubt(field: str, problem: Problem, lengths: np.ndarray, K: np.ndarr
 def histories(
     states: Sequence[State],
     edge: CrackedEdge,
-    rows: Sequence[tuple[Line, ...]],
+    rows: Sequence[tuple[CrackLine, ...]],
     turns: np.ndarray,
     residual_stress: Residual | None = None,
 ) -> np.ndarray:
@@ -267,7 +267,7 @@ def histories(
     ----------
     states : sequence of State
     edge : CrackedEdge
-    rows : sequence of tuple of Line
+    rows : sequence of tuple of CrackLine
         The cracks in each row stand together.
     turns : ndarray, shape (p,)
         Angles by which all mouths are turned, rad.
@@ -276,7 +276,9 @@ def histories(
     """
     check_callable("residual_stress", residual_stress, 1)
     n = needed_points(rows[0], edge.far)
-    of_rows = np.array([weights(_turned_back(row), edge.far, n) for row in rows])
+    # With the first mouth at the angle 0 the weights are found again at other places.
+    at_zero = [tuple(line._replace(mouth=line.mouth - row[0].mouth) for line in row) for row in rows]
+    of_rows = np.array([weights(row, edge.far, n) for row in at_zero])
     found = np.array([[places(line, n) for line in row] for row in rows])  # rows, cracks, (depth, angle), points
     depth, angle = found[:, :, 0], found[:, :, 1]
     mouths = np.array([[line.mouth for line in row] for row in rows])[..., None]
@@ -303,12 +305,7 @@ def histories(
     return np.array(in_threads(intensities, states)) * math.sqrt(edge.radius)
 
 
-def _turned_back(row: tuple[Line, ...]) -> tuple[Line, ...]:
-    """The cracks with the first mouth at the angle 0, so that their weights are found again at other places."""
-    return tuple(line._replace(mouth=line.mouth - row[0].mouth) for line in row)
-
-
-def _check_apart(rows: Sequence[tuple[Line, ...]]) -> None:
+def _check_apart(rows: Sequence[tuple[CrackLine, ...]]) -> None:
     """Raise :class:`InputError` if two cracks of a row touch, or nearly do."""
     for row in rows:
         ends = []

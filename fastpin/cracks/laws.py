@@ -24,9 +24,6 @@ SMOOTH_EDGE = 1.1215222
 MOST_COMPRESSION = 2.0
 """Newman's closure has been fitted to R from -2 on: a smaller K_min counts as -2 K_max."""
 
-ALMOST_CONSTANT = 1.0 - 1e-9
-"""Largest R of Newman's closure: at 1 the range and the crack's opening are both 0."""
-
 
 def intrinsic_length(threshold_range: float, limit_range: float) -> float:
     """El Haddad's length a0 = (dK_th/(1.1215 ds_0))^2/pi, m, for cracks at a smooth edge.
@@ -265,4 +262,4 @@ class Nasgro(GrowthLaw):
         """R, at least -2; 0 for a crack that never opens."""
         top = np.maximum(K_max, 0.0)
         R = np.divide(K_min, top, out=np.zeros_like(top), where=top > 0.0)
-        return np.clip(R, -MOST_COMPRESSION, ALMOST_CONSTANT)
+        return np.clip(R, -MOST_COMPRESSION, 1.0 - 1e-9)  # at 1 both the range and the opening are 0

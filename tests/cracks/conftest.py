@@ -10,8 +10,7 @@ import pytest
 import fastpin
 from fastpin.bodies import Ring
 from fastpin.damage import cycle_states
-
-LIKE = fastpin.Material(70e9, 0.33)
+from tests.support.cracks import LIKE, problem_of
 
 
 @pytest.fixture(autouse=True)
@@ -20,11 +19,6 @@ def without_doubts():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fastpin.errors.InputWarning)
         yield
-
-
-def problem_of(pin: fastpin.Material, clearance: float, friction: float, **fields) -> fastpin.Problem:
-    """A plate of aluminium with a hole of 10 mm under a body-loaded pin."""
-    return fastpin.Problem(fastpin.MaterialPair(pin, LIKE), 10e-3, clearance, friction, pin_load="body", **fields)
 
 
 def _transverse(force: float) -> list[fastpin.State]:

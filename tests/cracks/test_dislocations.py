@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fastpin.cracks.dislocations import (
-    Line,
+    CrackLine,
     _freed,
     _influence,
     _rim_influence,
@@ -70,7 +70,7 @@ TABLE = {
 
 @pytest.mark.parametrize("a", TABLE)
 def test_cracks_of_an_open_hole(a):
-    one, two = (Line(0.0, 0.0, a),), (Line(0.0, 0.0, a), Line(math.pi, 0.0, a))
+    one, two = (CrackLine(0.0, 0.0, a),), (CrackLine(0.0, 0.0, a), CrackLine(math.pi, 0.0, a))
     cases = (uniaxial, one), (uniaxial, two), (biaxial, one), (biaxial, two), (pressure, one)
     assert [factors(field, *lines, n=80)[0, 0] for field, lines in cases] == pytest.approx(TABLE[a], abs=1.1e-6)
     few = [factors(field, *lines)[0, 0] for field, lines in cases]
@@ -79,33 +79,33 @@ def test_cracks_of_an_open_hole(a):
 
 @pytest.mark.parametrize(("a", "opening", "sliding"), [(0.1, 2.380083, 0.711556), (1.0, 1.056201, 0.458434)])
 def test_inclined_cracks(a, opening, sliding):
-    found = factors(uniaxial, Line(0.0, math.radians(30.0), a))[0]
+    found = factors(uniaxial, CrackLine(0.0, math.radians(30.0), a))[0]
     assert found == pytest.approx([opening, sliding], abs=1.1e-6)
-    mirrored = factors(uniaxial, Line(0.0, -math.radians(30.0), a))[0]
+    mirrored = factors(uniaxial, CrackLine(0.0, -math.radians(30.0), a))[0]
     assert mirrored == pytest.approx([opening, -sliding], abs=1.1e-6)
 
 
 def test_two_cracks_of_different_lengths():
-    found = factors(uniaxial, Line(0.0, 0.0, 0.2), Line(math.pi, 0.0, 0.5), n=80)
+    found = factors(uniaxial, CrackLine(0.0, 0.0, 0.2), CrackLine(math.pi, 0.0, 0.5), n=80)
     assert found[:, 0] == pytest.approx([2.521063, 1.755425], abs=1.1e-6)
     assert found[:, 1] == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
 def test_an_inclined_crack_of_a_half_plane():
-    found = factors(lambda r, theta: (0.0 * r, 1.0 + 0.0 * r, 0.0 * r), Line(0.0, 0.25 * math.pi, 1e-7), n=160)[0]
+    found = factors(lambda r, theta: (0.0 * r, 1.0 + 0.0 * r, 0.0 * r), CrackLine(0.0, 0.25 * math.pi, 1e-7), n=160)[0]
     assert found == pytest.approx([0.70491, 0.36449], abs=6e-6)
 
 
 def test_short_and_long_cracks():
-    assert factors(uniaxial, Line(0.0, 0.0, 1e-7))[0, 0] / 3.0 == pytest.approx(SHORT, rel=3e-6)
-    assert factors(uniaxial, Line(0.0, 0.0, 1e4))[0, 0] == pytest.approx(0.70719, abs=3e-5)
-    long = factors(uniaxial, Line(0.0, 0.0, 1e3), n=80)[0, 0]
+    assert factors(uniaxial, CrackLine(0.0, 0.0, 1e-7))[0, 0] / 3.0 == pytest.approx(SHORT, rel=3e-6)
+    assert factors(uniaxial, CrackLine(0.0, 0.0, 1e4))[0, 0] == pytest.approx(0.70719, abs=3e-5)
+    long = factors(uniaxial, CrackLine(0.0, 0.0, 1e3), n=80)[0, 0]
     assert LONG < long < math.sqrt(0.5 + 1.2e-3)
 
 
 @pytest.mark.parametrize("a", [1e-3, 0.1, 1.0, 10.0])
 def test_a_pressure_in_hole_and_crack_is_a_biaxial_tension(a):
-    line = Line(0.0, 0.0, a)
+    line = CrackLine(0.0, 0.0, a)
     inside = factors(
         lambda r, theta: tuple(one + two for one, two in zip(pressure(r, theta), (0, 1, 0), strict=True)), line
     )
@@ -116,12 +116,12 @@ def test_a_pressure_in_hole_and_crack_is_a_biaxial_tension(a):
     ("c", "part", "value"), [(2.0, 0.1, 1.68339), (2.0, 0.5, 1.69325), (1.5, 0.2, 3.00330)], ids=str
 )
 def test_cracks_of_a_ring(c, part, value):
-    found = factors(lame(c), Line(0.0, 0.0, part * (c - 1.0)), far=c)[0]
+    found = factors(lame(c), CrackLine(0.0, 0.0, part * (c - 1.0)), far=c)[0]
     assert found == pytest.approx([value, 0.0], rel=6e-6, abs=1e-12)
 
 
 def test_a_wide_ring_is_a_plate():
-    line = Line(0.3, 0.0, 1.0)
+    line = CrackLine(0.3, 0.0, 1.0)
     gain = [factors(pressure, line, far=far)[0, 0] / factors(pressure, line, n=80)[0, 0] - 1.0 for far in (30.0, 60.0)]
     assert 0.0 < gain[0] < 3e-3
     assert gain[0] / gain[1] == pytest.approx(4.0, rel=0.03)
@@ -129,18 +129,18 @@ def test_a_wide_ring_is_a_plate():
 
 @pytest.mark.parametrize("far", [math.inf, 2.0], ids=["plate", "ring"])
 def test_turned_and_mirrored_cracks(far):
-    lines = (Line(0.2, 0.3, 0.3), Line(2.0, -0.2, 0.5))
+    lines = (CrackLine(0.2, 0.3, 0.3), CrackLine(2.0, -0.2, 0.5))
     first = weights(lines, far, 80)
     turned = weights(tuple(line._replace(mouth=line.mouth + 1.0) for line in lines), far, 80)
     assert turned == pytest.approx(first, rel=1e-9, abs=1e-12)
-    mirrored = weights(tuple(Line(-line.mouth, -line.angle, line.length) for line in lines), far, 80)
+    mirrored = weights(tuple(CrackLine(-line.mouth, -line.angle, line.length) for line in lines), far, 80)
     sign = np.array([1.0, -1.0])
     assert mirrored * sign[:, None, None, None] * sign == pytest.approx(first, rel=1e-9, abs=1e-12)
 
 
 def test_far_cracks_do_not_feel_one_another():
-    alone = factors(uniaxial, Line(0.0, 0.0, 1e-3))[0]
-    pair = factors(uniaxial, Line(0.0, 0.0, 1e-3), Line(math.pi, 0.0, 1e-3))
+    alone = factors(uniaxial, CrackLine(0.0, 0.0, 1e-3))[0]
+    pair = factors(uniaxial, CrackLine(0.0, 0.0, 1e-3), CrackLine(math.pi, 0.0, 1e-3))
     assert pair[0] == pytest.approx(alone, rel=1e-5, abs=1e-9)
     assert pair[1] == pytest.approx(alone, rel=1e-5, abs=1e-9)
 
@@ -153,9 +153,9 @@ def test_orders_of_convergence():
         return [np.abs(factors(field, line, far=far, n=n)[0] - exact).max() for n in (40, 80, 160)]
 
     for line, far, field, order in (
-        (Line(0.0, 0.0, 0.1), math.inf, uniaxial, 5.5),
-        (Line(0.0, math.radians(45.0), 0.1), math.inf, uniaxial, 5.5),
-        (Line(0.0, 0.0, 0.5), 2.0, lame(2.0), 5.5),
+        (CrackLine(0.0, 0.0, 0.1), math.inf, uniaxial, 5.5),
+        (CrackLine(0.0, math.radians(45.0), 0.1), math.inf, uniaxial, 5.5),
+        (CrackLine(0.0, 0.0, 0.5), 2.0, lame(2.0), 5.5),
     ):
         found = errors(line, far, field)
         assert all(coarse / fine > 2.0**order for coarse, fine in itertools.pairwise(found)), found
@@ -167,7 +167,7 @@ def test_energy(far):
     n, field = 160, biaxial if math.isinf(far) else lame(2.0)
 
     def work(a):
-        line = Line(0.0, 0.0, a)
+        line = CrackLine(0.0, 0.0, a)
         along, G = rule(n), densities(line, far, n, field)
         r = 1.0 + a * along.source
         inside = a * along.source * lame_mean(far) + lame_part(far) * (1.0 - 1.0 / r)
@@ -175,7 +175,7 @@ def test_energy(far):
 
     a, h = 0.3, 1e-2
     slope = (8.0 * (work(a + h) - work(a - h)) - (work(a + 2 * h) - work(a - 2 * h))) / (12.0 * h)
-    K = factors(field, Line(0.0, 0.0, a), far=far, n=n)[0, 0] * math.sqrt(math.pi * a)
+    K = factors(field, CrackLine(0.0, 0.0, a), far=far, n=n)[0, 0] * math.sqrt(math.pi * a)
     assert 2.0 * math.pi * slope == pytest.approx(K**2, rel=1e-6)
 
 

@@ -13,7 +13,7 @@ import fastpin
 from fastpin.cracks import Crack, Nasgro, Walker, growth, growth_along_edge, paris
 from fastpin.cracks.growing import Growth
 from fastpin.errors import InputError, InputWarning
-from tests.cracks.test_intensity import DIRECTION
+from tests.support.cracks import DIRECTION
 
 M = 1e6
 NASGRO = Nasgro(6.35e-10, 2.5, 1.0, 1.0, 0.8 * M, 35.16 * M, 2.2, 0.1, 2.0, 0.3, 38.1e-6)

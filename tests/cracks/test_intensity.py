@@ -12,10 +12,7 @@ import fastpin
 from fastpin import bodies
 from fastpin.cracks import Crack, stress_intensity
 from fastpin.errors import InputError, InputWarning
-from tests.cracks.conftest import LIKE, problem_of
-
-DIRECTION = {"bulk": -120.0, "lug": -24.0, "Q": -8.0, "small": -24.0}
-"""Angle of the mouth, deg."""
+from tests.support.cracks import DIRECTION, LIKE, problem_of
 
 SPREAD = {"bulk": 1e-5, "lug": 6e-5, "Q": 6e-5, "small": 3e-4}
 """How much K_I of the largest opening depends on the nodes, measured on 401 to 1,601 of them."""
