@@ -14,9 +14,10 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, not_negative, number, positive
+from fastpin.model.checks import as_toml, in_one_shape, not_negative, number, numbers, positive
 
 SMOOTH_EDGE = 1.1215222
 """K of a short crack at a smooth edge, in units of the stress times sqrt(pi a)."""
@@ -52,32 +53,68 @@ def intrinsic_length(threshold_range: float, limit_range: float) -> float:
 
 @dataclass(frozen=True)
 class GrowthLaw(ABC):
-    """What every law answers. All arrays have one shape; K_max and K_min are of K_I, Pa sqrt(m), also negative."""
-
-    @abstractmethod
-    def range(self, K_max: np.ndarray, K_min: np.ndarray) -> np.ndarray:
-        """The range of the stress intensity that the law counts, Pa sqrt(m); 0 for a crack that never opens."""
-
-    @abstractmethod
-    def threshold(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
-        """The range up to which a crack of this length, m, does not grow, Pa sqrt(m)."""
-
-    @abstractmethod
-    def growing(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
-        """The rate above the threshold, m per cycle."""
+    """What every law answers. K_max and K_min are of K_I over a cycle, Pa sqrt(m), also negative."""
 
     @property
     @abstractmethod
     def fracture_toughness(self) -> float:
         """K_max at which the crack runs through in one cycle, Pa sqrt(m); infinite unless the law has one."""
 
-    def rate(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
-        """The growth da/dN, m per cycle: 0 up to the threshold, and infinite from the toughness on."""
-        grows = self.range(K_max, K_min) > self.threshold(K_max, K_min, length)
-        runs = K_max >= self.fracture_toughness
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = self.growing(K_max, K_min, length)
+    def range(self, K_max: ArrayLike, K_min: ArrayLike) -> np.ndarray:
+        """The range of the stress intensity that the law counts, Pa sqrt(m); 0 for a crack that never opens.
+
+        Raises
+        ------
+        InputError
+            If an argument holds no finite numbers, or the shapes do not fit.
+        """
+        return self._range(*_checked(K_max, K_min, 1.0)[:2])
+
+    def threshold(self, K_max: ArrayLike, K_min: ArrayLike, length: ArrayLike) -> np.ndarray:
+        """The range up to which a crack of this length, m, does not grow, Pa sqrt(m).
+
+        Raises
+        ------
+        InputError
+            See :meth:`range`; also if a length is not positive.
+        """
+        return self._threshold(*_checked(K_max, K_min, length))
+
+    def rate(self, K_max: ArrayLike, K_min: ArrayLike, length: ArrayLike) -> np.ndarray:
+        """The growth da/dN, m per cycle: 0 up to the threshold, and infinite from the toughness on.
+
+        Raises
+        ------
+        InputError
+            See :meth:`threshold`.
+        """
+        each = top, bottom, _ = _checked(K_max, K_min, length)
+        grows, runs = self._range(top, bottom) > self._threshold(*each), top >= self.fracture_toughness
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            found = self._rate_above(*each)
         return np.where(runs, np.inf, np.where(grows, found, 0.0))
+
+    @abstractmethod
+    def _range(self, K_max: np.ndarray, K_min: np.ndarray) -> np.ndarray:
+        """The range."""
+
+    @abstractmethod
+    def _threshold(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
+        """The threshold."""
+
+    @abstractmethod
+    def _rate_above(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
+        """The rate above the threshold and below the toughness; any value elsewhere."""
+
+
+def _checked(K_max: ArrayLike, K_min: ArrayLike, length: ArrayLike) -> tuple[np.ndarray, ...]:
+    """Stress intensities and lengths in one shape; the largest and the smallest in their order."""
+    top, bottom = in_one_shape("K_min", numbers("K_min", K_min), numbers("K_max", K_max))[::-1]
+    top, a = in_one_shape("length", top, numbers("length", length, 0.0, open_low=True))
+    bottom = np.broadcast_to(bottom, top.shape)
+    if np.any(bottom > top):
+        raise InputError("K_min", "must not be larger than K_max")
+    return top, bottom, a
 
 
 def checked_law(law: object) -> GrowthLaw:
@@ -142,16 +179,16 @@ class Walker(GrowthLaw):
     def fracture_toughness(self) -> float:
         return math.inf if self.toughness is None else self.toughness
 
-    def range(self, K_max: np.ndarray, K_min: np.ndarray) -> np.ndarray:
+    def _range(self, K_max: np.ndarray, K_min: np.ndarray) -> np.ndarray:
         return np.maximum(K_max, 0.0) - np.maximum(K_min, 0.0)
 
-    def threshold(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
+    def _threshold(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
         power = 1.0 - self.exponent if self.threshold_exponent is None else self.threshold_exponent
         long = self.threshold_range * _rest(K_max, K_min) ** power
         return np.asarray(long * np.sqrt(length / (length + self.intrinsic_length)))
 
-    def growing(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
-        driving = self.range(K_max, K_min) * _rest(K_max, K_min) ** (self.exponent - 1.0)
+    def _rate_above(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
+        driving = self._range(K_max, K_min) * _rest(K_max, K_min) ** (self.exponent - 1.0)
         return np.asarray(self.C * (driving / self.unit) ** self.m)
 
 
@@ -227,26 +264,33 @@ class Nasgro(GrowthLaw):
     def fracture_toughness(self) -> float:
         return self.toughness
 
-    def range(self, K_max: np.ndarray, K_min: np.ndarray) -> np.ndarray:
+    def _range(self, K_max: np.ndarray, K_min: np.ndarray) -> np.ndarray:
         top = np.maximum(K_max, 0.0)
         return (1.0 - self._ratio(K_max, K_min)) * top
 
-    def threshold(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
+    def _threshold(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
         R = self._ratio(K_max, K_min)
         slope = np.where(R >= 0.0, self.threshold_slope, self.compressive_slope)
         closed = (1.0 - self.opening(R)) / ((1.0 - self._coefficients[0]) * (1.0 - R))
         long = self.threshold_range / closed ** (1.0 + slope * R)
         return np.asarray(long * np.sqrt(length / (length + self.intrinsic_length)))
 
-    def growing(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
-        R, swing = self._ratio(K_max, K_min), self.range(K_max, K_min)
+    def _rate_above(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
+        R, swing = self._ratio(K_max, K_min), self._range(K_max, K_min)
         driving = (1.0 - self.opening(R)) * np.maximum(K_max, 0.0)
-        above = np.maximum(1.0 - self.threshold(K_max, K_min, length) / swing, 0.0)
+        above = np.maximum(1.0 - self._threshold(K_max, K_min, length) / swing, 0.0)
         below = np.maximum(1.0 - K_max / self.toughness, 0.0)
         return np.asarray(self.C * (driving / self.unit) ** self.n * above**self.p / below**self.q)
 
-    def opening(self, R: np.ndarray) -> np.ndarray:
-        """Newman's f = K_op/K_max at the stress ratios R from -2 to 1."""
+    def opening(self, R: ArrayLike) -> np.ndarray:
+        """Newman's f = K_op/K_max at the stress ratios R from -2 to 1.
+
+        Raises
+        ------
+        InputError
+            If a ratio lies elsewhere.
+        """
+        R = numbers("R", R, -MOST_COMPRESSION, 1.0)
         A_0, A_1, A_2, A_3 = self._coefficients
         return np.where(R >= 0.0, np.maximum(R, A_0 + R * (A_1 + R * (A_2 + R * A_3))), A_0 + A_1 * R)
 
