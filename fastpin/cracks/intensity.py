@@ -48,7 +48,7 @@ UNKNOWN_FROM = 0.05
 GRIPPED_FROM = 0.1
 """Length in radii from which a crack relieves an interference fit: the edge moves by 2 % of its displacement."""
 
-NEAREST = 0.05
+NEAREST = 0.2
 """Least distance of two cracks, in parts of the shorter one: the points of a crack resolve no nearer one."""
 
 MOST_SLIDING = 0.1
@@ -235,6 +235,9 @@ class CrackedEdge(NamedTuple):
             what = "bush ends" if self.body == "plate" and self.problem.joint.bush is not None else "rim is held"
             reason = f"reaches {deep:.2f} of the wall; K there does not know that the {what}"
             found.append(InputWarning(field, f"{reason}: trust it up to {UNKNOWN_FROM:g}"))
+        if self.body == "seat" and len(self.problem.interfaces) == 1:
+            reason = "begins at a bonded bush, which holds its mouth together: K is too large"
+            found.append(InputWarning(field, reason))
         if self.problem.is_gripped and longest > GRIPPED_FROM * self.radius:
             reason = f"is {longest / self.radius:.2g} radii: a long crack relieves the grip on the pin"
             found.append(InputWarning(field, f"{reason}, and K is too large beyond {GRIPPED_FROM:g} radii"))

@@ -74,7 +74,7 @@ def test_cracks_of_an_open_hole(a):
     cases = (uniaxial, one), (uniaxial, two), (biaxial, one), (biaxial, two), (pressure, one)
     assert [factors(field, *lines, n=80)[0, 0] for field, lines in cases] == pytest.approx(TABLE[a], abs=1.1e-6)
     few = [factors(field, *lines)[0, 0] for field, lines in cases]
-    assert few == pytest.approx([factors(field, *lines, n=80)[0, 0] for field, lines in cases], rel=7e-6)
+    assert few == pytest.approx([factors(field, *lines, n=160)[0, 0] for field, lines in cases], rel=2e-6)
 
 
 @pytest.mark.parametrize(("a", "opening", "sliding"), [(0.1, 2.380083, 0.711556), (1.0, 1.056201, 0.458434)])
@@ -136,6 +136,16 @@ def test_turned_and_mirrored_cracks(far):
     mirrored = weights(tuple(CrackLine(-line.mouth, -line.angle, line.length) for line in lines), far, 80)
     sign = np.array([1.0, -1.0])
     assert mirrored * sign[:, None, None, None] * sign == pytest.approx(first, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize(("one", "other"), [(0.1, 0.1), (0.1, 1.0), (0.1, 0.01)])
+def test_near_cracks(one, other):
+    lines = CrackLine(0.0, 0.0, one), CrackLine(0.2 * min(one, other), 0.0, other)
+    exact = factors(uniaxial, *lines, n=320)
+    alone = np.array([factors(uniaxial, line)[0, 0] for line in lines])
+    errors = np.abs(factors(uniaxial, *lines) - exact).max(axis=1)
+    assert np.all(errors < 1e-4 * alone), errors / alone
+    assert np.all(exact[:, 0] < alone)
 
 
 def test_far_cracks_do_not_feel_one_another():
