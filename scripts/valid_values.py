@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import fastpin
-from fastpin import benchmarks, bodies, casefile, damage, elasticity, model, report, studies, verification
+from fastpin import benchmarks, bodies, casefile, cracks, damage, elasticity, model, report, studies, verification
 from fastpin.errors import FastpinError
 from fastpin.report.curves import Curve
 from scripts.inline import Inline
@@ -59,6 +59,9 @@ KEYWORDS: dict[str, tuple[str, ...]] = {
 
 STRENGTHS = model.FatigueConstants(1e9, -0.1, 0.5, -0.6, 5e8, -0.1, 0.5, -0.6, bending_limit=2e8, torsion_limit=1.2e8)
 """Constants of fatigue for all criteria."""
+
+NASGRO = cracks.Nasgro(1e-10, 3.0, 1.0, 1.0, 1e6, 1e8)
+"""A law of growth."""
 
 PLATE = fastpin.Material(72e9, 0.33, "aluminium", STRENGTHS, yield_strength=4e8)
 """A plate with constants of fatigue."""
@@ -111,6 +114,9 @@ class Valid:
         convergence = fastpin.converge(problem, history, (51, 101, 201))
         study = convergence.studies[0]
         fatigue = damage.fatigue(result, "smith-watson-topper")
+        crack, law = cracks.Crack(-1.5), cracks.Walker(1e-10, 3.0)
+        length = 0.01  # in radii
+        grown = cracks.growth(result, crack, law, length, 2.0 * length)
         steel = fastpin.Problem(pair, 0.01, 1e-5, 0.4)
         cycle_in_newtons = fastpin.LoadHistory([{"P": 1e6}]) + fastpin.LoadHistory([{"Q": 2e5}, {"Q": 0.0}]).repeated(2)
         life = fastpin.wear(steel, cycle_in_newtons, coefficient=1e-14, nodes=NODES)
@@ -133,7 +139,8 @@ class Valid:
             Curve({"mu": 0.4}, {"angle (deg)": np.zeros(3)}), model.About("a project", revision="B"),
             fastpin.Session, verification.solve_sliding(_sliding_problem(pair), {"P": 1.0, "Q": 1.0}),
             model.Profile.ellipse(1e-5), model.InitialGap(pin=model.Profile.lobes(3, 1e-5)), model.Wear(1e-14), life,
-            life[-1], worn, worn.crack,
+            life[-1], worn, worn.crack, crack, law, grown, cracks.stress_intensity(state, crack, [length]), NASGRO,
+            cracks.growth_along_edge(result, law, length, 2.0 * length, [-1.5]),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
@@ -284,6 +291,16 @@ class Valid:
             "Profile.zone.value": 0.4,
             "Wear.coefficient": 1e-14,
             "load_wear.path": "wear.h5",
+            "stress_intensity.lengths": [0.01, 0.02],
+            "growth.first": 0.01,
+            "growth.last": 0.02,
+            "growth_along_edge.first": 0.01,
+            "growth_along_edge.last": 0.02,
+            "Crack.theta": -1.5,
+            "paris.C": 1e-10,
+            "paris.m": 3.0,
+            "growth.law": cracks.Walker(1e-10, 3.0),
+            "growth_along_edge.law": cracks.Walker(1e-10, 3.0),
             "wear.coefficient": 1e-3,
             "wear.cycles": 2,
             "wear.history": result.history,
@@ -294,12 +311,12 @@ class Valid:
 
 
 BY_NAME: dict[str, Any] = {
-    "E": 2e11, "a": 0.3, "alpha": 0.25, "amplitude": 1e8, "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0,
+    "E": 2e11, "K_max": [2e6], "K_min": [1e6], "R": [0.1], "a": 0.3, "alpha": 0.25, "amplitude": 1e8, "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0,
     "body": "plate", "centre": -1.5, "corners": [[1.0] * 10], "count": 3, "counts": [1.0, 2.0],
     "criterion": "smith-watson-topper", "depth": 0.01, "directory": "sweep", "ductility_exponent": -0.6, "factor": 2.0,
     "fatigue_ductility": 0.5, "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0,
     "half_width": 1.0, "height": 1e-5, "high": 0.5, "history": HISTORY, "host": "127.0.0.1", "index": 1, "k": 0.3,
-    "knee_amplitude": 1e8, "knee_cycles": 1e6, "last": 3, "limit_range": 2e8, "lives": [1e5, 1e6],
+    "knee_amplitude": 1e8, "knee_cycles": 1e6, "last": 3, "length": 0.01, "limit_range": 2e8, "lives": [1e5, 1e6],
     "load_parameter": 0.1, "load_ratio": 0.5, "low": -0.5, "mu_over_beta": 2.0, "name": "sxx", "nodes": NODES,
     "nu": 0.3, "nu_pin": 0.3, "order": 2, "parameter": [1e6], "path": "result.h5", "paths": [[[0.0, 1.0], [1.0, 0.0]]],
     "peak_pressure": 2.0, "phi": [0.0, 0.5], "place": "gap", "places": [(-3.0, 0.1), (-1.5, 0.05), (0.0, 0.1)],

@@ -67,6 +67,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_stored_commands(commands)
     add_wear(commands)
     add_plot(commands)
+    add_crack(commands)
     add_report(commands)
     add_live(commands)
     add_converge(commands)
@@ -241,6 +242,28 @@ def add_plot(commands: Any) -> None:
         else:
             read = literal if option.type == "number" else str
             plot.add_argument(f"--{name}", metavar=option.metavar, type=read, help=option.words)
+
+
+def add_crack(commands: Any) -> None:
+    """Add ``crack``."""
+    crack = _command(commands, "crack", "crack", "run", "grow a crack from the hole under the last cycle of a result")
+    crack.add_argument("result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE)")
+    for name, required, default, words in (
+        ("first", True, None, "first length of the crack, m"),
+        ("last", True, None, "last length, m"),
+        ("C", True, None, "growth in a cycle under a range of 1 MPa sqrt(m), m"),
+        ("m", True, None, "exponent: da/dN = C (dK (1 - R)^(g - 1))^m"),
+        ("exponent", False, 1.0, "Walker's g (default 1: Paris's law)"),
+        ("threshold-range", False, 0.0, "threshold of long cracks at R = 0, Pa sqrt(m) (default 0)"),
+        ("intrinsic-length", False, 0.0, "El Haddad's length of the threshold of short cracks, m (default 0)"),
+        ("toughness", False, None, "K at which the plate breaks, Pa sqrt(m)"),
+        ("at", False, None, "angle of its mouth from the bottom, deg (default: where a crack grows fastest)"),
+        ("angle", False, 0.0, "its direction from the radius, counter-clockwise, deg (default 0)"),
+    ):
+        crack.add_argument(f"--{name}", metavar="X", type=literal, required=required, default=default, help=words)
+    crack.add_argument("--body", choices=("plate", "seat"), default="plate", help="seat: the plate round a bush")
+    crack.add_argument("-o", "--output", metavar="FIGURE", type=Path, help="draw the growth (png, pdf, svg)")
+    crack.add_argument("--csv", metavar="FILE", type=Path, help="write the numbers at all lengths")
 
 
 def _add_interface(command: argparse.ArgumentParser) -> None:

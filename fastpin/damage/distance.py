@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.damage.criteria import Criterion
-from fastpin.damage.hot_spots import NO_CRACK, Fatigue, cycle_stops, evaluated, fatigue, stress_history
+from fastpin.damage.hot_spots import NO_CRACK, Fatigue, evaluated, fatigue, stress_history
 from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import Body, Points, near_rim, owner_of
 from fastpin.reading.stress import check_body
+from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.state import State
 
 DistanceMethod = Literal["point", "line", "area"]
@@ -100,7 +101,7 @@ def fatigue_at_distance(
         body or its bush, or no `theta` is given and the parameter is 0 on the whole edge.
     """
     choice("method", method, METHODS)
-    stops = cycle_stops(states)
+    stops = stops_of_one_problem(states)
     problem = stops[0].problem
     material = check_body(problem, body)
     given = material.fatigue or FatigueConstants()

@@ -24,7 +24,7 @@ from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
 from fastpin.reading.stress import check_body
 from fastpin.runtime.threads import in_threads
-from fastpin.states.choice import loaded_span_of, missing_corners, states_between
+from fastpin.states.choice import loaded_span_of, missing_corners, states_between, stops_of_one_problem
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 
@@ -159,7 +159,7 @@ def fatigue(
         If the states are no cycle of one problem, a point lies outside the body or its stress is infinite, both points
         and depth are given, the body is rigid, or the material lacks constants of the criterion.
     """
-    stops = cycle_stops(states)
+    stops = stops_of_one_problem(states)
     if points is None:
         points = Points.at_depth(0.0 if depth is None else depth, edge_angles(stops))
     elif depth is not None:
@@ -223,22 +223,6 @@ def cycle_states(states: Sequence[State], cycle: Cycle) -> list[State]:
     return within
 
 
-def cycle_stops(states: Sequence[State]) -> list[State]:
-    """Check the stops of a cycle, and return them as a list.
-
-    Raises
-    ------
-    InputError
-        If they are no states of one problem, or less than two.
-    """
-    stops = instances("states", states, State, "a sequence of fastpin.State")
-    if len(stops) < 2:
-        raise InputError("states", f"must be the stops of a cycle, at least two, not {len(stops)}")
-    if any(state.problem != stops[0].problem for state in stops):
-        raise InputError("states", "must be states of one problem")
-    return stops
-
-
 def damage_sum(
     states: Sequence[State],
     cycles: Sequence[Cycle],
@@ -275,7 +259,7 @@ def damage_sum(
     chosen = [cycle_states(states, cycle) for cycle in items("cycles", cycles, "cycles of a result")]
     if not chosen:
         raise InputError("cycles", "must be at least one")
-    points = Points.at_depth(depth, edge_angles(cycle_stops([state for one in chosen for state in one])))
+    points = Points.at_depth(depth, edge_angles(stops_of_one_problem([state for one in chosen for state in one])))
     found = [fatigue(one, criterion, body, points=points, constants=constants).life for one in chosen]
     known = [life for life in found if life is not None]
     if len(known) < len(found):

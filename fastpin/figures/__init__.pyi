@@ -13,6 +13,7 @@ from . import subjects as subjects
 from . import tractions as tractions
 from .animation import animate as animate
 from .convergence import plot_convergence as plot_convergence
+from .crack_growth import plot_crack_growth as plot_crack_growth
 from .cycles import plot_cycles as plot_cycles
 from .fatigue import plot_fatigue as plot_fatigue
 from .gap import plot_gap as plot_gap

@@ -37,7 +37,7 @@ CHARACTER = 0.0072
 
 def shown_unit(unit: str) -> str:
     """A unit as figures show it: with the letters for micro and beta."""
-    unit = unit.replace("beta*", "β*").replace("^2", "²").replace("^3", "³")
+    unit = unit.replace("beta*", "β*").replace("^2", "²").replace("^3", "³").replace("sqrt(m)", "√m")
     return f"µ{unit[1:]}" if unit[:1] == "u" and len(unit) > 1 else unit
 
 

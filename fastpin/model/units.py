@@ -39,6 +39,8 @@ _KINDS = {
     "ratio": _Kind("", ""),
     "energy density": _Kind("J/m^2", "F^2 beta*/R"),
     "stress times strain": _Kind("Pa", "F^2 beta*/R^2"),
+    "stress intensity": _Kind("Pa sqrt(m)", "F/sqrt(R)"),
+    "crack growth": _Kind("m/cycle", "R/cycle"),
     "life": _Kind("cycles", "cycles"),
     "work per stress": _Kind("m^2", "F R beta*", "m^3"),
     "wear coefficient": _Kind("1/Pa", "R/F"),

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, items, number, places_of
+from fastpin.model.checks import as_toml, instances, items, number, places_of
 from fastpin.model.history import LoadHistory
 from fastpin.states.cycles import Cycle, consecutive_cycles
 from fastpin.states.quantities import load_point
@@ -54,6 +54,23 @@ def loaded_span_of(cycle: Cycle) -> tuple[int, int]:
     if first < 1:
         raise InputError("cycle", f"the cycle to corner {last} begins without load: choose a later one")
     return first, last
+
+
+def stops_of_one_problem(states: Sequence[State], least: int = 2) -> list[State]:
+    """Check the stops of a cycle, at least so many, and return them as a list.
+
+    Raises
+    ------
+    InputError
+        If they are no states of one problem, or fewer.
+    """
+    stops = instances("states", states, State, "a sequence of fastpin.State")
+    if len(stops) < least:
+        least_words = "the stops of a cycle, at least two" if least > 1 else "at least one state"
+        raise InputError("states", f"must be {least_words}, not {len(stops)}")
+    if any(state.problem != stops[0].problem for state in stops):
+        raise InputError("states", "must be states of one problem")
+    return stops
 
 
 def states_between(states: Sequence[State], first: float, last: float) -> list[State]:

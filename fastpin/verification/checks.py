@@ -22,7 +22,16 @@ from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.profile_terms import Harmonic
 from fastpin.states.state import State
-from fastpin.verification import body_cases, body_rows, closed_forms, friction_rows, gap_rows, seat_rows, wear_rows
+from fastpin.verification import (
+    body_cases,
+    body_rows,
+    closed_forms,
+    crack_rows,
+    friction_rows,
+    gap_rows,
+    seat_rows,
+    wear_rows,
+)
 from fastpin.verification.comparisons import (
     cattaneo_mindlin,
     cattaneo_mindlin_differences,
@@ -543,6 +552,16 @@ TOPICS = {
         "Wear: exact relations",
         {"fit": wear_rows.same_fit, "fat cycles": wear_rows.volume},
         {"N, T": 2e-13, "energy taken": 1e-15, "volume": 1e-15},
+    ),
+    "cracks": Topic(
+        "Cracks at the hole: limits of an open hole, and another program",
+        {"open hole": crack_rows.open_hole, "ring": crack_rows.ring},
+        {"K": 5e-6, "K, long": 2e-4, "K, short": 1.2e-6},
+    ),
+    "cracks, exact": Topic(
+        "A crack under the pressure of a fit: a biaxial tension",
+        {"pressure": crack_rows.pressure},
+        {"K": 5e-14},
     ),
     "mirror": Topic(
         "A history with -Q in place of Q: the mirror image",

@@ -150,6 +150,8 @@ def walk(found: Walk, monkeypatch: pytest.MonkeyPatch) -> None:
         states = ["--states", "2,3"] if "states" in allowed and kind != "sketch" else []
         subject = "a.h5" if "result" in sources else "life.h5"
         command("plot", subject, kind, "-o", name, *states, *(["--csv", f"{kind}.csv"] if "csv" in allowed else []))
+    law = ["--first", "1e-4", "--last", "1e-3", "--C", "1e-10", "--m", "3", "--at", "80"]
+    command("crack", "a.h5", *law, "-o", "crack.svg", "--csv", "crack.csv")
     command("report", "a.h5", "-o", "report.html")
     command("report", "life.h5", "-o", "report-life.html")
     converge = ["--nodes", "51,71,91", "--corner", "2"]

@@ -44,6 +44,7 @@ CHECKED = ("python", "toml", "console", "sh", "bash", "sql", "text", "math")
 ELSEWHERE = {
     "README.md": "test_readme.py",
     "fatigue.md": "test_docs.py",
+    "cracks.md": "test_docs.py",
     "figures.md": "test_docs.py",
     "sessions.md": "test_docs.py",
     "riveted-joint.md": "test_docs.py",

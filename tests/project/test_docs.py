@@ -123,6 +123,17 @@ def test_the_example_of_fatigue_prints_its_numbers(capsys: pytest.CaptureFixture
     assert capsys.readouterr().out == printed
 
 
+def test_the_example_of_cracks_prints_its_numbers(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "docs" / "cracks.md").read_text(encoding="utf-8")
+    (code,), (printed,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
+    exec(compile(code, "cracks.md", "exec"), {})
+    assert capsys.readouterr().out == printed
+    assert [path.name for path in tmp_path.iterdir()] == ["growth.png"]
+
+
 def test_the_example_of_figures_draws_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")

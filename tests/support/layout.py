@@ -27,7 +27,7 @@ LEVELS = (
     ("elasticity", "casefile"),
     ("reading",),
     ("states",),
-    ("solver", "damage"),
+    ("solver", "damage", "cracks"),
     ("verification", "storage"),
     ("studies",),
     ("report",),

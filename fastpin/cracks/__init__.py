@@ -1,0 +1,8 @@
+"""Cracks at the edge of the hole: stress intensities, growth, life and arrest over a load cycle.
+
+The public names stand in ``__init__.pyi``. They are loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

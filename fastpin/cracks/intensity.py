@@ -1,0 +1,333 @@
+"""Stress intensities of cracks at the edge of a hole, from the stresses of the plate without cracks.
+
+The cracks do not change the contact: see docs/cracks.md for the error of this.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fastpin.cracks.dislocations import CrackLine, needed_points, places, rule, weights
+from fastpin.errors import InputError, InputWarning
+from fastpin.kernels.harmonics import FREE
+from fastpin.model.angles import from_bottom
+from fastpin.model.checks import check_callable, choice, instances, number, numbers
+from fastpin.model.doubts import warn_of
+from fastpin.model.points import EDGES, MOST_ANGLE, Points, far_rim, near_rim
+from fastpin.model.problem import Problem
+from fastpin.model.read_only import ReadOnly
+from fastpin.model.units import units
+from fastpin.reading.stress import check_body
+from fastpin.runtime.threads import in_threads
+from fastpin.states.choice import stops_of_one_problem
+from fastpin.states.state import State
+
+CrackedBody = Literal["plate", "seat"]
+
+Residual = Callable[[np.ndarray], ArrayLike]
+"""Normal stress on the line of a crack, Pa, from the distances to its mouth, m, of any shape."""
+
+MOST_INCLINATION = math.radians(60.0)
+"""Largest inclination of a crack, rad. There 80 points still give 1e-4."""
+
+LONGEST = 1e4
+"""Largest length in parts of the hole's radius, checked against the crack in a plate without a hole."""
+
+MOST_OF_WALL = 0.9
+"""Largest depth of a tip in parts of the wall. The ligament beyond is not elastic for long."""
+
+UNKNOWN_FROM = 0.05
+"""Depth in parts of the wall from which the outline counts: K of a free rim rises by 1.6 % there."""
+
+GRIPPED_FROM = 0.1
+"""Length in radii from which a crack relieves an interference fit: the edge moves by 2 % of its displacement."""
+
+NEAREST = 0.2
+"""Least distance of two cracks, in parts of the shorter one: the points of a crack resolve no nearer one."""
+
+MOST_SLIDING = 0.1
+"""Largest |K_II| in parts of K_I for which a crack keeps its direction nearly."""
+
+
+@dataclass(frozen=True)
+class Crack:
+    """A straight crack at the edge of a hole.
+
+    Parameters
+    ----------
+    theta : float
+        Angle of its mouth, rad, counter-clockwise from the +x axis; -pi/2 is the bottom of the hole.
+    angle : float
+        Its direction from the radius, rad, counter-clockwise, at most 60 deg; 0 is radial.
+    body : {"plate", "seat"}
+        "plate" begins at the hole. With a bush it is the bush, and "seat" is the plate round it.
+
+    Raises
+    ------
+    InputError
+        If an angle is no finite number or too large, or the body is unknown.
+    """
+
+    theta: float
+    angle: float = 0.0
+    body: CrackedBody = "plate"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "theta", number("theta", self.theta, -MOST_ANGLE, MOST_ANGLE))
+        object.__setattr__(self, "angle", number("angle", self.angle, -MOST_INCLINATION, MOST_INCLINATION))
+        object.__setattr__(self, "body", choice("body", self.body, EDGES))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StressIntensity(ReadOnly):
+    """Stress intensities of a crack, or of several, at states and lengths.
+
+    Attributes
+    ----------
+    lengths : ndarray, shape (m,) or (m, cracks)
+        m.
+    K_I, K_II : ndarray, shape (states, m) or (states, m, cracks)
+        Pa sqrt(m). K_I is positive where the stress opens the crack; a negative one counts faces that overlap. K_II is
+        positive where the side on the left of the growth slides backwards: K_I + i K_II = sqrt(2 pi r) (s_nn + i s_tn)
+        ahead of the tip, t along the growth and n to the left.
+    doubts : tuple of InputWarning
+        Reasons to doubt the numbers.
+    """
+
+    lengths: np.ndarray
+    K_I: np.ndarray
+    K_II: np.ndarray
+    doubts: tuple[InputWarning, ...]
+
+    def __repr__(self) -> str:
+        return f"<StressIntensity of {len(self.K_I)} states at {len(self.lengths)} lengths>"
+
+
+def stress_intensity(
+    states: Sequence[State] | State,
+    cracks: Crack | Sequence[Crack],
+    lengths: ArrayLike,
+    residual_stress: Residual | None = None,
+) -> StressIntensity:
+    """The stress intensities of a crack, or of several together, at each state and length.
+
+    Parameters
+    ----------
+    states : State or sequence of State
+        States of one problem, such as a result.
+    cracks : Crack or sequence of Crack
+        Several cracks shield one another. They begin in one body and don't touch.
+    lengths : array_like, shape (m,) or (m, cracks)
+        Lengths of the crack, m. Several cracks have equal lengths unless there is a column for each.
+    residual_stress : callable, optional
+        Normal stress on the line of each crack that is added at every state, Pa, from the distances to the mouth, m.
+
+    Returns
+    -------
+    StressIntensity
+        With an axis for the cracks if `cracks` is a sequence.
+
+    Raises
+    ------
+    InputError
+        If a crack is longer than the body, two cracks touch, the body is rigid, or a compliance gives its plate no
+        stress inside.
+    """
+    each = [states] if isinstance(states, State) else states
+    stops = stops_of_one_problem(each, 1)
+    single = isinstance(cracks, Crack)
+    group = [cracks] if isinstance(cracks, Crack) else instances("cracks", cracks, Crack, "a Crack or a list of them")
+    if not group:
+        raise InputError("cracks", "must be a Crack or a list of them, not an empty list")
+    if any(crack.body != group[0].body for crack in group):
+        raise InputError("cracks", "must begin in one body")
+    edge = CrackedEdge.of(stops[0].problem, group[0].body)
+    given = numbers("lengths", lengths, 0.0, open_low=True)
+    table = given[:, None] if given.ndim == 1 else given
+    if table.ndim != 2 or table.shape[1] not in (1, len(group)) or not table.size:
+        raise InputError("lengths", f"must have the shape (m,) or (m, {len(group)}), not {given.shape}")
+    table = np.broadcast_to(table, (len(table), len(group)))
+    for k, crack in enumerate(group):
+        edge.check("lengths", crack, table[:, k])
+    rows = [edge.lines(group, row) for row in table]
+    if len(group) > 1:
+        _check_apart(rows)
+    K = histories(stops, edge, rows, np.zeros(1), residual_stress)[:, 0]
+    K_I, K_II = (K[..., 0, mode] if single else K[..., mode] for mode in (0, 1))
+    found = []
+    for k, crack in enumerate(group):
+        found += edge.doubts("lengths", crack, float(table[:, k].max()))
+        found += sliding_doubt("lengths", edge.problem, table[:, k], K[:, :, k])
+    warn_of(found, 2)
+    return StressIntensity(given, K_I, K_II, tuple(found))
+
+
+class CrackedEdge(NamedTuple):
+    """The edge at which cracks begin.
+
+    Attributes
+    ----------
+    problem : Problem
+    body : str
+    radius : float
+        Radius of the edge, m.
+    wall : float
+        Depth of the body, in radii of the edge; infinite without a rim.
+    is_free : bool
+        Whether the other rim is free, so that the kernel knows it; True without a rim.
+    """
+
+    problem: Problem
+    body: CrackedBody
+    radius: float
+    wall: float
+    is_free: bool
+
+    @classmethod
+    def of(cls, problem: Problem, body: CrackedBody) -> CrackedEdge:
+        """The edge of a body. Raise :class:`InputError` if its stress is unknown."""
+        check_body(problem, body)
+        near, bush, lug = near_rim(problem, body), problem.joint.bush, problem.plate_body.lug
+        if body == "plate" and bush is not None:
+            return cls(problem, body, problem.hole_radius, bush - 1.0, False)
+        if lug.edge_only:
+            raise InputError("body", "a compliance gives no stress inside the plate: a crack needs it")
+        far = far_rim(problem, body)
+        wall = math.inf if far is None else far / near - 1.0
+        return cls(problem, body, near * problem.hole_radius, wall, far is None or lug.outer_kind == FREE)
+
+    @property
+    def far(self) -> float:
+        """Radius of the free outer rim in radii of the edge; infinite if there is none."""
+        return 1.0 + self.wall if self.is_free else math.inf
+
+    def lines(self, cracks: Sequence[Crack], lengths: ArrayLike) -> tuple[CrackLine, ...]:
+        """The lines of cracks of these lengths, m, for the kernel."""
+        each = zip(cracks, np.broadcast_to(lengths, len(cracks)), strict=True)
+        return tuple(CrackLine(crack.theta, crack.angle, float(length) / self.radius) for crack, length in each)
+
+    def depth(self, angle: float, length: float) -> float:
+        """Depth of a tip, in radii of the edge, of a crack of this length, m."""
+        return abs(1.0 + length / self.radius * complex(math.cos(angle), math.sin(angle))) - 1.0
+
+    def check(self, field: str, crack: Crack, lengths: np.ndarray) -> None:
+        """Raise :class:`InputError` if a length, m, is too large for the body."""
+        length = units(self.problem)["length"]
+        longest = float(np.max(lengths))
+        if longest > LONGEST * self.radius:
+            raise InputError(field, f"must be at most {LONGEST:g} radii of the hole, not {length.text(longest)}")
+        if self.depth(crack.angle, longest) > MOST_OF_WALL * self.wall:
+            wall = length.text(self.wall * self.radius)
+            raise InputError(
+                field, f"must end within {MOST_OF_WALL:g} of the wall of {wall}, not be {length.text(longest)}"
+            )
+
+    def doubts(self, field: str, crack: Crack, longest: float) -> list[InputWarning]:
+        """Doubts about the kernel for a crack of this length, m."""
+        found, deep = [], self.depth(crack.angle, longest) / self.wall
+        if not self.is_free and deep > UNKNOWN_FROM:
+            what = "bush ends" if self.body == "plate" and self.problem.joint.bush is not None else "rim is held"
+            reason = f"reaches {deep:.2f} of the wall; K there does not know that the {what}"
+            found.append(InputWarning(field, f"{reason}: trust it up to {UNKNOWN_FROM:g}"))
+        if self.body == "seat" and len(self.problem.interfaces) == 1:
+            reason = "begins at a bonded bush, which holds its mouth together: K is too large"
+            found.append(InputWarning(field, reason))
+        if self.problem.is_gripped and longest > GRIPPED_FROM * self.radius:
+            reason = f"is {longest / self.radius:.2g} radii: a long crack relieves the grip on the pin"
+            found.append(InputWarning(field, f"{reason}, and K is too large beyond {GRIPPED_FROM:g} radii"))
+        return found
+
+
+def sliding_doubt(field: str, problem: Problem, lengths: np.ndarray, K: np.ndarray) -> list[InputWarning]:
+    """Doubt about the direction of cracks, from K of the shape (states, m, 2): they slide at their largest K_I."""
+    at = np.argmax(K[..., 0], axis=0)
+    opening, sliding = np.take_along_axis(K, at[None, :, None], axis=0)[0].T
+    bad = np.flatnonzero((opening > 0.0) & (np.abs(sliding) > MOST_SLIDING * opening))
+    if not bad.size:
+        return []
+    part = abs(sliding[bad[0]] / opening[bad[0]])
+    length = units(problem)["length"].text(float(lengths[bad[0]]))
+    words = f"in doubt from {length} on: |K_II| is {part:.2f} of the largest K_I, and the crack turns away"
+    return [InputWarning(field, words)]
+
+
+def histories(
+    states: Sequence[State],
+    edge: CrackedEdge,
+    rows: Sequence[tuple[CrackLine, ...]],
+    turns: np.ndarray,
+    residual_stress: Residual | None = None,
+) -> np.ndarray:
+    """K_I and K_II, Pa sqrt(m), shape (states, turns, rows, cracks, 2).
+
+    Parameters
+    ----------
+    states : sequence of State
+    edge : CrackedEdge
+    rows : sequence of tuple of CrackLine
+        The cracks in each row stand together.
+    turns : ndarray, shape (p,)
+        Angles by which all mouths are turned, rad.
+    residual_stress : callable, optional
+        See :func:`stress_intensity`.
+    """
+    check_callable("residual_stress", residual_stress, 1)
+    n = needed_points(rows[0], edge.far)
+    # With the first mouth at the angle 0 the weights are found again at other places.
+    at_zero = [tuple(line._replace(mouth=line.mouth - row[0].mouth) for line in row) for row in rows]
+    of_rows = np.array([weights(row, edge.far, n) for row in at_zero])
+    found = np.array([[places(line, n) for line in row] for row in rows])  # rows, cracks, (depth, angle), points
+    depth, angle = found[:, :, 0], found[:, :, 1]
+    mouths = np.array([[line.mouth for line in row] for row in rows])[..., None]
+    inclined = np.array([[line.angle for line in row] for row in rows])[..., None]
+    turn = np.exp(2j * (inclined - angle))
+    added = np.zeros(1)
+    if residual_stress is not None:
+        s = np.array([[line.length * rule(n).place for line in row] for row in rows]) * edge.radius
+        given = numbers("residual_stress", residual_stress(s))
+        if given.shape not in ((), s.shape):
+            raise InputError("residual_stress", f"must return numbers of the shape {s.shape}, not {given.shape}")
+        added = given
+
+    theta = turns[:, None, None, None] + (mouths + angle)
+    points = Points.at_depth(depth * edge.radius, theta)
+
+    def intensities(state: State) -> np.ndarray:
+        stress = state.stress(points, edge.body)
+        mean, half = 0.5 * (stress.radial + stress.hoop), 0.5 * (stress.hoop - stress.radial)
+        traction = mean + turn * (half + 1j * stress.shear)
+        pair = np.stack([traction.real + added, traction.imag], axis=-1)
+        return np.asarray(np.einsum("mcakne,pmkne->pmca", of_rows, pair, optimize=True))
+
+    return np.array(in_threads(intensities, states)) * math.sqrt(edge.radius)
+
+
+def _check_apart(rows: Sequence[tuple[CrackLine, ...]]) -> None:
+    """Raise :class:`InputError` if two cracks of a row touch, or nearly do."""
+    for row in rows:
+        ends = []
+        for line in row:
+            mouth, way = np.exp(1j * line.mouth), np.exp(1j * (line.mouth + line.angle))
+            ends.append((complex(mouth), complex(mouth + line.length * way)))
+        for k, one in enumerate(ends):
+            for other, line in zip(ends[:k], row, strict=False):
+                if _distance(one, other) < NEAREST * min(line.length, row[k].length):
+                    places_ = " and ".join(f"{from_bottom(each.mouth):.2f}" for each in (line, row[k]))
+                    raise InputError("cracks", f"must not touch: those at {places_} deg from the bottom nearly do")
+
+
+def _distance(one: tuple[complex, complex], other: tuple[complex, complex]) -> float:
+    """The distance of two straight lines from end to end; 0 if they cross."""
+    least, crossing = math.inf, True
+    for (start, end), points in ((one, other), (other, one)):
+        along = end - start
+        parts = [(point - start) / along for point in points]
+        crossing = crossing and parts[0].imag * parts[1].imag < 0.0
+        least = min(least, *(abs(along * (part - min(max(part.real, 0.0), 1.0))) for part in parts))
+    return 0.0 if crossing else least
