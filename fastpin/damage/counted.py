@@ -21,7 +21,7 @@ from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
 from fastpin.runtime.threads import in_chunks
 
-SPECTRUM_CRITERIA = tuple(name for name, criterion in FATIGUE_CRITERIA.items() if criterion.count is not None)
+SPECTRUM_CRITERIA = tuple(name for name, criterion in FATIGUE_CRITERIA.items() if criterion.counting is not None)
 """The criteria with lives, whose cycles are counted."""
 
 CHUNK, COUNTED = 8, 64
@@ -92,7 +92,7 @@ class CountedMaterial(NamedTuple):
 
     Attributes
     ----------
-    count : PlaneCount
+    counting : PlaneCount
     material : Material
     constants : tuple of float
         The constants of the parameter.
@@ -100,7 +100,7 @@ class CountedMaterial(NamedTuple):
         Logarithms of the coefficients of the life, and its exponents.
     """
 
-    count: PlaneCount
+    counting: PlaneCount
     material: Material
     constants: tuple[float, ...]
     life: np.ndarray
@@ -115,14 +115,14 @@ class CountedMaterial(NamedTuple):
             If the criterion has no life, or a constant is missing. The message names the constants and the `body`.
         """
         criterion = FATIGUE_CRITERIA[choice("criterion", name, tuple(FATIGUE_CRITERIA))]
-        if criterion.count is None:
+        if criterion.counting is None:
             raise InputError("criterion", f"{name} has no life; use {alternatives(SPECTRUM_CRITERIA)}")
         given = (material.fatigue if constants is None else constants) or FatigueConstants()
         known = given.required((*criterion.needs, *criterion.life_needs), name, body)
         needs = len(criterion.needs)
-        curve = criterion.count.curve(material, *known[needs:])
+        curve = criterion.counting.curve(material, *known[needs:])
         life = np.array([*np.log(curve.coefficients), *curve.exponents])
-        return cls(criterion.count, material, known[:needs], life)
+        return cls(criterion.counting, material, known[:needs], life)
 
     def worst(
         self, history: np.ndarray, spectrum: Spectrum, progress: Callable[[float], None] | None = None
@@ -141,7 +141,7 @@ class CountedMaterial(NamedTuple):
         return out[:, 0], out[:, 1]
 
     def _count(self, spectrum: Spectrum, least: float, paths: np.ndarray, rows: np.ndarray, part: slice) -> None:
-        rainflow.worst_sums(paths[part], *spectrum, self.count.form, least, self.life, rows[part])
+        rainflow.worst_sums(paths[part], *spectrum, self.counting.form, least, self.life, rows[part])
 
     def cycles(self, history: np.ndarray, spectrum: Spectrum, plane: float) -> tuple[np.ndarray, np.ndarray]:
         """Count the cycles of one point on one plane, from its stresses (states, 1, 4), Pa.
@@ -155,14 +155,14 @@ class CountedMaterial(NamedTuple):
         """
         most = 3 * spectrum.order.size + 2
         places, values = np.empty((most, 3), dtype=np.int64), np.empty((most, 3))
-        given = self.count.form, self._least(history), self.life
+        given = self.counting.form, self._least(history), self.life
         count = rainflow.cycles_on_plane(self._paths(history)[0], plane, *spectrum, *given, places, values)
         return places[:count], values[:count]
 
     def _least(self, history: np.ndarray) -> float:
         """The parameter that is rounding beside the stresses."""
-        return ROUNDING * self.count.natural(float(np.abs(history).max(initial=0.0)), self.material)
+        return ROUNDING * self.counting.natural(float(np.abs(history).max(initial=0.0)), self.material)
 
     def _paths(self, history: np.ndarray) -> np.ndarray:
-        swung, push = self.count.swung_and_push(history, self.material, *self.constants)
+        swung, push = self.counting.swung_and_push(history, self.material, *self.constants)
         return np.ascontiguousarray(np.concatenate([swung, push], axis=-1).transpose(1, 0, 2))

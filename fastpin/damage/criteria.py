@@ -336,7 +336,7 @@ class FatigueCriterion(NamedTuple):
         ``values(history, material, *constants)`` returns its :class:`CriterionValues`.
     life_needs : tuple of str
         The constants of the life.
-    count : PlaneCount or None
+    counting : PlaneCount or None
         How cycles of a spectrum are counted, with the curve of lives; None for a criterion without lives.
     """
 
@@ -344,7 +344,7 @@ class FatigueCriterion(NamedTuple):
     needs: tuple[str, ...]
     values: Callable[..., CriterionValues]
     life_needs: tuple[str, ...] = ()
-    count: PlaneCount | None = None
+    counting: PlaneCount | None = None
 
 
 def _smith_watson_topper(history: np.ndarray, material: Material) -> CriterionValues:

@@ -61,7 +61,8 @@ def stress_history(states: Sequence[State], points: Points, body: Body = "plate"
 def different_states(states: Sequence[State], straight: bool) -> tuple[list[State], np.ndarray]:
     """Return the states with different stresses, and the place of each state among them, int64, shape (states,)."""
     seen: dict[bytes, int] = {}
-    different, order = [], np.empty(len(states), dtype=np.int64)
+    different: list[State] = []
+    order = np.empty(len(states), dtype=np.int64)
     for k, state in enumerate(states):
         key = hashlib.blake2b(digest_size=16)
         for part in (state, state.seat):

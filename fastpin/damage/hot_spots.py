@@ -328,6 +328,6 @@ def _values(history: np.ndarray, name: str, material: Material, given: FatigueCo
     criterion = FATIGUE_CRITERIA[name]
     found = criterion.values(history, material, *given.required(criterion.needs, name, body))
     constants = [getattr(given, constant) for constant in criterion.life_needs]
-    if criterion.count is None or None in constants:
+    if criterion.counting is None or None in constants:
         return found
-    return found._replace(life=lives.cycles_on_curve(found.parameter, criterion.count.curve(material, *constants)))
+    return found._replace(life=lives.cycles_on_curve(found.parameter, criterion.counting.curve(material, *constants)))

@@ -62,7 +62,7 @@ class SpectrumCycles(NamedTuple):
         Load points of both reversals, see :mod:`fastpin.states.choice`. States that come again have their first place.
     largest : ndarray
         Load point of the largest normal stress in the cycle.
-    count : ndarray of int
+    times : ndarray of int
         How often the cycle comes in the spectrum.
     parameter : ndarray
         Parameter of the cycle, Pa; rad for "fatemi-socie".
@@ -73,7 +73,7 @@ class SpectrumCycles(NamedTuple):
     start: np.ndarray
     stop: np.ndarray
     largest: np.ndarray
-    count: np.ndarray
+    times: np.ndarray
     parameter: np.ndarray
     damage: np.ndarray
 
@@ -268,5 +268,5 @@ class _Found:
             _, plane, history, counted = self._best
             places, values = counted.cycles(history, spectrum, plane)
         rows = np.argsort(-values[:, 2], kind="stable")
-        places, (count, parameter, damage) = load_points[places[rows]], values[rows].T
-        return SpectrumCycles(*places.T, count.astype(np.int64), parameter, damage)
+        (start, stop, largest), (times, parameter, damage) = load_points[places[rows]].T, values[rows].T
+        return SpectrumCycles(start, stop, largest, times.astype(np.int64), parameter, damage)

@@ -1,4 +1,4 @@
-"""Counts on planes: compiled, as plain Python, against pylife, and against a search by rules of thumb of textbooks."""
+"""Counts on planes: compiled, as plain Python, against pylife, and against a naive count."""
 
 import numpy as np
 import pytest
@@ -40,8 +40,8 @@ def uniaxial(values, push=None):
 def naive(values, push):
     """Ranges and largest pushes of a repeated history: take out the smallest range and close the gap, again and again.
 
-    `values` and `push` begin at the largest value. A range between two smaller ranges of its neighbours is none: the
-    smallest range of all is always a cycle.
+    The history begins at its largest value. The push of a cycle is the largest one from its first reversal on, before
+    the history passes the value of this reversal again.
     """
     top = int(np.argmax(values))
     u, v = (np.append(np.roll(each, -top), each[top]) for each in (values, push))
