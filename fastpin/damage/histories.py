@@ -135,15 +135,16 @@ def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progr
 
     pressure, shear = np.array([state.pressure for state in states]), np.array([state.shear for state in states])
     remote, hats = np.array([_remote(state) for state in states]), Hats(problem, grid)
-    linear, learnt = NodalStress(hats, stress), 0
+    linear = NodalStress(hats, stress)
     for nodes, functions in hats.blocks(pressure, shear):
         linear.learn(nodes, functions)
-        learnt += nodes.size
         if progress is not None:
-            progress(min(learnt / grid.size, 1.0))
+            progress(float(nodes[-1]) / grid.size)
     found = np.empty((len(states), points.theta.size, 4))
     for which in range(4):
         found[:, :, which] = linear.component(which, slice(None), pressure, shear, remote)
+    if progress is not None:
+        progress(1.0)
     return found
 
 

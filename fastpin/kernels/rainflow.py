@@ -19,7 +19,7 @@ import numpy as np
 
 from fastpin.runtime.jit import compiled, inner
 
-COARSE = 36
+COARSE = 72
 """Planes of the first scan."""
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
@@ -27,6 +27,9 @@ GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 STEPS = 16
 """Steps of the search beside a plane of the scan. The angle is then known to 4e-5 rad, the damage to 1e-7 of itself."""
+
+CLOSE = 1e-8
+"""Last step of Newton's method in log 2N. Its error is the square of this step."""
 
 WORTH = 0.5
 """Planes of the scan with less than this part of the largest damage are not refined."""
@@ -91,14 +94,14 @@ def _damage(parameter, life):
     x = max((target - life[0]) / life[2], (target - life[1]) / life[3])
     for _ in range(100):
         one, two = life[0] + x * life[2], life[1] + x * life[3]
-        most = max(one, two)
-        first, second = math.exp(one - most), math.exp(two - most)
-        total = first + second
-        slope = (life[2] * first + life[3] * second) / total
-        moved = x - (most + math.log(total) - target) / slope
-        if moved <= x:
+        lower = math.exp(-abs(one - two))  # the smaller power, in parts of the larger one
+        upper, under = (life[2], life[3]) if one > two else (life[3], life[2])
+        slope = (upper + under * lower) / (1.0 + lower)
+        moved = x - (max(one, two) + math.log1p(lower) - target) / slope
+        close = moved - x < CLOSE
+        x = max(x, moved)
+        if close:
             break
-        x = moved
     return 2.0 * math.exp(min(-x, 700.0))
 
 
