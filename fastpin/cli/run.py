@@ -272,6 +272,8 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
         if len(last) <= report.cycle.MOST_STOPS:
             places |= set(last)  # the fatigue over the last cycle is printed
         ends = [*ends, *last[:1], *last[-1:]]
+    elif points.size <= report.cycle.MOST_STOPS:
+        places |= set(range(points.size))  # the fatigue over the whole history is printed
     if case.problem.seat is not None:
         places |= set(ends)
     if options.record is not None:
@@ -406,6 +408,8 @@ class RunReport:
         if result.cycles:
             states = result.states if cycle is None else cycle.states
             say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
+        else:
+            say(*report.cycle.spectrum_lines(result.states, len(case.history)))
         say(*(f"note: {note}" for note in note_lines(case, result)))
         say(solver_line(result))
 

@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.damage.counted import CountedMaterial, Spectrum
-from fastpin.damage.criteria import ROUNDING, Criterion
+from fastpin.damage.counted import SPECTRUM_CRITERIA, CountedMaterial, Spectrum
+from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, Criterion
 from fastpin.damage.histories import different_states, history_blocks
-from fastpin.damage.hot_spots import NO_CRACK, bodies_at, cycle_stops, edge_angles
+from fastpin.damage.hot_spots import CRITERIA, NO_CRACK, bodies_at, cycle_stops, edge_angles
 from fastpin.errors import InputError
-from fastpin.model.checks import check_callable, instance, true_or_false
+from fastpin.model.checks import check_callable, choice, instance, true_or_false
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import Body, Points, elastic_bodies, material_of, owner_of
 from fastpin.model.problem import Problem
@@ -219,17 +219,21 @@ def damage_ranking(
         See :func:`spectrum_damage`; also if no body has the constants.
     """
     problem = cycle_stops(states)[0].problem
-    found, missing = [], list[InputError]()
-    for body in elastic_bodies(problem):
-        try:
-            CountedMaterial.of(criterion, material_of(problem, body), how.get("constants"), owner_of(problem, body))
-        except InputError as error:
-            missing.append(error)
-        else:
-            found.append(spectrum_damage(states, criterion, body, **how))
-    if missing and not found:
-        raise missing[0]
+    choice("criterion", criterion, CRITERIA)
+    bodies = bodies_with_lives(problem, criterion, how.get("constants"))
+    found = [spectrum_damage(states, criterion, body, **how) for body in bodies or elastic_bodies(problem)[:1]]
     return sorted((one for one in found if one.damage.any()), key=lambda one: -one.hot_spot.damage)
+
+
+def bodies_with_lives(problem: Problem, criterion: Criterion, constants: FatigueConstants | None = None) -> list[Body]:
+    """The elastic bodies whose material has the constants of a criterion and of its life; none without a life."""
+    needs = FATIGUE_CRITERIA[criterion].needs + FATIGUE_CRITERIA[criterion].life_needs
+    known = {body: constants or material_of(problem, body).fatigue for body in elastic_bodies(problem)}
+    return [
+        body
+        for body, given in known.items()
+        if criterion in SPECTRUM_CRITERIA and given and None not in [getattr(given, name) for name in needs]
+    ]
 
 
 def _halves(progress: Callable[[float, float], None] | None) -> tuple[Callable[[float], None], Callable[[float], None]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.damage import NO_CRACK, Fatigue, cycle_states, fatigue
+from fastpin.damage import CRITERIA, NO_CRACK, Fatigue, SpectrumDamage, bodies_with_lives, cycle_states, fatigue
 from fastpin.damage.criteria import Criterion
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
@@ -19,19 +20,24 @@ from fastpin.figures.style import COLOURS, angle_axis, line
 from fastpin.figures.subjects import Subject, with_cycles
 from fastpin.figures.words import ANGLE, caption, quantity, short
 from fastpin.model.angles import from_bottom
-from fastpin.model.checks import instance, instances
-from fastpin.model.points import Body
+from fastpin.model.checks import choice, instance, instances
+from fastpin.model.points import EDGES, Body
 from fastpin.model.units import scaled, units
 from fastpin.report.case import edge_body
 from fastpin.report.curves import write_csv
 from fastpin.report.cycle import fatigue_bodies
-from fastpin.report.fatigue import fatigue_curve
+from fastpin.report.fatigue import fatigue_curve, spectrum_curve
+from fastpin.solver.result import Result
 
 PLANES = 40
 """Planes that are drawn as short lines, spread over the edge."""
 
 LEAST = 0.02
 """Least parameter with a plane, in parts of the largest."""
+
+
+MOST_REFINED = 500
+"""States of a spectrum up to which refined tractions are read for a figure: some ten seconds."""
 
 
 def plot_fatigue(
@@ -58,11 +64,85 @@ def plot_fatigue(
 def fatigue_plot(
     subject: Subject, criterion: Criterion = "smith-watson-topper", body: Body | None = None, depth: float | None = None
 ) -> Plot:
-    """Return the fatigue of the last cycle: of one body, or of all edges of holes with constants."""
+    """Return the fatigue of the last cycle: of one body, or of all edges of holes with constants.
+
+    Without a cycle it is the damage of the whole history.
+    """
+    if not subject.cycles:
+        return _spectrum_plot(subject.whole(), criterion, body, depth)
     result = subject.part(with_cycles(subject).cycles[-1])
     cycle = cycle_states(result, result.cycles[-1])
     bodies = fatigue_bodies(cycle[0].problem, criterion) if body is None else [body]
     return fatigue_of([fatigue(cycle, criterion, one, depth=depth) for one in bodies])
+
+
+def _spectrum_plot(result: Result, criterion: Criterion, body: Body | None, depth: float | None) -> Plot:
+    """Return the damage over a whole history without cycles; without constants of a life its parameter, as of a cycle.
+
+    The stresses of many states are those of straight lines between the nodes.
+    """
+    choice("criterion", criterion, CRITERIA)
+    known = bodies_with_lives(result.problem, criterion)
+    bodies = [one for one in known if one in EDGES] if body is None else [one for one in known if one == body]
+    if not bodies:
+        others = fatigue_bodies(result.problem, criterion) if body is None else [body]
+        return fatigue_of([fatigue(result.states, criterion, one, depth=depth) for one in others])
+    straight = len(result) > MOST_REFINED
+    found = [result.spectrum_damage(criterion, one, depth=depth, straight=straight) for one in bodies]
+    plot = spectrum_of(found)
+    words = f"the stresses of {len(result):,} states are those of straight lines between the nodes"
+    return replace(plot, notes=[words]) if straight else plot
+
+
+def spectrum_of(found: Sequence[SpectrumDamage]) -> Plot:
+    """Return the damage of one spectrum along the edge, with its hot spot and planes, and below it the life.
+
+    All bodies are of one problem and one criterion.
+    """
+    edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in found)
+    return Plot(
+        lambda look: _draw_spectrum(look, found),
+        lambda path: write_csv([spectrum_curve(one) for one in found], path),
+        f"Line chart of the damage by {found[0].criterion} along the edge of the {edges}.",
+        f"Damage of one spectrum by {found[0].criterion} along the edge of the {edges}, with its hot spot, and the "
+        "life. Short lines are the worst planes.",
+    )
+
+
+def _draw_spectrum(look: Look, found: Sequence[SpectrumDamage]) -> Sheet:
+    sheet = look.sheet([2.2, 2.2], extra=1.2)
+    axes, handles = sheet.axes, list[Line2D]()
+    sheet.grid()
+    names = [edge_body(one.problem, one.body) for one in found]
+    for place, one in enumerate(found):
+        spot, before = one.hot_spot, f"{names[place]}: " if len(found) > 1 else ""
+        angle, order = _by_angle(one)
+        damage, colour = one.damage.ravel()[order], COLOURS[2 * place + 1]
+        axes[0, 0].plot(angle, damage, **line(2 * place))
+        if math.isnan(spot.theta):
+            handles.append(Line2D([], [], linestyle="none", label=f"{before}no damage"))
+            continue
+        axes[0, 0].plot(from_bottom(spot.theta), spot.damage, "o", markersize=4.5, color=colour)
+        where = f"{before}{spot.life:.3g} spectra at {from_bottom(spot.theta):.1f} deg".replace("-", "−")
+        handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
+        _draw_planes(axes[0, 0], angle, damage, (one.plane.ravel() - one.theta.ravel())[order])
+        axes[1, 0].semilogy(angle, np.where(damage > 0.0, one.life.ravel()[order], np.nan), **line(2 * place))
+    highest = max(one.hot_spot.damage for one in found)
+    if highest > 0.0:
+        handles.append(Line2D([], [], label="worst planes", color="0.3", linewidth=1.0))
+        axes[0, 0].set_ylim(0.0, 1.15 * highest)
+        axes[1, 0].set_ylim(0.5 / highest, 1e4 / highest)
+    axes[0, 0].set_ylabel(f"damage of a spectrum,\n{found[0].criterion}")
+    axes[1, 0].set_ylabel("life (spectra)")
+    for panel in axes[:, 0]:
+        panel.set_xlim(-180.0, 180.0)
+        angle_axis(panel)
+    axes[-1, 0].set_xlabel(ANGLE)
+    sheet.figure.align_ylabels(axes)
+    sheet.legend(handles, min(len(handles), 3))
+    heading = "; ".join(f"{name}, {_depth_words(one)}" for name, one in zip(names, found, strict=True))
+    sheet.head(look.title, heading, caption=caption(found[0].problem))
+    return sheet
 
 
 def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
@@ -122,12 +202,12 @@ def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
     return sheet
 
 
-def _depth_words(found: Fatigue) -> str:
+def _depth_words(found: Fatigue | SpectrumDamage) -> str:
     depth = float(found.depth.ravel()[0])
     return "on the edge" if depth == 0.0 else f"{short(depth, units(found.problem)['length'])} below the edge"
 
 
-def _by_angle(found: Fatigue) -> tuple[np.ndarray, np.ndarray]:
+def _by_angle(found: Fatigue | SpectrumDamage) -> tuple[np.ndarray, np.ndarray]:
     """The angles from the bottom, deg, in increasing order, and the order of the points."""
     angle = np.array([from_bottom(place) for place in found.theta.ravel().tolist()])
     order = np.argsort(angle)

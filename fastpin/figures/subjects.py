@@ -50,6 +50,10 @@ class InMemory:
         """Return the result."""
         return self.result()
 
+    def whole(self) -> Result:
+        """Return the result."""
+        return self.result()
+
     def wear(self) -> WearResult:
         """Return the life of wear."""
         return instance("result", self._life, WearResult, "a WearResult")
@@ -79,6 +83,10 @@ class InFile:
     def part(self, cycle: Cycle) -> Result:
         """Return the result with the states of one cycle only."""
         return load(self._path, states=places_between(self._path, *span_of(cycle)))
+
+    def whole(self) -> Result:
+        """Return the result with all its states."""
+        return load(self._path)
 
     def wear(self) -> WearResult:
         """Raise :class:`InputError`: there is no life of wear."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fastpin.damage import Fatigue, cycle_states, fatigue
+from fastpin.damage import Fatigue, bodies_with_lives, cycle_states, fatigue, spectrum_damage
 from fastpin.damage.criteria import Criterion
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
@@ -19,6 +20,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.case import ROUNDING, edge_body
 from fastpin.report.curves import Curve
+from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.states.quantities import load_point, sizes
@@ -66,6 +68,27 @@ def fatigue_lines(states: Sequence[State], cycle: Cycle) -> list[str]:
         return []
     bodies = [body for body in fatigue_bodies(stops[0].problem, SWT) if material_of(stops[0].problem, body).fatigue]
     return [hot_spot_line(fatigue(stops, SWT, body), stops) for body in bodies]
+
+
+def spectrum_lines(states: Sequence[State], corners: int) -> list[str]:
+    """Return lines of text: the hot spots of plate and bush by Smith, Watson and Topper over a whole history.
+
+    The history is one pass of a repeated spectrum, which the lives count. There is no line for a body without constants
+    of the life, for less than three corners, or more than :data:`MOST_STOPS` states. All `corners` must have been kept.
+    """
+    if corners < 3 or len(states) > MOST_STOPS or missing_corners(states, 1, corners):
+        return []
+    bodies = [body for body in bodies_with_lives(states[0].problem, SWT) if body in EDGES]
+    lines = []
+    for found in (spectrum_damage(states, SWT, body) for body in bodies):
+        spot, edge = found.hot_spot, edge_body(found.problem, found.body)
+        name = f"fatigue of the {edge} over the whole history as a spectrum, Smith-Watson-Topper"
+        if math.isnan(spot.theta):
+            lines.append(f"{name}: none, no plane has both tension and a changing strain")
+            continue
+        words = f"life {spot.life:.3g} spectra at {from_bottom(spot.theta):z.2f} deg"
+        lines.append(f"{name}: {words}, normal of the plane {np.degrees(spot.plane):z.2f} deg from +x")
+    return lines
 
 
 def fatigue_bodies(problem: Problem, criterion: str) -> list[Body]:
