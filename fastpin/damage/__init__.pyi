@@ -28,7 +28,6 @@ from .race import Race as Race
 from .spectrum import SpectrumCycles as SpectrumCycles
 from .spectrum import SpectrumDamage as SpectrumDamage
 from .spectrum import SpectrumSpot as SpectrumSpot
-from .spectrum import bodies_with_lives as bodies_with_lives
 from .spectrum import damage_ranking as damage_ranking
 from .spectrum import spectrum_damage as spectrum_damage
 from .wear import archard_depth as archard_depth

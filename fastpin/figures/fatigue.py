@@ -12,8 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.damage import CRITERIA, NO_CRACK, Fatigue, SpectrumDamage, bodies_with_lives, cycle_states, fatigue
+from fastpin.damage import CRITERIA, NO_CRACK, Fatigue, SpectrumDamage, cycle_states, fatigue
 from fastpin.damage.criteria import Criterion
+from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import COLOURS, angle_axis, line
@@ -41,7 +42,7 @@ MOST_REFINED = 500
 
 
 def plot_fatigue(
-    found: Fatigue | Sequence[Fatigue],
+    found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[SpectrumDamage],
     path: str | Path | None = None,
     title: str = "",
     width: float = 6.7,
@@ -54,11 +55,14 @@ def plot_fatigue(
     Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
     is a crack that goes straight into the body.
 
-    The points lie at one depth. Several bodies, such as a bush and the plate round it, share the panels.
+    Of a spectrum the damage takes the place of the parameter. The points lie at one depth. Several bodies, such as a
+    bush and the plate round it, share the panels.
 
     See :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(fatigue_of(found))
+    each = list(found) if isinstance(found, (list, tuple)) else [found]
+    plot = spectrum_of(each) if each and isinstance(each[0], SpectrumDamage) else fatigue_of(found)  # type: ignore[arg-type]
+    return Look(path, title, width, dpi, ax).drawn(plot)
 
 
 def fatigue_plot(
@@ -97,8 +101,13 @@ def _spectrum_plot(result: Result, criterion: Criterion, body: Body | None, dept
 def spectrum_of(found: Sequence[SpectrumDamage]) -> Plot:
     """Return the damage of one spectrum along the edge, with its hot spot and planes, and below it the life.
 
-    All bodies are of one problem and one criterion.
+    Raises
+    ------
+    InputError
+        If they are not of one problem and one criterion, or their points not at one depth.
     """
+    each = instances("found", found, SpectrumDamage, "damage of a spectrum, such as result.spectrum_damage()")
+    _check_alike(each)
     edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in found)
     return Plot(
         lambda look: _draw_spectrum(look, found),
@@ -152,10 +161,7 @@ def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
     each = instances("found", each, Fatigue, wanted)
     if not each:
         raise InputError("found", f"must be {wanted}, not an empty list")
-    if any(one.criterion != each[0].criterion or one.problem != each[0].problem for one in each):
-        raise InputError("found", "must be of one problem and one criterion")
-    if any(np.ptp(one.depth) > 0.0 for one in each):
-        raise InputError("found", "must be of points at one depth")
+    _check_alike(each)
     edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in each)
     life = " and the life" if any(one.life is not None for one in each) else ""
     return Plot(
@@ -165,6 +171,14 @@ def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
         f"Parameter {each[0].criterion} along the edge of the {edges}, with its hot spot{life}. Short lines are the "
         "worst planes.",
     )
+
+
+def _check_alike(found: Sequence[Fatigue] | Sequence[SpectrumDamage]) -> None:
+    """Refuse unlike problems, criteria or depths."""
+    if any(one.criterion != found[0].criterion or one.problem != found[0].problem for one in found):
+        raise InputError("found", "must be of one problem and one criterion")
+    if any(np.ptp(one.depth) > 0.0 for one in found):
+        raise InputError("found", "must be of points at one depth")
 
 
 def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.damage import Fatigue, bodies_with_lives, cycle_states, fatigue, spectrum_damage
+from fastpin.damage import Fatigue, cycle_states, fatigue
 from fastpin.damage.criteria import Criterion
+from fastpin.damage.spectrum import bodies_with_lives, spectrum_damage
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.loads import LOAD_KIND
