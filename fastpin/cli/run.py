@@ -409,7 +409,8 @@ class RunReport:
             states = result.states if cycle is None else cycle.states
             say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
         else:
-            say(*report.cycle.spectrum_lines(result.states, len(case.history)))
+            damages = report.cycle.spectrum_damages(result.states, len(case.history))
+            say(*(report.cycle.spectrum_line(one) for one in damages))
         say(*(f"note: {note}" for note in note_lines(case, result)))
         say(solver_line(result))
 

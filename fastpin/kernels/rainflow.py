@@ -7,8 +7,8 @@ parameter is that of the forms SWING_TIMES_PUSH and SWING_TIMES_MORE. Its damage
 
     parameter = exp(life[0]) (2N)^life[2] + exp(life[1]) (2N)^life[3]
 
-A spectrum is a list of blocks. It is followed twice, and the second time is counted: from there on every time closes
-the same cycles. In the same way a block of many passes is followed three times.
+A spectrum is a list of blocks. A block of many passes is followed three times: from the third pass on each pass closes
+the same cycles. A spectrum with such blocks is followed twice, and the second time is counted, for the same reason.
 """
 
 from __future__ import annotations
@@ -39,16 +39,24 @@ WORTH = 0.5
 def _count(u, v, order, blocks, stack, cycles, weights):
     """Count the closed cycles of U, and return their number.
 
+    A spectrum without blocks of many passes is followed once, from its largest U back to it. The last cycle is the
+    whole range.
+
     `stack` has a row for each open reversal: its state, and the state with the largest V since the reversal before. A
     row of `cycles` has the states of both reversals and the state with the largest V, and `weights` how often it comes.
     """
-    n, count = 0, 0
-    for turn in range(2):
+    n, count, top = 0, 0, 0
+    once = 1 if blocks.shape[0] == 1 and blocks[0, 2] == 1 else 0
+    if once:
+        for t in range(order.size):
+            if u[order[t]] > u[order[top]]:
+                top = t
+    for turn in range(once, 2):
         for k in range(blocks.shape[0]):
             for again in range(min(blocks[k, 2], 3)):
                 weight = blocks[k, 2] - 2 if again == 2 else 1
-                for t in range(blocks[k, 0], blocks[k, 1]):
-                    state = order[t]
+                for t in range(blocks[k, 0] + top, blocks[k, 1] + top + once):
+                    state = order[t - order.size] if t >= order.size else order[t]
                     high = -1  # the state with the largest V since the last reversal, without this state
                     if n >= 2 and (u[stack[n - 1, 0]] - u[stack[n - 2, 0]]) * (u[state] - u[stack[n - 1, 0]]) >= 0.0:
                         n -= 1
@@ -77,6 +85,10 @@ def _count(u, v, order, blocks, stack, cycles, weights):
                         high = state
                     stack[n, 0], stack[n, 1] = state, high
                     n += 1
+    if once and n == 3:
+        most = stack[1, 1] if v[stack[1, 1]] > v[stack[2, 1]] else stack[2, 1]
+        cycles[count, 0], cycles[count, 1], cycles[count, 2], weights[count] = stack[0, 0], stack[1, 0], most, 1
+        count += 1
     return count
 
 

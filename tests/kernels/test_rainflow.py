@@ -78,10 +78,18 @@ def test_counts_of_random_histories(seed):
     np.testing.assert_allclose(cycles[:, 1], 0.5 * ranges * np.maximum(most, 0.0), rtol=1e-14)
 
 
+def sums(values, found):
+    """All ranges and parameters of counted cycles, in order, and the damage."""
+    places, cycles = found
+    ranges, times = np.abs(values[places[:, 0]] - values[places[:, 1]]), cycles[:, 0].astype(int)
+    return np.sort(np.repeat(ranges, times)), np.sort(np.repeat(cycles[:, 1], times)), cycles[:, 2].sum()
+
+
 @pytest.mark.parametrize("seed", range(40))
 def test_blocks_are_counted_as_their_passes_one_by_one(seed):
+    """Also as one list from the largest value on, where equal ranges have equal pushes."""
     rng = np.random.default_rng(seed)
-    values = rng.normal(size=12)
+    values, push = rng.normal(size=(2, 12))
     order, blocks, begin = [], [], 0
     for _ in range(4):
         size = int(rng.integers(1, 8))
@@ -89,21 +97,12 @@ def test_blocks_are_counted_as_their_passes_one_by_one(seed):
         blocks.append((begin, begin + size, int(rng.integers(1, 9))))
         begin += size
     order = np.array(order)
-    long = np.concatenate([np.tile(order[first:last], times) for first, last, times in blocks])
-    path, push = uniaxial(values, rng.normal(size=12)), None
-    for part, (places, cycles) in enumerate(
-        [
-            counted(path, 0.0, order, np.array(blocks)),
-            counted(path, 0.0, long, np.array([[0, long.size, 1]])),
-        ]
-    ):
-        ranges = np.repeat(np.abs(values[places[:, 0]] - values[places[:, 1]]), cycles[:, 0].astype(int))
-        rows = np.repeat(cycles[:, 1], cycles[:, 0].astype(int))
-        found = np.sort(ranges), np.sort(rows), cycles[:, 2].sum()
-        if part:
-            for one, two in zip(push, found, strict=True):
-                np.testing.assert_allclose(one, two, rtol=1e-12, atol=1e-300)
-        push = found
+    every = np.concatenate([np.tile(order[first:last], times) for first, last, times in blocks])
+    halves, whole = np.array([[0, 1, 1], [1, every.size, 1]]), np.array([[0, every.size, 1]])
+    for path, pieces in ((uniaxial(values, push), halves), (uniaxial(values), whole)):
+        found = sums(values, counted(path, 0.0, order, np.array(blocks)))
+        for one, two in zip(found, sums(values, counted(path, 0.0, every, pieces)), strict=True):
+            np.testing.assert_allclose(one, two, rtol=1e-12, atol=1e-300)
 
 
 def test_the_history_of_the_standard():
