@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -202,16 +202,21 @@ def spectrum_damage(
 
 
 def damage_ranking(
-    states: Sequence[State], criterion: Criterion = "smith-watson-topper", **how: Any
+    states: Sequence[State],
+    criterion: Criterion = "smith-watson-topper",
+    *,
+    depth: ArrayLike | None = None,
+    straight: bool = False,
+    progress: Callable[[float, float], None] | None = None,
 ) -> list[SpectrumDamage]:
-    """Damage of all elastic bodies whose material has constants of the criterion, the largest first.
+    """Damage of all elastic bodies whose own material has the constants of the criterion, the largest first.
 
     A body without damage is left out.
 
     Parameters
     ----------
-    states, criterion, **how
-        See :func:`spectrum_damage`.
+    states, criterion, depth, straight, progress
+        See :func:`spectrum_damage`. The progress begins anew for each body.
 
     Raises
     ------
@@ -219,16 +224,17 @@ def damage_ranking(
         See :func:`spectrum_damage`; also if no body has the constants.
     """
     problem = cycle_stops(states)[0].problem
-    choice("criterion", criterion, CRITERIA)
-    bodies = bodies_with_lives(problem, criterion, how.get("constants"))
-    found = [spectrum_damage(states, criterion, body, **how) for body in bodies or elastic_bodies(problem)[:1]]
+    bodies = bodies_with_lives(problem, choice("criterion", criterion, CRITERIA)) or elastic_bodies(problem)[:1]
+    found = [
+        spectrum_damage(states, criterion, body, depth=depth, straight=straight, progress=progress) for body in bodies
+    ]
     return sorted((one for one in found if one.damage.any()), key=lambda one: -one.hot_spot.damage)
 
 
-def bodies_with_lives(problem: Problem, criterion: Criterion, constants: FatigueConstants | None = None) -> list[Body]:
+def bodies_with_lives(problem: Problem, criterion: str) -> list[Body]:
     """The elastic bodies whose material has the constants of a criterion and of its life; none without a life."""
     needs = FATIGUE_CRITERIA[criterion].needs + FATIGUE_CRITERIA[criterion].life_needs
-    known = {body: constants or material_of(problem, body).fatigue for body in elastic_bodies(problem)}
+    known = {body: material_of(problem, body).fatigue for body in elastic_bodies(problem)}
     return [
         body
         for body, given in known.items()
