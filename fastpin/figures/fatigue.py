@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -28,7 +29,6 @@ from fastpin.report.case import edge_body
 from fastpin.report.curves import write_csv
 from fastpin.report.cycle import fatigue_bodies
 from fastpin.report.fatigue import fatigue_curve, spectrum_curve
-from fastpin.solver.result import Result
 
 PLANES = 40
 """Planes that are drawn as short lines, spread over the edge."""
@@ -73,26 +73,28 @@ def fatigue_plot(
     Without a cycle it is the damage of the whole history.
     """
     if not subject.cycles:
-        return _spectrum_plot(subject.whole(), criterion, body, depth)
+        return _spectrum_plot(subject, criterion, body, depth)
     result = subject.part(with_cycles(subject).cycles[-1])
     cycle = cycle_states(result, result.cycles[-1])
     bodies = fatigue_bodies(cycle[0].problem, criterion) if body is None else [body]
     return fatigue_of([fatigue(cycle, criterion, one, depth=depth) for one in bodies])
 
 
-def _spectrum_plot(result: Result, criterion: Criterion, body: Body | None, depth: float | None) -> Plot:
+def _spectrum_plot(subject: Subject, criterion: Criterion, body: Body | None, depth: float | None) -> Plot:
     """Return the damage over a whole history without cycles; without constants of a life its parameter, as of a cycle.
 
     The stresses of many states are those of straight lines between the nodes.
     """
     choice("criterion", criterion, CRITERIA)
+    result = subject.whole()
     known = bodies_with_lives(result.problem, criterion)
     bodies = [one for one in known if one in EDGES] if body is None else [one for one in known if one == body]
     if not bodies:
         others = fatigue_bodies(result.problem, criterion) if body is None else [body]
         return fatigue_of([fatigue(result.states, criterion, one, depth=depth) for one in others])
     straight = len(result) > MOST_REFINED
-    found = [result.spectrum_damage(criterion, one, depth=depth, straight=straight) for one in bodies]
+    how: dict[str, Any] = {"depth": depth, "straight": straight, "progress": subject.progress}
+    found = [result.spectrum_damage(criterion, one, **how) for one in bodies]
     plot = spectrum_of(found)
     words = f"the stresses of {len(result):,} states are those of straight lines between the nodes"
     return replace(plot, notes=[words]) if straight else plot
