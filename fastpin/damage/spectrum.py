@@ -192,8 +192,8 @@ def spectrum_damage(
     for block, history in history_blocks(different, points, body, straight, tell_read):
         changes = changes or bool(np.ptp(history, axis=0).max() > ROUNDING * np.abs(history).max())
         for chosen, counted in parts:
-            found.take(counted, history[:, chosen[block]], spectrum, block.start + np.flatnonzero(chosen[block]))
-        tell_counted(block.stop / below.size)
+            places = block.start + np.flatnonzero(chosen[block])
+            found.take(counted, history[:, chosen[block]], spectrum, places, tell_counted)
     if not changes:
         raise InputError("states", "must have a turning point: their stresses do not change")
     damage, plane = found.damage.reshape(points.shape), found.plane.reshape(points.shape)
@@ -259,13 +259,20 @@ class _Found:
 
     def __init__(self, points: int) -> None:
         self.damage, self.plane = np.zeros(points), np.full(points, np.nan)
+        self._taken = 0
         self._best: tuple[float, float, np.ndarray, CountedMaterial] | None = None
 
-    def take(self, counted: CountedMaterial, history: np.ndarray, spectrum: Spectrum, places: np.ndarray) -> None:
+    def take(
+        self, counted: CountedMaterial, history: np.ndarray, spectrum: Spectrum, places: np.ndarray,
+        progress: Callable[[float], None],
+    ) -> None:  # fmt: skip
         """Count the points at these places."""
         if not places.size:
             return
-        damage, plane = counted.worst(history, spectrum)
+        before, self._taken = self._taken, self._taken + places.size
+        damage, plane = counted.worst(
+            history, spectrum, lambda part: progress((before + part * places.size) / self.damage.size)
+        )
         self.damage[places], self.plane[places] = damage, plane
         at = int(np.argmax(damage))
         if damage[at] > (0.0 if self._best is None else self._best[0]):
