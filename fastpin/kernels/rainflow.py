@@ -31,6 +31,9 @@ STEPS = 16
 CLOSE = 1e-8
 """Last step of Newton's method in log 2N. Its error is the square of this step."""
 
+PITCH, ROWS = 0.05, 400
+"""Distance of the rows of a table of lives, in the logarithm of the parameter, and their number: down to 2e-9."""
+
 WORTH = 0.5
 """Planes of the scan with less than this part of the largest damage are not refined."""
 
@@ -100,9 +103,8 @@ def _parameter(u, v, cycle, form):
 
 
 @inner
-def _damage(parameter, life):
-    """1/N of a cycle, by Newton's method from below, as in :mod:`fastpin.damage.lives`."""
-    target = math.log(parameter)
+def _root(target, life):
+    """log 2N at which the parameter is exp(target), by Newton's method from below, as in fastpin/damage/lives.py."""
     x = max((target - life[0]) / life[2], (target - life[1]) / life[3])
     for _ in range(100):
         one, two = life[0] + x * life[2], life[1] + x * life[3]
@@ -114,6 +116,33 @@ def _damage(parameter, life):
         x = max(x, moved)
         if close:
             break
+    return x
+
+
+@inner
+def _fill(table, life):
+    """Fill the roots and their slopes, down from the logarithm life[4] of the highest parameter, a row each."""
+    for k in range(table.shape[0]):
+        x = _root(life[4] - k * PITCH, life)
+        one, two = math.exp(life[0] + x * life[2]), math.exp(life[1] + x * life[3])
+        table[k, 0], table[k, 1] = x, -PITCH * (one + two) / (life[2] * one + life[3] * two)
+
+
+@inner
+def _damage(parameter, life, table):
+    """1/N of a cycle: a cubic between two rows of the table, off by 1e-7, and a step of Newton's method."""
+    target = math.log(parameter)
+    place = (life[4] - target) / PITCH
+    k = int(place) if place >= 0.0 else table.shape[0]
+    if k + 1 >= table.shape[0]:
+        return 2.0 * math.exp(min(-_root(target, life), 700.0))
+    s, rise = place - k, table[k + 1, 0] - table[k, 0]
+    bend = (1.0 - s) * (table[k, 1] - rise) - s * (table[k + 1, 1] - rise)
+    x = table[k, 0] + s * (rise + (1.0 - s) * bend)
+    one, two = life[0] + x * life[2], life[1] + x * life[3]
+    lower = math.exp(-abs(one - two))
+    upper, under = (life[2], life[3]) if one > two else (life[3], life[2])
+    x -= (max(one, two) + math.log1p(lower) - target) * (1.0 + lower) / (upper + under * lower)
     return 2.0 * math.exp(min(-x, 700.0))
 
 
@@ -127,15 +156,27 @@ def _on_plane(path, x, u, v):
 
 
 @inner
-def _sum(path, x, order, blocks, form, least, life, u, v, stack, cycles, weights):
+def _sum(path, x, order, blocks, form, least, curve, table, u, v, stack, cycles, weights):
     """The damage on the plane x/2."""
     _on_plane(path, x, u, v)
     total = 0.0
     for k in range(_count(u, v, order, blocks, stack, cycles, weights)):
         parameter = _parameter(u, v, cycles[k], form)
         if parameter > least:
-            total += weights[k] * _damage(parameter, life)
+            total += weights[k] * _damage(parameter, curve, table)
     return total
+
+
+@inner
+def _highest(paths, form):
+    """The logarithm of a parameter that no cycle of these points exceeds."""
+    swing, push = 0.0, 0.0
+    for i in range(paths.shape[0]):
+        for t in range(paths.shape[1]):
+            swing = max(swing, abs(paths[i, t, 0]) + math.hypot(paths[i, t, 1], paths[i, t, 2]))
+            push = max(push, abs(paths[i, t, 3]) + math.hypot(paths[i, t, 4], paths[i, t, 5]))
+    most = swing * push if form == 0 else swing * (1.0 + push)
+    return math.log(most) if most > 0.0 else 0.0
 
 
 @compiled
@@ -163,11 +204,14 @@ def worst_sums(paths, order, blocks, form, least, life, out):
     u, v = np.empty(paths.shape[1]), np.empty(paths.shape[1])
     stack, cycles = np.empty((6 * order.size + 2, 2), np.int64), np.empty((3 * order.size + 2, 3), np.int64)
     weights, scanned = np.empty(3 * order.size + 2, np.int64), np.empty(COARSE)
+    table, curve = np.empty((ROWS, 2)), np.empty(5)
+    curve[:4], curve[4] = life, _highest(paths, form)
+    _fill(table, curve)
     step = 2.0 * math.pi / COARSE
     for i in range(paths.shape[0]):
         path = paths[i]
         for k in range(COARSE):
-            scanned[k] = _sum(path, k * step, order, blocks, form, least, life, u, v, stack, cycles, weights)
+            scanned[k] = _sum(path, k * step, order, blocks, form, least, curve, table, u, v, stack, cycles, weights)
         best, place = scanned[0], 0.0
         for k in range(1, COARSE):
             if scanned[k] > best:
@@ -179,8 +223,8 @@ def worst_sums(paths, order, blocks, form, least, life, out):
                 continue
             left, right = (k - 1) * step, (k + 1) * step
             one, two = right - GOLDEN * (right - left), left + GOLDEN * (right - left)
-            first = _sum(path, one, order, blocks, form, least, life, u, v, stack, cycles, weights)
-            second = _sum(path, two, order, blocks, form, least, life, u, v, stack, cycles, weights)
+            first = _sum(path, one, order, blocks, form, least, curve, table, u, v, stack, cycles, weights)
+            second = _sum(path, two, order, blocks, form, least, curve, table, u, v, stack, cycles, weights)
             for _ in range(STEPS):
                 if first > best:
                     best, place = first, one
@@ -189,11 +233,11 @@ def worst_sums(paths, order, blocks, form, least, life, out):
                 if first >= second:
                     right, two, second = two, one, first
                     one = right - GOLDEN * (right - left)
-                    first = _sum(path, one, order, blocks, form, least, life, u, v, stack, cycles, weights)
+                    first = _sum(path, one, order, blocks, form, least, curve, table, u, v, stack, cycles, weights)
                 else:
                     left, one, first = one, two, second
                     two = left + GOLDEN * (right - left)
-                    second = _sum(path, two, order, blocks, form, least, life, u, v, stack, cycles, weights)
+                    second = _sum(path, two, order, blocks, form, least, curve, table, u, v, stack, cycles, weights)
         out[i, 0] = best
         angle = 0.5 * place
         if angle > 0.5 * math.pi:
@@ -226,5 +270,7 @@ def cycles_on_plane(path, angle, order, blocks, form, least, life, places, value
     for k in range(count):
         parameter = _parameter(u, v, places[k], form)
         values[k, 0], values[k, 1] = weights[k], parameter
-        values[k, 2] = weights[k] * _damage(parameter, life) if parameter > least else 0.0
+        values[k, 2] = 0.0
+        if parameter > least:
+            values[k, 2] = weights[k] * 2.0 * math.exp(min(-_root(math.log(parameter), life), 700.0))
     return count

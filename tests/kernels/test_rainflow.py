@@ -7,7 +7,7 @@ from fastpin import damage
 from fastpin.kernels import planes, rainflow
 
 LIFE = np.array([np.log(2e3), np.log(5e5), -0.25, -0.7])
-INNER = ("_count", "_parameter", "_damage", "_on_plane", "_sum")
+INNER = ("_count", "_parameter", "_root", "_fill", "_damage", "_on_plane", "_sum", "_highest")
 
 
 def python_kernel(name):
