@@ -85,20 +85,24 @@ def history_blocks(
 ) -> Iterator[tuple[slice, np.ndarray]]:
     """Yield blocks of points, with their stresses over the states, shape (states, points of the block, 4).
 
-    The stresses of straight lines are a product with a matrix for more than :data:`MAPPED` states on one grid. The seat
-    of a bush that slips, and points deep in the pin, are read state by state.
+    The stresses of straight lines are a product with a matrix for more than :data:`MAPPED` states on one grid. Points
+    deep in the pin are read state by state.
     """
     count, nodes = points.theta.size, states[0].theta.size
     size = max(ROOM // (8 * nodes + 4 * len(states)), 1)
     theta, depth = points.theta.ravel(), points.depths(states[0].problem, body).ravel()
-    mapped = straight and len(states) > MAPPED and all(state.seat is None for state in states)
-    mapped = mapped and all(np.array_equal(state.theta, states[0].theta) for state in states)
+    mapped = straight and len(states) > MAPPED and all(_is_on_grids_of(state, states[0]) for state in states)
     mapped = mapped and not (body == "pin" and np.any(depth > 0.5))  # near its centre a moment has an infinite stress
     for begin in range(0, max(count, 1), size):
         part = slice(begin, min(begin + size, count))
         some = Points.at_depth(depth[part] * states[0].problem.hole_radius, theta[part]) if size < count else points
         told = None if progress is None else _within(progress, part, count)
         yield part, (_mapped(states, some, body, told) if mapped else _read(states, some, body, straight, told))
+
+
+def _is_on_grids_of(state: State, other: State) -> bool:
+    pairs = ((state, other), (state.seat, other.seat))
+    return all(one is two if one is None or two is None else np.array_equal(one.theta, two.theta) for one, two in pairs)
 
 
 def _within(progress: Progress, part: slice, count: int) -> Progress:
@@ -125,24 +129,29 @@ def _read(states: Sequence[State], points: Points, body: Body, straight: bool, p
 
 
 def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progress | None) -> np.ndarray:
-    """Multiply the nodal tractions with the stresses of the hat functions of the nodes."""
-    problem, grid = states[0].problem, states[0].grid
-    names = [list(LOADS)[place] for place in REMOTE]
+    """Multiply the nodal tractions with the stresses of the hat functions of the nodes, also of the seat of a bush."""
+    problem, names, none = states[0].problem, [list(LOADS)[place] for place in REMOTE], Tractions(())
+    remote = np.array([_remote(state) for state in states])
+    found = np.zeros((len(states), points.theta.size, 4))
 
-    def stress(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
-        load = dict(zip(names, remote.tolist(), strict=True))
-        return _components(stress_at(problem, tractions, load, points, body))
+    def of_hole(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+        load, seat = dict(zip(names, remote.tolist(), strict=True)), None if states[0].seat is None else none
+        return _components(stress_at(problem, tractions, load, points, body, seat))
 
-    pressure, shear = np.array([state.pressure for state in states]), np.array([state.shear for state in states])
-    remote, hats = np.array([_remote(state) for state in states]), Hats(problem, grid)
-    linear = NodalStress(hats, stress)
-    for nodes, functions in hats.blocks(pressure, shear):
-        linear.learn(nodes, functions)
-        if progress is not None:
-            progress(float(nodes[-1]) / grid.size)
-    found = np.empty((len(states), points.theta.size, 4))
-    for which in range(4):
-        found[:, :, which] = linear.component(which, slice(None), pressure, shear, remote)
+    def of_seat(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+        return _components(stress_at(problem, none, {}, points, body, tractions)) - unloaded
+
+    unloaded, seats = of_hole(none, np.zeros(3)), [state.seat for state in states if state.seat is not None]
+    for part, stress in ((states, of_hole), *(((seats, of_seat),) if seats else ())):
+        pressure, shear = np.array([one.pressure for one in part]), np.array([one.shear for one in part])
+        hats = Hats(problem, part[0].grid)
+        linear = NodalStress(hats, stress)
+        for nodes, functions in hats.blocks(pressure, shear):
+            linear.learn(nodes, functions)
+            if progress is not None and part is states:
+                progress(float(nodes[-1]) / pressure.shape[1])
+        for which in range(4):
+            found[:, :, which] += linear.component(which, slice(None), pressure, shear, remote)
     if progress is not None:
         progress(1.0)
     return found
