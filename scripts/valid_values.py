@@ -50,6 +50,7 @@ KEYWORDS: dict[str, tuple[str, ...]] = {
     "WearResult.fatigue": ("theta", "depth", "constants"),
     "wear": ("nodes", "arc"),
     "Result.fatigue": ("points", "depth", "constants"),
+    "Result.spectrum_damage": ("criterion", "body", "points", "depth", "constants", "straight"),
     "Result.report": ("title", "about", "case", "convergence", "progress"),
     "Look.sheet": ("sharex",),
     "record": ("nodes", "method", "arc", "between", "keep", "slip_sums"),
@@ -121,12 +122,14 @@ class Valid:
         cycle_in_newtons = fastpin.LoadHistory([{"P": 1e6}]) + fastpin.LoadHistory([{"Q": 2e5}, {"Q": 0.0}]).repeated(2)
         life = fastpin.wear(steel, cycle_in_newtons, coefficient=1e-14, nodes=NODES)
         worn = damage.worn_fatigue(life)
+        spectrum = damage.spectrum_damage(result, constants=STRENGTHS)
         lug = casefile.parse_lug(LUG).lug
         compliance = bodies.Compliance(0.3, "strain", 1.0, MATRIX)
         grid = result.grid
         made: Sequence[Any] = (
             pair, pair.pin, problem, history, history.blocks[0], result, state, cycle, result.cycles[-1], options, case,
             grid, convergence, study, study.series[0], fatigue, fatigue.hot_spot, lug, compliance, plan, plan.points[0],
+            spectrum, spectrum.hot_spot, spectrum.cycles,
             result.restart, fastpin.Points.at_depth(0.0, state.theta), state.stress(fastpin.Points.at_depth(0.0, -1.5)),
             state.peak_hoop_stress(), cycle.loops["Q"], bodies.Disk(), bodies.Plate(), bodies.Ring(3.0),
             bodies.Tube(0.5), bodies.Bushing(pair.plate, 2.0), model.FatigueConstants(1e9, -0.1, 0.5, -0.6),
@@ -153,6 +156,7 @@ class Valid:
             "Outcome": lambda: benchmarks.Outcome([benchmarks.Row("peak", "1", "0.5", 0.5)]),
         }
         self._by_target = self._targets(result) | {"worn_fatigue.cycles": _always(life), "after.cycles": _always(1)}
+        self._by_target["damage_ranking.states"] = _always(list(life[0].states))
         self._by_annotation = self._annotations(result)
 
     def _write_files(self, result: fastpin.Result, case: fastpin.Case) -> None:
@@ -223,6 +227,7 @@ class Valid:
             "of_blocks.blocks": result.history.blocks,
             "damage_sum.cycles": result.cycles,
             "damage_sum.constants": STRENGTHS,
+            "spectrum_damage.constants": STRENGTHS,
             "fatigue_at_distance.length": 0.01,
             "read_case.path": "case.toml",
             "from_csv.path": "loads.csv",
@@ -311,8 +316,9 @@ class Valid:
 
 
 BY_NAME: dict[str, Any] = {
-    "E": 2e11, "K_max": [2e6], "K_min": [1e6], "R": [0.1], "a": 0.3, "alpha": 0.25, "amplitude": 1e8, "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0,
-    "body": "plate", "centre": -1.5, "corners": [[1.0] * 10], "count": 3, "counts": [1.0, 2.0],
+    "E": 2e11, "K_max": [2e6], "K_min": [1e6], "R": [0.1], "a": 0.3, "alpha": 0.25, "amplitude": 1e8,
+    "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0, "body": "plate",
+    "centre": -1.5, "corners": [[1.0] * 10], "count": 3, "counts": [1.0, 2.0],
     "criterion": "smith-watson-topper", "depth": 0.01, "directory": "sweep", "ductility_exponent": -0.6, "factor": 2.0,
     "fatigue_ductility": 0.5, "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0,
     "half_width": 1.0, "height": 1e-5, "high": 0.5, "history": HISTORY, "host": "127.0.0.1", "index": 1, "k": 0.3,

@@ -72,12 +72,14 @@ def _plot(options: argparse.Namespace) -> figures.sheet.Plot:
     }
     if options.after is not None:
         given["after"] = options.after
+    progress_bar = Bar(1.0, "of the damage of the spectrum")
     if options.interface == "seat":
         subject: figures.subjects.Subject = figures.subjects.InMemory(load_seat(options.result))
     else:
-        subject = figures.subjects.stored_subject(options.result)
+        subject = figures.subjects.stored_subject(options.result, progress_to(progress_bar))
     try:
-        plot = figures.plotting.plot_of(options.kind, subject, **given)
+        with progress_bar:  # it moves for the damage of a spectrum only
+            plot = figures.plotting.plot_of(options.kind, subject, **given)
     except InputError as error:
         raise InputError(flag(error.field) if error.field in given else error.field, error.reason) from None
     say(*plot.notes)

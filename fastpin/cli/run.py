@@ -272,6 +272,8 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
         if len(last) <= report.cycle.MOST_STOPS:
             places |= set(last)  # the fatigue over the last cycle is printed
         ends = [*ends, *last[:1], *last[-1:]]
+    elif _is_spectrum(case) and points.size <= report.cycle.MOST_STOPS:
+        places |= set(range(points.size))  # the fatigue over the whole history is printed
     if case.problem.seat is not None:
         places |= set(ends)
     if options.record is not None:
@@ -406,8 +408,16 @@ class RunReport:
         if result.cycles:
             states = result.states if cycle is None else cycle.states
             say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
+        elif _is_spectrum(case):
+            damages = report.cycle.spectrum_damages(result.states, len(case.history))
+            say(*(report.cycle.spectrum_line(one) for one in damages))
         say(*(f"note: {note}" for note in note_lines(case, result)))
         say(solver_line(result))
+
+
+def _is_spectrum(case: Case) -> bool:
+    """Whether a history without cycles may do damage that is told: most runs then need not import what counts it."""
+    return len(case.history) > 2 and any(pair.plate.fatigue for pair in (case.problem.pair, case.problem.surfaces))
 
 
 def _reached(result: solver.Result) -> int:

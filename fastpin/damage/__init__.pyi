@@ -1,3 +1,4 @@
+from .counted import SPECTRUM_CRITERIA as SPECTRUM_CRITERIA
 from .counting import rainflow as rainflow
 from .counting import stress_life as stress_life
 from .criteria import Planes as Planes
@@ -12,6 +13,7 @@ from .criteria import smallest_spheres as smallest_spheres
 from .criteria import smith_watson_topper as smith_watson_topper
 from .distance import critical_distance as critical_distance
 from .distance import fatigue_at_distance as fatigue_at_distance
+from .histories import stress_history as stress_history
 from .hot_spots import CRITERIA as CRITERIA
 from .hot_spots import NO_CRACK as NO_CRACK
 from .hot_spots import Fatigue as Fatigue
@@ -19,11 +21,15 @@ from .hot_spots import HotSpot as HotSpot
 from .hot_spots import cycle_states as cycle_states
 from .hot_spots import damage_sum as damage_sum
 from .hot_spots import fatigue as fatigue
-from .hot_spots import stress_history as stress_history
 from .lives import fatemi_socie_life as fatemi_socie_life
 from .lives import miner as miner
 from .lives import smith_watson_topper_life as smith_watson_topper_life
 from .race import Race as Race
+from .spectrum import SpectrumCycles as SpectrumCycles
+from .spectrum import SpectrumDamage as SpectrumDamage
+from .spectrum import SpectrumSpot as SpectrumSpot
+from .spectrum import damage_ranking as damage_ranking
+from .spectrum import spectrum_damage as spectrum_damage
 from .wear import archard_depth as archard_depth
 from .wear import ruiz as ruiz
 from .worn import WornFatigue as WornFatigue

@@ -71,12 +71,8 @@ def smith_watson_topper(history: ArrayLike, E: float, nu: float) -> Planes:
     InputError
         If the history has another shape or a number that is not finite, or a constant is out of range.
     """
-    stresses, modulus = _checked(history), positive("E", E)
-    ratio = number("nu", nu, 0.0, 0.5)
-    normal = _on_planes(stresses)
-    strain = (1.0 + ratio) / modulus * normal
-    strain[..., 0] -= ratio / modulus * stresses[..., :3].sum(axis=-1)
-    return _worst(strain, normal, planes.SWING_TIMES_PUSH)
+    stresses = _checked(history)
+    return _worst(*_normal_strain(stresses, positive("E", E), number("nu", nu, 0.0, 0.5)), planes.SWING_TIMES_PUSH)
 
 
 def fatemi_socie(history: ArrayLike, shear_modulus: float, k: float, yield_strength: float) -> Planes:
@@ -99,10 +95,9 @@ def fatemi_socie(history: ArrayLike, shear_modulus: float, k: float, yield_stren
     InputError
         As :func:`smith_watson_topper`.
     """
-    normal = _on_planes(_checked(history))
+    stresses = _checked(history)
     weight = number("k", k, 0.0) / positive("yield_strength", yield_strength)
-    strain = _shear(normal) / positive("shear_modulus", shear_modulus)
-    return _worst(strain, weight * normal, planes.SWING_TIMES_MORE)
+    return _worst(*_shear_strain(stresses, positive("shear_modulus", shear_modulus), weight), planes.SWING_TIMES_MORE)
 
 
 def findley(history: ArrayLike, k: float) -> Planes:
@@ -258,6 +253,20 @@ def _shear(normal: np.ndarray) -> np.ndarray:
     return np.stack([np.zeros(normal.shape[:2]), normal[..., 2], -normal[..., 1]], axis=-1)
 
 
+def _normal_strain(stresses: np.ndarray, modulus: float, ratio: float) -> tuple[np.ndarray, np.ndarray]:
+    """Normal strain and normal stress on planes, in the same form."""
+    normal = _on_planes(stresses)
+    strain = (1.0 + ratio) / modulus * normal
+    strain[..., 0] -= ratio / modulus * stresses[..., :3].sum(axis=-1)
+    return strain, normal
+
+
+def _shear_strain(stresses: np.ndarray, shear_modulus: float, weight: float) -> tuple[np.ndarray, np.ndarray]:
+    """Shear strain and the weighted normal stress on planes, in the same form."""
+    normal = _on_planes(stresses)
+    return _shear(normal) / shear_modulus, weight * normal
+
+
 def _deviator(stresses: np.ndarray) -> np.ndarray:
     """The deviator as a vector of length sqrt(J2), shape (stops, points, 3)."""
     sxx, syy, szz, sxy = np.moveaxis(stresses, -1, 0)
@@ -292,6 +301,28 @@ class CriterionValues(NamedTuple):
     life: np.ndarray | None = None
 
 
+class PlaneCount(NamedTuple):
+    """The parameter of a counted cycle on a plane.
+
+    Attributes
+    ----------
+    form : int
+        SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.kernels.planes`.
+    swung_and_push : callable
+        ``swung_and_push(history, material, *constants)`` returns the coefficients of both components on planes, each of
+        shape (stops, points, 3). The constants are those of the parameter.
+    natural : callable
+        ``natural(stress, material)`` is the size of the parameter for this stress.
+    curve : callable
+        ``curve(material, *constants)`` returns the curve of lives. The constants are those of the life.
+    """
+
+    form: int
+    swung_and_push: Callable[..., tuple[np.ndarray, np.ndarray]]
+    natural: Callable[[float, Material], float]
+    curve: Callable[..., lives.LifeCurve]
+
+
 class FatigueCriterion(NamedTuple):
     """A criterion of fatigue. Its constants are fields of :class:`fastpin.model.FatigueConstants`.
 
@@ -305,25 +336,25 @@ class FatigueCriterion(NamedTuple):
         ``values(history, material, *constants)`` returns its :class:`CriterionValues`.
     life_needs : tuple of str
         The constants of the life.
-    life : callable or None
-        ``life(parameter, material, *constants)`` returns the lives, cycles; None for a criterion without lives.
+    counting : PlaneCount or None
+        How cycles of a spectrum are counted, with the curve of lives; None for a criterion without lives.
     """
 
     kind: str
     needs: tuple[str, ...]
     values: Callable[..., CriterionValues]
     life_needs: tuple[str, ...] = ()
-    life: Callable[..., np.ndarray] | None = None
+    counting: PlaneCount | None = None
 
 
 def _smith_watson_topper(history: np.ndarray, material: Material) -> CriterionValues:
     found = smith_watson_topper(history, material.E, material.nu)
-    return _without_rounding(found, float(np.abs(history).max(initial=0.0)) ** 2 / material.E)
+    return _without_rounding(found, SWT_COUNT.natural(float(np.abs(history).max(initial=0.0)), material))
 
 
 def _fatemi_socie(history: np.ndarray, material: Material, k: float, yield_strength: float) -> CriterionValues:
     found = fatemi_socie(history, material.shear_modulus, k, yield_strength)
-    return _without_rounding(found, float(np.abs(history).max(initial=0.0)) / material.shear_modulus)
+    return _without_rounding(found, FS_COUNT.natural(float(np.abs(history).max(initial=0.0)), material))
 
 
 def _without_rounding(found: Planes, natural: float) -> CriterionValues:
@@ -346,6 +377,20 @@ def _by_limits(
     return values
 
 
+SWT_COUNT = PlaneCount(
+    planes.SWING_TIMES_PUSH,
+    lambda history, material: _normal_strain(history, material.E, material.nu),
+    lambda stress, material: stress**2 / material.E,
+    lambda material, *constants: lives.smith_watson_topper_curve(material.E, *constants),
+)
+
+FS_COUNT = PlaneCount(
+    planes.SWING_TIMES_MORE,
+    lambda history, material, k, strength: _shear_strain(history, material.shear_modulus, k / strength),
+    lambda stress, material: stress / material.shear_modulus,
+    lambda material, *constants: lives.fatemi_socie_curve(material.shear_modulus, *constants),
+)
+
 _LIMITS = ("bending_limit", "torsion_limit")
 
 FATIGUE_CRITERIA: dict[str, FatigueCriterion] = {
@@ -354,14 +399,14 @@ FATIGUE_CRITERIA: dict[str, FatigueCriterion] = {
         (),
         _smith_watson_topper,
         ("fatigue_strength", "strength_exponent", "fatigue_ductility", "ductility_exponent"),
-        lambda parameter, material, *constants: lives.smith_watson_topper_life(parameter, material.E, *constants),
+        SWT_COUNT,
     ),
     "fatemi-socie": FatigueCriterion(
         "rotation",
         ("normal_stress_factor", "yield_strength"),
         _fatemi_socie,
         ("shear_fatigue_strength", "shear_strength_exponent", "shear_fatigue_ductility", "shear_ductility_exponent"),
-        lambda parameter, material, *constants: lives.fatemi_socie_life(parameter, material.shear_modulus, *constants),
+        FS_COUNT,
     ),
     "findley": FatigueCriterion("traction", _LIMITS, _by_limits(findley, findley_limit)),
     "crossland": FatigueCriterion("traction", _LIMITS, _by_limits(crossland, crossland_limit)),

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.damage.criteria import Criterion
-from fastpin.damage.hot_spots import NO_CRACK, Fatigue, evaluated, fatigue, stress_history
+from fastpin.damage.histories import stress_history
+from fastpin.damage.hot_spots import NO_CRACK, Fatigue, evaluated, fatigue
 from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, numbers, positive

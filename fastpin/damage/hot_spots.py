@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from fastpin.damage import lives
 from fastpin.damage.criteria import FATIGUE_CRITERIA, Criterion, CriterionValues
+from fastpin.damage.histories import stress_history
 from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.model.angles import near_bottom
@@ -23,7 +24,6 @@ from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
 from fastpin.reading.stress import check_body
-from fastpin.runtime.threads import in_threads
 from fastpin.states.choice import loaded_span_of, missing_corners, states_between, stops_of_one_problem
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
@@ -171,31 +171,13 @@ def fatigue(
     return evaluated(history, stops[0], criterion, body, place, constants)
 
 
-def stress_history(states: Sequence[State], points: Points, body: Body = "plate") -> np.ndarray:
-    """The stresses at points over the states, Pa, shape (states, points, 4): sxx, syy, szz, sxy.
-
-    Raises
-    ------
-    InputError
-        See :meth:`fastpin.State.stress`.
-    """
-
-    every = instances("states", states, State, "a sequence of fastpin.State")
-    instance("points", points, Points, "fastpin.Points")
-
-    def components(state: State) -> np.ndarray:
-        stress = state.stress(points, body)
-        return np.stack([stress.sxx, stress.syy, stress.axial, stress.sxy], axis=-1).reshape(-1, 4)
-
-    return np.array(in_threads(components, every))
-
-
-def edge_angles(states: Sequence[State]) -> np.ndarray:
+def edge_angles(states: Sequence[State], most: float = math.inf) -> np.ndarray:
     """Angles all round the edge, rad, in (-3 pi/2, pi/2], in increasing order.
 
-    They are the nodes, the ends of all contact and stick zones of the states, and each degree.
+    They are the nodes, each degree, and the ends of all contact and stick zones of up to `most` states.
     """
-    ends = [angle for state in states for interval in (*state.contact, *state.stick) for angle in interval]
+    read = states if len(states) <= most else ()
+    ends = [angle for state in read for interval in (*state.contact, *state.stick) for angle in interval]
     degrees = np.linspace(-1.5 * np.pi, 0.5 * np.pi, 360, endpoint=False)
     return np.unique([near_bottom(angle) for angle in np.concatenate([states[0].theta, ends, degrees])])
 
@@ -288,10 +270,8 @@ def evaluated(
         instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
     problem = state.problem
     depth = np.broadcast_to(place[1], place[0].shape).ravel() / problem.hole_radius
-    beyond = is_beyond_bush(problem, depth) if body == "plate" else np.zeros(depth.shape, dtype=bool)
-    where: list[tuple[np.ndarray, Body]] = [(~beyond, body), (beyond, "seat")]
     parts: list[tuple[np.ndarray, CriterionValues]] = []
-    for chosen, part in [one for one in where if one[0].any()] or where[:1]:
+    for chosen, part in bodies_at(problem, body, depth):
         material = material_of(problem, part)
         given = (material.fatigue if constants is None else constants) or FatigueConstants()
         parts.append((chosen, _values(history[:, chosen], criterion, material, given, owner_of(problem, part))))
@@ -302,6 +282,16 @@ def evaluated(
     limits = None if len(parts) == 1 else _together([(chosen, one.limit) for chosen, one in parts], shape)
     assert parameter is not None
     return Fatigue(problem, criterion, body, *place, parameter, plane, life, limit if limits is None else limits)
+
+
+def bodies_at(problem: Problem, body: Body, depth: np.ndarray) -> list[tuple[np.ndarray, Body]]:
+    """Return the points of a body, and those of the plate beyond its bush, if there are any.
+
+    `depth` is in units of the hole's radius, shape (points,). The points come as a mask of this shape.
+    """
+    beyond = is_beyond_bush(problem, depth) if body == "plate" else np.zeros(depth.shape, dtype=bool)
+    where: list[tuple[np.ndarray, Body]] = [(~beyond, body), (beyond, "seat")]
+    return [one for one in where if one[0].any()] or where[:1]
 
 
 def _together(
@@ -322,6 +312,6 @@ def _values(history: np.ndarray, name: str, material: Material, given: FatigueCo
     criterion = FATIGUE_CRITERIA[name]
     found = criterion.values(history, material, *given.required(criterion.needs, name, body))
     constants = [getattr(given, constant) for constant in criterion.life_needs]
-    if criterion.life is None or None in constants:
+    if criterion.counting is None or None in constants:
         return found
-    return found._replace(life=criterion.life(found.parameter, material, *constants))
+    return found._replace(life=lives.cycles_on_curve(found.parameter, criterion.counting.curve(material, *constants)))

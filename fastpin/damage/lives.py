@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
 from fastpin.model.checks import negative, number_array, numbers, positive
+
+
+class LifeCurve(NamedTuple):
+    """A parameter as the sum of two falling powers of 2N: coefficients above 0, and exponents below 0."""
+
+    coefficients: tuple[float, float]
+    exponents: tuple[float, float]
 
 
 def smith_watson_topper_life(
@@ -38,11 +46,19 @@ def smith_watson_topper_life(
     InputError
         If a parameter is negative, a coefficient not positive or an exponent not negative.
     """
+    constants = fatigue_strength, strength_exponent, fatigue_ductility, ductility_exponent
+    return cycles_on_curve(parameter, smith_watson_topper_curve(E, *constants))
+
+
+def smith_watson_topper_curve(
+    E: float, fatigue_strength: float, strength_exponent: float, fatigue_ductility: float, ductility_exponent: float
+) -> LifeCurve:
+    """The curve of :func:`smith_watson_topper_life`, also for the constants and the errors."""
     strength = positive("fatigue_strength", fatigue_strength)
     elastic = _coefficient("fatigue_strength", strength / positive("E", E) * strength)
     plastic = _coefficient("fatigue_ductility", strength * positive("fatigue_ductility", fatigue_ductility))
     b, c = negative("strength_exponent", strength_exponent), negative("ductility_exponent", ductility_exponent)
-    return _cycles(parameter, (elastic, plastic), (2.0 * b, b + c))
+    return LifeCurve((elastic, plastic), (2.0 * b, b + c))
 
 
 def fatemi_socie_life(
@@ -73,11 +89,23 @@ def fatemi_socie_life(
     InputError
         As :func:`smith_watson_topper_life`.
     """
+    constants = shear_fatigue_strength, shear_strength_exponent, shear_fatigue_ductility, shear_ductility_exponent
+    return cycles_on_curve(parameter, fatemi_socie_curve(shear_modulus, *constants))
+
+
+def fatemi_socie_curve(
+    shear_modulus: float,
+    shear_fatigue_strength: float,
+    shear_strength_exponent: float,
+    shear_fatigue_ductility: float,
+    shear_ductility_exponent: float,
+) -> LifeCurve:
+    """The curve of :func:`fatemi_socie_life`, also for the constants and the errors."""
     strength = positive("shear_fatigue_strength", shear_fatigue_strength)
     elastic = _coefficient("shear_fatigue_strength", strength / positive("shear_modulus", shear_modulus))
     plastic = positive("shear_fatigue_ductility", shear_fatigue_ductility)
     b = negative("shear_strength_exponent", shear_strength_exponent)
-    return _cycles(parameter, (elastic, plastic), (b, negative("shear_ductility_exponent", shear_ductility_exponent)))
+    return LifeCurve((elastic, plastic), (b, negative("shear_ductility_exponent", shear_ductility_exponent)))
 
 
 def miner(counts: ArrayLike, lives: ArrayLike) -> np.ndarray:
@@ -115,14 +143,14 @@ def _coefficient(field: str, value: float) -> float:
     return value
 
 
-def _cycles(parameter: ArrayLike, coefficients: tuple[float, float], exponents: tuple[float, float]) -> np.ndarray:
+def cycles_on_curve(parameter: ArrayLike, curve: LifeCurve) -> np.ndarray:
     """Cycles at which the sum of two falling powers of 2N equals the parameter.
 
     The logarithm of the sum is a convex, falling function of x = log 2N. Newton's method begins where one power alone
     equals the parameter. It goes up to the root without passing it.
     """
     values = numbers("parameter", parameter, 0.0)
-    logs, slopes = np.log(coefficients), np.array(exponents)
+    logs, slopes = np.log(curve.coefficients), np.array(curve.exponents)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         target = np.log(values)
         x = np.max((target[..., None] - logs) / slopes, axis=-1)

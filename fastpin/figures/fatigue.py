@@ -4,28 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.damage import NO_CRACK, Fatigue, cycle_states, fatigue
+from fastpin.damage import CRITERIA, NO_CRACK, Fatigue, SpectrumDamage, cycle_states, fatigue
 from fastpin.damage.criteria import Criterion
+from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import COLOURS, angle_axis, line
 from fastpin.figures.subjects import Subject, with_cycles
 from fastpin.figures.words import ANGLE, caption, quantity, short
 from fastpin.model.angles import from_bottom
-from fastpin.model.checks import instance, instances
-from fastpin.model.points import Body
+from fastpin.model.checks import choice, instance, instances
+from fastpin.model.points import EDGES, Body
 from fastpin.model.units import scaled, units
 from fastpin.report.case import edge_body
 from fastpin.report.curves import write_csv
 from fastpin.report.cycle import fatigue_bodies
-from fastpin.report.fatigue import fatigue_curve
+from fastpin.report.fatigue import fatigue_curve, spectrum_curve
 
 PLANES = 40
 """Planes that are drawn as short lines, spread over the edge."""
@@ -34,8 +37,12 @@ LEAST = 0.02
 """Least parameter with a plane, in parts of the largest."""
 
 
+MOST_REFINED = 500
+"""States of a spectrum up to which refined tractions are read for a figure: some ten seconds."""
+
+
 def plot_fatigue(
-    found: Fatigue | Sequence[Fatigue],
+    found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[SpectrumDamage],
     path: str | Path | None = None,
     title: str = "",
     width: float = 6.7,
@@ -48,21 +55,105 @@ def plot_fatigue(
     Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
     is a crack that goes straight into the body.
 
-    The points lie at one depth. Several bodies, such as a bush and the plate round it, share the panels.
+    Of a spectrum the damage takes the place of the parameter. The points lie at one depth. Several bodies, such as a
+    bush and the plate round it, share the panels.
 
     See :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(fatigue_of(found))
+    each = list(found) if isinstance(found, (list, tuple)) else [found]
+    plot = spectrum_of(each) if each and isinstance(each[0], SpectrumDamage) else fatigue_of(found)  # type: ignore[arg-type]
+    return Look(path, title, width, dpi, ax).drawn(plot)
 
 
 def fatigue_plot(
     subject: Subject, criterion: Criterion = "smith-watson-topper", body: Body | None = None, depth: float | None = None
 ) -> Plot:
-    """Return the fatigue of the last cycle: of one body, or of all edges of holes with constants."""
+    """Return the fatigue of the last cycle: of one body, or of all edges of holes with constants.
+
+    Without a cycle it is the damage of the whole history.
+    """
+    if not subject.cycles:
+        return _spectrum_plot(subject, criterion, body, depth)
     result = subject.part(with_cycles(subject).cycles[-1])
     cycle = cycle_states(result, result.cycles[-1])
     bodies = fatigue_bodies(cycle[0].problem, criterion) if body is None else [body]
     return fatigue_of([fatigue(cycle, criterion, one, depth=depth) for one in bodies])
+
+
+def _spectrum_plot(subject: Subject, criterion: Criterion, body: Body | None, depth: float | None) -> Plot:
+    """Return the damage over a whole history without cycles; without constants of a life its parameter, as of a cycle.
+
+    The stresses of many states are those of straight lines between the nodes.
+    """
+    choice("criterion", criterion, CRITERIA)
+    result = subject.whole()
+    known = bodies_with_lives(result.problem, criterion)
+    bodies = [one for one in known if one in EDGES] if body is None else [one for one in known if one == body]
+    if not bodies:
+        others = fatigue_bodies(result.problem, criterion) if body is None else [body]
+        return fatigue_of([fatigue(result.states, criterion, one, depth=depth) for one in others])
+    straight = len(result) > MOST_REFINED
+    how: dict[str, Any] = {"depth": depth, "straight": straight, "progress": subject.progress}
+    found = [result.spectrum_damage(criterion, one, **how) for one in bodies]
+    plot = spectrum_of(found)
+    words = f"the stresses of {len(result):,} states are those of straight lines between the nodes"
+    return replace(plot, notes=[words]) if straight else plot
+
+
+def spectrum_of(found: Sequence[SpectrumDamage]) -> Plot:
+    """Return the damage of one spectrum along the edge, with its hot spot and planes, and below it the life.
+
+    Raises
+    ------
+    InputError
+        If they are not of one problem and one criterion, or their points not at one depth.
+    """
+    each = instances("found", found, SpectrumDamage, "damage of a spectrum, such as result.spectrum_damage()")
+    _check_alike(each)
+    edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in found)
+    return Plot(
+        lambda look: _draw_spectrum(look, found),
+        lambda path: write_csv([spectrum_curve(one) for one in found], path),
+        f"Line chart of the damage by {found[0].criterion} along the edge of the {edges}.",
+        f"Damage of one spectrum by {found[0].criterion} along the edge of the {edges}, with its hot spot, and the "
+        "life. Short lines are the worst planes.",
+    )
+
+
+def _draw_spectrum(look: Look, found: Sequence[SpectrumDamage]) -> Sheet:
+    sheet = look.sheet([2.2, 2.2], extra=1.2)
+    axes, handles = sheet.axes, list[Line2D]()
+    sheet.grid()
+    names = [edge_body(one.problem, one.body) for one in found]
+    for place, one in enumerate(found):
+        spot, before = one.hot_spot, f"{names[place]}: " if len(found) > 1 else ""
+        angle, order = _by_angle(one)
+        damage, colour = one.damage.ravel()[order], COLOURS[2 * place + 1]
+        axes[0, 0].plot(angle, damage, **line(2 * place))
+        if math.isnan(spot.theta):
+            handles.append(Line2D([], [], linestyle="none", label=f"{before}no damage"))
+            continue
+        axes[0, 0].plot(from_bottom(spot.theta), spot.damage, "o", markersize=4.5, color=colour)
+        where = f"{before}{spot.life:.3g} spectra at {from_bottom(spot.theta):.1f} deg".replace("-", "−")
+        handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
+        _draw_planes(axes[0, 0], angle, damage, (one.plane.ravel() - one.theta.ravel())[order])
+        axes[1, 0].semilogy(angle, np.where(damage > 0.0, one.life.ravel()[order], np.nan), **line(2 * place))
+    highest = max(one.hot_spot.damage for one in found)
+    if highest > 0.0:
+        handles.append(Line2D([], [], label="worst planes", color="0.3", linewidth=1.0))
+        axes[0, 0].set_ylim(0.0, 1.15 * highest)
+        axes[1, 0].set_ylim(0.5 / highest, 1e4 / highest)
+    axes[0, 0].set_ylabel(f"damage of a spectrum,\n{found[0].criterion}")
+    axes[1, 0].set_ylabel("life (spectra)")
+    for panel in axes[:, 0]:
+        panel.set_xlim(-180.0, 180.0)
+        angle_axis(panel)
+    axes[-1, 0].set_xlabel(ANGLE)
+    sheet.figure.align_ylabels(axes)
+    sheet.legend(handles, min(len(handles), 3))
+    heading = "; ".join(f"{name}, {_depth_words(one)}" for name, one in zip(names, found, strict=True))
+    sheet.head(look.title, heading, caption=caption(found[0].problem))
+    return sheet
 
 
 def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
@@ -72,10 +163,7 @@ def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
     each = instances("found", each, Fatigue, wanted)
     if not each:
         raise InputError("found", f"must be {wanted}, not an empty list")
-    if any(one.criterion != each[0].criterion or one.problem != each[0].problem for one in each):
-        raise InputError("found", "must be of one problem and one criterion")
-    if any(np.ptp(one.depth) > 0.0 for one in each):
-        raise InputError("found", "must be of points at one depth")
+    _check_alike(each)
     edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in each)
     life = " and the life" if any(one.life is not None for one in each) else ""
     return Plot(
@@ -85,6 +173,14 @@ def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
         f"Parameter {each[0].criterion} along the edge of the {edges}, with its hot spot{life}. Short lines are the "
         "worst planes.",
     )
+
+
+def _check_alike(found: Sequence[Fatigue] | Sequence[SpectrumDamage]) -> None:
+    """Refuse unlike problems, criteria or depths."""
+    if any(one.criterion != found[0].criterion or one.problem != found[0].problem for one in found):
+        raise InputError("found", "must be of one problem and one criterion")
+    if any(np.ptp(one.depth) > 0.0 for one in found):
+        raise InputError("found", "must be of points at one depth")
 
 
 def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
@@ -122,12 +218,12 @@ def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
     return sheet
 
 
-def _depth_words(found: Fatigue) -> str:
+def _depth_words(found: Fatigue | SpectrumDamage) -> str:
     depth = float(found.depth.ravel()[0])
     return "on the edge" if depth == 0.0 else f"{short(depth, units(found.problem)['length'])} below the edge"
 
 
-def _by_angle(found: Fatigue) -> tuple[np.ndarray, np.ndarray]:
+def _by_angle(found: Fatigue | SpectrumDamage) -> tuple[np.ndarray, np.ndarray]:
     """The angles from the bottom, deg, in increasing order, and the order of the points."""
     angle = np.array([from_bottom(place) for place in found.theta.ravel().tolist()])
     order = np.argsort(angle)

@@ -97,7 +97,11 @@ KINDS = {
     "cycles": Kind("cycles", "changes in each cycle", ("csv",), sources=("result",)),
     "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv",)),
     "loops": Kind("load_cycle", "hysteresis loops of the last cycle, or of several", ("csv", "cycle", "abscissa")),
-    "fatigue": Kind("fatigue", "a criterion along the edge over the last cycle", ("csv", "body", "criterion", "depth")),
+    "fatigue": Kind(
+        "fatigue",
+        "a criterion along the edge over the last cycle, or damage",
+        ("csv", "body", "criterion", "depth"),
+    ),
     "scar": Kind("scar", "a life of wear: worn profile and pressure after some cycles", ("csv",), sources=("life",)),
     "wear": Kind(
         "scar", "a life of wear: volume, depth, dissipation, pressure over the cycles", ("csv",), sources=("life",)

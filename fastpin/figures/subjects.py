@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,8 @@ from fastpin.states.state import State
 from fastpin.storage.store import load, places_between
 from fastpin.storage.wear_files import holds_wear, load_wear
 
+Progress = Callable[[float, float], None]
+
 
 class InMemory:
     """A result, a sequence of states of one problem and on one grid, one state, or a life of wear.
@@ -27,6 +29,8 @@ class InMemory:
     def __init__(self, result: Sequence[State] | State | WearResult) -> None:
         self._life = result if isinstance(result, WearResult) else None
         self._result = Result.of_life(result) if isinstance(result, WearResult) else result
+
+    progress: Progress | None = None
 
     @property
     def source(self) -> str:
@@ -50,18 +54,28 @@ class InMemory:
         """Return the result."""
         return self.result()
 
+    def whole(self) -> Result:
+        """Return the result."""
+        return self.result()
+
     def wear(self) -> WearResult:
         """Return the life of wear."""
         return instance("result", self._life, WearResult, "a WearResult")
 
 
 class InFile:
-    """The stored result of a run. Only the states that a figure shows are read."""
+    """The stored result of a run. Only the states that a figure shows are read.
+
+    Attributes
+    ----------
+    progress : callable or None
+        ``progress(done, total)`` follows figures that take long to compute.
+    """
 
     source = "result"
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
+    def __init__(self, path: Path, progress: Progress | None = None) -> None:
+        self._path, self.progress = path, progress
 
     @property
     def cycles(self) -> Sequence[Cycle]:
@@ -80,6 +94,10 @@ class InFile:
         """Return the result with the states of one cycle only."""
         return load(self._path, states=places_between(self._path, *span_of(cycle)))
 
+    def whole(self) -> Result:
+        """Return the result with all its states."""
+        return load(self._path)
+
     def wear(self) -> WearResult:
         """Raise :class:`InputError`: there is no life of wear."""
         return load_wear(self._path)
@@ -89,9 +107,9 @@ Subject = InMemory | InFile
 """A result, or states, of which figures are made. States alone have no result."""
 
 
-def stored_subject(path: Path) -> Subject:
-    """Return the result of a run, or the life of wear, in a file."""
-    return InMemory(load_wear(path)) if holds_wear(path) else InFile(path)
+def stored_subject(path: Path, progress: Progress | None = None) -> Subject:
+    """Return the result of a run, or the life of wear, in a file. The progress is that of :class:`InFile`."""
+    return InMemory(load_wear(path)) if holds_wear(path) else InFile(path, progress)
 
 
 def with_stored_cycles(subject: Subject) -> WearResult:

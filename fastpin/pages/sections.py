@@ -11,7 +11,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
 from fastpin.figures.cycles import cycles_of
-from fastpin.figures.fatigue import fatigue_of
+from fastpin.figures.fatigue import fatigue_of, spectrum_of
 from fastpin.figures.gap import gap_of
 from fastpin.figures.history import history_of
 from fastpin.figures.load_cycle import STRAIGHT, loops_of, slip_of
@@ -36,7 +36,7 @@ from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import ROUNDING, case_rows, corner_columns, edge_body
 from fastpin.report.convergence import heading, reported_series, series_columns
-from fastpin.report.cycle import cycle_line, hot_spot_line
+from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
 from fastpin.report.margins import HEADS, fatigue_margins, margin_rows, static_margins
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_line, state_columns
@@ -107,6 +107,7 @@ def overview(page: PageParts) -> PageSection:
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
         known = [] if isinstance(source.fatigue, str) else source.fatigue
         sentences += [hot_spot_line(found, source.peaks) for found in known]
+        sentences += [spectrum_line(found) for found in source.spectrum]
         parts.append(Items([sentence(line) for line in sentences if line]))
     parts.append(Text(ANGLES))
     return PageSection("overview", "Overview", parts)
@@ -414,6 +415,9 @@ def stresses(page: PageParts) -> PageSection:
 def fatigue(page: PageParts) -> PageSection:
     """Return the hot spot over the last cycle, with the life if the material has constants for it."""
     found = page.source.fatigue
+    if page.source.spectrum:
+        figure, lines = page.album.figure(spectrum_of(page.source.spectrum)), map(spectrum_line, page.source.spectrum)
+        return PageSection("fatigue", "Fatigue", [figure, *(Text(sentence(each)) for each in lines)])
     if isinstance(found, str):
         return PageSection("fatigue", "Fatigue", [Text(found, "missing")])
     parts: list[SectionPart] = [page.album.figure(fatigue_of(found))]

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from fastpin import storage
-from fastpin.damage import Fatigue, WornFatigue, fatigue, worn_fatigue
+from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
 from fastpin.model.case import Case
@@ -23,7 +23,7 @@ from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import elastic_bodies
 from fastpin.report.case import edge_body
-from fastpin.report.cycle import MOST_STOPS, fatigue_bodies
+from fastpin.report.cycle import MOST_STOPS, fatigue_bodies, spectrum_damages
 from fastpin.report.states import stored_rows
 from fastpin.solver.result import Result
 from fastpin.solver.wear_result import WearResult
@@ -292,6 +292,16 @@ class Source:
             return [fatigue(self.cycle.states, CRITERION, one) for one in bodies]
         except InputError as error:
             return f"There is no fatigue: {error.field} {error.reason}."
+
+    @cached_property
+    def spectrum(self) -> list[SpectrumDamage]:
+        """Damage of plate and bush over a whole history without cycles, see :func:`spectrum_damages`."""
+        is_short = self.cycle is None and self.life is None and self.points.size <= MOST_STOPS
+        states = self.read(range(self.points.size)) if is_short else []
+        try:
+            return spectrum_damages(states, len(self.case.history))
+        except InputError:
+            return []
 
     @cached_property
     def worn(self) -> list[WornFatigue]:

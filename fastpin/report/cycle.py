@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 
 from fastpin.damage import Fatigue, cycle_states, fatigue
 from fastpin.damage.criteria import Criterion
+from fastpin.damage.spectrum import SpectrumDamage, bodies_with_lives, spectrum_damage
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.loads import LOAD_KIND
@@ -19,6 +21,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.case import ROUNDING, edge_body
 from fastpin.report.curves import Curve
+from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.states.quantities import load_point, sizes
@@ -66,6 +69,28 @@ def fatigue_lines(states: Sequence[State], cycle: Cycle) -> list[str]:
         return []
     bodies = [body for body in fatigue_bodies(stops[0].problem, SWT) if material_of(stops[0].problem, body).fatigue]
     return [hot_spot_line(fatigue(stops, SWT, body), stops) for body in bodies]
+
+
+def spectrum_damages(states: Sequence[State], corners: int) -> list[SpectrumDamage]:
+    """Return the damage of plate and bush by Smith, Watson and Topper over a whole history of so many corners.
+
+    The history is one pass of a repeated spectrum. A body without constants of the life is left out. There is none for
+    less than three corners, for corners that were not kept, or for more than :data:`MOST_STOPS` states.
+    """
+    if corners < 3 or not 2 <= len(states) <= MOST_STOPS or missing_corners(states, 1, corners):
+        return []
+    bodies = [body for body in bodies_with_lives(states[0].problem, SWT) if body in EDGES]
+    return [spectrum_damage(states, SWT, body) for body in bodies]
+
+
+def spectrum_line(found: SpectrumDamage) -> str:
+    """Return a line of text: the hot spot of a body over a spectrum, with its life and plane."""
+    spot, edge = found.hot_spot, edge_body(found.problem, found.body)
+    name = f"fatigue of the {edge} over the whole history as a spectrum, Smith-Watson-Topper"
+    if math.isnan(spot.theta):
+        return f"{name}: none, no plane has both tension and a changing strain"
+    words = f"life {spot.life:.3g} spectra at {from_bottom(spot.theta):z.2f} deg"
+    return f"{name}: {words}, normal of the plane {np.degrees(spot.plane):z.2f} deg from +x"
 
 
 def fatigue_bodies(problem: Problem, criterion: str) -> list[Body]:

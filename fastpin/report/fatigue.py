@@ -4,10 +4,27 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.damage import Fatigue
+from fastpin.damage import Fatigue, SpectrumDamage
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
+
+
+def spectrum_curve(found: SpectrumDamage) -> Curve:
+    """Return angle, depth, damage, plane and life of the points, in the order of the angles, as :func:`fatigue_curve`.
+
+    The damage is that of one spectrum, and the life counts spectra.
+    """
+    angles = np.array([from_bottom(angle) for angle in found.theta.ravel().tolist()])
+    columns = {
+        "angle [deg]": angles,
+        f"depth [{units(found.problem)['length'].name}]": found.depth,
+        f"damage by {found.criterion}": found.damage,
+        "plane [deg]": np.degrees(found.plane),
+        "life [spectra]": found.life,
+    }
+    order = np.argsort(angles, kind="stable")
+    return Curve({"body": found.body}, {name: np.ravel(values)[order] for name, values in columns.items()})
 
 
 def fatigue_curve(found: Fatigue) -> Curve:

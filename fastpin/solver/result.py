@@ -274,6 +274,30 @@ class Result(Sequence[State]):
         states = cycle_states(self, self.cycles[-1]) if self.cycles else self.states
         return fatigue(states, criterion, body, **options)
 
+    def spectrum_damage(self, criterion: Any = "smith-watson-topper", body: Body = "plate", **options: Any) -> Any:
+        """Damage of plate, bush or pin over the whole history, which is taken as one pass of a repeated spectrum.
+
+        Parameters
+        ----------
+        criterion, body, **options
+            See :func:`fastpin.damage.spectrum_damage`.
+
+        Returns
+        -------
+        fastpin.damage.SpectrumDamage
+
+        Raises
+        ------
+        InputError
+            See :func:`fastpin.damage.spectrum_damage`; also if the state at a corner was not kept.
+        """
+        from fastpin.damage import spectrum_damage
+
+        missing = states.choice.missing_corners(self.states, 1, len(self.history))
+        if missing:
+            raise InputError("states", f"must hold all corners of the history; {len(missing):,} were not kept")
+        return spectrum_damage(self.states, criterion, body, **options)
+
     def wear(self, **how: Any) -> WearResult:
         """Follow the last cycle of the history many times on a profile that wears.
 

@@ -289,7 +289,7 @@ class NodalStress:
     ----------
     hats : Hats
     stress : callable
-        ``stress(tractions, remote)`` gives (srr, stt, srt) at the points, shape (3, m).
+        ``stress(tractions, remote)`` gives components at the points, such as (srr, stt, srt), shape (3, m).
     """
 
     def __init__(self, hats: Hats, stress: Callable[[Tractions, np.ndarray], np.ndarray]) -> None:
@@ -297,7 +297,8 @@ class NodalStress:
         self._press_fit = stress(Tractions(()), np.zeros(3))
         self._remote = np.array([stress(Tractions(()), self._unit * one) - self._press_fit for one in np.eye(3)])
         self._remote /= self._unit
-        self._response = np.zeros((2, 3, hats.known.size, self._press_fit.shape[1]))
+        components, points = self._press_fit.shape
+        self._response = np.zeros((2, components, hats.known.size, points))
 
     def learn(self, nodes: np.ndarray, hats: Sequence[Tractions]) -> None:
         """Compute the stresses of the hat functions of some `nodes` (k,), see :meth:`Hats.blocks`."""
@@ -308,7 +309,7 @@ class NodalStress:
     def component(
         self, which: int, points: slice, pressure: np.ndarray, shear: np.ndarray, remote: np.ndarray
     ) -> np.ndarray:
-        """Return a component of (srr, stt, srt) at some points, shape (k, points)."""
+        """Return a component at some points, shape (k, points)."""
         known, response = self._hats.known, self._response[:, which]
         found = pressure[:, known] @ response[0, known, points] + shear[:, known] @ response[1, known, points]
         return np.asarray(found + remote @ self._remote[:, which, points] + self._press_fit[which, points])

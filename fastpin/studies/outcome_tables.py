@@ -277,7 +277,7 @@ def _of_cycle(section: Section) -> StudyOutcome | None:
 def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutcome | None:
     """Read a number of the last cycle, followed on a profile that wears: as the case says, unless the table does."""
     quantity = _choice(section, "wear", tuple(WEAR_QUANTITIES))
-    with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.life is not None)
+    with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.counting is not None)
     criterion = _choice(section, "criterion", with_life)
     body: Any = _choice(section, "body", BODIES)
     if quantity is not None and not WEAR_QUANTITIES[quantity].is_damage:

@@ -95,7 +95,7 @@ def _hot_spot_quantities(name: str, body: Body) -> dict[str, CycleQuantity]:
         "": CycleQuantity(criterion.kind, lambda result: _hot_spot(result, name, body).parameter),
         "_angle": CycleQuantity("angle", lambda result: _hot_spot(result, name, body).theta),
     }
-    if criterion.life is not None:
+    if criterion.counting is not None:
         quantities["_life"] = CycleQuantity("life", lambda result: _life(result, name, body))
     return {ending if body == "plate" else f"{ending}_{body}": quantity for ending, quantity in quantities.items()}
 

@@ -317,6 +317,29 @@ def test_a_cycle_without_its_corners_has_no_fatigue(tmp_path, capsys):
     assert "must hold all corners of the cycle, 5 to 7" in capsys.readouterr().err
 
 
+def test_a_history_without_cycles_has_the_damage_of_a_spectrum(tmp_path, capsys, monkeypatch):
+    """A body without constants of a life has the parameter over all states. Many states have straight lines."""
+    path, table = tmp_path / "flight.h5", tmp_path / "a.csv"
+    history = LoadHistory([{"P": 4e5, "Q": 2e5}, {"P": 1e5}, {"P": 6e5, "Q": -2e5}, {"P": 2e5, "Q": 0.0}])
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"])
+    record(Problem(pair, 1e-2, 1e-5, 0.3), history, path, nodes=61)
+    command = ["plot", str(path), "fatigue", "-o", str(tmp_path / "a.png"), "--csv", str(table)]
+    assert main(command) == 0
+    assert capsys.readouterr().out.strip() == f"wrote {tmp_path / 'a.png'} and {table}"
+    found, rows = load(path).spectrum_damage(), read_rows(table)
+    assert max(float(row["damage by smith-watson-topper"]) for row in rows) == pytest.approx(found.hot_spot.damage)
+    assert min(float(row["life [spectra]"]) for row in rows) == pytest.approx(found.hot_spot.life)
+    assert main([*command, "--body", "pin"]) == 0
+    assert {"body", "smith-watson-topper [Pa]", "plane [deg]"} < set(read_rows(table)[0])
+    monkeypatch.setattr(figures.fatigue, "MOST_REFINED", 3)
+    assert main(command) == 0
+    assert "the stresses of 4 states are those of straight lines between the nodes" in capsys.readouterr().out
+    assert main(["plot", str(path), "fatigue", "--criterion", "crossland", "-o", str(tmp_path / "b.png")]) == 2
+    assert "crossland needs bending_limit, torsion_limit of the plate" in capsys.readouterr().err
+    assert main(["plot", str(path), "fatigue", "--criterion", "x", "-o", str(tmp_path / "b.png")]) == 2
+    assert "criterion: must be" in capsys.readouterr().err
+
+
 def test_a_cycle_without_its_corners_has_no_loop(tmp_path, capsys):
     path = tmp_path / "ends.h5"
     history = LoadHistory([{"P": 1e5}]) + LoadHistory([{"Q": 2e4}, {"Q": -2e4}]).repeated(2)

@@ -1,13 +1,14 @@
 """Figures of stresses, load cycles and fatigue."""
 
 import functools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, figures, solve
 from fastpin.bodies import Bushing, Ring, Tube
-from fastpin.damage import fatigue
+from fastpin.damage import fatigue, spectrum_damage
 from fastpin.figures.load_cycle import area_doubt
 from fastpin.model import FatigueConstants
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
@@ -279,6 +280,23 @@ def test_fatigue_along_the_edge(result):
     assert min(life.lines[0].get_ydata()) == pytest.approx(found.hot_spot.life)
     with pytest.raises(InputError, match="found: must be a fatigue result"):
         figures.plot_fatigue(result)
+
+
+def test_damage_along_the_edge(result):
+    constants = MATERIALS["2024-T3"].fatigue
+    found = [spectrum_damage(list(result), body=body, constants=constants, straight=True) for body in ("plate", "pin")]
+    figure = figures.plot_fatigue(found[0], title="flight")
+    damage, life = figure.axes
+    assert max(damage.lines[0].get_ydata()) == pytest.approx(found[0].hot_spot.damage)
+    assert np.nanmin(life.lines[0].get_ydata()) == pytest.approx(found[0].hot_spot.life)
+    assert len(figures.plot_fatigue(found).axes) == 2
+    none = replace(found[0], damage=0.0 * found[0].damage)
+    assert figures.plot_fatigue(none).axes[0].lines
+    other = spectrum_damage(list(result), constants=constants, depth=np.array([[0.0], [1e-4]]), straight=True)
+    with pytest.raises(InputError, match=r"^found: must be of points at one depth$"):
+        figures.plot_fatigue(other)
+    with pytest.raises(InputError, match=r"^found: must be damage of a spectrum"):
+        figures.plot_fatigue([found[0], 1.0])
 
 
 @pytest.mark.parametrize(

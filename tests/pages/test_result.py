@@ -29,6 +29,7 @@ from fastpin.pages.sections import (
     PageParts,
     case,
     convergence,
+    fatigue,
     loads,
     materials,
     overview,
@@ -222,6 +223,23 @@ def test_the_last_closed_part_of_a_history_without_blocks_is_its_cycle() -> None
 
 
 @pytest.mark.usefixtures("undrawn")
+def test_a_history_without_cycles_has_the_damage_of_a_spectrum(only: Callable[..., None], tmp_path: Path) -> None:
+    """A long one, and one whose material lacks constants, say why there is no fatigue."""
+    only(overview, fatigue)
+    history = fastpin.LoadHistory([{"P": 4e5, "Q": 2e5}, {"P": 1e5}, {"P": 6e5, "Q": -2e5}, {"P": 2e5, "Q": 0.0}])
+    words = {}
+    for name in ("2024-T3", "steel"):
+        pair = MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS[name])
+        result = fastpin.solve(fastpin.Problem(pair, 1e-2, 1e-5, 0.3), history, nodes=61)
+        write_report(result, tmp_path / f"{name}.html")
+        words[name] = (tmp_path / f"{name}.html").read_text(encoding="utf-8")
+        life = result.spectrum_damage(constants=fastpin.MATERIALS["2024-T3"].fatigue).hot_spot.life
+        told = f"over the whole history as a spectrum, Smith-Watson-Topper: life {life:.3g} spectra"
+        assert words[name].count(told) == (2 if name == "2024-T3" else 0)
+    assert "Damage of one spectrum" in words["2024-T3"]
+    assert "Fatigue needs a cycle" in words["steel"]
+
+
 def test_a_result_in_memory_has_the_same_page(tmp_path: Path) -> None:
     path, calls = tmp_path / "page.htm", []
     result = fastpin.solve(

@@ -116,11 +116,13 @@ def test_every_way_to_an_outcome_is_explained() -> None:
         assert f"`{key}`" in text, key
 
 
-def test_the_example_of_fatigue_prints_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_examples_of_fatigue_print_their_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     text = (ROOT / "docs" / "fatigue.md").read_text(encoding="utf-8")
-    (code,), (printed,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
-    exec(compile(code, "fatigue.md", "exec"), {})
-    assert capsys.readouterr().out == printed
+    codes, printed = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
+    names: dict[str, Any] = {}
+    for code, lines in zip(codes, printed, strict=True):
+        exec(compile(code, "fatigue.md", "exec"), names)
+        assert capsys.readouterr().out == lines
 
 
 def test_the_example_of_cracks_prints_its_numbers(

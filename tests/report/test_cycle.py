@@ -13,7 +13,15 @@ from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.report.cycle import MOST_STOPS, cycle_line, document, fatigue_lines, write_csv
+from fastpin.report.cycle import (
+    MOST_STOPS,
+    cycle_line,
+    document,
+    fatigue_lines,
+    spectrum_damages,
+    spectrum_line,
+    write_csv,
+)
 from fastpin.report.states import cycle_lines
 from fastpin.report.summary import json_ready
 from fastpin.solver.result import Result
@@ -123,3 +131,20 @@ def test_no_fatigue_is_told_without_constants_or_states() -> None:
     corners = [state for state in result if state.fraction == 1.0]
     assert fatigue_lines(corners, result.cycles[-1])
     assert fatigue_lines(corners[:-1], result.cycles[-1]) == []
+
+
+def test_the_damage_of_a_history_without_cycles_is_told() -> None:
+    """All corners must be there, three at least, and not too many; the material needs constants of the life."""
+    history = LoadHistory([{"P": 1e6}, {"P": 2e6, "Q": 4e5}, {"P": 5e5}])
+    sheet = Material(70e9, 0.33, "", MATERIALS["2024-T3"].fatigue)
+    result = solve(Problem(MaterialPair(MATERIALS["Ti-6Al-4V"], sheet), 0.01, 2e-5, 0.4), history, nodes=61)
+    (found,) = spectrum_damages(result.states, 3)
+    line = spectrum_line(found)
+    spot = result.spectrum_damage().hot_spot
+    assert line.startswith("fatigue of the plate over the whole history as a spectrum, Smith-Watson-Topper: life ")
+    assert f"life {spot.life:.3g} spectra at {from_bottom(spot.theta):.2f} deg, normal of the plane " in line
+    assert spectrum_damages(result.states[1:], 3) == spectrum_damages(result.states, 4) == []
+    assert spectrum_damages(result.states[:2], 2) == []
+    assert spectrum_damages(result.states * MOST_STOPS, 3) == []
+    bare = solve(Problem(MaterialPair(MATERIALS["steel"], MATERIALS["steel"]), 0.01, 2e-5, 0.4), history, nodes=61)
+    assert spectrum_damages(bare.states, 3) == []

@@ -1,0 +1,168 @@
+"""Cycles of stress histories, counted on planes: the damage of a spectrum at each point of one material.
+
+On each plane the cycles of its strain are counted over the whole history (Bannantine and Socie 1991). A cycle has its
+strain amplitude and the largest normal stress of its stops, and does the damage 1/N of the criterion. The sum over the
+cycles is the damage of the plane (Palmgren 1924, Miner 1945). The worst plane counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, PlaneCount
+from fastpin.errors import InputError
+from fastpin.kernels import rainflow
+from fastpin.model.checks import alternatives, choice
+from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.materials import Material
+from fastpin.runtime.threads import in_chunks
+
+SPECTRUM_CRITERIA = tuple(name for name, criterion in FATIGUE_CRITERIA.items() if criterion.counting is not None)
+"""The criteria with lives, whose cycles are counted."""
+
+CHUNK, COUNTED = 8, 64
+"""Points that one thread counts at a time, and points that are counted between two calls of the progress."""
+
+TRIED = 16
+"""Places at which a block of repeated stops may end."""
+
+
+class Spectrum(NamedTuple):
+    """The stops of a spectrum in the order of time, in blocks.
+
+    Attributes
+    ----------
+    order : ndarray of int64, shape (stops,)
+        The place of each stop among the different states. Blocks of many passes are held once.
+    blocks : ndarray of int64, shape (blocks, 3)
+        First stop of each block, the stop after its last one, and the number of its passes.
+    """
+
+    order: np.ndarray
+    blocks: np.ndarray
+
+    @classmethod
+    def of(cls, order: np.ndarray) -> Spectrum:
+        """Find the blocks of stops that come at least four times in a row."""
+        kept: list[np.ndarray] = []
+        blocks: list[tuple[int, int, int]] = []
+        later: dict[int, list[int]] = {}
+        for place, state in enumerate(order.tolist()):
+            later.setdefault(state, []).append(place)
+        first = begin = held = 0  # of the stops that are in no block yet; the present stop; stops in blocks
+        while begin <= order.size:
+            length, passes = (0, 0) if begin == order.size else _repeated(order, begin, later[int(order[begin])])
+            if begin < order.size and passes < 4:
+                begin += 1
+                continue
+            for start, stop, times in ((first, begin, 1), (begin, begin + length, passes)):
+                if stop > start:
+                    kept.append(order[start:stop])
+                    blocks.append((held, held + stop - start, times))
+                    held += stop - start
+            begin += max(length * passes, 1)
+            first = begin
+        return cls(np.concatenate(kept), np.array(blocks, dtype=np.int64))
+
+
+def _repeated(order: np.ndarray, begin: int, places: list[int]) -> tuple[int, int]:
+    """Return length and passes of the repeated block that begins at a stop; no passes if none does.
+
+    `places` are all places of the state of this stop; those up to `begin` are taken off.
+    """
+    while places and places[0] <= begin:
+        del places[0]
+    for end in places[:TRIED]:
+        length = end - begin
+        if begin + 4 * length > order.size:
+            break
+        same = order[begin + length :] == order[begin : order.size - length]
+        if same[: 3 * length].all():
+            alike = same.size if same.all() else int(np.argmin(same))
+            return length, alike // length + 1
+    return 0, 0
+
+
+class CountedMaterial(NamedTuple):
+    """A criterion with the constants of one material.
+
+    Attributes
+    ----------
+    counting : PlaneCount
+    material : Material
+    constants : tuple of float
+        The constants of the parameter.
+    life : ndarray, shape (4,)
+        Logarithms of the coefficients of the life, and its exponents.
+    """
+
+    counting: PlaneCount
+    material: Material
+    constants: tuple[float, ...]
+    life: np.ndarray
+
+    @classmethod
+    def of(cls, name: str, material: Material, constants: FatigueConstants | None, body: str) -> CountedMaterial:
+        """Check a criterion and the constants, by default those of the material of a body.
+
+        Raises
+        ------
+        InputError
+            If the criterion has no life, or a constant is missing. The message names the constants and the `body`.
+        """
+        criterion = FATIGUE_CRITERIA[choice("criterion", name, tuple(FATIGUE_CRITERIA))]
+        if criterion.counting is None:
+            raise InputError("criterion", f"{name} has no life; use {alternatives(SPECTRUM_CRITERIA)}")
+        given = (material.fatigue if constants is None else constants) or FatigueConstants()
+        known = given.required((*criterion.needs, *criterion.life_needs), name, body)
+        needs = len(criterion.needs)
+        curve = criterion.counting.curve(material, *known[needs:])
+        life = np.array([*np.log(curve.coefficients), *curve.exponents])
+        return cls(criterion.counting, material, known[:needs], life)
+
+    def worst(
+        self, history: np.ndarray, spectrum: Spectrum, progress: Callable[[float], None] | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return damage and plane of each point, both (points,), from stresses (states, points, 4), Pa.
+
+        The plane is given by the angle of its normal from the +x axis, rad; NaN where there is no damage.
+        """
+        points, least = history.shape[1], self._least(history)
+        out = np.empty((points, 2))
+        for begin in range(0, points, COUNTED):
+            paths, rows = self._paths(history[:, begin : begin + COUNTED]), out[begin : begin + COUNTED]
+            in_chunks(len(paths), CHUNK, partial(self._count, spectrum, least, paths, rows))
+            if progress is not None:
+                progress(min(begin + COUNTED, points) / points)
+        return out[:, 0], out[:, 1]
+
+    def _count(self, spectrum: Spectrum, least: float, paths: np.ndarray, rows: np.ndarray, part: slice) -> None:
+        rainflow.worst_sums(paths[part], *spectrum, self.counting.form, least, self.life, rows[part])
+
+    def cycles(self, history: np.ndarray, spectrum: Spectrum, plane: float) -> tuple[np.ndarray, np.ndarray]:
+        """Count the cycles of one point on one plane, from its stresses (states, 1, 4), Pa.
+
+        Returns
+        -------
+        places : ndarray of int64, shape (cycles, 3)
+            The states of both reversals, and the state with the largest normal stress.
+        values : ndarray, shape (cycles, 3)
+            How often the cycle comes, its parameter, and the damage of all its times.
+        """
+        most = 3 * spectrum.order.size + 2
+        places, values = np.empty((most, 3), dtype=np.int64), np.empty((most, 3))
+        given = self.counting.form, self._least(history), self.life
+        count = rainflow.cycles_on_plane(self._paths(history)[0], plane, *spectrum, *given, places, values)
+        return places[:count], values[:count]
+
+    def _least(self, history: np.ndarray) -> float:
+        """The parameter that is rounding beside the stresses."""
+        return ROUNDING * self.counting.natural(float(np.abs(history).max(initial=0.0)), self.material)
+
+    def _paths(self, history: np.ndarray) -> np.ndarray:
+        swung, push = self.counting.swung_and_push(history, self.material, *self.constants)
+        return np.ascontiguousarray(np.concatenate([swung, push], axis=-1).transpose(1, 0, 2))

@@ -1,0 +1,166 @@
+"""Stress histories: the stresses of many states at points, by one product with a matrix or state by state."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from fastpin.elasticity.tractions import Tractions
+from fastpin.model.checks import instance, instances, true_or_false
+from fastpin.model.loads import LOADS, REMOTE
+from fastpin.model.points import Body, Points
+from fastpin.reading.stress import Stress, stress_at
+from fastpin.runtime.threads import in_threads
+from fastpin.states.reading_bounds import MAPPED, Hats, NodalStress
+from fastpin.states.state import State
+
+ROOM = 2**24
+"""Numbers that a block of points may hold: 128 MB."""
+
+TOGETHER = 64
+"""States that are read between two calls of the progress."""
+
+KEPT = 500
+"""States up to which their refined tractions are kept for the next reading. Those of 5,000 states fill 700 MB."""
+
+Progress = Callable[[float], None]
+"""Called with the part of the work that is done, 0 to 1."""
+
+
+def stress_history(states: Sequence[State], points: Points, body: Body = "plate", straight: bool = False) -> np.ndarray:
+    """The stresses at points over the states, Pa, shape (states, points, 4): sxx, syy, szz, sxy.
+
+    Parameters
+    ----------
+    states : sequence of State
+        States of one problem.
+    points : Points
+    body : {"plate", "pin", "seat"}
+    straight : bool
+        Whether the tractions are straight lines between the nodes everywhere, see :meth:`fastpin.State.stress`. The
+        stresses of many states are then one product with a matrix.
+
+    Raises
+    ------
+    InputError
+        See :meth:`fastpin.State.stress`.
+    """
+    every = instances("states", states, State, "a sequence of fastpin.State")
+    instance("points", points, Points, "fastpin.Points")
+    if not every:
+        return np.zeros((0, 0))
+    different, order = different_states(every, true_or_false("straight", straight))
+    found = np.empty((len(different), points.theta.size, 4))
+    for part, values in history_blocks(different, points, body, straight):
+        found[:, part] = values
+    return found[order]
+
+
+def different_states(states: Sequence[State], straight: bool) -> tuple[list[State], np.ndarray]:
+    """Return the states with different stresses, and the place of each state among them, int64, shape (states,)."""
+    seen: dict[bytes, int] = {}
+    different: list[State] = []
+    order = np.empty(len(states), dtype=np.int64)
+    for k, state in enumerate(states):
+        key = hashlib.blake2b(digest_size=16)
+        for part in (state, state.seat):
+            if part is not None:
+                arrays = [part.theta, part.pressure, part.shear, part.status, _remote(part)]
+                if not straight and part.marks is not None:
+                    arrays += part.marks.arrays(part.theta.size)
+                if not straight:
+                    arrays.append(part.friction)
+                for array in arrays:
+                    key.update(np.ascontiguousarray(array).data)
+        order[k] = seen.setdefault(key.digest(), len(different))
+        if order[k] == len(different):
+            different.append(state)
+    return different, order
+
+
+def history_blocks(
+    states: Sequence[State], points: Points, body: Body, straight: bool, progress: Progress | None = None
+) -> Iterator[tuple[slice, np.ndarray]]:
+    """Yield blocks of points, with their stresses over the states, shape (states, points of the block, 4).
+
+    The stresses of straight lines are a product with a matrix for more than :data:`MAPPED` states on one grid. Points
+    deep in the pin are read state by state.
+    """
+    count, nodes = points.theta.size, states[0].theta.size
+    size = max(ROOM // (8 * nodes + 4 * len(states)), 1)
+    theta, depth = points.theta.ravel(), points.depths(states[0].problem, body).ravel()
+    mapped = straight and len(states) > MAPPED and all(_is_on_grids_of(state, states[0]) for state in states)
+    mapped = mapped and not (body == "pin" and np.any(depth > 0.5))  # near its centre a moment has an infinite stress
+    for begin in range(0, max(count, 1), size):
+        part = slice(begin, min(begin + size, count))
+        some = Points.at_depth(depth[part] * states[0].problem.hole_radius, theta[part]) if size < count else points
+        told = None if progress is None else _within(progress, part, count)
+        yield part, (_mapped(states, some, body, told) if mapped else _read(states, some, body, straight, told))
+
+
+def _is_on_grids_of(state: State, other: State) -> bool:
+    pairs = ((state, other), (state.seat, other.seat))
+    return all(one is two if one is None or two is None else np.array_equal(one.theta, two.theta) for one, two in pairs)
+
+
+def _within(progress: Progress, part: slice, count: int) -> Progress:
+    """Return the progress of a block of points."""
+    return lambda done: progress((part.start + done * (part.stop - part.start)) / count)
+
+
+def _read(states: Sequence[State], points: Points, body: Body, straight: bool, progress: Progress | None) -> np.ndarray:
+    """Read the stresses state by state."""
+    found = np.empty((len(states), points.theta.size, 4))
+
+    def fill(k: int) -> None:
+        is_kept = len(states) <= KEPT or "refined" in states[k].__dict__
+        found[k] = _components(states[k].stress(points, body, straight)).T
+        if not is_kept:
+            states[k].__dict__.pop("refined", None)
+
+    for begin in range(0, len(states), TOGETHER):
+        stop = min(begin + TOGETHER, len(states))
+        in_threads(fill, range(begin, stop))
+        if progress is not None:
+            progress(stop / len(states))
+    return found
+
+
+def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progress | None) -> np.ndarray:
+    """Multiply the nodal tractions with the stresses of the hat functions of the nodes, also of the seat of a bush."""
+    problem, names, none = states[0].problem, [list(LOADS)[place] for place in REMOTE], Tractions(())
+    remote = np.array([_remote(state) for state in states])
+    found = np.zeros((len(states), points.theta.size, 4))
+
+    def of_hole(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+        load, seat = dict(zip(names, remote.tolist(), strict=True)), None if states[0].seat is None else none
+        return _components(stress_at(problem, tractions, load, points, body, seat))
+
+    def of_seat(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+        return _components(stress_at(problem, none, {}, points, body, tractions)) - unloaded
+
+    unloaded, seats = of_hole(none, np.zeros(3)), [state.seat for state in states if state.seat is not None]
+    for part, stress in ((states, of_hole), *(((seats, of_seat),) if seats else ())):
+        pressure, shear = np.array([one.pressure for one in part]), np.array([one.shear for one in part])
+        hats = Hats(problem, part[0].grid)
+        linear = NodalStress(hats, stress)
+        for nodes, functions in hats.blocks(pressure, shear):
+            linear.learn(nodes, functions)
+            if progress is not None and part is states:
+                progress(float(nodes[-1]) / pressure.shape[1])
+        for which in range(4):
+            found[:, :, which] += linear.component(which, slice(None), pressure, shear, remote)
+    if progress is not None:
+        progress(1.0)
+    return found
+
+
+def _components(stress: Stress) -> np.ndarray:
+    """Return sxx, syy, szz and sxy, shape (4, points)."""
+    return np.array([stress.sxx, stress.syy, stress.axial, stress.sxy]).reshape(4, -1)
+
+
+def _remote(state: State) -> np.ndarray:
+    return np.array([state.load.get(name, 0.0) for place, name in enumerate(LOADS) if place in REMOTE])

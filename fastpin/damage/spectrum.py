@@ -1,0 +1,290 @@
+"""Damage of plate, bush or pin over a load spectrum: places, planes, lives in spectra, and the cycles that do it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fastpin.damage.counted import SPECTRUM_CRITERIA, CountedMaterial, Spectrum
+from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, Criterion
+from fastpin.damage.histories import different_states, history_blocks
+from fastpin.damage.hot_spots import CRITERIA, NO_CRACK, bodies_at, edge_angles
+from fastpin.errors import InputError
+from fastpin.model.checks import check_callable, choice, instance, true_or_false
+from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.points import Body, Points, elastic_bodies, material_of, owner_of
+from fastpin.model.problem import Problem
+from fastpin.model.read_only import ReadOnly
+from fastpin.reading.stress import check_body
+from fastpin.states.choice import stops_of_one_problem
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+
+FEW = 100
+"""Different states up to which the ends of their zones are points of the edge. Those of 5,000 states are 20,000."""
+
+
+class SpectrumSpot(NamedTuple):
+    """The point with the largest damage; without a place if there is no damage.
+
+    Attributes
+    ----------
+    damage : float
+        Miner's sum of the whole spectrum.
+    theta : float
+        Angle of the point, rad; NaN without a place.
+    depth : float
+        Distance from the edge, m; NaN without a place.
+    plane : float
+        Angle of the worst plane's normal from the +x axis, rad; NaN without a place.
+    life : float
+        Number of spectra until the sum is 1; infinite without damage.
+    """
+
+    damage: float
+    theta: float
+    depth: float
+    plane: float
+    life: float
+
+
+class SpectrumCycles(NamedTuple):
+    """The counted cycles at the hot spot, on its plane; the largest damage first. All arrays have the shape (cycles,).
+
+    Attributes
+    ----------
+    start, stop : ndarray
+        Load points of both reversals, see :mod:`fastpin.states.choice`. States that come again have their first place.
+    largest : ndarray
+        Load point of the largest normal stress in the cycle.
+    times : ndarray of int
+        How often the cycle comes in the spectrum.
+    parameter : ndarray
+        Parameter of the cycle, Pa; rad for "fatemi-socie".
+    damage : ndarray
+        Damage of all its times.
+    """
+
+    start: np.ndarray
+    stop: np.ndarray
+    largest: np.ndarray
+    times: np.ndarray
+    parameter: np.ndarray
+    damage: np.ndarray
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SpectrumDamage(ReadOnly):
+    """Damage of one body over a spectrum that is repeated. All arrays have the shape of the points.
+
+    Attributes
+    ----------
+    problem : Problem
+    criterion : str
+        One of :data:`fastpin.damage.SPECTRUM_CRITERIA`.
+    body : str
+        "plate", "pin" or "seat".
+    theta, depth : ndarray
+        Angles of the points, rad, and distances from the edge, m.
+    damage : ndarray
+        Miner's sum of the spectrum.
+    plane : ndarray
+        Angle of the worst plane's normal from the +x axis, rad, in (-pi/2, pi/2]; NaN where there is no damage.
+    cycles : SpectrumCycles
+        The cycles at the hot spot; none without damage.
+    """
+
+    problem: Problem
+    criterion: str
+    body: str
+    theta: np.ndarray
+    depth: np.ndarray
+    damage: np.ndarray
+    plane: np.ndarray
+    cycles: SpectrumCycles
+
+    def __repr__(self) -> str:
+        spot = self.hot_spot
+        if math.isnan(spot.theta):
+            return f"<SpectrumDamage of the {self.body}, {self.criterion}: {NO_CRACK}>"
+        place = f"theta {spot.theta:.5f} rad, depth {spot.depth:.4g} m"
+        return f"<SpectrumDamage of the {self.body}, {self.criterion}: life {spot.life:.4g} spectra at {place}>"
+
+    @property
+    def life(self) -> np.ndarray:
+        """Number of spectra until the sum is 1; infinite where there is no damage."""
+        return np.divide(1.0, self.damage, out=np.full(self.damage.shape, np.inf), where=self.damage > 0.0)
+
+    @property
+    def hot_spot(self) -> SpectrumSpot:
+        """The point with the largest damage; the first one of equal points."""
+        if not self.damage.any():
+            return SpectrumSpot(0.0, math.nan, math.nan, math.nan, math.inf)
+        at = np.unravel_index(int(np.argmax(self.damage)), self.damage.shape)
+        place = (float(values[at]) for values in (self.theta, self.depth, self.plane, self.life))
+        return SpectrumSpot(float(self.damage[at]), *place)
+
+
+def spectrum_damage(
+    states: Sequence[State],
+    criterion: Criterion = "smith-watson-topper",
+    body: Body = "plate",
+    *,
+    points: Points | None = None,
+    depth: ArrayLike | None = None,
+    constants: FatigueConstants | None = None,
+    straight: bool = False,
+    progress: Callable[[float, float], None] | None = None,
+) -> SpectrumDamage:
+    """Damage of plate, bush or pin over a load spectrum, at points on an edge or inside.
+
+    The states are the stops of the spectrum, in the order of time. After the last one the first one follows: the
+    spectrum is repeated. Between two stops the stresses are unknown.
+
+    Parameters
+    ----------
+    states : sequence of State
+        States of one problem, such as a result. At least two of them have different stresses.
+    criterion : str
+        One of :data:`fastpin.damage.SPECTRUM_CRITERIA`.
+    body, depth, constants
+        See :func:`fatigue`.
+    points : Points, optional
+        Unless given, the points lie all round the edge: at the nodes and at each degree. Of up to 100 different states
+        the ends of all zones are added.
+    straight : bool
+        Whether the tractions are straight lines between the nodes everywhere, see :meth:`fastpin.State.stress`. The
+        stresses are then one product with a matrix, which takes a small part of the time.
+    progress : callable, optional
+        Called as ``progress(done, total)`` now and then.
+
+    Raises
+    ------
+    InputError
+        See :func:`fatigue`; also if the criterion has no life, the material lacks one of its constants, or the
+        stresses do not change.
+    """
+    stops = stops_of_one_problem(states)
+    problem = stops[0].problem
+    if progress is not None:
+        check_callable("progress", progress)
+    check_body(problem, body)
+    different, order = different_states(stops, true_or_false("straight", straight))
+    if points is None:
+        points = Points.at_depth(0.0 if depth is None else depth, edge_angles(different, FEW))
+    elif depth is not None:
+        raise InputError("depth", "can't be given together with points")
+    instance("points", points, Points, "fastpin.Points")
+    if constants is not None:
+        instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
+    below = np.broadcast_to(points.depths(problem, body), points.shape)
+    parts = [
+        (chosen, CountedMaterial.of(criterion, material_of(problem, one), constants, owner_of(problem, one)))
+        for chosen, one in bodies_at(problem, body, below.ravel())
+    ]
+    tell_read, tell_counted = _halves(progress)
+    spectrum, found, changes = Spectrum.of(order), _Found(below.size), False
+    for block, history in history_blocks(different, points, body, straight, tell_read):
+        changes = changes or bool(np.ptp(history, axis=0).max() > ROUNDING * np.abs(history).max())
+        for chosen, counted in parts:
+            places = block.start + np.flatnonzero(chosen[block])
+            found.take(counted, history[:, chosen[block]], spectrum, places, tell_counted)
+    if not changes:
+        raise InputError("states", "must have a turning point: their stresses do not change")
+    damage, plane = found.damage.reshape(points.shape), found.plane.reshape(points.shape)
+    cycles = found.cycles(spectrum, np.array([load_point(state) for state in different]))
+    return SpectrumDamage(problem, criterion, body, points.theta, below * problem.hole_radius, damage, plane, cycles)
+
+
+def damage_ranking(
+    states: Sequence[State],
+    criterion: Criterion = "smith-watson-topper",
+    *,
+    depth: ArrayLike | None = None,
+    straight: bool = False,
+    progress: Callable[[float, float], None] | None = None,
+) -> list[SpectrumDamage]:
+    """Damage of all elastic bodies whose own material has the constants of the criterion, the largest first.
+
+    A body without damage is left out.
+
+    Parameters
+    ----------
+    states, criterion, depth, straight, progress
+        See :func:`spectrum_damage`. The progress begins anew for each body.
+
+    Raises
+    ------
+    InputError
+        See :func:`spectrum_damage`; also if no body has the constants.
+    """
+    problem = stops_of_one_problem(states)[0].problem
+    bodies = bodies_with_lives(problem, choice("criterion", criterion, CRITERIA)) or elastic_bodies(problem)[:1]
+    found = [
+        spectrum_damage(states, criterion, body, depth=depth, straight=straight, progress=progress) for body in bodies
+    ]
+    return sorted((one for one in found if one.damage.any()), key=lambda one: -one.hot_spot.damage)
+
+
+def bodies_with_lives(problem: Problem, criterion: str) -> list[Body]:
+    """The elastic bodies whose material has the constants of a criterion and of its life; none without a life."""
+    needs = FATIGUE_CRITERIA[criterion].needs + FATIGUE_CRITERIA[criterion].life_needs
+    known = {body: material_of(problem, body).fatigue for body in elastic_bodies(problem)}
+    return [
+        body
+        for body, given in known.items()
+        if criterion in SPECTRUM_CRITERIA and given and None not in [getattr(given, name) for name in needs]
+    ]
+
+
+def _halves(progress: Callable[[float, float], None] | None) -> tuple[Callable[[float], None], Callable[[float], None]]:
+    """Return the progress of the readings, and that of the counts: half of the work each."""
+    done = [0.0, 0.0]
+
+    def tell(which: int, part: float) -> None:
+        done[which] = part
+        if progress is not None:
+            progress(0.5 * sum(done), 1.0)
+
+    return partial(tell, 0), partial(tell, 1)
+
+
+class _Found:
+    """The damage of the points, and the point with the largest damage."""
+
+    def __init__(self, points: int) -> None:
+        self.damage, self.plane = np.zeros(points), np.full(points, np.nan)
+        self._taken = 0
+        self._best: tuple[float, float, np.ndarray, CountedMaterial] | None = None
+
+    def take(
+        self, counted: CountedMaterial, history: np.ndarray, spectrum: Spectrum, places: np.ndarray,
+        progress: Callable[[float], None],
+    ) -> None:  # fmt: skip
+        """Count the points at these places."""
+        if not places.size:
+            return
+        before, self._taken = self._taken, self._taken + places.size
+        damage, plane = counted.worst(
+            history, spectrum, lambda part: progress((before + part * places.size) / self.damage.size)
+        )
+        self.damage[places], self.plane[places] = damage, plane
+        at = int(np.argmax(damage))
+        if damage[at] > (0.0 if self._best is None else self._best[0]):
+            self._best = float(damage[at]), float(plane[at]), history[:, at : at + 1].copy(), counted
+
+    def cycles(self, spectrum: Spectrum, load_points: np.ndarray) -> SpectrumCycles:
+        """Return the cycles at the point with the largest damage."""
+        places, values = np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3))
+        if self._best is not None:
+            _, plane, history, counted = self._best
+            places, values = counted.cycles(history, spectrum, plane)
+        rows = np.argsort(-values[:, 2], kind="stable")
+        (start, stop, largest), (times, parameter, damage) = load_points[places[rows]].T, values[rows].T
+        return SpectrumCycles(start, stop, largest, times.astype(np.int64), parameter, damage)
