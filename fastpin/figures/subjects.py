@@ -17,8 +17,6 @@ from fastpin.states.state import State
 from fastpin.storage.store import load, places_between
 from fastpin.storage.wear_files import holds_wear, load_wear
 
-Progress = Callable[[float, float], None]
-
 
 class InMemory:
     """A result, a sequence of states of one problem and on one grid, one state, or a life of wear.
@@ -26,11 +24,11 @@ class InMemory:
     The states of a life are those over one cycle on each stored profile.
     """
 
+    progress: Callable[[float, float], None] | None = None
+
     def __init__(self, result: Sequence[State] | State | WearResult) -> None:
         self._life = result if isinstance(result, WearResult) else None
         self._result = Result.of_life(result) if isinstance(result, WearResult) else result
-
-    progress: Progress | None = None
 
     @property
     def source(self) -> str:
@@ -74,7 +72,7 @@ class InFile:
 
     source = "result"
 
-    def __init__(self, path: Path, progress: Progress | None = None) -> None:
+    def __init__(self, path: Path, progress: Callable[[float, float], None] | None = None) -> None:
         self._path, self.progress = path, progress
 
     @property
@@ -107,7 +105,7 @@ Subject = InMemory | InFile
 """A result, or states, of which figures are made. States alone have no result."""
 
 
-def stored_subject(path: Path, progress: Progress | None = None) -> Subject:
+def stored_subject(path: Path, progress: Callable[[float, float], None] | None = None) -> Subject:
     """Return the result of a run, or the life of wear, in a file. The progress is that of :class:`InFile`."""
     return InMemory(load_wear(path)) if holds_wear(path) else InFile(path, progress)
 
