@@ -316,9 +316,9 @@ class Valid:
 
 
 BY_NAME: dict[str, Any] = {
-    "E": 2e11, "K_max": [2e6], "K_min": [1e6], "R": [0.1], "a": 0.3, "alpha": 0.25, "amplitude": 1e8,
-    "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0, "body": "plate",
-    "centre": -1.5, "corners": [[1.0] * 10], "count": 3, "counts": [1.0, 2.0],
+    "E": 2e11, "K_max": [2e6], "K_min": [1e6], "R": [0.1],
+    "a": 0.3, "alpha": 0.25, "amplitude": 1e8, "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0,
+    "body": "plate", "centre": -1.5, "corners": [[1.0] * 10], "count": 3, "counts": [1.0, 2.0],
     "criterion": "smith-watson-topper", "depth": 0.01, "directory": "sweep", "ductility_exponent": -0.6, "factor": 2.0,
     "fatigue_ductility": 0.5, "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0,
     "half_width": 1.0, "height": 1e-5, "high": 0.5, "history": HISTORY, "host": "127.0.0.1", "index": 1, "k": 0.3,

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.cracks.dislocations import CrackLine, needed_points, places, rule, weights
-from fastpin.errors import InputError, InputWarning
+from fastpin.errors import FastpinError, InputError, InputWarning
 from fastpin.kernels.harmonics import FREE
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import check_callable, choice, instances, number, numbers
@@ -290,7 +290,13 @@ def histories(
     added = np.zeros(1)
     if residual_stress is not None:
         s = np.array([[line.length * rule(n).place for line in row] for row in rows]) * edge.radius
-        given = numbers("residual_stress", residual_stress(s))
+        try:
+            given = numbers("residual_stress", residual_stress(s))
+        except FastpinError:
+            raise
+        except Exception as error:  # The function is anyone's.
+            words = f"must take an array of distances, it raised a {type(error).__name__}"
+            raise InputError("residual_stress", words) from error
         if given.shape not in ((), s.shape):
             raise InputError("residual_stress", f"must return numbers of the shape {s.shape}, not {given.shape}")
         added = given

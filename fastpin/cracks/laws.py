@@ -147,7 +147,7 @@ class Walker(GrowthLaw):
     toughness : float, optional
         K_max at which the plate breaks, Pa sqrt(m).
     unit : float
-        Pa sqrt(m).
+        Pa sqrt(m). In a dimensionless problem it counts in F/sqrt(R), as all ranges do.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """Cycles of stress histories, counted on planes: the damage of a spectrum at each point of one material.
 
-On each plane the cycles of its strain are counted over the whole history (Bannantine and Socie 1991). A cycle has its
+On each plane the cycles of its strain are counted over the whole history. A cycle has its
 strain amplitude and the largest normal stress of its stops, and does the damage 1/N of the criterion. The sum over the
 cycles is the damage of the plane (Palmgren 1924, Miner 1945). The worst plane counts.
 """

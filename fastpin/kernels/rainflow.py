@@ -2,7 +2,7 @@
 
 The planes hold the z axis, and their components U and V are sums f0 + f1 cos x + f2 sin x, see
 :mod:`fastpin.kernels.planes`. The cycles of U are counted (Matsuishi and Endo 1968; four points, as ASTM E1049 for
-repeated histories). A cycle has the amplitude of U and the largest V of all its stops (Bannantine and Socie 1991). Its
+repeated histories). A cycle has the amplitude of U and the largest V of all its stops. Its
 parameter is that of the forms SWING_TIMES_PUSH and SWING_TIMES_MORE. Its damage 1/N follows from
 
     parameter = exp(life[0]) (2N)^life[2] + exp(life[1]) (2N)^life[3]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from fastpin.bodies import Ring
 from fastpin.cracks import Crack, stress_intensity
 from fastpin.cracks.laws import SMOOTH_EDGE
 from fastpin.model.problem import Problem
 from fastpin.states.state import State
+from fastpin.verification.body_cases import RING
 from fastpin.verification.finite_elements import LIKE
 from fastpin.verification.rows import Checks, Solving, relative_check
 
@@ -41,7 +41,7 @@ def pressure(solving: Solving) -> Checks:
 
 def ring(solving: Solving) -> Checks:
     """A pin that is gripped by a ring."""
-    state = _fitted(Problem.from_load_parameter(LIKE, -0.1, 0.3, plate_body=Ring(2.0, "uniform")), solving)
+    state = _fitted(Problem.from_load_parameter(LIKE, -0.1, 0.3, plate_body=RING.plate_body), solving)
     yield relative_check("K", _factor(state, [Crack(-0.3)], 0.1) / state.peak_pressure, RING_FACTOR)
 
 

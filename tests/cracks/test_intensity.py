@@ -91,6 +91,8 @@ def test_a_residual_stress_is_added(small_states):
     assert np.all(constant.K_I > plain.K_I)
     with pytest.raises(InputError, match="residual_stress: must return numbers of the shape"):
         stress_intensity(small_states, crack, lengths, residual_stress=lambda s: np.zeros(3))
+    with pytest.raises(InputError, match="residual_stress: must take an array of distances, it raised a TypeError"):
+        stress_intensity(small_states, crack, lengths, residual_stress=lambda s: float(s))
     with pytest.raises(InputError, match="residual_stress: must be a callable"):
         stress_intensity(small_states, crack, lengths, residual_stress=3.0)
 
