@@ -48,9 +48,12 @@ def test_cracks_beside_a_pin(cycle, name):
     assert np.all(np.abs(found.K_I[at] / 1e6 - highest[:, 0]) <= SPREAD[name] * highest[:, 0] + printed)
     assert found.K_II[at] / 1e6 == pytest.approx(highest[:, 1], rel=2e-4, abs=2.5e-4)
     at = np.argmin(found.K_I, axis=0), range(4)
-    # At contact edges that come and go, the smallest K_I of short cracks depends more on the nodes: by 8e-4 here.
-    assert found.K_I[at] / 1e6 == pytest.approx(lowest[:, 0], rel=8e-4, abs=6e-5)
-    assert found.K_II[at] / 1e6 == pytest.approx(lowest[:, 1], abs=1.5e-3)
+    # In case small K_I of the smallest opening spreads by 1.3e-3 over 401 to 1,601 nodes, and K_II by 2e-3 MPa sqrt m.
+    is_small = name == "small"
+    printed = np.where(np.abs(lowest[:, 0]) >= 10.0, 5e-4, 6e-5)
+    spread = (1.3e-3 if is_small else 3e-5) * np.abs(lowest[:, 0])
+    assert np.all(np.abs(found.K_I[at] / 1e6 - lowest[:, 0]) <= spread + printed)
+    assert found.K_II[at] / 1e6 == pytest.approx(lowest[:, 1], rel=2e-4, abs=2e-3 if is_small else 1e-4)
 
 
 def test_an_inclined_crack_beside_a_pin(cycle):
