@@ -453,14 +453,19 @@ def check_direction(result: Result) -> tuple[float, int]:
     hundred times closer in the worst interval. The amount that is left there counts. A step that the solver refuses
     with these stops is not judged.
     """
-    if result.problem.frictionless:
+    return max(_interface_direction(result, place) for place in range(len(interfaces_of(result.states))))
+
+
+def _interface_direction(result: Result, place: int) -> tuple[float, int]:
+    """As :func:`check_direction`, at one interface."""
+    states = interfaces_of(result.states)[place]
+    if states[0].problem.frictionless:
         return 0.0, -1
-    states = result.states
     size = slip_size(states)
     wrong = max(wrong_slips(states), key=lambda found: found[2], default=(0, 0, 0.0))
     if wrong[2] <= TOLERANCE * size:
         return 0.0, -1
-    before, after = states[wrong[0] - 1], states[wrong[0]]
+    before, after = result.states[wrong[0] - 1], result.states[wrong[0]]
     begin = before.fraction if before.step == after.step else 0.0
     stops = np.linspace(begin, after.fraction, 101)
     stops = stops[(stops > 0.0) & (stops < 1.0)]
@@ -470,8 +475,14 @@ def check_direction(result: Result) -> tuple[float, int]:
         return 0.0, after.step
     first = stops[0] if begin == 0.0 else begin  # the rest of the first interval is as wide as the others
     inside = [s for s in closer.states if s.step == after.step and first <= s.fraction <= after.fraction]
-    left = max((amount for _, _, amount in wrong_slips([*inside])), default=0.0)
+    left = max((amount for _, _, amount in wrong_slips(interfaces_of(inside)[place])), default=0.0)
     return (left / size if left > 0.3 * wrong[2] else 0.0), after.step
+
+
+def interfaces_of(states: Sequence[State]) -> list[Sequence[State]]:
+    """The states at the pin and, with a bush that slips, those at its seat."""
+    seats = [state.seat for state in states if state.seat is not None]
+    return [states, seats] if seats else [states]
 
 
 def slip_size(states: Sequence[State]) -> float:
@@ -508,9 +519,13 @@ def dissipation_error(states: Sequence[State], integral: float) -> float:
 
 
 def _dissipated(states: Sequence[State]) -> float:
-    """int -T ds by the trapezoidal rule, with the slip since the state before also where contact begins or ends."""
-    weights = states[0].problem.hole_radius * states[0].grid.weights
+    """int -T ds by the trapezoidal rule, with the slip since the state before also where contact begins or ends.
+
+    The sum over all interfaces.
+    """
     total = 0.0
-    for _, before, after in _held(states):
-        total -= 0.5 * float(weights @ ((after.slip - before.slip) * (before.shear + after.shear)))
+    for some in interfaces_of(states):
+        weights = some[0].problem.hole_radius * some[0].grid.weights
+        for _, before, after in _held(some):
+            total -= 0.5 * float(weights @ ((after.slip - before.slip) * (before.shear + after.shear)))
     return total

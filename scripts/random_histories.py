@@ -150,7 +150,7 @@ def _check(outcome: Outcome, case: RandomCase, result: Result, dense: bool) -> N
         outcome.worst.pop("balance", None)  # a snap sets energy free
     elif "balance" in outcome.violations():
         outcome.worst["balance"] = _balance_on_finer_nodes(case), outcome.worst["balance"][1]
-    if dense and outcome.ending == "solved" and not case.problem.frictionless:
+    if dense and outcome.ending == "solved":
         outcome.worst["direction"] = check_direction(result)
         if not outcome.jumps:
             outcome.worst["dissipated"] = check_dissipation(result), len(result) - 1
