@@ -223,8 +223,9 @@ class Trial:
         process = started(folder, *self._words(self.command.words), limit=limit)
         said = process.communicate(timeout=LONGEST)[1].strip()
         self.counts["full"] += 1
-        lines = [line for line in said.split("\n") if "warning" not in line]
-        if process.returncode != 1 or len(lines) != 1 or not self._is_named(lines[0]):
+        lines = [line for line in said.split("\n") if line.startswith("fastpin: ") and "warning" not in line]
+        is_said = len(lines) == 1 and self._is_named(lines[0]) and "Traceback" not in said
+        if process.returncode != 1 or not is_said:
             self.findings.append(f"{self.name}: full at {limit} bytes: exit code {process.returncode}: {said[-600:]}")
         output = folder / self.command.output
         if not self.command.grows and (output.read_bytes() != old or _names(folder) != before):
