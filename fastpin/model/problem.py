@@ -193,7 +193,7 @@ class Problem:
         object.__setattr__(self, "gap", checked_gap(self.gap, radius, self.dimensionless))
         pin, *seats = self.interfaces  # each contact of the joint is checked as a problem of its own
         if pin.is_gripped and any(not seat.is_gripped for seat in seats):
-            words = "must be positive where the pin has an interference fit: a loose bush needs a pin with clearance"
+            words = "must be positive where the pin has an interference fit: only a pressed bush carries such a pin"
             raise InputError("interference", words)
 
     def _checked_friction(self, radius: float) -> float | Profile:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fastpin.elasticity.interfaces import SEAT, JointSystem
+from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
@@ -23,6 +23,7 @@ from fastpin.solver.configuration import (
     elastic_energy,
     reaches_end,
     resting_status,
+    seat_dissipation_between,
     slip_tally_between,
     slip_tally_with,
     solve_statuses,
@@ -70,6 +71,9 @@ STEADY = 0.1
 
 MOST_WINDOWS = 10
 """Windows on which a first contact is tried: the pin may also touch outside of one."""
+
+MOST_TRIALS = 30
+"""Loads at which the first contacts of pin and bush together are tried."""
 
 LEAST_PART = 1e-12
 """Smallest part of a step at which a first contact is tried."""
@@ -202,20 +206,7 @@ def first_contact(
         If the pin touches the hole outside the arc or at its end.
     """
     if isinstance(system, JointSystem):
-        floating, begins = replace(floating, load=before), 0.0
-        if not floating.closed[system.interfaces[SEAT].nodes].any():  # a loose bush comes to rest first
-            alone = system.alone[SEAT]
-            most = 1.0 if alone.concentric_gap.any() else CONFORMING_PART  # a neat one touches all round
-            begun = before + most * (after - before)
-            seat, part = first_contact(alone, part_of(system, floating, SEAT), before, begun, strict)
-            if not seat.closed.any():
-                return release(system, floating, after), part
-            floating, begins = with_part(system, floating, SEAT, seat), most * part
-        view = PinView(system, floating)
-        pin, part = first_contact(view.system, view.pin, before, after, strict)
-        if begins > part:  # the wider of two first contacts gives the load of both
-            pin, part = replace(pin, load=seat.load), begins
-        return view.whole(pin), part
+        return _first_contact_of_joint(system, floating, before, after, strict)
     found = at_rest(system, floating, before, after)
     if found is None:
         return release(system, floating, after), 1.0
@@ -227,6 +218,60 @@ def first_contact(
         if strict:
             raise
         return _first_contact_from(system, resting, way, steady=False)
+
+
+def _first_contact_of_joint(
+    joint: JointSystem, floating: Configuration, before: np.ndarray, after: np.ndarray, strict: bool
+) -> tuple[Configuration, float]:
+    """The first contact of a pin in a bush: a loose bush comes to rest first, then the pin in the bent bush."""
+    floating, begins, beginning = replace(floating, load=before), 0.0, None
+    if not floating.closed[joint.interfaces[SEAT].nodes].any():
+        beginning, alone = floating, joint.alone[SEAT]
+        most = 1.0 if alone.concentric_gap.any() else CONFORMING_PART  # a neat one touches all round
+        begun = before + most * (after - before)
+        seat, part = first_contact(alone, part_of(joint, floating, SEAT), before, begun, strict)
+        if not seat.closed.any():
+            return release(joint, floating, after), part
+        floating, begins = with_part(joint, floating, SEAT, seat), most * part
+    view = PinView(joint, floating)
+    try:
+        pin, part = first_contact(view.system, view.pin, before, after, strict)
+    except NoEquilibriumError:  # a bush that bends leaves a neat pin no room
+        both = None if beginning is None else _both_at_once(joint, beginning, (begins, before, after), seat.status)
+        if both is None:
+            raise
+        return both
+    if begins > part:  # the wider of two first contacts gives the load of both
+        pin, part = replace(pin, load=seat.load), begins
+    return view.whole(pin), part
+
+
+def _both_at_once(
+    joint: JointSystem, floating: Configuration, way: tuple[float, np.ndarray, np.ndarray], seat_status: np.ndarray
+) -> tuple[Configuration, float] | None:
+    """The first contacts of the pin and of a loose bush in one implicit increment; None where none is found.
+
+    The increment is exact where both fits are neat and there was no load before: all grows in proportion. `way` is the
+    part of the step at which the bush alone has its first contact, and the loads at the ends of the step.
+    `seat_status` (n,) are the statuses of this contact, with which the iteration begins.
+    """
+    part, before, after = way
+    resting = floating
+    for place in (PIN, SEAT):
+        found = at_rest(joint.alone[place], part_of(joint, floating, place), before, after)
+        if found is None or found[1] > 0.0:
+            return None
+        resting = with_part(joint, resting, place, found[0])
+    if all(_is_self_similar(alone, resting, (0.0, before, after)) for alone in joint.alone):
+        part = 1.0
+    resting.status[joint.interfaces[SEAT].nodes] = seat_status
+    for _ in range(MOST_TRIALS):
+        load = before + part * (after - before)
+        step = _one_step(joint, resting, load)
+        if step is not None and worst_residual(joint, step) <= MAX_RESIDUAL:
+            return _begun(joint, resting, step, None), part
+        part *= 0.7
+    return None
 
 
 def _first_contact_from(
@@ -364,6 +409,7 @@ def _begun(system: System, resting: Configuration, found: Configuration, begin: 
     elif system.has_friction:
         found = _with_grown_slip(system, found, begin) or found
     found.dissipation += dissipated
+    found.seat_dissipation += seat_dissipation_between(system, resting, found)
     found.work += elastic_energy(system, found) + dissipated
     return found
 

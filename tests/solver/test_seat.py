@@ -240,6 +240,25 @@ def test_a_loose_bush_with_a_vanishing_clearance_is_a_neat_one():
     assert loose.seat.peak_pressure == pytest.approx(neat.seat.peak_pressure, rel=2e-3)
 
 
+def test_a_neat_pin_in_a_neat_bush_grows_in_proportion():
+    one, two = (solve(joint(0.0, 0.0), [{"P": size}], nodes=48)[0] for size in (1.0, 2.0))
+    _check([one])
+    np.testing.assert_allclose(two.pressure, 2.0 * one.pressure, rtol=1e-10, atol=1e-13)
+    np.testing.assert_allclose(two.seat.shear, 2.0 * one.seat.shear, rtol=1e-10, atol=1e-13)
+
+
+@pytest.mark.parametrize(("clearance", "interference"), [(0.0, 0.0), (1e-4, 0.0), (0.0, -1e-4), (0.0, -0.1)])
+def test_a_neat_pin_and_a_loose_bush_touch_at_once(clearance, interference):
+    corners = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"P": 0.0, "Q": 0.0}, {"P": -0.5}, {"P": -0.5, "Q": 0.2}]
+    states = solve(joint(clearance, interference), corners, nodes=48, arc=ALL_ROUND).states
+    _check(states)
+    if interference > -0.1:
+        tight = solve(joint(1e-6, 1e-8), corners[:3], nodes=48, arc=ALL_ROUND).states
+        for state, expected in zip(states, tight, strict=False):
+            assert state.peak_pressure == pytest.approx(expected.peak_pressure, rel=1e-3)
+            assert state.seat.dissipation == pytest.approx(expected.seat.dissipation, rel=1e-2)
+
+
 def test_conditions_hold_in_a_lug_of_any_outline_and_an_oval_bore():
     compliance = lug(0.33, "strain")
     oval = replace(joint(0.28, 0.26, inside=compliance), gap=InitialGap(Profile.ellipse(0.05)))
@@ -335,7 +354,7 @@ def test_a_bush_that_cannot_be(changes, field, words):
     assert caught.value.field == field
 
 
-def test_a_loose_bush_needs_a_pin_with_clearance():
+def test_a_loose_bush_needs_a_pin_without_interference():
     body = Bushing(BRONZE, 1.25, -0.1, friction=0.2, bonded=False)
     with pytest.raises(InputError, match="interference: must be positive where the pin has an interference fit"):
         Problem.from_load_parameter(PAIR, -0.1, 0.2, plate_body=body)
