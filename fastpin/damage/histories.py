@@ -13,7 +13,7 @@ from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.points import Body, Points
 from fastpin.reading.stress import Stress, stress_at
 from fastpin.runtime.threads import in_threads
-from fastpin.states.reading_bounds import MAPPED, Hats, NodalStress
+from fastpin.states.reading_bounds import MAPPED, StressMap
 from fastpin.states.state import State
 
 ROOM = 2**24
@@ -130,31 +130,22 @@ def _read(states: Sequence[State], points: Points, body: Body, straight: bool, p
 
 def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progress | None) -> np.ndarray:
     """Multiply the nodal tractions with the stresses of the hat functions of the nodes, also of the seat of a bush."""
-    problem, names, none = states[0].problem, [list(LOADS)[place] for place in REMOTE], Tractions(())
+    problem, names = states[0].problem, [list(LOADS)[place] for place in REMOTE]
+
+    def stress(tractions: list[Tractions], remote: np.ndarray) -> np.ndarray:
+        load = dict(zip(names, remote.tolist(), strict=True))
+        return _components(stress_at(problem, tractions[0], load, points, body, *tractions[1:]))
+
+    seats = [state.seat for state in states if state.seat is not None]
+    parts = [part for part in (states, seats) if part]
+    linear = StressMap(problem, [part[0].grid for part in parts], stress)
+    tractions = [(np.array([one.pressure for one in part]), np.array([one.shear for one in part])) for part in parts]
+    linear.learn(tractions, progress)
     remote = np.array([_remote(state) for state in states])
-    found = np.zeros((len(states), points.theta.size, 4))
-
-    def of_hole(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
-        load, seat = dict(zip(names, remote.tolist(), strict=True)), None if states[0].seat is None else none
-        return _components(stress_at(problem, tractions, load, points, body, seat))
-
-    def of_seat(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
-        return _components(stress_at(problem, none, {}, points, body, tractions)) - unloaded
-
-    unloaded, seats = of_hole(none, np.zeros(3)), [state.seat for state in states if state.seat is not None]
-    for part, stress in ((states, of_hole), *(((seats, of_seat),) if seats else ())):
-        pressure, shear = np.array([one.pressure for one in part]), np.array([one.shear for one in part])
-        hats = Hats(problem, part[0].grid)
-        linear = NodalStress(hats, stress)
-        for nodes, functions in hats.blocks(pressure, shear):
-            linear.learn(nodes, functions)
-            if progress is not None and part is states:
-                progress(float(nodes[-1]) / pressure.shape[1])
-        for which in range(4):
-            found[:, :, which] += linear.component(which, slice(None), pressure, shear, remote)
+    found = [linear.component(which, tractions, remote) for which in range(4)]
     if progress is not None:
         progress(1.0)
-    return found
+    return np.stack(found, axis=-1)
 
 
 def _components(stress: Stress) -> np.ndarray:

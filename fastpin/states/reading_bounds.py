@@ -315,6 +315,48 @@ class NodalStress:
         return np.asarray(found + remote @ self._remote[:, which, points] + self._press_fit[which, points])
 
 
+class StressMap:
+    """The stress at points of a body as a linear function of the nodal tractions at the pin and in the seat of a bush.
+
+    Parameters
+    ----------
+    problem : Problem
+    grids : sequence of Grid
+        Nodes of the pin and, with a bush that slips, of its seat.
+    stress : callable
+        ``stress(tractions, remote)`` gives components at the points, shape (components, m), from the tractions of each
+        interface.
+    """
+
+    def __init__(
+        self, problem: Problem, grids: Sequence[Grid], stress: Callable[[list[Tractions], np.ndarray], np.ndarray]
+    ) -> None:
+        none = [Tractions(())] * len(grids)
+        unloaded = stress(none, np.zeros(3))
+
+        def of_pin(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+            return stress([tractions, *none[1:]], remote)
+
+        def of_seat(tractions: Tractions, _: np.ndarray) -> np.ndarray:
+            return stress([*none[:1], tractions], np.zeros(3)) - unloaded
+
+        self._hats = [Hats(problem, grid) for grid in grids]
+        self._parts = [NodalStress(hats, of) for hats, of in zip(self._hats, (of_pin, of_seat), strict=False)]
+
+    def learn(self, tractions: Sequence[Pair], progress: Callable[[float], None] | None = None) -> None:
+        """Learn the stresses of all nodes that pressures and shears (k, n) of each interface load."""
+        for place, (hats, part, (pressure, shear)) in enumerate(zip(self._hats, self._parts, tractions, strict=True)):
+            for nodes, functions in hats.blocks(pressure, shear):
+                part.learn(nodes, functions)
+                if progress is not None:
+                    progress((place + float(nodes[-1]) / hats.known.size) / len(self._hats))
+
+    def component(self, which: int, tractions: Sequence[Pair], remote: np.ndarray) -> np.ndarray:
+        """Return a component, shape (k, m), of tractions that were learned, and remote stresses (k, 3)."""
+        parts = zip(self._parts, tractions, strict=True)
+        return np.asarray(sum(part.component(which, slice(None), *values, remote) for part, values in parts))
+
+
 class MisesBounds:
     """Bounds of the largest von Mises stress of a body. They are as far apart as rounding: the reading is the same.
 
