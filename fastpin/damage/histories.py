@@ -13,8 +13,9 @@ from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.points import Body, Points
 from fastpin.reading.stress import Stress, stress_at
 from fastpin.runtime.threads import in_threads
-from fastpin.states.reading_bounds import MAPPED, StressMap
+from fastpin.states.reading_bounds import MAPPED
 from fastpin.states.state import State
+from fastpin.states.stress_map import StressMap
 
 ROOM = 2**24
 """Numbers that a block of points may hold: 128 MB."""

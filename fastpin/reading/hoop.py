@@ -59,7 +59,7 @@ def hoop_peak(
     values = hoop(angles)
     before, after = np.roll(values, 1), np.roll(values, -1)
     tops = np.flatnonzero((values >= before) & (values >= after))
-    found = [_highest(hoop, angles, int(top)) for top in tops[np.argsort(-values[tops])[:TRIED]]]
+    found = _highest(hoop, angles, values, tops[np.argsort(-values[tops])[:TRIED]])
     largest = max(value for value, _ in found)
     value, angle = max((peak for peak in found if peak[0] >= largest - TIE * abs(largest)), key=lambda peak: peak[1])
     rim, force = near_rim(problem, body), math.hypot(resultants["P"], resultants["Q"])
@@ -78,19 +78,22 @@ def hoop_peak(
     return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit, force / section)
 
 
-def _highest(hoop: Hoop, angles: np.ndarray, top: int) -> tuple[float, float]:
-    """The largest hoop stress between the neighbours of the angle `top`, and its place."""
-    angle = float(angles[top])
-    value = float(hoop(np.array([angle]))[0])
-    low, high = (float(angle_between(angles[(top + side) % angles.size], angle)) for side in (-1, 1))
+def _highest(hoop: Hoop, angles: np.ndarray, values: np.ndarray, tops: np.ndarray) -> list[tuple[float, float]]:
+    """The largest hoop stress between the neighbours of each angle at the places `tops` (k,), and its angle.
+
+    `values` are the hoop stresses at all `angles`.
+    """
+    value, angle, row = values[tops], angles[tops], np.arange(tops.size)
+    low, high = (angle_between(angles[(tops + side) % angles.size], angle) for side in (-1, 1))
     for _ in range(ZOOMS):
-        tried = angle + np.linspace(low, high, ZOOMED)
-        values = hoop(tried)
-        if values.max() > value:
-            value, angle = float(values.max()), float(tried[np.argmax(values)])
-        step = (high - low) / (ZOOMED - 1)
-        low, high = -step, step
-    return value, near_bottom(angle)
+        tried = angle[:, None] + np.linspace(low, high, ZOOMED, axis=1)
+        found = hoop(tried.ravel()).reshape(tried.shape)
+        best = np.argmax(found, axis=1)
+        higher = found[row, best] > value
+        value, angle = np.where(higher, [found[row, best], tried[row, best]], [value, angle])
+        high = (high - low) / (ZOOMED - 1)
+        low = -high
+    return list(zip(value.tolist(), (near_bottom(each) for each in angle.tolist()), strict=True))
 
 
 def _is_resolved(

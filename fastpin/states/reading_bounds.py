@@ -7,21 +7,25 @@ follow from the way in which they are read. The bound of the largest hoop stress
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from fastpin.elasticity.interfaces import seat_grid
 from fastpin.elasticity.stress import plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.model.grid import Grid
-from fastpin.model.loads import FRICTION_CHANGE, REMOTE
+from fastpin.model.loads import FRICTION_CHANGE, LOADS, REMOTE
+from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.reading.hoop import AROUND
 from fastpin.reading.joint import AROUND as AROUND_BUSH
 from fastpin.reading.peaks import DROP_NODES, LARGEST_FALL, STEEPEST_RISE
+from fastpin.reading.stress import stress_at
+from fastpin.states.stress_map import Hats, NodalStress, StressMap, spacings
 from fastpin.states.yielding import PREFIX, Places
 
 NUMBERS = ("dx", "dy", "rotation", "dissipation", "work")
@@ -70,6 +74,9 @@ It was up to 0.002 in 138 random states of 23 bushes, with 61 to 201 nodes.
 Pair = tuple[np.ndarray, np.ndarray]
 """Lower and upper bounds, shape (k,) each."""
 
+Nodal = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Pressure, shear and status of the nodes of an interface, shape (k, n) each."""
+
 
 class StateBlock(NamedTuple):
     """Nodal values and numbers of some states.
@@ -94,6 +101,10 @@ class StateBlock(NamedTuple):
     numbers: dict[str, np.ndarray]
     seat: StateBlock | None = None
 
+    def nodal(self, rows: list[int]) -> Nodal:
+        """Pressure, shear and status of the nodes in some of the states."""
+        return self.pressure[rows], self.shear[rows], self.status[rows]
+
     @property
     def read_parts(self) -> list[np.ndarray]:
         """The arrays (k, ...) on which the readings of the states depend, without those that are numbers."""
@@ -117,13 +128,13 @@ class Bounds:
         self._problem, self._grid, self._names = problem, grid, names - set(NUMBERS)
         self._friction = problem.friction_at(grid.theta)
         self._found: dict[str, list[Pair]] = {name: [] for name in self._names}
-        self._stresses = StressBounds(problem, grid, names)
-        self._waiting: list[tuple[np.ndarray, ...]] = []  # until so many states make the matrices worth while
+        self._stresses = (StressBounds if problem.seat is None else JointBounds)(problem, grid, names)
+        self._waiting: list[tuple[list[Nodal], np.ndarray]] = []  # until so many states make the matrices worth while
         self._count = 0
 
     def add(self, block: StateBlock, rows: list[int]) -> None:
         """Take these rows of a block."""
-        pressure, shear, status = (part[rows] for part in (block.pressure, block.shear, block.status))
+        pressure, shear, status = block.nodal(rows)
         coupled = self._problem.most_friction * self._problem.surfaces.dundurs()[1] != 0.0
         peaks = pressure_bounds(self._grid, pressure, coupled)
         factor = 1.0 + block.loads[rows][:, FRICTION_CHANGE]
@@ -137,11 +148,12 @@ class Bounds:
         for name in self._names - self._stresses.names:
             self._found[name].append(known[name]() if name in known else _unbounded(len(rows)))
         if self._stresses.names:
-            self._waiting.append((pressure, shear, status, block.loads[rows][:, list(REMOTE)]))
+            interfaces = [each.nodal(rows) for each in (block, block.seat) if each is not None]
+            self._waiting.append((interfaces, block.loads[rows][:, list(REMOTE)]))
             self._count += len(rows)
             if self._count > MAPPED:  # the matrices are worth while: compute the bounds of all waiting states
-                for values in self._waiting:
-                    for name, pair in self._stresses.of(*values).items():
+                for interfaces, remote in self._waiting:
+                    for name, pair in self._stresses.of(interfaces, remote).items():
                         self._found[name].append(pair)
                 self._waiting = []
 
@@ -163,13 +175,6 @@ def _unbounded(count: int) -> Pair:
 # -- pressure, shear, widths -------------------------------------------------------------------------------------
 
 
-def _spacings(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """Distances from each node to its neighbours on the left and on the right, rad, shape (n,)."""
-    left, right = grid.knots()
-    before, after = grid.theta - left, right - grid.theta
-    return np.where(before > 0.0, before, after), np.where(after > 0.0, after, before)
-
-
 def pressure_bounds(grid: Grid, pressure: np.ndarray, coupled: bool) -> Pair:
     """Bounds of the peak pressure, from the parabola through the largest node and its neighbours.
 
@@ -180,7 +185,7 @@ def pressure_bounds(grid: Grid, pressure: np.ndarray, coupled: bool) -> Pair:
     coupled : bool
         Whether a peak that is not smooth may be a corner, see :func:`fastpin.reading.peaks.pressure_peak`.
     """
-    before, after = _spacings(grid)
+    before, after = spacings(grid)
     top = pressure.max(axis=1, initial=0.0)
     drops = [np.maximum(pressure - np.roll(pressure, side, axis=1), 0.0) for side in (1, -1)]
     slope = drops[0] * (after / before) - drops[1] * (before / after)
@@ -228,7 +233,7 @@ def width_bounds(grid: Grid, inside: np.ndarray) -> Pair:
     inside : ndarray of bool, shape (k, n)
         Nodes in the zones.
     """
-    before, after = _spacings(grid)
+    before, after = spacings(grid)
     joined = inside & np.roll(inside, -1, axis=1)
     if not grid.closed:
         joined[:, -1] = False
@@ -246,115 +251,6 @@ def _sticking(friction: np.ndarray, pressure: np.ndarray, shear: np.ndarray, sta
 
 
 # -- stresses ------------------------------------------------------------------------------------------------------
-
-
-class Hats:
-    """The hat functions of the nodes as pressures and shears, and which of them are known to stresses.
-
-    Parameters
-    ----------
-    problem : Problem
-    grid : Grid
-
-    Attributes
-    ----------
-    known : ndarray of bool, shape (n,)
-    unit : float
-        Height of the hats. Beside the stress of a press fit a traction of 1 Pa is rounding.
-    """
-
-    def __init__(self, problem: Problem, grid: Grid) -> None:
-        self._grid, self.known, self.unit = grid, np.zeros(grid.size, dtype=bool), problem.press_fit_pressure or 1.0
-
-    def blocks(self, pressure: np.ndarray, shear: np.ndarray) -> Iterator[tuple[np.ndarray, list[Tractions]]]:
-        """Give all nodes (k,) that these tractions (m, n) load and that are not known yet, and then know them.
-
-        With some nodes come their hats as pressures, and then as shears.
-        """
-        loaded = (pressure != 0.0).any(axis=0) | (shear != 0.0).any(axis=0)
-        new, (before, after) = np.flatnonzero(loaded & ~self.known), _spacings(self._grid)
-        for begin in range(0, new.size, 32):  # elasticity/stress.py remembers the fields of so many nodes
-            nodes = new[begin : begin + 32]
-            hats = np.zeros((2, nodes.size, 3, 3))
-            hats[..., 0] = self._grid.theta[nodes, None] + np.array([-before[nodes], 0.0 * nodes, after[nodes]]).T
-            hats[0, :, 1, 1] = hats[1, :, 1, 2] = self.unit
-            yield nodes, [Tractions((hat,)) for hat in hats.reshape(-1, 3, 3)]
-        self.known[new] = True
-
-
-class NodalStress:
-    """The stress at points of a body as a linear function of the nodal tractions: straight lines between the nodes.
-
-    Parameters
-    ----------
-    hats : Hats
-    stress : callable
-        ``stress(tractions, remote)`` gives components at the points, such as (srr, stt, srt), shape (3, m).
-    """
-
-    def __init__(self, hats: Hats, stress: Callable[[Tractions, np.ndarray], np.ndarray]) -> None:
-        self._hats, self._stress, self._unit = hats, stress, hats.unit
-        self._press_fit = stress(Tractions(()), np.zeros(3))
-        self._remote = np.array([stress(Tractions(()), self._unit * one) - self._press_fit for one in np.eye(3)])
-        self._remote /= self._unit
-        components, points = self._press_fit.shape
-        self._response = np.zeros((2, components, hats.known.size, points))
-
-    def learn(self, nodes: np.ndarray, hats: Sequence[Tractions]) -> None:
-        """Compute the stresses of the hat functions of some `nodes` (k,), see :meth:`Hats.blocks`."""
-        for place, hat in enumerate(hats):
-            found = (self._stress(hat, np.zeros(3)) - self._press_fit) / self._unit
-            self._response[place // nodes.size, :, nodes[place % nodes.size]] = found
-
-    def component(
-        self, which: int, points: slice, pressure: np.ndarray, shear: np.ndarray, remote: np.ndarray
-    ) -> np.ndarray:
-        """Return a component at some points, shape (k, points)."""
-        known, response = self._hats.known, self._response[:, which]
-        found = pressure[:, known] @ response[0, known, points] + shear[:, known] @ response[1, known, points]
-        return np.asarray(found + remote @ self._remote[:, which, points] + self._press_fit[which, points])
-
-
-class StressMap:
-    """The stress at points of a body as a linear function of the nodal tractions at the pin and in the seat of a bush.
-
-    Parameters
-    ----------
-    problem : Problem
-    grids : sequence of Grid
-        Nodes of the pin and, with a bush that slips, of its seat.
-    stress : callable
-        ``stress(tractions, remote)`` gives components at the points, shape (components, m), from the tractions of each
-        interface.
-    """
-
-    def __init__(
-        self, problem: Problem, grids: Sequence[Grid], stress: Callable[[list[Tractions], np.ndarray], np.ndarray]
-    ) -> None:
-        none = [Tractions(())] * len(grids)
-        unloaded = stress(none, np.zeros(3))
-
-        def of_pin(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
-            return stress([tractions, *none[1:]], remote)
-
-        def of_seat(tractions: Tractions, _: np.ndarray) -> np.ndarray:
-            return stress([*none[:1], tractions], np.zeros(3)) - unloaded
-
-        self._hats = [Hats(problem, grid) for grid in grids]
-        self._parts = [NodalStress(hats, of) for hats, of in zip(self._hats, (of_pin, of_seat), strict=False)]
-
-    def learn(self, tractions: Sequence[Pair], progress: Callable[[float], None] | None = None) -> None:
-        """Learn the stresses of all nodes that pressures and shears (k, n) of each interface load."""
-        for place, (hats, part, (pressure, shear)) in enumerate(zip(self._hats, self._parts, tractions, strict=True)):
-            for nodes, functions in hats.blocks(pressure, shear):
-                part.learn(nodes, functions)
-                if progress is not None:
-                    progress((place + float(nodes[-1]) / hats.known.size) / len(self._hats))
-
-    def component(self, which: int, tractions: Sequence[Pair], remote: np.ndarray) -> np.ndarray:
-        """Return a component, shape (k, m), of tractions that were learned, and remote stresses (k, 3)."""
-        parts = zip(self._parts, tractions, strict=True)
-        return np.asarray(sum(part.component(which, slice(None), *values, remote) for part, values in parts))
 
 
 class MisesBounds:
@@ -381,9 +277,7 @@ class MisesBounds:
         """Return the bounds for tractions (k, n) of nodes that are known, and remote stresses (k, 3)."""
         every = slice(0, self._places.theta.size)
         stress = np.array([self.stress.component(k, every, pressure, shear, remote) for k in range(3)])
-        top = self._places.von_mises(self._problem, stress).max(axis=1)
-        slack = ROUNDING * np.abs(stress).max(axis=(0, 2))
-        return top - slack, top + slack
+        return _mises_bounds(self._problem, self._places, stress)
 
 
 class StressBounds:
@@ -395,22 +289,22 @@ class StressBounds:
         Its plate is not rigid if a reading of the plate is asked for.
     grid : Grid
     names : set of str
-        The readings. Bush and plate have no bounds where the bush slips: their stresses depend on its seat, too.
+        The readings.
     """
 
     HOOP, SEAT = "peak_hoop", "peak_hoop_seat"
     BUSH = ("bush_open_margin", "bush_least_friction")
 
     def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
-        names = names if problem.seat is None else names & {f"{PREFIX}pin"}
         owners = {name: name.removeprefix(PREFIX) for name in sorted(names) if name.startswith(PREFIX)}
         self.names = names & {self.HOOP, self.SEAT, *self.BUSH, *owners}
         self._owners, self._hats = owners, Hats(problem, grid)
         self._bush = problem.plate_body.bush
         self._problem, self._grid = problem, grid
 
-    def of(self, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray, remote: np.ndarray) -> dict[str, Pair]:
-        """Return the bounds for tractions and status of the nodes (k, n) and remote stresses (k, 3)."""
+    def of(self, interfaces: list[Nodal], remote: np.ndarray) -> dict[str, Pair]:
+        """Return the bounds for tractions and status of the nodes of the pin, and remote stresses (k, 3)."""
+        pressure, shear, status = interfaces[0]
         values = pressure, shear, remote
         stresses = [bounds.stress for bounds in self._mises.values()]
         plate = self._plate if self.names - self._owners.keys() else None
@@ -421,7 +315,7 @@ class StressBounds:
         if plate is None:
             return found
         if self.HOOP in self.names:
-            found[self.HOOP] = _hoop_bounds(plate.component(1, slice(0, self._rim), *values), shear, status)
+            found[self.HOOP] = _hoop_bounds(plate.component(1, slice(0, self._rim), *values), [(shear, status)])
         if self._bush is not None and self.names & {*self.BUSH}:
             interface = slice(self._rim, self._rim + self._round)
             normal, along = (plate.component(k, interface, *values) for k in (0, 2))
@@ -455,8 +349,8 @@ class StressBounds:
 
     def _points(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Angles and depths of the points round the hole and round the bush, and angles of the points of its seat."""
-        around, grid = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0), self._grid
-        rim = np.unique(np.remainder(np.r_[around, grid.theta, grid.theta + 0.5 * grid.weights], 2.0 * math.pi))
+        grid = self._grid
+        rim = _around_hole(grid)
         rim = rim if self.HOOP in self.names else rim[:0]
         self._rim, self._round = rim.size, 0
         if self._bush is None:
@@ -471,14 +365,81 @@ class StressBounds:
         return np.r_[rim, interface], np.r_[np.zeros(rim.size), np.full(interface.size, wall)], seat
 
 
-def _hoop_bounds(straight: np.ndarray, shear: np.ndarray, status: np.ndarray) -> Pair:
-    """Bounds of the largest hoop stress, from straight lines (k, m), and shear and status of the nodes (k, n)."""
+class JointBounds:
+    """Bounds of the readings of the stress in a joint whose bush slips, as :class:`StressBounds` has them.
+
+    Bush and plate depend on the tractions at the pin and in the seat.
+    """
+
+    def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
+        around = seat_grid(problem, grid)
+        owners = {name: name.removeprefix(PREFIX) for name in sorted(names) if name.startswith(PREFIX)}
+        pin = {name for name, owner in owners.items() if owner == "pin"}
+        self._pin = StressBounds(problem, grid, pin)
+        self._seat = StressBounds(problem.interfaces[1], around, {StressBounds.HOOP})
+        self._places = {name: Places.of(problem, grid, owner) for name, owner in owners.items() if name not in pin}
+        self._rim = _around_hole(grid) if StressBounds.HOOP in names else np.zeros(0)
+        self._problem = problem
+        self._map = StressMap(problem, (grid, around), self._stress)
+        self.names = names & {StressBounds.HOOP, StressBounds.SEAT, *owners}
+
+    def _stress(self, tractions: list[Tractions], remote: np.ndarray) -> np.ndarray:
+        """Stresses (srr, stt, srt) at the bore of the bush, and at the points of the von Mises stresses."""
+        load = {list(LOADS)[place]: float(value) for place, value in zip(REMOTE, remote, strict=True)}
+        radius, found = self._problem.hole_radius, []
+        sets: list[tuple[Body, np.ndarray, np.ndarray]] = [("plate", self._rim, np.zeros(self._rim.size))]
+        sets += [(each.body, each.theta, each.depth) for each in self._places.values()]
+        for body, theta, depth in sets:
+            stress = stress_at(
+                self._problem, tractions[0], load, Points.at_depth(depth * radius, theta), body, tractions[1]
+            )
+            found.append(np.array([stress.radial, stress.hoop, stress.shear]))
+        return np.concatenate(found, axis=1)
+
+    def of(self, interfaces: list[Nodal], remote: np.ndarray) -> dict[str, Pair]:
+        """Return the bounds for tractions and status of the nodes of pin and seat, and remote stresses (k, 3)."""
+        tractions = [(pressure, shear) for pressure, shear, _ in interfaces]
+        found = self._pin.of(interfaces, remote) if self._pin.names else {}
+        if StressBounds.SEAT in self.names:
+            found[StressBounds.SEAT] = self._seat.of(interfaces[1:], remote)[StressBounds.HOOP]
+        if not self._places and not self._rim.size:
+            return found
+        self._map.learn(tractions)
+        stress = np.array([self._map.component(which, tractions, remote) for which in range(3)])
+        begin = self._rim.size
+        if begin:
+            found[StressBounds.HOOP] = _hoop_bounds(stress[1, :, :begin], [nodal[1:] for nodal in interfaces])
+        for name, places in self._places.items():
+            found[name] = _mises_bounds(self._problem, places, stress[:, :, begin : begin + places.theta.size])
+            begin += places.theta.size
+        return found
+
+
+def _around_hole(grid: Grid) -> np.ndarray:
+    """Angles round the hole, the nodes, and the middles between them."""
+    around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
+    return np.unique(np.remainder(np.r_[around, grid.theta, grid.theta + 0.5 * grid.weights], 2.0 * math.pi))
+
+
+def _mises_bounds(problem: Problem, places: Places, stress: np.ndarray) -> Pair:
+    """Bounds of the largest von Mises stress from (srr, stt, srt) at its points (3, k, m): the reading and rounding."""
+    top = places.von_mises(problem, stress).max(axis=1)
+    slack = ROUNDING * np.abs(stress).max(axis=(0, 2))
+    return top - slack, top + slack
+
+
+def _hoop_bounds(straight: np.ndarray, interfaces: list[tuple[np.ndarray, np.ndarray]]) -> Pair:
+    """Bounds of the largest hoop stress, from straight lines (k, m), and shear and status of the nodes (k, n).
+
+    The shear of each interface beside the edge is taken.
+    """
     drop = straight - np.minimum(np.roll(straight, 1, axis=1), np.roll(straight, -1, axis=1))
-    step = np.abs(shear - np.roll(shear, 2, axis=1)).max(axis=1)
-    slack = SHEAR_STEP * step + ROUNDING * np.abs(straight).max(axis=1)
-    one, other = status == SLIP_POSITIVE, status == SLIP_NEGATIVE
-    for side in (*range(1, ABRUPT + 1), *range(-ABRUPT, 0)):
-        slack = np.where((one & np.roll(other, side, axis=1)).any(axis=1), math.inf, slack)
+    slack = ROUNDING * np.abs(straight).max(axis=1)
+    for shear, status in interfaces:
+        slack = slack + SHEAR_STEP * np.abs(shear - np.roll(shear, 2, axis=1)).max(axis=1)
+        one, other = status == SLIP_POSITIVE, status == SLIP_NEGATIVE
+        for side in (*range(1, ABRUPT + 1), *range(-ABRUPT, 0)):
+            slack = np.where((one & np.roll(other, side, axis=1)).any(axis=1), math.inf, slack)
     return straight.max(axis=1) - slack, (straight + np.maximum(drop, 0.0)).max(axis=1) + slack
 
 

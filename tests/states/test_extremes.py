@@ -22,8 +22,8 @@ from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.states import extremes, reading_bounds
 from fastpin.states.extremes import MARKS, READINGS, KeptStates, marked_extremes, marked_places
-from fastpin.states.reading_bounds import Hats, NodalStress
 from fastpin.states.state import State
+from fastpin.states.stress_map import Hats, NodalStress
 from tests.support.samples import sample_result
 
 STEEL, ALUMINIUM = MATERIALS["steel"], MATERIALS["aluminium"]
