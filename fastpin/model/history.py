@@ -355,6 +355,24 @@ class LoadHistory:
             ends.append(np.tile(once, block.count))
         return LoadHistory.of_blocks([Block(given, np.concatenate(ends), lengths, count, cycle=True)])
 
+    def scaled(self, factors: Corner) -> LoadHistory:
+        """This history with some of its loads multiplied by a factor each. Other loads stay.
+
+        Parameters
+        ----------
+        factors : mapping
+            Plain numbers by load, such as ``{"P": 1.1}``.
+
+        Raises
+        ------
+        InputError
+            If a load is unknown, or a factor is not a finite number.
+        """
+        factor = np.ones(len(LOADS))
+        for name, value in check_corner("factors", factors).items():
+            factor[LOADS.index(name)] = value
+        return LoadHistory.of_blocks(replace(block, given=block.given * factor) for block in self._blocks)
+
     def per_thickness(self, thickness: float) -> LoadHistory:
         """This history with its forces, N, and moments, N m, divided by a thickness, m.
 

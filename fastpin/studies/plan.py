@@ -42,7 +42,7 @@ from fastpin.model.synonyms import closest
 from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, bar_faults, outcomes_from, outcomes_in_text
 from fastpin.studies.run_end import KEY_FIGURES
-from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units, reads_files
+from fastpin.studies.variation import FACTORS, LOAD_TABLES, BaseCase, conflict, other_units, reads_files
 
 MAX_RUNS = 100_000
 """Most runs of one plan."""
@@ -394,7 +394,8 @@ def _fields(
         value = Section(source, place, table).value(key)
         if value is None:  # This fault is reported already.
             continue
-        if isinstance(value, dict) and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES):
+        is_factor = names == ("loads",) and set(value if isinstance(value, dict) else ()) <= set(_RANGE_KEYS)
+        if isinstance(value, dict) and not is_factor and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES):
             yield from _fields(source, base, value, here, names)
             continue
         if isinstance(value, dict) and names[:2] in PROFILES and not set(value) <= set(_RANGE_KEYS):
@@ -410,6 +411,9 @@ def _fields(
 def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     """Return the fault of a field's name, or None."""
     name, section = ".".join(names), names[0]
+    if section == "loads":
+        hint = "; loads multiplies all loads, and loads.P one of them"
+        return None if name in FACTORS else f'"{name}": is no factor{closest(name, tuple(FACTORS)) or hint}'
     if section not in KEYS and len(names) == 1 and (owners := sections_with(name)):
         return f'"{name}": a field is written section.key: {_varied(owners[0], name)}'
     if section not in KEYS:
