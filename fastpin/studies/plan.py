@@ -395,7 +395,11 @@ def _fields(
         if value is None:  # This fault is reported already.
             continue
         is_factor = names == ("loads",) and set(value if isinstance(value, dict) else ()) <= set(_RANGE_KEYS)
-        if isinstance(value, dict) and not is_factor and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES):
+        if (
+            isinstance(value, dict)
+            and not is_factor
+            and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES)
+        ):
             yield from _fields(source, base, value, here, names)
             continue
         if isinstance(value, dict) and names[:2] in PROFILES and not set(value) <= set(_RANGE_KEYS):

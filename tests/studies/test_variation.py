@@ -35,7 +35,7 @@ def test_a_factor_multiplies_the_loads_of_all_blocks():
         assert (found[:, 0] == all_loads * whole[:, 0]).all()
         assert (found[:, 1] == all_loads * of_q * whole[:, 1]).all()
     assert np.abs(whole[:, 1]).max() > 0.0
-    assert plan.points[0].id == parse_plan("[grid]\n\"contact.friction\" = [0.4]\n").points[0].id
+    assert plan.points[0].id == parse_plan('[grid]\n"contact.friction" = [0.4]\n').points[0].id
     assert (field_words("loads"), field_words("loads.P")) == ("factor of all loads", "factor of the force P")
 
 
