@@ -371,7 +371,8 @@ class LoadHistory:
         factor = np.ones(len(LOADS))
         for name, value in check_corner("factors", factors).items():
             factor[LOADS.index(name)] = value
-        return LoadHistory.of_blocks([replace(block, given=block.given * factor) for block in self._blocks])
+        with np.errstate(over="ignore"):  # an infinite load is refused
+            return LoadHistory.of_blocks([replace(block, given=block.given * factor) for block in self._blocks])
 
     def per_thickness(self, thickness: float) -> LoadHistory:
         """This history with its forces, N, and moments, N m, divided by a thickness, m.

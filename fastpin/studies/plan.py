@@ -65,7 +65,11 @@ SweepProgress = Callable[[int, int], None]
 LONGEST_LABEL = 80
 """Most letters of a label. It stands beside an axis of a figure."""
 
-_ROOT_KEYS = ("title", "case", "grid", "list", "outcomes", "labels")
+ROOT_KEYS = {name: name for name in ("title", "case")} | {
+    "grid": "[grid]", "list": "[[list]]", "outcomes": "[outcomes]", "labels": "[labels]"
+}  # fmt: skip
+"""Keys of a plan, as they are written."""
+
 _RANGE_KEYS = ("from", "to", "count", "spacing")
 
 
@@ -250,9 +254,9 @@ def describe_values(values: dict[str, Any]) -> str:
 
 def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | None) -> Plan | None:
     """Read the plan. It has no meaning if the text has faults."""
-    _check_root(source)
+    check_root(source)
     title = source.root.checked("title", string) or ""
-    base = _base(source, folder)
+    base = base_case(source, folder)
     places: dict[str, KeyPath] = {}
     spacings: dict[str, Spacing] = {}
     rows = _rows(source, base)
@@ -267,12 +271,12 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
     outcomes = outcomes_in_text(source, folder, None if base is None else base.wear)
-    labels = _labels(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
+    labels = labels_in(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
     cases: dict[str, Case] = {}
     found: list[InputWarning] = []
-    points = _points(source, base, places, rows or [{}], axes, (cases, found), progress)
+    points = checked_points(source, base, places, rows or [{}], axes, (cases, found), progress)
     wears = dict.fromkeys(each.wear for each in outcomes.values() if each.wear is not None)
     case = base.vary({})[1] if wears else None
     if case is not None:
@@ -281,7 +285,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     return Plan(title, text, fields, axes, points, outcomes, found, labels, base, cases)
 
 
-def _labels(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
+def labels_in(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
     """Read the words for fields, outcomes and key figures."""
     labels: dict[str, str] = {}
     for place, name, words in _leaves(source, source.section("labels").table, ("labels",)):
@@ -310,17 +314,18 @@ def _leaves(
             yield (*place, key), ".".join((*parts, str(key))), value
 
 
-def _check_root(source: CaseText) -> None:
-    """Report unknown sections, and unknown keys before the first section."""
+def check_root(source: CaseText, keys: Mapping[str, str] = ROOT_KEYS, varied_in: str = "[grid]") -> None:
+    """Report unknown sections, and unknown keys before the first section. `keys` are those of the plan, as written."""
     for key, value in source.root.table.items():
-        if key in _ROOT_KEYS:
+        if key in keys:
             continue
         section, owners = written(key, value), sections_with(key)
-        hint = closest(key, _ROOT_KEYS) or "; a plan has title, case, [grid], [[list]], [outcomes] and [labels]"
+        *first, last = keys.values()
+        hint = closest(key, tuple(keys)) or f"; a plan has {', '.join(first)} and {last}"
         if section and key in KEYS:
             hint = '; it belongs in the case file, which a plan names: case = "case.toml"'
         elif owners:
-            hint = f"; a plan varies it in [grid]: {_varied(owners[0], key)} = ..."
+            hint = f"; a plan varies it in {varied_in}: {_varied(owners[0], key)} = ..."
         source.report(f"unknown section {section}{hint}" if section else f'unknown key "{key}"{hint}', key)
 
 
@@ -329,7 +334,7 @@ def _varied(section: str, key: str) -> str:
     return f"load.1.{key}" if section == "load" else f"{section}.{key}"
 
 
-def _base(source: CaseText, folder: Path) -> BaseCase | None:
+def base_case(source: CaseText, folder: Path) -> BaseCase | None:
     """Read the base case, and report its faults on the line of the plan's ``case``."""
     name = source.root.checked("case", any_text)
     try:
@@ -354,7 +359,7 @@ def _rows(source: CaseText, base: BaseCase | None) -> list[PlanRow]:
     for index, block in enumerate(blocks):
         if not block.table:
             block.report("[[list]]: gives no field")
-        fields = _fields(source, base, block.table, ("list", index))
+        fields = varied_fields(source, base, block.table, ("list", index))
         rows.append({name: (place, item) for place, name, item in fields})
     return rows
 
@@ -364,7 +369,7 @@ def _axes(
 ) -> dict[str, list[Any]]:
     """Read the values of each field of the grid. Add the fields to `places` and `spacings`."""
     axes = {}
-    for place, name, value in _fields(source, base, source.section("grid").table, ("grid",)):
+    for place, name, value in varied_fields(source, base, source.section("grid").table, ("grid",)):
         if name in places:
             source.report(f"{name}: is varied already, in line {source.line(*places[name])}", *place)
             continue
@@ -373,7 +378,7 @@ def _axes(
         if isinstance(value, list) and value:
             axes[name] = value
         elif isinstance(value, dict):
-            axes[name], spacings[name] = _range(source, place, name, value)
+            axes[name], spacings[name] = range_in(source, place, name, value)
         else:
             allowed = "a list of values, or { from = 0.1, to = 1.0, count = 10 }"
             source.report(
@@ -382,7 +387,7 @@ def _axes(
     return axes
 
 
-def _fields(
+def varied_fields(
     source: CaseText, base: BaseCase | None, table: dict[str, Any], place: KeyPath, parts: tuple[str, ...] = ()
 ) -> Iterator[tuple[KeyPath, str, Any]]:
     """Yield place, field and value of all keys of a table.
@@ -400,10 +405,10 @@ def _fields(
             and not is_factor
             and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES)
         ):
-            yield from _fields(source, base, value, here, names)
+            yield from varied_fields(source, base, value, here, names)
             continue
         if isinstance(value, dict) and names[:2] in PROFILES and not set(value) <= set(_RANGE_KEYS):
-            yield from _fields(source, base, value, here, names)  # the keys of a term
+            yield from varied_fields(source, base, value, here, names)  # the keys of a term
             continue
         fault = _field_fault(names, base)
         if fault:
@@ -447,22 +452,28 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     return other_units(base.text.root.table, name) if base else None
 
 
-def _range(source: CaseText, place: KeyPath, name: str, table: dict[str, Any]) -> tuple[list[Any], Spacing]:
-    """Read the values of a range, and their spacing. A range with a fault has no values."""
+def range_in(
+    source: CaseText, place: KeyPath, name: str, table: dict[str, Any], usual: int | None = None
+) -> tuple[list[Any], Spacing]:
+    """Read the values of a range, and their spacing. A range with a fault has no values.
+
+    `usual` is the number of values without ``count``; None if ``count`` must be given.
+    """
     section = Section(source, place, table)
     before = len(source.placed)
     for key in table:
         if key not in _RANGE_KEYS:
             section.report(f'{name}: unknown key "{key}" in a range; there are {", ".join(_RANGE_KEYS)}', key)
-    for key in _RANGE_KEYS[:3]:
+    needed = _RANGE_KEYS[: 3 if usual is None else 2]
+    for key in needed:
         if key not in table:
-            section.report(f"{name}: {key} is missing; a range has from, to and count")
+            section.report(f"{name}: {key} is missing; a range has {', '.join(needed[:-1])} and {needed[-1]}")
 
     def checked(key: str, check: Callable[..., Any], *limits: Any) -> Any:
         return section.checked(key, lambda _, value: check(f"{name}: {key}", value, *limits))
 
     first, last = checked("from", number), checked("to", number)
-    count = checked("count", whole_number, 2, MAX_RUNS)
+    count = checked("count", whole_number, 2, MAX_RUNS) if usual is None or "count" in table else usual
     spacing: Any = checked("spacing", choice, ("linear", "log")) or "linear"
     if first is None or last is None or count is None or len(source.placed) > before:
         return [], spacing
@@ -480,7 +491,7 @@ def _range(source: CaseText, place: KeyPath, name: str, table: dict[str, Any]) -
 # -- runs ----------------------------------------------------------------------------------------------------
 
 
-def _points(
+def checked_points(
     source: CaseText,
     base: BaseCase,
     places: dict[str, KeyPath],

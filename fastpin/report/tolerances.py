@@ -1,0 +1,311 @@
+"""The effects of tolerances as text, as JSON, and as the numbers of figures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.checks import as_toml
+from fastpin.model.problem import Problem
+from fastpin.model.synonyms import closest
+from fastpin.model.units import scaled
+from fastpin.report.sweep import TableRow, axis_label, printed_rows, unit_name
+from fastpin.report.table import Column, table
+from fastpin.studies.field_words import field_kind, field_words
+from fastpin.studies.index import DONE, FAILED
+from fastpin.studies.plan import describe_values
+from fastpin.studies.tolerance_effects import OutcomeEffect, Reached
+from fastpin.studies.tolerances import Tolerances
+from fastpin.version import __version__
+
+MOST_OUTCOMES = 4
+"""Most outcomes of a figure."""
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A bar of a tornado: the effect of one field.
+
+    Attributes
+    ----------
+    words : str
+        The field.
+    limits : (str, str)
+        Its lower and its upper limit, with the unit.
+    values : ndarray, shape (m,)
+        The outcome at all values of the field, from the lower limit to the upper one. NaN without a value.
+    """
+
+    words: str
+    limits: tuple[str, str]
+    values: np.ndarray
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """The samples of one field.
+
+    Attributes
+    ----------
+    label : str
+        The field, with its unit in parentheses.
+    values : ndarray, shape (samples,)
+        Its values, in the label's unit.
+    is_log : bool
+        Whether they are spaced by a factor.
+    correlation : float
+        The rank correlation with the outcome; NaN if it is not known.
+    """
+
+    label: str
+    values: np.ndarray
+    is_log: bool
+    correlation: float
+
+
+@dataclass(frozen=True)
+class ToleranceChart:
+    """The numbers of the figures of one outcome. All values are in the label's unit.
+
+    Attributes
+    ----------
+    title : str
+        Title of the figure.
+    label : str
+        Name of the outcome, with its unit in parentheses.
+    nominal : float
+    bars : list of Bar
+        One for each field, the largest swing first.
+    corners : (float, float) or None
+        The smallest and the largest value of all corners.
+    percentiles : dict of int to float
+        Of the samples.
+    clouds : list of Cloud
+        One for each field, the largest correlation first.
+    samples : ndarray, shape (samples,)
+        The outcome at the samples; NaN without a value.
+    missing : int
+        Number of points without a value.
+    problem : Problem
+        The nominal joint.
+    """
+
+    title: str
+    label: str
+    nominal: float
+    bars: list[Bar]
+    corners: tuple[float, float] | None
+    percentiles: dict[int, float]
+    clouds: list[Cloud]
+    samples: np.ndarray
+    missing: int
+    problem: Problem
+
+
+def check_outcomes(study: Tolerances, names: Sequence[str]) -> None:
+    """Check the names of the outcomes of a figure.
+
+    Raises
+    ------
+    InputError
+        The field is "value". An outcome is unknown, or there are more than :data:`MOST_OUTCOMES`.
+    """
+    known = tuple(study.plan.outcomes)
+    for name in names:
+        if name not in known:
+            hint = closest(name, known) or f"; there are {', '.join(known)}"
+            raise InputError("value", f"there is no outcome {as_toml(name)}{hint}")
+    if len(names) > MOST_OUTCOMES:
+        raise InputError("value", f"a figure shows at most {MOST_OUTCOMES} outcomes, not {len(names)}")
+
+
+def tolerance_chart(study: Tolerances, rows: Sequence[TableRow], name: str) -> ToleranceChart:
+    """Return the numbers of the figures of one outcome.
+
+    Parameters
+    ----------
+    study : Tolerances
+    rows : sequence of dict
+        From :func:`fastpin.studies.sweep.rows`, for ``study.plan``.
+    name : str
+        An outcome of the plan.
+
+    Raises
+    ------
+    InputError
+        If there is no such outcome.
+    """
+    check_outcomes(study, [name])
+    plan, (found, unit) = study.plan, printed_rows(study.plan, rows)
+    effect = study.effects_in(found)[name]
+    outcomes = np.array([_known(row, name) for row in found])
+    factor, label = scaled([value for value in outcomes.tolist() if math.isfinite(value)], unit_name(plan, name, unit))
+    words = {field: plan.labels.get(field, field_words(field)) for field in study.limits}
+    bars, clouds = [], []
+    for field in effect.swings:
+        limits, (of_field, of_label) = study.limits[field], _field_unit(study, field, unit)
+        ends = (f"{of_field * end:.4g} {of_label}".strip() for end in (limits.low, limits.high))
+        first, second = ends
+        bars.append(Bar(words[field], (first, second), factor * np.array(effect.alone[field])))
+        inputs = np.array([of_field * found[place][field] for place in study.samples])
+        correlation = effect.correlations.get(field, math.nan)
+        clouds.append(Cloud(axis_label(words[field], of_label), inputs, limits.spacing == "log", correlation))
+    clouds.sort(key=lambda cloud: -abs(cloud.correlation) if math.isfinite(cloud.correlation) else 0.0)
+    return ToleranceChart(
+        plan.title,
+        axis_label(plan.labels.get(name, name.replace("_", " ")), label),
+        factor * effect.nominal,
+        bars,
+        None if effect.corners is None else (factor * effect.corners[0].value, factor * effect.corners[1].value),
+        {percent: factor * value for percent, value in effect.percentiles.items()},
+        clouds,
+        factor * outcomes[study.samples.start : study.samples.stop],
+        int(np.isnan(outcomes).sum()),
+        plan.case(plan.points[0]).problem,
+    )
+
+
+def text(study: Tolerances, rows: Sequence[TableRow]) -> str:
+    """Return the effects on all outcomes as text: for each a table of the fields, its extremes and its percentiles."""
+    return "\n\n".join("\n".join([head, table(columns), *ends]) for head, columns, ends in tables(study, rows))
+
+
+def tables(study: Tolerances, rows: Sequence[TableRow]) -> list[tuple[str, list[Column], list[str]]]:
+    """Return a heading, a table of the fields and sentences on the extremes for each outcome."""
+    found, unit = printed_rows(study.plan, rows)
+    return [_table(study, found, unit, name, effect) for name, effect in study.effects_in(list(found)).items()]
+
+
+def _table(
+    study: Tolerances, rows: Sequence[TableRow], unit: dict[str, str], name: str, effect: OutcomeEffect
+) -> tuple[str, list[Column], list[str]]:
+    known = [value for value in (_known(row, name) for row in rows) if math.isfinite(value)]
+    factor, label = scaled(known, unit_name(study.plan, name, unit))
+
+    def shown(value: float) -> str:
+        return f"{factor * value:.5g}" if math.isfinite(value) else "-"
+
+    fields = [*effect.swings]
+    units_of = [_field_unit(study, field, unit) for field in fields]
+    ends = [[f"{by * end:.5g}" for (by, _), end in _pairs(units_of, study, fields, side)] for side in ("low", "high")]
+    columns: list[Column] = [
+        ("field", "", [study.plan.labels.get(field, field) for field in fields]),
+        ("from", "", ends[0]),
+        ("to", "", ends[1]),
+        ("", "", [of_label for _, of_label in units_of]),
+        ("at from", label, [shown(effect.alone[field][0]) for field in fields]),
+        ("at to", label, [shown(effect.alone[field][-1]) for field in fields]),
+        ("swing", label, [shown(effect.swings[field]) for field in fields]),
+    ]
+    if effect.correlations:
+        cells = [effect.correlations[field] for field in fields]
+        columns.append(("rank corr.", "", [f"{cell:+.2f}" if math.isfinite(cell) else "-" for cell in cells]))
+    head = f"{study.plan.labels.get(name, name)}: nominal {shown(effect.nominal)} {label}".rstrip()
+    return head, columns, _sentences(study, rows, name, effect, lambda value: f"{shown(value)} {label}".rstrip())
+
+
+def _pairs(
+    units_of: list[tuple[float, str]], study: Tolerances, fields: list[str], side: str
+) -> list[tuple[tuple[float, str], float]]:
+    return [(each, getattr(study.limits[field], side)) for each, field in zip(units_of, fields, strict=True)]
+
+
+def _sentences(
+    study: Tolerances, rows: Sequence[TableRow], name: str, effect: OutcomeEffect, shown: Callable[[float], str]
+) -> list[str]:
+    """Return sentences on the extremes of the corners, runs beyond them, percentiles, and runs without a value."""
+
+    def reached(point: Reached) -> str:
+        return f"{shown(point.value)} at {describe_values(study.plan.points[point.place].values)}"
+
+    lines = []
+    if effect.corners is not None:
+        count = len(study.corners)
+        lines += [f"{end} of {count:,} corners: {reached(point)}" for end, point in _named(effect.corners)]
+    extremes = effect.everywhere if effect.corners is None else effect.beyond
+    for index, (end, point) in enumerate(_named(extremes) if extremes is not None else ()):
+        if effect.corners is None:
+            lines.append(f"{end} of all runs: {reached(point)} ({study.words(point.place)})")
+        elif point != effect.corners[index]:
+            lines.append(f"beyond all corners: {reached(point)} ({study.words(point.place)})")
+    if effect.percentiles:
+        listed = ", ".join(f"{percent} %: {shown(value)}" for percent, value in effect.percentiles.items())
+        lines.append(f"percentiles of {len(study.samples):,} samples: {listed}")
+    for words, places in (("corners", study.corners), ("samples", study.samples)):
+        none = sum(not math.isfinite(_known(rows[place], name)) for place in places)
+        if none:
+            lines.append(f"{none:,} of {len(places):,} {words} have no value")
+    return lines
+
+
+def _named(span: Sequence[Reached]) -> list[tuple[str, Reached]]:
+    return list(zip(("smallest", "largest"), span, strict=True))
+
+
+def document(study: Tolerances, rows: Sequence[TableRow]) -> dict[str, Any]:
+    """Return the effects on all outcomes as a JSON-ready dict. NaN is None; outcomes have their printed units."""
+    plan, (found, unit) = study.plan, printed_rows(study.plan, rows)
+
+    def reached(point: Reached) -> dict[str, Any]:
+        return {"value": point.value, "part": study.words(point.place), "values": plan.points[point.place].values}
+
+    def span(ends: Sequence[Reached] | None) -> dict[str, Any] | None:
+        return None if ends is None else {end: reached(point) for end, point in _named(ends)}
+
+    outcomes = {}
+    for name, effect in study.effects_in(list(found)).items():
+        fields = {
+            field: {
+                "values": list(study.limits[field].values),
+                "outcomes": [_or_none(value) for value in effect.alone[field]],
+                "swing": _or_none(swing),
+                "rank_correlation": _or_none(effect.correlations.get(field, math.nan)),
+            }
+            for field, swing in effect.swings.items()
+        }
+        outcomes[name] = {
+            "unit": unit_name(plan, name, unit),
+            "nominal": _or_none(effect.nominal),
+            "fields": fields,
+            "corners": span(effect.corners),
+            "all": span(effect.everywhere),
+            "percentiles": {str(percent): value for percent, value in effect.percentiles.items()},
+        }
+    failed = [(place, row) for place, row in enumerate(found) if row["status"] == FAILED]
+    return {
+        "fastpin": __version__,
+        "title": plan.title,
+        "points": len(found),
+        "done": sum(row["status"] == DONE for row in found),
+        "corners": len(study.corners),
+        "samples": len(study.samples),
+        "failed": [
+            {"part": study.words(place), "values": plan.points[place].values, "reason": row["reason"] or ""}
+            for place, row in failed
+        ],
+        "fields": {
+            field: {"nominal": each.nominal, "from": each.low, "to": each.high, "spacing": each.spacing}
+            for field, each in study.limits.items()
+        },
+        "outcomes": outcomes,
+    }
+
+
+def _known(row: TableRow, name: str) -> float:
+    """Return the outcome of a finished run; NaN without a value."""
+    value = row.get(name) if row["status"] == DONE else None
+    return math.nan if value is None else float(value)
+
+
+def _field_unit(study: Tolerances, field: str, unit: dict[str, str]) -> tuple[float, str]:
+    """Return the factor and the label of the unit that suits the limits of a field."""
+    return scaled([study.limits[field].low, study.limits[field].high], unit.get(field_kind(field), ""))
+
+
+def _or_none(value: float) -> float | None:
+    return value if math.isfinite(value) else None
