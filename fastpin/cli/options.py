@@ -29,7 +29,7 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""
 
-SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear")
+SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances")
 """Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
 
 
@@ -72,6 +72,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_live(commands)
     add_converge(commands)
     add_sweep(commands)
+    add_tolerances(commands)
     add_compliance(commands)
     add_paper(commands)
     add_benchmarks(commands)
@@ -362,16 +363,7 @@ def add_sweep(commands: Any) -> None:
     """Add ``sweep`` and ``merge``."""
     sweep = _command(commands, "sweep", "sweep", "run", "solve all runs of a plan that are not finished")
     sweep.add_argument("plan", type=Path, help="plan (TOML): a case, and the fields that are varied")
-    sweep.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, help="directory of index and results (default: the plan's name)"
-    )
-    sweep.add_argument("--status", action="store_true", help="report the progress; solve nothing")
-    sweep.add_argument("--retry", action="store_true", help="also solve failed runs again")
-    sweep.add_argument("--files", action="store_true", help="also write each result to an HDF5 file of its own")
-    sweep.add_argument(
-        "--workers", metavar="N", type=literal, help="worker processes (default: one for each processor)"
-    )
-    sweep.add_argument("--dask", metavar="ADDRESS", help="use the workers of a dask scheduler")
+    _add_runs(sweep)
     sweep.add_argument(
         "--shard", metavar="I/N", help="solve only the I-th of N parts; each part needs a directory of its own"
     )
@@ -395,6 +387,38 @@ def add_sweep(commands: Any) -> None:
     merge = _command(commands, "merge", "sweep", "merge", "join the directories of the parts of a sweep")
     merge.add_argument("parts", metavar="DIR", type=Path, nargs="+", help="directories of the parts")
     merge.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="directory of the whole")
+
+
+def _add_runs(command: argparse.ArgumentParser) -> None:
+    """Add the options of the runs of a plan."""
+    command.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, help="directory of index and results (default: the plan's name)"
+    )
+    command.add_argument("--status", action="store_true", help="report the progress; solve nothing")
+    command.add_argument("--retry", action="store_true", help="also solve failed runs again")
+    command.add_argument("--files", action="store_true", help="also write each result to an HDF5 file of its own")
+    command.add_argument(
+        "--workers", metavar="N", type=literal, help="worker processes (default: one for each processor)"
+    )
+    command.add_argument("--dask", metavar="ADDRESS", help="use the workers of a dask scheduler")
+
+
+def add_tolerances(commands: Any) -> None:
+    """Add ``tolerances``."""
+    words = "run a case at the limits of its fields: one at a time, at all corners, and at random samples"
+    tolerances = _command(commands, "tolerances", "tolerances", "run", words)
+    tolerances.add_argument("plan", type=Path, help="plan (TOML): a case, and the limits of its fields [tolerances]")
+    _add_runs(tolerances)
+    _add_outcomes(tolerances)
+    tolerances.add_argument("--table", metavar="FILE", type=Path, help="write all runs to FILE as CSV")
+    tolerances.add_argument("--plot", metavar="FILE", type=Path, help="tornado of the fields (png, pdf or svg)")
+    tolerances.add_argument(
+        "--scatter", metavar="FILE", type=Path, help="outcomes of the samples over the fields (png, pdf or svg)"
+    )
+    tolerances.add_argument(
+        "--value", metavar="NAME", help="outcomes of the figures: a, or a,b,c (default: the first ones)"
+    )
+    _add_json(tolerances, "write the effects as JSON")
 
 
 def add_compliance(commands: Any) -> None:

@@ -182,7 +182,7 @@ def _draw_maps(look: Look, chart: Chart) -> Sheet:
     bar.set_label(shown_label(chart.label), parse_math=False)
     bar.outline.set_linewidth(0.5)
     if isinstance(scale, LogNorm):
-        _round_numbers(bar.ax.yaxis, known)
+        round_numbers(bar.ax.yaxis, known)
     sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
     _explain(sheet, chart)
     _thin_out(sheet, [label for part in labels for label in part])
@@ -304,7 +304,7 @@ def _draw_contours(panel: Axes, chart: Chart, numbers: np.ndarray, levels: np.nd
             chart.x.values, chart.y.values, np.ma.masked_invalid(numbers), inside, colors="white", linewidths=0.8
         )
         # A gap in a line would stay where its label is removed.
-        labels = list(panel.clabel(lines, fmt=_in_round_numbers(inside), fontsize=6.5, inline=False))
+        labels = list(panel.clabel(lines, fmt=_inround_numbers(inside), fontsize=6.5, inline=False))
         for text in labels:
             text.set_bbox({"facecolor": "0.15", "edgecolor": "none", "pad": 0.6})
     return labels
@@ -364,7 +364,7 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
         panel.set_ylim(min(chart.classes) - 0.5, max(chart.classes) + 0.5)
     elif _spans_decades(_known_values(chart)):
         panel.set_yscale("log")
-        _round_numbers(panel.yaxis, _known_values(chart))
+        round_numbers(panel.yaxis, _known_values(chart))
     _label_panels(sheet, chart)
     if any_failed:
         handles.append(Line2D([], [], color="0.3", linestyle="none", marker="x", markersize=4.0, label="failed run"))
@@ -418,23 +418,23 @@ def shown_label(label: str) -> str:
 def _scale_axes(panel: Axes, chart: Chart) -> None:
     if chart.x.log:
         panel.set_xscale("log")
-        _round_numbers(panel.xaxis, chart.x.values)
+        round_numbers(panel.xaxis, chart.x.values)
     if chart.y is not None and chart.y.log:
         panel.set_yscale("log")
-        _round_numbers(panel.yaxis, chart.y.values)
+        round_numbers(panel.yaxis, chart.y.values)
 
 
-def _round_numbers(axis: MatplotlibAxis, values: np.ndarray) -> None:
+def round_numbers(axis: MatplotlibAxis, values: np.ndarray) -> None:
     """Put numbers at 1, 2 and 5 times powers of ten on a logarithmic axis, or at powers of ten on a long one."""
     decades = math.log10(float(values.max()) / float(values.min()))
     subs = (1.0, 2.0, 5.0) if decades <= DECADES else (1.0, 3.0) if decades <= 2.0 * DECADES else (1.0,)
     axis.set_major_locator(LogLocator(subs=subs, numticks=12))
     axis.set_minor_formatter(NullFormatter())
-    written = _in_round_numbers(values)
+    written = _inround_numbers(values)
     axis.set_major_formatter(FuncFormatter(lambda value, _: written(value)))
 
 
-def _in_round_numbers(values: np.ndarray) -> Callable[[float], str]:
+def _inround_numbers(values: np.ndarray) -> Callable[[float], str]:
     """Return how round numbers like some values are written: all in full, or all as powers of ten."""
     sizes = np.abs(values[values != 0.0])
     if not sizes.size or (sizes.min() >= 1e-3 and sizes.max() <= 1e5):

@@ -37,7 +37,7 @@ def json_schema(command: str) -> Schema:
 
     Parameters
     ----------
-    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear"}
+    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances"}
         ``fastpin resume`` and ``show`` write the document of "run".
 
     Raises
@@ -279,6 +279,35 @@ def _wear() -> Schema:
     )
 
 
+def _tolerances() -> Schema:
+    values = _map_of(_NUMBER, "the fields")
+    reached = _object({"value": _NUMBER, "part": _TEXT, "values": values})
+    span = _or_null(_object({"smallest": reached, "largest": reached}))
+    alone = {"values": _list_of(_NUMBER), "outcomes": _list_of(_UNKNOWN)}
+    field = _object(alone | dict.fromkeys(("swing", "rank_correlation"), _UNKNOWN))
+    outcome = _object(
+        {
+            "unit": _TEXT,
+            "nominal": _UNKNOWN,
+            "fields": _map_of(field, "the effect of each field, the largest swing first"),
+            "corners": span,
+            "all": span,
+            "percentiles": _map_of(_NUMBER, "percentiles of the samples"),
+        }
+    )
+    limits = _object(dict.fromkeys(("nominal", "from", "to"), _NUMBER) | {"spacing": {"enum": ["linear", "log"]}})
+    return _object(
+        {
+            "fastpin": _TEXT,
+            "title": _TEXT,
+            **dict.fromkeys(("points", "done", "corners", "samples"), _WHOLE),
+            "failed": _list_of(_object({"part": _TEXT, "values": values, "reason": _TEXT})),
+            "fields": _map_of(limits, "the limits of each field, in the units of the case file"),
+            "outcomes": _map_of(outcome, "the effects on each outcome"),
+        }
+    )
+
+
 _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "run": _summary,
     "converge": _convergence,
@@ -286,6 +315,7 @@ _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "benchmarks": _benchmarks,
     "compliance": _compliance,
     "wear": _wear,
+    "tolerances": _tolerances,
 }
 
 COMMANDS = tuple(_DOCUMENTS)

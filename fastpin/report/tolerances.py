@@ -18,7 +18,6 @@ from fastpin.report.sweep import TableRow, axis_label, printed_rows, unit_name
 from fastpin.report.table import Column, table
 from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.index import DONE, FAILED
-from fastpin.studies.plan import describe_values
 from fastpin.studies.tolerance_effects import OutcomeEffect, Reached
 from fastpin.studies.tolerances import Tolerances
 from fastpin.version import __version__
@@ -172,7 +171,23 @@ def tolerance_chart(study: Tolerances, rows: Sequence[TableRow], name: str) -> T
 
 def text(study: Tolerances, rows: Sequence[TableRow]) -> str:
     """Return the effects on all outcomes as text: for each a table of the fields, its extremes and its percentiles."""
-    return "\n\n".join("\n".join([head, table(columns), *ends]) for head, columns, ends in tables(study, rows))
+    parts = ["\n".join([head, table(columns), *ends]) for head, columns, ends in tables(study, rows)]
+    return "\n\n".join(filter(None, [failed_words(study, rows), *parts]))
+
+
+def failed_words(study: Tolerances, rows: Sequence[TableRow]) -> str:
+    """Return a sentence that counts the failed runs of each part of a study; empty if none has failed."""
+    failed = [place for place, row in enumerate(rows) if row["status"] == FAILED]
+    parts = [("corners", study.corners), ("samples", study.samples)]
+    counts = [(f"of {len(places):,} {words}", sum(place in places for place in failed)) for words, places in parts]
+    for field, places in study.alone.items():
+        counts.append(
+            (f"of {len(places):,} values of {field} alone", sum(place in places for place in failed if place))
+        )
+    if 0 in failed:
+        counts.append(("the nominal case", 1))
+    listed = ", ".join(f"{count:,} {words}" if words[:2] == "of" else words for words, count in counts if count)
+    return f"failed: {listed}; they count nowhere below" if failed else ""
 
 
 def tables(study: Tolerances, rows: Sequence[TableRow]) -> list[tuple[str, list[Column], list[str]]]:
@@ -206,7 +221,16 @@ def _table(
         cells = [effect.correlations[field] for field in fields]
         columns.append(("rank corr.", "", [f"{cell:+.2f}" if math.isfinite(cell) else "-" for cell in cells]))
     head = f"{study.plan.labels.get(name, name)}: nominal {shown(effect.nominal)} {label}".rstrip()
-    return head, columns, _sentences(study, rows, name, effect, lambda value: f"{shown(value)} {label}".rstrip())
+
+    def reached(point: Reached) -> str:
+        return f"{shown(point.value)} {label}".rstrip() + f" at {_point_words(study, point.place, unit)}"
+
+    sentences = _extremes(study, effect, reached)
+    if effect.percentiles:
+        listed = (f"{percent} %: {shown(value)} {label}".rstrip() for percent, value in effect.percentiles.items())
+        sentences.append(f"percentiles of {len(study.samples):,} samples: {', '.join(listed)}")
+    lost = sum(row["status"] == DONE and not math.isfinite(_known(row, name)) for row in rows)
+    return head, columns, sentences + ([f"{lost:,} finished runs have no value"] if lost else [])
 
 
 def _pairs(
@@ -215,32 +239,30 @@ def _pairs(
     return [(each, getattr(study.limits[field], side)) for each, field in zip(units_of, fields, strict=True)]
 
 
-def _sentences(
-    study: Tolerances, rows: Sequence[TableRow], name: str, effect: OutcomeEffect, shown: Callable[[float], str]
-) -> list[str]:
-    """Return sentences on the extremes of the corners, runs beyond them, percentiles, and runs without a value."""
-
-    def reached(point: Reached) -> str:
-        return f"{shown(point.value)} at {describe_values(study.plan.points[point.place].values)}"
-
+def _extremes(study: Tolerances, effect: OutcomeEffect, reached: Callable[[Reached], str]) -> list[str]:
+    """Return sentences on the extremes of the corners, and on runs beyond them."""
     lines = []
-    if effect.corners is not None:
+    if effect.corners is not None and effect.beyond is not None:
         count = len(study.corners)
         lines += [f"{end} of {count:,} corners: {reached(point)}" for end, point in _named(effect.corners)]
-    extremes = effect.everywhere if effect.corners is None else effect.beyond
-    for index, (end, point) in enumerate(_named(extremes) if extremes is not None else ()):
-        if effect.corners is None:
-            lines.append(f"{end} of all runs: {reached(point)} ({study.words(point.place)})")
-        elif point != effect.corners[index]:
-            lines.append(f"beyond all corners: {reached(point)} ({study.words(point.place)})")
-    if effect.percentiles:
-        listed = ", ".join(f"{percent} %: {shown(value)}" for percent, value in effect.percentiles.items())
-        lines.append(f"percentiles of {len(study.samples):,} samples: {listed}")
-    for words, places in (("corners", study.corners), ("samples", study.samples)):
-        none = sum(not math.isfinite(_known(rows[place], name)) for place in places)
-        if none:
-            lines.append(f"{none:,} of {len(places):,} {words} have no value")
+        pairs = zip(effect.corners, _named(effect.beyond), strict=True)
+        lines += [f"beyond all corners, {end}: {reached(point)}" for corner, (end, point) in pairs if point != corner]
+    elif effect.everywhere is not None:
+        lines += [f"{end} of all runs: {reached(point)}" for end, point in _named(effect.everywhere)]
     return lines
+
+
+def _point_words(study: Tolerances, place: int, unit: dict[str, str]) -> str:
+    """Return the fields of a point with their units, and its part of the study. Alone means at nominal otherwise."""
+    words, values = study.words(place), study.plan.points[place].values
+    fields = [field for field in study.limits if words == f"{field} alone"] or [*study.limits]
+    listed = []
+    for field in fields:
+        factor, label = _field_unit(study, field, unit)
+        listed.append(f"{field} = {factor * values[field]:.5g} {label}".rstrip())
+    return (
+        ", ".join(listed) if place in study.corners else f"{', '.join(listed)} ({words.removeprefix(f'{fields[0]} ')})"
+    )
 
 
 def _named(span: Sequence[Reached]) -> list[tuple[str, Reached]]:

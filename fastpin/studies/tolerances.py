@@ -211,6 +211,11 @@ def parse_tolerances(text: str, name: str = "tolerance plan", folder: str | Path
     return study
 
 
+def has_tolerances(text: str) -> bool:
+    """Whether the text of a plan is a tolerance plan."""
+    return "tolerances" in CaseText(text).root
+
+
 # -- text of a plan ------------------------------------------------------------------------------------------
 
 
