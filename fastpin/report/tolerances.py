@@ -11,7 +11,6 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
-from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 from fastpin.model.units import scaled
 from fastpin.report.sweep import TableRow, axis_label, printed_rows, unit_name
@@ -90,8 +89,6 @@ class ToleranceChart:
         The outcome at the samples; NaN without a value.
     missing : int
         Number of points without a value.
-    problem : Problem
-        The nominal joint.
     """
 
     title: str
@@ -103,7 +100,6 @@ class ToleranceChart:
     clouds: list[Cloud]
     samples: np.ndarray
     missing: int
-    problem: Problem
 
 
 def check_outcomes(study: Tolerances, names: Sequence[str]) -> None:
@@ -165,7 +161,6 @@ def tolerance_chart(study: Tolerances, rows: Sequence[TableRow], name: str) -> T
         clouds,
         factor * outcomes[study.samples.start : study.samples.stop],
         int(np.isnan(outcomes).sum()),
-        plan.case(plan.points[0]).problem,
     )
 
 
