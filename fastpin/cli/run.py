@@ -35,6 +35,7 @@ from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
+from fastpin.report.margins import last_cycle_margins, margin_lines, static_margins
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import (
     TableRows,
@@ -47,7 +48,7 @@ from fastpin.report.states import (
     table_rows,
 )
 from fastpin.states.choice import check_choice, span_of
-from fastpin.states.extremes import KeptStates, marked_extremes, marked_places, yield_doubts_of
+from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
 from fastpin.states.quantities import load_point
 
 if TYPE_CHECKING:  # it imports compiled code
@@ -247,13 +248,13 @@ class ShownPart(NamedTuple):
         The rows of the table.
     places : list of int
         The places of the states that were read, in increasing order.
-    peaks : list of int
-        The places of the extremes that are printed.
+    extremes : dict
+        The extremes that are printed, of all states of the file.
     """
 
     rows: TableRows
     places: list[int]
-    peaks: list[int]
+    extremes: Found
 
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
@@ -264,7 +265,8 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     if options.json is not None:
         return RunReport(case, path, storage.load(path), ended).write(options)
     points, cycles = storage.load_points(path), storage.load(path, states=[]).cycles
-    peaks = marked_places(storage.marked_extremes(path))
+    extremes = storage.marked_extremes(path)
+    peaks = marked_places(extremes)
     rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(path, places).states, peaks)
     places, ends = {*rows.printed, *peaks}, [*range(points.size)[-1:]]
     if cycles:
@@ -278,7 +280,7 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
         places |= set(ends)
     if options.record is not None:
         places |= set(live.recorded_places(points.size))
-    part = ShownPart(rows, sorted(places), list(peaks))
+    part = ShownPart(rows, sorted(places), extremes)
     return RunReport(case, path, storage.load(path, states=sorted(places)), ended, part).write(options)
 
 
@@ -389,13 +391,13 @@ class RunReport:
             return
         if self.part is None:
             found = dict(enumerate(result.states))
-            places = list(marked_places(marked_extremes(KeptStates(result.states))))
-            rows = table_rows(case.problem, result.states, wanted=places)
+            extremes = marked_extremes(KeptStates(result.states))
+            rows = table_rows(case.problem, result.states, wanted=list(marked_places(extremes)))
         else:
             found = dict(zip(self.part.places, result.states, strict=True))
-            rows, _, places = self.part
+            rows, _, extremes = self.part
         say(*state_table(case.problem, [found[place] for place in rows.printed], rows).split("\n"))
-        peaks = [found[place] for place in places]
+        peaks = [found[place] for place in marked_places(extremes)]
         lines = [hoop_line(case.problem, peaks, body) for body in EDGES]
         lines += bush_line(case.problem, peaks).splitlines()
         ends = span_of(result.cycles[-1]) if result.cycles else ()
@@ -405,8 +407,10 @@ class RunReport:
         say(*cycle_lines(case.problem, result.cycles, peaks))
         if cycle is not None:
             say(report.cycle.cycle_line(cycle))
+        states = result.states if cycle is None else cycle.states
+        margins = static_margins(case.problem, extremes, lambda places: [found[place] for place in places])
+        say(*margin_lines(case.problem, margins + last_cycle_margins(case.problem, states, result.cycles)))
         if result.cycles:
-            states = result.states if cycle is None else cycle.states
             say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
         elif _is_spectrum(case):
             damages = report.cycle.spectrum_damages(result.states, len(case.history))

@@ -153,7 +153,7 @@ def margins(page: PageParts) -> PageSection:
     found += fatigue_margins(problem, source.fatigue, cycle)
     run = "" if source.result.complete else " of an unfinished run"
     states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
-    words = f"Margins over {states}{run}: allowable/value - 1"
+    words = f"Margins of safety over {states}{run}: allowable/value - 1"
     remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
     remarks += "down to a third of the hole's radius below them; fastpin is elastic."
     rows = margin_rows(problem, found)

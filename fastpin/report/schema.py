@@ -58,6 +58,7 @@ def _summary() -> Schema:
     extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
     sides = _object({"smallest": extreme, "largest": extreme})
     texts, numbers = ("subject", "unit", "remark"), ("value", "allowable", "margin", "load_point")
+    governing = {"smallest": _TRUTH, "loads": _map_of(_NUMBER, "loads of the state that governs")}
     of_cycle = dict.fromkeys(Cycle._fields, _UNKNOWN)
     of_cycle |= {"corner": _WHOLE, "length": _WHOLE, "number": _WHOLE, "solved": _TRUTH}
     return _object(
@@ -78,7 +79,7 @@ def _summary() -> Schema:
             "statistics": _map_of(_NUMBER, "counters of the solver, and its time, s"),
             "states": _list_of(_state(seat=_state())),
             "extremes": _object(dict.fromkeys(READINGS, sides), required=()),
-            "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN))),
+            "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing)),
             "cycles": _list_of(_object(of_cycle)),
             "cycle": _or_null(_last_cycle()),
         }

@@ -16,10 +16,10 @@ from fastpin.model.loads import LATER, LOAD_KIND, LOADS
 from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
-from fastpin.model.units import DEGREE, Unit, units
+from fastpin.model.units import DEGREE, Unit, printed_loads, units
 from fastpin.report import cycle as cycle_report
 from fastpin.report.margins import document as margins_document
-from fastpin.report.margins import static_margins
+from fastpin.report.margins import last_cycle_margins, static_margins
 from fastpin.solver.result import Result
 from fastpin.states.extremes import READINGS, Found
 from fastpin.states.load_cycle import LoadCycle
@@ -107,14 +107,6 @@ def unit_names(problem: Problem) -> dict[str, str]:
     return {kind: unit.name for kind, unit in units(problem).items()} | angle
 
 
-def printed_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, float]:
-    """Return loads, by name, in printed units. Later loads are left out where they are 0."""
-    unit = units(problem)
-    return {
-        name: unit[LOAD_KIND[name]].factor * value for name, value in load.items() if value != 0.0 or name not in LATER
-    }
-
-
 def _material_summary(material: Material) -> dict[str, Any]:
     modulus = None if material.is_rigid else material.E
     known = {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
@@ -173,12 +165,12 @@ def _extremes_summary(result: Result) -> dict[str, Any]:
 
 
 def _margins_summary(result: Result) -> list[dict[str, Any]]:
-    """Return the margins of yield and of the bush over all states."""
+    """Return the margins over all states, and those of fatigue over the last cycle where they are known."""
     found = Found()
     for name, pair in result.extremes().items():
         found |= {(name, "smallest"): pair.smallest, (name, "largest"): pair.largest}
     rows = static_margins(result.problem, found, lambda places: [result.states[place] for place in places])
-    return margins_document(result.problem, rows)
+    return margins_document(result.problem, rows + last_cycle_margins(result.problem, result.states, result.cycles))
 
 
 def json_ready(value: Any) -> Any:

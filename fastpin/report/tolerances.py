@@ -188,7 +188,7 @@ def failed_words(study: Tolerances, rows: Sequence[TableRow]) -> str:
 def tables(study: Tolerances, rows: Sequence[TableRow]) -> list[tuple[str, list[Column], list[str]]]:
     """Return a heading, a table of the fields and sentences on the extremes for each outcome."""
     found, unit = printed_rows(study.plan, rows)
-    return [_table(study, found, unit, name, effect) for name, effect in study.effects_in(list(found)).items()]
+    return [_table(study, found, unit, name, effect) for name, effect in study.effects_in(found).items()]
 
 
 def _table(
@@ -275,7 +275,7 @@ def document(study: Tolerances, rows: Sequence[TableRow]) -> dict[str, Any]:
         return None if ends is None else {end: reached(point) for end, point in _named(ends)}
 
     outcomes = {}
-    for name, effect in study.effects_in(list(found)).items():
+    for name, effect in study.effects_in(found).items():
         fields = {
             field: {
                 "values": list(study.limits[field].values),

@@ -117,10 +117,10 @@ def rank_correlation(first: np.ndarray, second: np.ndarray) -> float:
     """
     if len(first) < 3:
         return math.nan
-    ranks = [_ranks(each) for each in (first, second)]
-    if any(np.ptp(each) == 0.0 for each in ranks):
+    ranks = np.array([_ranks(first), _ranks(second)])
+    if (np.ptp(ranks, axis=1) == 0.0).any():
         return math.nan
-    return float(np.corrcoef(*ranks)[0, 1])
+    return float(np.corrcoef(ranks)[0, 1])
 
 
 def _ranks(values: np.ndarray) -> np.ndarray:

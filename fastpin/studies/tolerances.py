@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -165,7 +165,7 @@ class Tolerances:
         """
         return self.effects_in(rows(self.plan, directory))
 
-    def effects_in(self, found: list[dict[str, Any]]) -> dict[str, OutcomeEffect]:
+    def effects_in(self, found: Sequence[dict[str, Any]]) -> dict[str, OutcomeEffect]:
         """Return the effects on every outcome from rows of :func:`fastpin.studies.sweep.rows`, in any unit."""
         inputs = {name: np.array([row[name] for row in found], dtype=float) for name in self.limits}
         effects = {}
