@@ -35,7 +35,7 @@ from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
-from fastpin.report.margins import last_cycle_margins, margin_lines, static_margins
+from fastpin.report.margins import margin_lines, static_margins
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import (
     TableRows,
@@ -409,7 +409,9 @@ class RunReport:
             say(report.cycle.cycle_line(cycle))
         states = result.states if cycle is None else cycle.states
         margins = static_margins(case.problem, extremes, lambda places: [found[place] for place in places])
-        say(*margin_lines(case.problem, margins + last_cycle_margins(case.problem, states, result.cycles)))
+        if result.cycles:
+            margins += report.fatigue.last_cycle_margins(case.problem, states, result.cycles)
+        say(*margin_lines(case.problem, margins))
         if result.cycles:
             say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
         elif _is_spectrum(case):

@@ -127,16 +127,11 @@ def _draw_tornado(look: Look, charts: Sequence[ToleranceChart]) -> Sheet:
     for panel, chart in zip(sheet.axes[:, 0], charts, strict=True):
         _draw_bars(panel, chart)
     sheet.head(look.title)
-    chart, dots = charts[0], any(len(bar.values) > 2 for chart in charts for bar in chart.bars)
     handles: list[Any] = [Patch(label="at the lower limit", **LOW), Patch(label="at the upper limit", **HIGH)]
-    handles += [Line2D([], [], label="between the limits", **INNER)] * _has_inner(charts) if dots else []
+    if any(_inner(chart, bar.values).size for chart in charts for bar in chart.bars):
+        handles.append(Line2D([], [], label="between the limits", **INNER))
     sheet.legend(handles, 3)
     return sheet
-
-
-def _has_inner(charts: Sequence[ToleranceChart]) -> bool:
-    """Whether a bar has values other than those at its limits and at the nominal value."""
-    return any(_inner(chart, bar.values).size for chart in charts for bar in chart.bars)
 
 
 def _inner(chart: ToleranceChart, values: np.ndarray) -> np.ndarray:

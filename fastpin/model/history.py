@@ -356,17 +356,9 @@ class LoadHistory:
         return LoadHistory.of_blocks([Block(given, np.concatenate(ends), lengths, count, cycle=True)])
 
     def scaled(self, factors: Corner) -> LoadHistory:
-        """This history with some of its loads multiplied by a factor each. Other loads stay.
+        """This history with some loads multiplied by factors, plain numbers by load: ``{"P": 1.1}``. Other loads stay.
 
-        Parameters
-        ----------
-        factors : mapping
-            Plain numbers by load, such as ``{"P": 1.1}``.
-
-        Raises
-        ------
-        InputError
-            If a load is unknown, or a factor is not a finite number.
+        An unknown load, or a factor that is no finite number, raises :class:`InputError`.
         """
         factor = np.ones(len(LOADS))
         for name, value in check_corner("factors", factors).items():

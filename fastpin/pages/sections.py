@@ -37,7 +37,8 @@ from fastpin.reading.zones import is_all_round
 from fastpin.report.case import ROUNDING, case_rows, corner_columns, edge_body
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
-from fastpin.report.margins import HEADS, fatigue_margins, margin_rows, static_margins
+from fastpin.report.fatigue import fatigue_margins
+from fastpin.report.margins import HEADS, margin_rows, static_margins
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_line, state_columns
 from fastpin.report.table import MAX_ROWS, Column

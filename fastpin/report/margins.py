@@ -11,17 +11,11 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from fastpin.damage import Fatigue, cycle_states
-from fastpin.damage import fatigue as fatigue_of
-from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
-from fastpin.model.points import Body, bodies_of, elastic_bodies, material_of, owner_of
+from fastpin.model.points import bodies_of, material_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, printed_loads, units
-from fastpin.report.case import edge_body
-from fastpin.report.cycle import MOST_STOPS
 from fastpin.report.table import aligned
-from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import Found
 from fastpin.states.quantities import point_name
 from fastpin.states.state import State
@@ -144,58 +138,6 @@ def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], lis
     words = "not known: no friction between bush and plate given" if least.value > 0.0 else "the bush opens"
     loads = read([slipping.place])[0].load
     return [Margin(turning, "ratio", slipping.value, math.nan, slipping.load_point, words, loads), opened]
-
-
-def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Sequence[State]) -> list[Margin]:
-    """Return the margins of fatigue over the last cycle, with a row for each elastic edge of a hole.
-
-    Parameters
-    ----------
-    problem : Problem
-    known : sequence of Fatigue or str
-        Smith, Watson and Topper's parameter over the last cycle; or why it is not known.
-    states : sequence of State
-        The states of the last cycle.
-    """
-    rows = []
-    for body in (body for body in elastic_bodies(problem) if body != "pin"):
-        subject = f"last cycle only: {edge_body(problem, body)}, fatigue"
-        limited = None if isinstance(known, str) or not states else _limited(states, body)
-        one = next((one for one in known if not isinstance(one, str) and one.body == body), None)
-        if limited is not None:
-            place = "" if math.isnan(limited.hot_spot.theta) else f"at {from_bottom(limited.hot_spot.theta):z.1f} deg"
-            limit = math.nan if limited.limit is None else float(limited.limit)
-            value = limited.hot_spot.parameter
-            rows.append(Margin(f"{subject}, Findley", "traction", value, limit, remark=place))
-        elif one is None:
-            why = known.rstrip(".") if isinstance(known, str) else "no constants of fatigue given"
-            rows.append(Margin(subject, remark=f"not known: {why[0].lower()}{why[1:]}"))
-        else:
-            remark = f"not known: no bending_limit and torsion_limit of the {owner_of(problem, body)} given"
-            life = one.hot_spot.life
-            if not math.isnan(life):
-                remark += f"; life {life:.3g} cycles" if math.isfinite(life) else "; infinite life"
-            kind = "stress times strain"
-            rows.append(Margin(f"{subject}, Smith-Watson-Topper", kind, one.hot_spot.parameter, remark=remark))
-    return rows
-
-
-def last_cycle_margins(problem: Problem, states: Sequence[State], cycles: Sequence[Cycle]) -> list[Margin]:
-    """Return the margins of fatigue over the last of the cycles that are known; none if finding them takes long."""
-    try:
-        stops = cycle_states(states, cycles[-1]) if cycles else []
-    except InputError:  # a corner of the cycle was not kept
-        return []
-    rows = fatigue_margins(problem, [], stops) if len(stops) <= MOST_STOPS else []
-    return [row for row in rows if not math.isnan(row.margin)]
-
-
-def _limited(states: Sequence[State], body: Body) -> Fatigue | None:
-    """Return Findley's criterion over a cycle: its limit follows from the bending and the torsion limit, if given."""
-    try:
-        return fatigue_of(states, "findley", body)
-    except InputError:
-        return None
 
 
 def margin_rows(problem: Problem, found: Sequence[Margin]) -> list[tuple[str, ...]]:

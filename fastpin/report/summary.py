@@ -18,8 +18,9 @@ from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
 from fastpin.report import cycle as cycle_report
+from fastpin.report.fatigue import last_cycle_margins
 from fastpin.report.margins import document as margins_document
-from fastpin.report.margins import last_cycle_margins, static_margins
+from fastpin.report.margins import static_margins
 from fastpin.solver.result import Result
 from fastpin.states.extremes import READINGS, Found
 from fastpin.states.load_cycle import LoadCycle

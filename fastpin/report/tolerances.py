@@ -26,7 +26,7 @@ MOST_OUTCOMES = 4
 
 
 @dataclass(frozen=True)
-class Bar:
+class FieldBar:
     """A bar of a tornado: the effect of one field.
 
     Attributes
@@ -77,7 +77,7 @@ class ToleranceChart:
     label : str
         Name of the outcome, with its unit in parentheses.
     nominal : float
-    bars : list of Bar
+    bars : list of FieldBar
         One for each field, the largest swing first.
     corners : (float, float) or None
         The smallest and the largest value of all corners.
@@ -94,7 +94,7 @@ class ToleranceChart:
     title: str
     label: str
     nominal: float
-    bars: list[Bar]
+    bars: list[FieldBar]
     corners: tuple[float, float] | None
     percentiles: dict[int, float]
     clouds: list[Cloud]
@@ -146,7 +146,7 @@ def tolerance_chart(study: Tolerances, rows: Sequence[TableRow], name: str) -> T
         limits, (of_field, of_label) = study.limits[field], _field_unit(study, field, unit)
         ends = (f"{of_field * end:.4g} {of_label}".strip() for end in (limits.low, limits.high))
         first, second = ends
-        bars.append(Bar(words[field], (first, second), factor * np.array(effect.alone[field])))
+        bars.append(FieldBar(words[field], (first, second), factor * np.array(effect.alone[field])))
         inputs = np.array([of_field * found[place][field] for place in study.samples])
         correlation = effect.correlations.get(field, math.nan)
         clouds.append(Cloud(axis_label(words[field], of_label), inputs, limits.spacing == "log", correlation))
@@ -202,11 +202,11 @@ def _table(
 
     fields = [*effect.swings]
     units_of = [_field_unit(study, field, unit) for field in fields]
-    ends = [[f"{by * end:.5g}" for (by, _), end in _pairs(units_of, study, fields, side)] for side in ("low", "high")]
+    pairs = [(by, study.limits[field]) for (by, _), field in zip(units_of, fields, strict=True)]
     columns: list[Column] = [
         ("field", "", [study.plan.labels.get(field, field) for field in fields]),
-        ("from", "", ends[0]),
-        ("to", "", ends[1]),
+        ("from", "", [f"{by * each.low:.5g}" for by, each in pairs]),
+        ("to", "", [f"{by * each.high:.5g}" for by, each in pairs]),
         ("", "", [of_label for _, of_label in units_of]),
         ("at from", label, [shown(effect.alone[field][0]) for field in fields]),
         ("at to", label, [shown(effect.alone[field][-1]) for field in fields]),
@@ -226,12 +226,6 @@ def _table(
         sentences.append(f"percentiles of {len(study.samples):,} samples: {', '.join(listed)}")
     lost = sum(row["status"] == DONE and not math.isfinite(_known(row, name)) for row in rows)
     return head, columns, sentences + ([f"{lost:,} finished runs have no value"] if lost else [])
-
-
-def _pairs(
-    units_of: list[tuple[float, str]], study: Tolerances, fields: list[str], side: str
-) -> list[tuple[tuple[float, str], float]]:
-    return [(each, getattr(study.limits[field], side)) for each, field in zip(units_of, fields, strict=True)]
 
 
 def _extremes(study: Tolerances, effect: OutcomeEffect, reached: Callable[[Reached], str]) -> list[str]:

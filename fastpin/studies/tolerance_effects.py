@@ -59,7 +59,8 @@ class OutcomeEffect:
     @property
     def swings(self) -> dict[str, float]:
         """The largest minus the smallest value of each field alone, the largest swing first. NaN without two values."""
-        found = {name: _swing(values) for name, values in self.alone.items()}
+        known = {name: [value for value in values if math.isfinite(value)] for name, values in self.alone.items()}
+        found = {name: max(some) - min(some) if len(some) > 1 else math.nan for name, some in known.items()}
         return dict(sorted(found.items(), key=lambda item: -item[1] if math.isfinite(item[1]) else math.inf))
 
     @property
@@ -70,11 +71,9 @@ class OutcomeEffect:
         """
         if self.corners is None or self.everywhere is None:
             return None
-        return Span(*(_beyond(*pair) for pair in zip(self.corners, self.everywhere, strict=True)))
-
-
-def _beyond(corner: Reached, other: Reached) -> Reached:
-    return other if abs(other.value - corner.value) > ROUNDING * max(abs(other.value), abs(corner.value)) else corner
+        least = ROUNDING * max(abs(end.value) for end in self.everywhere)
+        pairs = zip(self.corners, self.everywhere, strict=True)
+        return Span(*(end if abs(end.value - corner.value) > least else corner for corner, end in pairs))
 
 
 def effect_of(
@@ -137,8 +136,3 @@ def _span(values: np.ndarray, places: range) -> Span | None:
         return None
     smallest, largest = (choose(known, key=values.__getitem__) for choose in (min, max))
     return Span(Reached(float(values[smallest]), smallest), Reached(float(values[largest]), largest))
-
-
-def _swing(values: Sequence[float]) -> float:
-    known = [value for value in values if math.isfinite(value)]
-    return max(known) - min(known) if len(known) > 1 else math.nan

@@ -224,7 +224,11 @@ def _study(source: CaseText, text: str, folder: Path, progress: SweepProgress | 
     check_root(source, KEYS, "[tolerances]")
     title = source.root.checked("title", string) or ""
     base = base_case(source, folder)
-    case = None if base is None else _nominal_case(source, base)
+    text_of_case, case = (None, None) if base is None else base.vary({})
+    if base is not None and text_of_case is not None and text_of_case.faults:
+        for line, message in text_of_case.faults:
+            source.report(f"{base.name}{f', line {line}' if line else ''}: {message}", "case")
+        case = None
     places: dict[str, KeyPath] = {}
     limits: dict[str, FieldLimits] = {}
     for place, name, value in varied_fields(source, base, source.section("tolerances").table, ("tolerances",)):
@@ -257,14 +261,6 @@ def _study(source: CaseText, text: str, folder: Path, progress: SweepProgress | 
     fields: dict[str, Spacing] = {name: each.spacing for name, each in limits.items()}
     plan = Plan(title, text, fields, {}, points, outcomes, doubts, labels, base, cases)
     return Tolerances(plan, limits, alone, corners, samples)
-
-
-def _nominal_case(source: CaseText, base: BaseCase) -> Case | None:
-    """Return the base case, and report its faults on the line of the plan's ``case``."""
-    text, case = base.vary({})
-    for line, message in text.faults:
-        source.report(f"{base.name}{f', line {line}' if line else ''}: {message}", "case")
-    return None if text.faults else case
 
 
 def _limits(source: CaseText, base: BaseCase, case: Case, given: tuple[KeyPath, str, Any]) -> FieldLimits | None:

@@ -8,11 +8,11 @@ import pytest
 from fastpin.errors import InputError
 from fastpin.figures import plot_samples, plot_tornado
 from fastpin.figures.tolerances import LOW, samples_of, tornado_of
-from fastpin.report.tolerances import Bar, Cloud, ToleranceChart
+from fastpin.report.tolerances import Cloud, FieldBar, ToleranceChart
 
 
 def chart(fields: int = 2, **changed: object) -> ToleranceChart:
-    bars = [Bar(f"field {k}", (f"{k} um", "9 um"), np.array([9.0 - k, 10.0, 13.0 - k])) for k in range(fields)]
+    bars = [FieldBar(f"field {k}", (f"{k} um", "9 um"), np.array([9.0 - k, 10.0, 13.0 - k])) for k in range(fields)]
     samples = np.linspace(8.0, 13.0, 30)
     clouds = [Cloud(f"field {k} (um)", samples / (k + 1), k == 1, 0.9 / (k + 1)) for k in range(fields)]
     given = {
@@ -39,7 +39,7 @@ def test_bars_reach_from_the_nominal_value_to_the_limits() -> None:
 
 
 def test_limits_on_one_side_share_the_height_of_a_bar() -> None:
-    bars = [Bar("friction", ("0.1", "0.6"), np.array([12.0, 10.0, 11.0]))]
+    bars = [FieldBar("friction", ("0.1", "0.6"), np.array([12.0, 10.0, 11.0]))]
     low, high = plot_tornado(chart(bars=bars)).axes[0].patches
     assert low.get_y() + low.get_height() == pytest.approx(high.get_y())
     assert low.get_facecolor() != high.get_facecolor()
@@ -47,12 +47,12 @@ def test_limits_on_one_side_share_the_height_of_a_bar() -> None:
 
 
 def test_a_limit_without_a_value_says_so() -> None:
-    bars = [Bar("friction", ("0.1", "0.6"), np.array([np.nan, 10.0, 11.0]))]
+    bars = [FieldBar("friction", ("0.1", "0.6"), np.array([np.nan, 10.0, 11.0]))]
     panel = plot_tornado(chart(bars=bars, missing=3)).axes[0]
     assert [text.get_text() for text in panel.texts] == ["0.1: no value", "0.6"]
     assert len(panel.patches) == 1
     assert "3 runs have no value" in tornado_of([chart(missing=3)]).caption
-    nothing = chart(bars=[Bar("friction", ("0.1", "0.6"), np.full(3, np.nan))], nominal=np.nan, corners=None)
+    nothing = chart(bars=[FieldBar("friction", ("0.1", "0.6"), np.full(3, np.nan))], nominal=np.nan, corners=None)
     assert not plot_tornado(nothing).axes[0].patches
 
 

@@ -15,10 +15,9 @@ from fastpin.model import FatigueConstants
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.report import summary
+from fastpin.report.fatigue import fatigue_margins, last_cycle_margins
 from fastpin.report.margins import (
     Margin,
-    fatigue_margins,
-    last_cycle_margins,
     margin_lines,
     margin_rows,
     smallest_margin,
