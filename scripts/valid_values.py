@@ -25,6 +25,8 @@ NODES = 31
 
 PLAN = 'title = "Friction"\n[grid]\n"contact.friction" = [0.2, 0.4]\n"solve.nodes" = [31]\n'
 
+TOLERANCES = 'samples = 3\n[tolerances]\n"contact.friction" = { from = 0.2, to = 0.5 }\n'
+
 LUG = (
     '[plate]\nnu = 0.3\nplane = "strain"\nhole_radius = 1.0\n[outline]\nshape = "rectangle"\nx = [-2.5, 2.5]\n'
     'y = [-2.5, 6.0]\n[[support]]\nparts = ["top"]\nhold = "both"\n'
@@ -112,6 +114,10 @@ class Valid:
         studies.sweep.run(plan, "sweep", executor=Inline())
         shutil.copytree("sweep", "part")
         rows = studies.sweep.rows(plan, "sweep")
+        limited = studies.read_tolerances("tolerances.toml")
+        studies.sweep.run(limited.plan, "tolerances", executor=Inline())
+        tolerance_rows = studies.sweep.rows(limited.plan, "tolerances")
+        pressure = report.tolerances.tolerance_chart(limited, tolerance_rows, "largest_pressure")
         convergence = fastpin.converge(problem, history, (51, 101, 201))
         study = convergence.studies[0]
         fatigue = damage.fatigue(result, "smith-watson-topper")
@@ -135,6 +141,7 @@ class Valid:
             bodies.Tube(0.5), bodies.Bushing(pair.plate, 2.0), model.FatigueConstants(1e9, -0.1, 0.5, -0.6),
             model.Hole("bolt", 3j, 0.5),
             model.PartLoad("sxx", ("left", "right"), normal=1.0), lug.outline[0], casefile.parse_lug(LUG),
+            limited, limited.limits["contact.friction"], limited.effects("tolerances")["largest_pressure"], pressure,
             report.sweep.chart(plan, rows, "peak_pressure"), studies.sweep.status(plan, "sweep"),
             damage.findley(HISTORY, 0.3),
             report.convergence.reported_series(study, problem, study.series[0].corner)[0],
@@ -164,6 +171,7 @@ class Valid:
         texts = {
             "case.toml": casefile.EXAMPLE,
             "plan.toml": PLAN,
+            "tolerances.toml": TOLERANCES,
             "lug.toml": LUG,
             "loads.csv": "P, Q\n1.0, 0\n1.0, 0.2\n",
             "rim.csv": "angle, gap\n0, 0\n90, 1e-5\n180, 2e-5\n270, 1e-5\n",
@@ -215,6 +223,7 @@ class Valid:
         return {
             "Sequence[State]": _always(result),
             "LoadHistory | Sequence[dict[str, float]]": _always([{"P": 1.0}]),
+            "ToleranceChart | Sequence[ToleranceChart]": lambda: [self.objects["ToleranceChart"]()],
             "Corner": _always({"P": 1.0}),
             "Mapping[str, float]": _always({"P": 1.0, "Q": 1.0}),
         }
@@ -242,6 +251,10 @@ class Valid:
             "parse_case.text": casefile.EXAMPLE,
             "parse_lug.text": LUG,
             "parse_plan.text": PLAN,
+            "read_tolerances.path": "tolerances.toml",
+            "parse_tolerances.text": TOLERANCES,
+            "LoadHistory.scaled.factors": {"P": 1.1},
+            "Tolerances.effects.directory": "tolerances",
             "from_document.content": bodies.Compliance(0.3, "strain", 1.0, MATRIX).document(),
             "with_outcomes.outcomes": {"work": {"quantity": "work"}},
             "angle_of_largest.values": np.arange(float(n)),

@@ -91,7 +91,7 @@ def plot_sweep(
             raise InputError("chart", "must hold at least one chart")
         if ax is not None:
             raise InputError("ax", "holds one chart; give a list of charts no axes")
-        look = Look(path, each[0].title if title is None else title, width or SIDE_BY_SIDE, dpi)
+        look = Look(path, each[0].title if title is None else title, SIDE_BY_SIDE if width is None else width, dpi)
         return look.drawn(sweeps_of(each))
     plot = sweep_of(chart)
     maps = 0 if chart.y is None else len(chart.parts)

@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import WIDTH, Look, Plot, Sheet
 from fastpin.figures.style import COLOURS
 from fastpin.figures.sweep import round_numbers, shown_label
 from fastpin.figures.words import shown_unit
@@ -33,6 +33,9 @@ INNER: Any = {"color": "black", "linestyle": "none", "marker": "o", "markersize"
 ROW = 0.27
 """Height of a row of a tornado, inches. It holds a line of letters."""
 
+WIDE = 7.6
+"""Width of a figure of samples, inches."""
+
 ACROSS = 4
 """Most panels of samples side by side."""
 
@@ -47,7 +50,7 @@ def plot_tornado(
     charts: ToleranceChart | Sequence[ToleranceChart],
     path: str | Path | None = None,
     title: str | None = None,
-    width: float | None = None,
+    width: float = WIDTH,
     dpi: float = 300.0,
 ) -> Figure:
     """Draw a tornado for each outcome: a bar for each field, from the outcome at one limit to that at the other.
@@ -63,14 +66,14 @@ def plot_tornado(
 
     See :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return _drawn(tornado_of, charts, Look(path, "" if title is None else title, width or 6.7, dpi), title)
+    return _drawn(tornado_of, charts, Look(path, "" if title is None else title, width, dpi), title)
 
 
 def plot_samples(
     charts: ToleranceChart | Sequence[ToleranceChart],
     path: str | Path | None = None,
     title: str | None = None,
-    width: float | None = None,
+    width: float = WIDE,
     dpi: float = 300.0,
 ) -> Figure:
     """Draw the outcomes of all samples over each field, with the rank correlations.
@@ -82,7 +85,7 @@ def plot_samples(
     InputError
         If the study has no samples.
     """
-    return _drawn(samples_of, charts, Look(path, "" if title is None else title, width or 7.6, dpi), title)
+    return _drawn(samples_of, charts, Look(path, "" if title is None else title, width, dpi), title)
 
 
 def _drawn(plot: Any, charts: ToleranceChart | Sequence[ToleranceChart], look: Look, title: str | None) -> Figure:
@@ -116,7 +119,7 @@ def samples_of(charts: Sequence[ToleranceChart]) -> Plot:
         lambda look: _draw_samples(look, charts),
         instead=f"Dots of {names} at {len(charts[0].samples):,} samples over each field.",
         caption=f"{names[0].upper()}{names[1:]} at {len(charts[0].samples):,} random samples between the limits.",
-        width=7.6,
+        width=WIDE,
     )
 
 

@@ -18,7 +18,7 @@ from fastpin.report.table import Column, table
 from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.tolerance_effects import OutcomeEffect, Reached
-from fastpin.studies.tolerances import Tolerances
+from fastpin.studies.tolerances import Tolerances, effects_of, part_words
 from fastpin.version import __version__
 
 MOST_OUTCOMES = 4
@@ -137,7 +137,7 @@ def tolerance_chart(study: Tolerances, rows: Sequence[TableRow], name: str) -> T
     """
     check_outcomes(study, [name])
     plan, (found, unit) = study.plan, printed_rows(study.plan, rows)
-    effect = study.effects_in(found)[name]
+    effect = effects_of(study, found)[name]
     outcomes = np.array([_known(row, name) for row in found])
     factor, label = scaled([value for value in outcomes.tolist() if math.isfinite(value)], unit_name(plan, name, unit))
     words = {field: plan.labels.get(field, field_words(field)) for field in study.limits}
@@ -188,7 +188,7 @@ def failed_words(study: Tolerances, rows: Sequence[TableRow]) -> str:
 def tables(study: Tolerances, rows: Sequence[TableRow]) -> list[tuple[str, list[Column], list[str]]]:
     """Return a heading, a table of the fields and sentences on the extremes for each outcome."""
     found, unit = printed_rows(study.plan, rows)
-    return [_table(study, found, unit, name, effect) for name, effect in study.effects_in(found).items()]
+    return [_table(study, found, unit, name, effect) for name, effect in effects_of(study, found).items()]
 
 
 def _table(
@@ -243,7 +243,7 @@ def _extremes(study: Tolerances, effect: OutcomeEffect, reached: Callable[[Reach
 
 def _point_words(study: Tolerances, place: int, unit: dict[str, str]) -> str:
     """Return the fields of a point with their units, and its part of the study. Alone means at nominal otherwise."""
-    words, values = study.words(place), study.plan.points[place].values
+    words, values = part_words(study, place), study.plan.points[place].values
     fields = [field for field in study.limits if words == f"{field} alone"] or [*study.limits]
     listed = []
     for field in fields:
@@ -263,13 +263,13 @@ def document(study: Tolerances, rows: Sequence[TableRow]) -> dict[str, Any]:
     plan, (found, unit) = study.plan, printed_rows(study.plan, rows)
 
     def reached(point: Reached) -> dict[str, Any]:
-        return {"value": point.value, "part": study.words(point.place), "values": plan.points[point.place].values}
+        return {"value": point.value, "part": part_words(study, point.place), "values": plan.points[point.place].values}
 
     def span(ends: Sequence[Reached] | None) -> dict[str, Any] | None:
         return None if ends is None else {end: reached(point) for end, point in _named(ends)}
 
     outcomes = {}
-    for name, effect in study.effects_in(found).items():
+    for name, effect in effects_of(study, found).items():
         fields = {
             field: {
                 "values": list(study.limits[field].values),
@@ -296,7 +296,7 @@ def document(study: Tolerances, rows: Sequence[TableRow]) -> dict[str, Any]:
         "corners": len(study.corners),
         "samples": len(study.samples),
         "failed": [
-            {"part": study.words(place), "values": plan.points[place].values, "reason": row["reason"] or ""}
+            {"part": part_words(study, place), "values": plan.points[place].values, "reason": row["reason"] or ""}
             for place, row in failed
         ],
         "fields": {

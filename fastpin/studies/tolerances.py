@@ -28,6 +28,7 @@ from fastpin.model.checks import as_toml, check_callable, file_path, string, tru
 from fastpin.model.doubts import warn_of
 from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
+from fastpin.studies.index import DONE
 from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
 from fastpin.studies.plan import (
     MAX_RUNS,
@@ -137,14 +138,6 @@ class Tolerances:
                 raise InputError("outcomes", _no_swing(name))
         return replace(self, plan=plan)
 
-    def words(self, place: int) -> str:
-        """Return the part of a study to which a point belongs: "a corner", "a sample", or the name of a field."""
-        if place in self.corners:
-            return "a corner"
-        if place in self.samples:
-            return "a sample"
-        return next((f"{name} alone" for name, places in self.alone.items() if place in places and place), "nominal")
-
     def effects(self, directory: str | Path) -> dict[str, OutcomeEffect]:
         """Return the effects of the tolerances on every outcome, from the finished runs in a directory.
 
@@ -163,19 +156,29 @@ class Tolerances:
         InputError
             If the index can't be used.
         """
-        return self.effects_in(rows(self.plan, directory))
+        return effects_of(self, rows(self.plan, directory))
 
-    def effects_in(self, found: Sequence[dict[str, Any]]) -> dict[str, OutcomeEffect]:
-        """Return the effects on every outcome from rows of :func:`fastpin.studies.sweep.rows`, in any unit."""
-        inputs = {name: np.array([row[name] for row in found], dtype=float) for name in self.limits}
-        effects = {}
-        for name, outcome in self.plan.outcomes.items():
-            known = [row.get(name) if row["status"] == "done" else None for row in found]
-            values = np.array([math.nan if value is None else value for value in known], dtype=float)
-            if outcome.kind == "angle":  # places on a circle are compared with the nominal place
-                values = values[0] + np.mod(values - values[0] + 180.0, 360.0) - 180.0
-            effects[name] = effect_of(values, inputs, self.alone, self.corners, self.samples)
-        return effects
+
+def effects_of(study: Tolerances, found: Sequence[dict[str, Any]]) -> dict[str, OutcomeEffect]:
+    """Return the effects on every outcome from rows of :func:`fastpin.studies.sweep.rows`, in any unit."""
+    inputs = {name: np.array([row[name] for row in found], dtype=float) for name in study.limits}
+    effects = {}
+    for name, outcome in study.plan.outcomes.items():
+        known = [row.get(name) if row["status"] == DONE else None for row in found]
+        values = np.array([math.nan if value is None else value for value in known], dtype=float)
+        if outcome.kind == "angle":  # places on a circle are compared with the nominal place
+            values = values[0] + np.mod(values - values[0] + 180.0, 360.0) - 180.0
+        effects[name] = effect_of(values, inputs, study.alone, study.corners, study.samples)
+    return effects
+
+
+def part_words(study: Tolerances, place: int) -> str:
+    """Return the part of a study to which a point belongs: "a corner", "a sample", "nominal", or a field "alone"."""
+    if place in study.corners:
+        return "a corner"
+    if place in study.samples:
+        return "a sample"
+    return next((f"{name} alone" for name, places in study.alone.items() if place in places and place), "nominal")
 
 
 def read_tolerances(path: str | Path, progress: SweepProgress | None = None) -> Tolerances:

@@ -11,7 +11,14 @@ from scipy.stats import spearmanr
 from fastpin.errors import CaseFileError, InputError
 from fastpin.studies import parse_plan, sweep
 from fastpin.studies.tolerance_effects import effect_of, rank_correlation
-from fastpin.studies.tolerances import MOST_FIELDS, Tolerances, parse_tolerances, read_tolerances
+from fastpin.studies.tolerances import (
+    MOST_FIELDS,
+    Tolerances,
+    effects_of,
+    parse_tolerances,
+    part_words,
+    read_tolerances,
+)
 from scripts.inline import Inline
 
 CASE = """
@@ -87,7 +94,7 @@ def test_the_nominal_point_is_the_run_of_the_case_itself(tmp_path: Path):
     alone = parse_plan('case = "case.toml"\n[grid]\ncontact.friction = [0.0]\n', folder=tmp_path)
     assert study.plan.points[0].id == alone.points[0].id
     assert study.limits["plate.E"].nominal == 69e9 == study.plan.points[0].values["plate.E"]  # of the named material
-    assert [study.words(place) for place in (0, 1, study.corners[0])] == ["nominal", "plate.E alone", "a corner"]
+    assert [part_words(study, place) for place in (0, 1, study.corners[0])] == ["nominal", "plate.E alone", "a corner"]
 
 
 def test_samples_are_a_latin_hypercube_with_a_seed(tmp_path: Path):
@@ -151,7 +158,7 @@ def test_places_on_the_hole_are_compared_on_the_circle(tmp_path: Path):
         {"id": point.id, "status": "done", "at": angle, "loads": point.values["loads"]}
         for point, angle in zip(study.plan.points, (179.0, -178.0, 175.0, 179.0, 179.0), strict=True)
     ]
-    assert study.effects_in(rows)["at"].swings == {"loads": 7.0}
+    assert effects_of(study, rows)["at"].swings == {"loads": 7.0}
 
 
 @pytest.mark.parametrize(
