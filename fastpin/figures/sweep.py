@@ -304,7 +304,7 @@ def _draw_contours(panel: Axes, chart: Chart, numbers: np.ndarray, levels: np.nd
             chart.x.values, chart.y.values, np.ma.masked_invalid(numbers), inside, colors="white", linewidths=0.8
         )
         # A gap in a line would stay where its label is removed.
-        labels = list(panel.clabel(lines, fmt=_inround_numbers(inside), fontsize=6.5, inline=False))
+        labels = list(panel.clabel(lines, fmt=_in_round_numbers(inside), fontsize=6.5, inline=False))
         for text in labels:
             text.set_bbox({"facecolor": "0.15", "edgecolor": "none", "pad": 0.6})
     return labels
@@ -430,11 +430,11 @@ def round_numbers(axis: MatplotlibAxis, values: np.ndarray) -> None:
     subs = (1.0, 2.0, 5.0) if decades <= DECADES else (1.0, 3.0) if decades <= 2.0 * DECADES else (1.0,)
     axis.set_major_locator(LogLocator(subs=subs, numticks=12))
     axis.set_minor_formatter(NullFormatter())
-    written = _inround_numbers(values)
+    written = _in_round_numbers(values)
     axis.set_major_formatter(FuncFormatter(lambda value, _: written(value)))
 
 
-def _inround_numbers(values: np.ndarray) -> Callable[[float], str]:
+def _in_round_numbers(values: np.ndarray) -> Callable[[float], str]:
     """Return how round numbers like some values are written: all in full, or all as powers of ten."""
     sizes = np.abs(values[values != 0.0])
     if not sizes.size or (sizes.min() >= 1e-3 and sizes.max() <= 1e5):

@@ -84,7 +84,7 @@ def write_sweep_report(
     if version != __version__:
         words = f"was made by fastpin {version}, which names its runs differently: write its page with that version"
         raise InputError(str(folder), words)
-    found, study = _plan_of(folder, digest) if plan is None else _read(Path(plan))
+    found, study = _plan_of(folder, digest) if plan is None else _read(file_path("plan", plan))
     runs, album, sections = rows(found, folder), Album(), []
     makers = SECTIONS if study is None else _sections_of(study)
     for number, make in enumerate(makers):
