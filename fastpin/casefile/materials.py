@@ -16,13 +16,13 @@ from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text,
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import any_text, as_toml, file_path, number, positive, string, true_or_false
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.materials import MATERIALS, STRENGTHS, Material, MaterialPair
 from fastpin.model.synonyms import closest
 
 DUNDURS_KEYS = ("alpha", "beta", "nu_pin", "convention", "beta_star")
 """Keys of [dundurs]."""
 
-FILE_KEYS = ("E", "nu", "yield_strength", "fatigue", "source")
+FILE_KEYS = ("E", "nu", "yield_strength", "ultimate_strength", "fatigue", "source")
 """Keys of a material in a file of materials."""
 
 _FATIGUE_KEYS = tuple(field.name for field in fields(FatigueConstants))
@@ -49,13 +49,14 @@ def read_pair(source: CaseText, materials: Mapping[str, Material]) -> MaterialPa
 def read_material(
     source: CaseText, section: Section, materials: Mapping[str, Material], may_be_rigid: bool = True
 ) -> Material | None:
-    """The material of a body, with its fatigue constants and yield strength. They replace those of a named material.
+    """The material of a body, with its fatigue constants and strengths. They replace those of a named material.
 
     None if it can't be used. The reason is reported.
     """
     given: dict[str, Any] = {"fatigue": _fatigue(source, section)}
-    if "yield_strength" in section and _has_stresses(source, section, "yield_strength"):
-        given["yield_strength"] = section.checked("yield_strength", positive)
+    for strength in STRENGTHS:
+        if strength in section and _has_stresses(source, section, strength):
+            given[strength] = section.checked(strength, positive)
     material = _elastic(section, materials, may_be_rigid)
     if material is None:
         return None
@@ -159,8 +160,8 @@ def read_materials(path: str | Path) -> dict[str, Material]:
     Parameters
     ----------
     path : str or Path
-        The file. Each section is a material, with the keys `E`, `nu`, and perhaps `yield_strength`, `fatigue` and
-        `source`::
+        The file. Each section is a material, with the keys `E`, `nu`, and perhaps `yield_strength`,
+        `ultimate_strength`, `fatigue` and `source`::
 
             [my-alloy]
             E = 71e9

@@ -66,8 +66,8 @@ def _material(material: Material) -> Iterator[str]:
         return
     yield f"E = {material.E!r}"
     yield f"nu = {material.nu!r}"
-    if material.yield_strength is not None:
-        yield f"yield_strength = {material.yield_strength!r}"
+    for name, strength in material.strengths.items():
+        yield f"{name} = {strength!r}"
     if material.fatigue is not None:
         constants = ", ".join(f"{name} = {_value(value)}" for name, value in material.fatigue.given().items())
         yield f"fatigue = {{ {constants} }}"

@@ -22,7 +22,7 @@ import numpy as np
 from fastpin.errors import InputWarning
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.materials import Material
+from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import owner_of
 from fastpin.model.problem import LOOKED_AT, Problem
@@ -109,7 +109,7 @@ EDGES = {
 _GIVEN: ContextVar[bool] = ContextVar("given", default=False)
 
 _STRENGTHS = (
-    "yield_strength", "fatigue_strength", "shear_fatigue_strength", "bending_limit", "torsion_limit", "limit_range",
+    *STRENGTHS, "fatigue_strength", "shear_fatigue_strength", "bending_limit", "torsion_limit", "limit_range",
 )  # fmt: skip
 """Constants of a material that are stresses."""
 
@@ -285,7 +285,11 @@ def _of_material(name: str, material: Material, has_units: bool) -> Iterator[Inp
     if MOST_NU < nu < 0.5 and material.E >= STIFF:
         yield InputWarning("nu", f"{nu:g} of the {name} is unusual for a stiff body; metals have 0.25 to 0.45")
     strengths = {} if material.fatigue is None else material.fatigue.given()
-    strengths |= {} if material.yield_strength is None else {"yield_strength": material.yield_strength}
+    strengths |= material.strengths
+    least = material.known_yield_strength
+    if least is not None and material.ultimate_strength is not None and material.ultimate_strength < least:
+        words = f"{_short(material.ultimate_strength)} Pa of the {name} is less than its yield strength"
+        yield InputWarning("ultimate_strength", f"{words} of {_short(least)} Pa")
     for field in _STRENGTHS:
         if field in strengths and (value := strengths[field]) < LEAST_STRENGTH * material.E:
             yield InputWarning(

@@ -21,6 +21,7 @@ _SYNONYMS: dict[str, str] = {
     "E": "young youngs_modulus young_s_modulus young_modulus modulus elastic_modulus e_modulus emod stiffness",
     "nu": "v poisson poissons_ratio poisson_s_ratio poisson_ratio",
     "yield_strength": "yield yield_stress yield_point sigma_y sy fy rp02 rp0_2 re proof_stress",
+    "ultimate_strength": "ultimate ultimate_stress uts tensile_strength sigma_u su fu ftu rm breaking_strength",
     "material": "mat alloy",
     "rigid": "is_rigid stiff",
     "fatigue": "fatigue_constants",

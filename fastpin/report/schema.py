@@ -14,6 +14,7 @@ from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.model.checks import choice
 from fastpin.model.fields import FIELDS, Field
 from fastpin.model.loads import ACTING, LOADS
+from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import METHODS, SolveOptions
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
@@ -91,7 +92,7 @@ def _problem() -> Schema:
             "rigid": _TRUTH,
             "E": _UNKNOWN | {"description": "Pa; null: rigid"},
             "nu": _NUMBER,
-            "yield_strength": _UNKNOWN,
+            **dict.fromkeys(STRENGTHS, _UNKNOWN | {"description": "Pa; null: unknown"}),
         }
     )
     body = {"type": "object", "properties": {"kind": _TEXT}, "required": ["kind"]}

@@ -13,7 +13,7 @@ from fastpin.model.angles import interval_from_bottom
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LATER, LOAD_KIND, LOADS
-from fastpin.model.materials import Material
+from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, units
@@ -118,7 +118,7 @@ def printed_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, floa
 def _material_summary(material: Material) -> dict[str, Any]:
     modulus = None if material.is_rigid else material.E
     known = {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
-    return known | {"yield_strength": material.yield_strength}
+    return known | {name: getattr(material, name) for name in STRENGTHS}
 
 
 def _body_summary(body: BodyBase) -> dict[str, Any]:

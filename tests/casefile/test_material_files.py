@@ -20,6 +20,7 @@ SHEET = """
 E = 71e9
 nu = 0.33
 yield_strength = 352e6
+ultimate_strength = 440e6
 source = "certificate 4711"
 
 ["cast iron"]
@@ -45,7 +46,7 @@ def folder(tmp_path: Path) -> Path:
 def test_a_file_gives_materials_by_name(folder: Path) -> None:
     found = read_materials(folder / "own.toml")
     assert list(found) == ["sheet", "cast iron"]
-    assert found["sheet"] == fastpin.Material(71e9, 0.33, "sheet", yield_strength=352e6)
+    assert found["sheet"] == fastpin.Material(71e9, 0.33, "sheet", yield_strength=352e6, ultimate_strength=440e6)
     assert found["cast iron"].fatigue.fatigue_strength == 1.1e9
     assert found["cast iron"].name == "cast iron"
 
@@ -74,6 +75,10 @@ def test_a_plan_varies_them(folder: Path) -> None:
         (50e9, 0.26, 1.1e9),
         (60e9, 0.26, 1.1e9),
     ]
+    (folder / "case.toml").write_text(OWN.replace('"cast iron"', '"sheet"', 1))
+    plan = read_plan(folder / "plan.toml")
+    pin = plan.case(plan.points[0]).problem.pair.pin
+    assert (pin.E, pin.strengths) == (50e9, {"yield_strength": 352e6, "ultimate_strength": 440e6})
 
 
 @pytest.mark.parametrize(
@@ -85,10 +90,12 @@ def test_a_plan_varies_them(folder: Path) -> None:
         ("E = 71e9", "", 2, "[sheet]: E is missing"),
         ("yield_strength = 352e6", "yield_strength = 0", 5, "yield_strength: must be positive, not 0"),
         ("yield_strength", "yield_stress", 5, 'unknown key "yield_stress" in [sheet], did you mean "yield_strength"?'),
+        ("ultimate_strength = 440e6", "ultimate_strength = -1", 6, "ultimate_strength: must be positive, not -1"),
+        ("ultimate_strength", "uts", 6, 'unknown key "uts" in [sheet], did you mean "ultimate_strength"?'),
         ("[sheet]", "[steel]", 2, "[steel]: is a material of fastpin; choose another name"),
         ("[sheet]", "colour = 3\n[sheet]", 2, "colour: must be a section [colour] with E and nu, not 3"),
-        ('source = "certificate 4711"', "source = 4711", 6, "source: must be text in quotes, not 4711"),
-        ("-0.1", "0.1", 11, "strength_exponent: must be negative, not 0.1"),
+        ('source = "certificate 4711"', "source = 4711", 7, "source: must be text in quotes, not 4711"),
+        ("-0.1", "0.1", 12, "strength_exponent: must be negative, not 0.1"),
         (SHEET, "", 0, "no materials: a material is a section, such as [my-alloy], with E and nu"),
         (SHEET, "[sheet\n", 1, "not TOML"),
     ],

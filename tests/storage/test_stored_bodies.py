@@ -23,7 +23,7 @@ from fastpin.storage.store import load, save
 from tests.support.interrupts import StopAt
 from tests.support.samples import PAIR, sample_result
 
-BUSH = Bushing(Material(110e9, 0.34, "bronze"), 0.0125)
+BUSH = Bushing(Material(110e9, 0.34, "bronze", yield_strength=2e8, ultimate_strength=4e8), 0.0125)
 
 
 def plate() -> Compliance:
