@@ -18,6 +18,7 @@ import numpy as np
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.fields import FIELDS
+from fastpin.model.growth import law_entries
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, Material
@@ -71,6 +72,8 @@ def _material(material: Material) -> Iterator[str]:
     if material.fatigue is not None:
         constants = ", ".join(f"{name} = {_value(value)}" for name, value in material.fatigue.given().items())
         yield f"fatigue = {{ {constants} }}"
+    if material.growth is not None:
+        yield f"growth = {_value([law_entries(material.growth)])}"
 
 
 def _contact(problem: Problem) -> Iterator[str]:

@@ -5,6 +5,7 @@ from .growing import growth_along_edge as growth_along_edge
 from .intensity import Crack as Crack
 from .intensity import StressIntensity as StressIntensity
 from .intensity import stress_intensity as stress_intensity
+from .laws import GrowthLaw as GrowthLaw
 from .laws import Nasgro as Nasgro
 from .laws import Walker as Walker
 from .laws import intrinsic_length as intrinsic_length

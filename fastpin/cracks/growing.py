@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from fastpin.cracks.intensity import Crack, CrackedBody, CrackedEdge, Residual, histories, sliding_doubt
-from fastpin.cracks.laws import GrowthLaw, checked_law
 from fastpin.errors import InputError, InputWarning
 from fastpin.model.angles import from_bottom, near_bottom
 from fastpin.model.checks import instance, numbers, positive
 from fastpin.model.doubts import warn_of
+from fastpin.model.growth import GrowthLaw, checked_law
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units

@@ -25,6 +25,7 @@ from fastpin.kernels.status import SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
+from fastpin.model.growth import law_words
 from fastpin.model.loads import LOAD, named_load
 from fastpin.model.materials import Material
 from fastpin.model.options import OPTIONS
@@ -211,6 +212,9 @@ def materials(page: PageParts) -> PageSection:
         parts += [Text(f"Source of the constants of the {body}: {text}.") for body, text in sources.items() if text]
     else:
         parts.append(Text("No material has fatigue constants: see the key fatigue of a case file.", "missing"))
+    for body, material in found.items():
+        if material.growth is not None:
+            parts.append(Text(sentence(f"Crack growth in the {body}: {law_words(material.growth)}")))
     return PageSection("materials", "Materials", parts)
 
 

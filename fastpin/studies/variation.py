@@ -19,6 +19,7 @@ from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
+from fastpin.model.growth import law_entries
 from fastpin.model.materials import MATERIALS, STRENGTHS, Material
 from fastpin.model.wear import Wear
 from fastpin.states.error_bars import check_nodes
@@ -85,10 +86,10 @@ class BaseCase:
 
 
 _REPLACED: dict[str, tuple[str, ...]] = {
-    "material": ("E", "nu", "rigid", "fatigue", *STRENGTHS),
+    "material": ("E", "nu", "rigid", "fatigue", "growth", *STRENGTHS),
     "E": ("material", "rigid"),
     "nu": ("material", "rigid"),
-    "rigid": ("material", "E", "nu", "fatigue", *STRENGTHS),
+    "rigid": ("material", "E", "nu", "fatigue", "growth", *STRENGTHS),
     "ring_outer_radius": ("reaction",),
     "reaction": ("ring_outer_radius", "support"),
 }
@@ -199,6 +200,8 @@ def _make_room(tables: dict[str, Any], name: str, value: Any, materials: Mapping
         body |= {"E": material.E, "nu": material.nu}
         if material.fatigue is not None:
             body.setdefault("fatigue", material.fatigue.given())
+        if material.growth is not None:
+            body.setdefault("growth", law_entries(material.growth))
         body |= {name: value for name, value in material.strengths.items() if name not in body}
     for replaced in _REPLACED.get(key, ()):
         body.pop(replaced, None)
