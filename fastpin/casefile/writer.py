@@ -12,6 +12,7 @@ import json
 import math
 from collections.abc import Iterator
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 
@@ -43,6 +44,7 @@ def case_text(case: Case) -> str:
     """
     instance("case", case, Case, "a Case")
     wear = {} if case.wear is None else case.wear.toml()
+    crack = {} if case.crack is None else case.crack.entries()
     blocks = [
         *([[f"title = {_value(case.title)}"]] if case.title else []),
         ["[about]", *(f"{name} = {_value(value)}" for name, value in case.about.given().items())],
@@ -53,9 +55,17 @@ def case_text(case: Case) -> str:
         *_bodies(case.problem),
         ["[[load]]", *_loads(case.history, case.problem.thickness)],
         ["[wear]", *(f"{name} = {_value(value)}" for name, value in wear.items())],
+        ["[crack]", *(f"{name} = {_crack_value(value)}" for name, value in crack.items())],
         ["[solve]", *_options(case.options)],
     ]
     return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
+
+
+def _crack_value(value: Any) -> str:
+    """A value of [crack]: a law is a table, and a residual stress may be pairs."""
+    if isinstance(value, list):
+        return f"[{', '.join(f'[{depth!r}, {stress!r}]' for depth, stress in value)}]"
+    return _value([value]) if isinstance(value, dict) else _value(value)
 
 
 def _material(material: Material) -> Iterator[str]:

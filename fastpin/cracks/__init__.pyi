@@ -1,4 +1,4 @@
-from .growing import CrackFate as CrackFate
+from .fates import CrackFate as CrackFate
 from .growing import EdgeGrowth as EdgeGrowth
 from .growing import Growth as Growth
 from .growing import SpectrumGrowth as SpectrumGrowth

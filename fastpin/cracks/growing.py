@@ -5,22 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+from fastpin.cracks.fates import CrackFate
 from fastpin.cracks.intensity import Crack, CrackedBody, CrackedEdge, Residual, histories, sliding_doubt
 from fastpin.errors import InputError, InputWarning
 from fastpin.kernels.reversals import closed_cycles
 from fastpin.model.angles import from_bottom, near_bottom
 from fastpin.model.checks import check_callable, choice, instance, numbers, positive, true_or_false
-from fastpin.model.crack import CrackGrowth
+from fastpin.model.crack import CrackGrowth, law_of
 from fastpin.model.doubts import warn_of
-from fastpin.model.growth import GrowthLaw, KnownLaw, checked_law
-from fastpin.model.points import EDGES, material_of, owner_of
+from fastpin.model.growth import GrowthLaw, checked_law
+from fastpin.model.points import EDGES
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
@@ -38,31 +38,6 @@ GrowthProgress = Callable[[float, float], None]
 
 MOST_DECADES = 8.0
 """Most decades from the first to the last length."""
-
-
-class CrackFate(IntEnum):
-    """What becomes of a crack between its first and its last length."""
-
-    NONE = 0
-    """It does not start: at the first length the range is at most the threshold."""
-
-    STOPS = 1
-    """It grows, and stops before the last length."""
-
-    GROWS = 2
-    """It grows to the last length."""
-
-    BREAKS = 3
-    """It grows until the largest K_I reaches the toughness."""
-
-    @property
-    def words(self) -> str:
-        """The fate in words."""
-        return ("does not start", "stops", "grows", "breaks")[self]
-
-
-CRACK_FATES = {int(fate): fate.words for fate in CrackFate}
-"""The words of each fate, by its number."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -376,21 +351,6 @@ def planned_growth(
     straight = counted and len(stops) > MOST_REFINED
     follow = _Following.of(stops, law, crack, (how.first, how.last), residual, counted, straight)
     return follow.grown(crack) if how.theta is not None else follow.along(crack, None, progress).fastest
-
-
-def law_of(problem: Problem, how: CrackGrowth) -> KnownLaw:
-    """The law of a crack: its own, or else that of its body's material.
-
-    Raises
-    ------
-    InputError
-        If there is none.
-    """
-    law = how.law or material_of(problem, choice("body", how.body, EDGES)).growth
-    if law is None:
-        words = f"the material of the {owner_of(problem, how.body)} has no constants of crack growth"
-        raise InputError("law", f"is missing: {words}, and none are given")
-    return law
 
 
 class _Following(NamedTuple):

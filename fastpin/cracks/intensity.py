@@ -19,10 +19,10 @@ from fastpin.errors import FastpinError, InputError, InputWarning
 from fastpin.kernels.harmonics import FREE
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import check_callable, choice, instances, number, numbers, true_or_false
-from fastpin.model.crack import MOST_INCLINATION
+from fastpin.model.crack import MOST_INCLINATION, NO_INSIDE, check_length, depth_of, wall_of
 from fastpin.model.doubts import warn_of
 from fastpin.model.loads import LOADS, REMOTE
-from fastpin.model.points import EDGES, MOST_ANGLE, Points, far_rim, near_rim
+from fastpin.model.points import EDGES, MOST_ANGLE, Points, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
@@ -36,12 +36,6 @@ CrackedBody = Literal["plate", "seat"]
 
 Residual = Callable[[np.ndarray], ArrayLike]
 """Normal stress on the line of a crack, Pa, from the distances to its mouth, m, of any shape."""
-
-LONGEST = 1e4
-"""Largest length in parts of the hole's radius, checked against the crack in a plate without a hole."""
-
-MOST_OF_WALL = 0.9
-"""Largest depth of a tip in parts of the wall. The ligament beyond is not elastic for long."""
 
 UNKNOWN_FROM = 0.05
 """Depth in parts of the wall from which the outline counts: K of a free rim rises by 1.6 % there."""
@@ -199,13 +193,11 @@ class CrackedEdge(NamedTuple):
         """The edge of a body. Raise :class:`InputError` if its stress is unknown."""
         check_body(problem, body)
         near, bush, lug = near_rim(problem, body), problem.joint.bush, problem.plate_body.lug
-        if body == "plate" and bush is not None:
-            return cls(problem, body, problem.hole_radius, bush - 1.0, False)
-        if lug.edge_only:
-            raise InputError("body", "a compliance gives no stress inside the plate: a crack needs it")
-        far = far_rim(problem, body)
-        wall = math.inf if far is None else far / near - 1.0
-        return cls(problem, body, near * problem.hole_radius, wall, far is None or lug.outer_kind == FREE)
+        in_bush, wall = body == "plate" and bush is not None, wall_of(problem, body)
+        if not in_bush and lug.edge_only:
+            raise InputError("body", NO_INSIDE)
+        is_free = not in_bush and (math.isinf(wall) or lug.outer_kind == FREE)
+        return cls(problem, body, near * problem.hole_radius, wall, is_free)
 
     @property
     def far(self) -> float:
@@ -219,19 +211,11 @@ class CrackedEdge(NamedTuple):
 
     def depth(self, angle: float, length: float) -> float:
         """Depth of a tip, in radii of the edge, of a crack of this length, m."""
-        return abs(1.0 + length / self.radius * complex(math.cos(angle), math.sin(angle))) - 1.0
+        return depth_of(angle, length / self.radius)
 
     def check(self, field: str, crack: Crack, lengths: np.ndarray) -> None:
         """Raise :class:`InputError` if a length, m, is too large for the body."""
-        length = units(self.problem)["length"]
-        longest = float(np.max(lengths))
-        if longest > LONGEST * self.radius:
-            raise InputError(field, f"must be at most {LONGEST:g} radii of the hole, not {length.text(longest)}")
-        if self.depth(crack.angle, longest) > MOST_OF_WALL * self.wall:
-            wall = length.text(self.wall * self.radius)
-            raise InputError(
-                field, f"must end within {MOST_OF_WALL:g} of the wall of {wall}, not be {length.text(longest)}"
-            )
+        check_length(field, self.problem, self.body, crack.angle, float(np.max(lengths)))
 
     def doubts(self, field: str, crack: Crack, longest: float) -> list[InputWarning]:
         """Doubts about the kernel for a crack of this length, m."""
@@ -310,7 +294,11 @@ class CrackWeights(NamedTuple):
         """K_I and K_II in Pa times the root of the edge's radius, shape (turns, rows, cracks, 2)."""
         mean, half = 0.5 * (stress.radial + stress.hoop), 0.5 * (stress.hoop - stress.radial)
         traction = mean + self.turn * (half + 1j * stress.shear)
-        pair = np.stack([traction.real + self.added, traction.imag], axis=-1)
+        return self.of_tractions(traction.real + self.added, traction.imag)
+
+    def of_tractions(self, normal: np.ndarray, shear: np.ndarray) -> np.ndarray:
+        """The same of tractions on the lines, shape (turns, rows, cracks, points)."""
+        pair = np.stack([normal, shear], axis=-1)
         return np.asarray(np.einsum("mcakne,pmkne->pmca", self.weights, pair, optimize=True))
 
 
@@ -372,6 +360,10 @@ def _mapped(states: Sequence[State], edge: CrackedEdge, cracks: CrackWeights) ->
     """The intensities of many states: the product of their nodal tractions and those of the nodes' hat functions."""
     names, shape = [list(LOADS)[place] for place in REMOTE], (len(states), *cracks.points.theta.shape[:3], 2)
 
+    # The residual stress is added at the end: beside it the hat of a node would be rounding.
+    none = np.zeros((1, *cracks.turn.shape))
+    residual, cracks = cracks.of_tractions(none + cracks.added, none), cracks._replace(added=np.zeros(1))
+
     def of(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
         load = dict(zip(names, remote.tolist(), strict=True))
         return cracks.intensities(stress_at(edge.problem, tractions, load, cracks.points, edge.body, None)).reshape(
@@ -384,7 +376,7 @@ def _mapped(states: Sequence[State], edge: CrackedEdge, cracks: CrackWeights) ->
     for nodes, functions in hats.blocks(pressure, shear):
         linear.learn(nodes, functions)
     remote = np.array([[state.load.get(name, 0.0) for name in names] for state in states])
-    return linear.component(0, slice(None), pressure, shear, remote).reshape(shape)
+    return linear.component(0, slice(None), pressure, shear, remote).reshape(shape) + residual
 
 
 def _check_apart(rows: Sequence[tuple[CrackLine, ...]]) -> None:

@@ -48,6 +48,8 @@ def crack_growth_of(found: Growth | Sequence[Growth]) -> Plot:
         raise InputError("found", f"must be a Growth, or a list of 1 to {MAX_NAMED} of them, not of {len(each)}")
     if any(one.problem != each[0].problem for one in each):
         raise InputError("found", "must be of one problem")
+    if any(one.per != each[0].per for one in each):
+        raise InputError("found", "must be all of cycles, or all of spectra")
     words = "; ".join(f"at {_place(one)}: {one.words}" for one in each)
     return Plot(
         lambda look: _draw(look, each),
@@ -69,7 +71,7 @@ def _draw(look: Look, found: Sequence[Growth]) -> Sheet:
     intensity, intensity_name = unit["stress intensity"].scale([float(one.delta_K.max()) for one in found])
     finite = [one.rate[np.isfinite(one.rate)].max(initial=0.0) for one in found]
     rate, rate_name = unit["crack growth"].scale([float(value) for value in finite])
-    handles = []
+    rate_name, handles = rate_name.replace("cycle", found[0].per), []
     for k, one in enumerate(found):
         a = length * one.length
         top.plot(a, _shown(intensity * one.delta_K), **line(k))

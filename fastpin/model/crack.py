@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
@@ -10,9 +12,11 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import DEGREE, angle_at, degrees_at, degrees_of
-from fastpin.model.checks import as_toml, choice, items, number, positive
+from fastpin.model.checks import as_toml, choice, instance, items, number, positive
 from fastpin.model.growth import KnownLaw, known_law, law_entries, law_from
-from fastpin.model.points import EDGES, MOST_ANGLE
+from fastpin.model.points import EDGES, MOST_ANGLE, far_rim, material_of, near_rim, owner_of
+from fastpin.model.problem import Problem
+from fastpin.model.units import units
 
 MOST_INCLINATION = 60.0 * DEGREE
 """Largest inclination of a crack, rad. There 80 points still give 1e-4."""
@@ -93,6 +97,77 @@ class CrackGrowth:
         return found | usual | ({} if self.body == "plate" else {"body": self.body})
 
 
+LONGEST = 1e4
+"""Largest length in parts of the hole's radius, checked against the crack in a plate without a hole."""
+
+MOST_OF_WALL = 0.9
+"""Largest depth of a tip in parts of the wall. The ligament beyond is not elastic for long."""
+
+
+def wall_of(problem: Problem, body: str) -> float:
+    """Depth of a body behind its edge, in radii of the edge; infinite without a rim."""
+    bush = problem.joint.bush
+    if body == "plate" and bush is not None:
+        return bush - 1.0
+    far = far_rim(problem, "seat" if body == "seat" else "plate")
+    return math.inf if far is None else far / near_rim(problem, "seat" if body == "seat" else "plate") - 1.0
+
+
+def depth_of(angle: float, length: float) -> float:
+    """Depth of the tip of a crack, in radii of its edge. The length is in these radii, too."""
+    return abs(1.0 + length * complex(math.cos(angle), math.sin(angle))) - 1.0
+
+
+def check_length(field: str, problem: Problem, body: str, angle: float, longest: float) -> None:
+    """Raise :class:`InputError` if a length, m, is too large for the body."""
+    length = units(problem)["length"]
+    radius = problem.hole_radius * near_rim(problem, "seat" if body == "seat" else "plate")
+    wall = wall_of(problem, body)
+    if longest > LONGEST * radius:
+        raise InputError(field, f"must be at most {LONGEST:g} radii of the hole, not {length.text(longest)}")
+    if depth_of(angle, longest / radius) > MOST_OF_WALL * wall:
+        words = f"must end within {MOST_OF_WALL:g} of the wall of {length.text(wall * radius)}"
+        raise InputError(field, f"{words}, not be {length.text(longest)}")
+
+
+def check_crack(problem: Problem, crack: CrackGrowth) -> None:
+    """Raise :class:`InputError` if no crack can grow so in a joint: its body, its length or its law."""
+    body = choice("body", crack.body, EDGES)
+    if material_of(problem, body).is_rigid:
+        raise InputError("body", f"the {owner_of(problem, body)} is rigid: no crack grows in it")
+    if problem.plate_body.lug.edge_only and (body == "seat" or problem.joint.bush is None):
+        raise InputError("body", NO_INSIDE)
+    check_length("last", problem, body, crack.angle, crack.last)
+    law_of(problem, crack)
+
+
+def checked_crack(problem: Problem, crack: CrackGrowth | None) -> CrackGrowth | None:
+    """Check the crack of a run, if there is one, and return it."""
+    if crack is not None:
+        check_crack(problem, instance("crack", crack, CrackGrowth, "a fastpin.model.CrackGrowth"))
+    return crack
+
+
+NO_INSIDE = "a compliance gives no stress inside the plate: a crack needs it"
+"""Refusal of a plate that is a compliance."""
+
+
+def law_of(problem: Problem, crack: CrackGrowth) -> KnownLaw:
+    """The law of a crack: its own, or else that of its body's material.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    body = choice("body", crack.body, EDGES)
+    law = crack.law or material_of(problem, body).growth
+    if law is None:
+        words = f"the material of the {owner_of(problem, body)} has no constants of crack growth"
+        raise InputError("law", f"is missing: {words}, and none are given")
+    return law
+
+
 CRACK_KEYS = tuple(each.name for each in fields(CrackGrowth))
 """The fields of :class:`CrackGrowth`, the keys of [crack] in a case file."""
 
@@ -129,6 +204,6 @@ def _residual(given: object) -> float | tuple[tuple[float, float], ...]:
         if not isinstance(pair, (list, tuple, np.ndarray)) or len(pair) != 2:
             raise InputError(name, f"must be pairs of a distance, m, and a stress, Pa, not {as_toml(pair)}")
         found.append((number(name, pair[0], 0.0), number(name, pair[1])))
-    if any(later[0] <= earlier[0] for earlier, later in zip(found, found[1:], strict=False)):
+    if any(later[0] <= earlier[0] for earlier, later in itertools.pairwise(found)):
         raise InputError(name, "must have increasing distances to the mouth")
     return tuple(found)

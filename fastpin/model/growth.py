@@ -13,13 +13,15 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, in_one_shape, not_negative, number, numbers, positive, string
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 SMOOTH_EDGE = 1.1215222
 """K of a short crack at a smooth edge, in units of the stress times sqrt(pi a)."""

@@ -19,6 +19,7 @@ from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
+from fastpin.model.crack import CrackGrowth
 from fastpin.model.growth import law_entries
 from fastpin.model.materials import MATERIALS, STRENGTHS, Material
 from fastpin.model.wear import Wear
@@ -70,6 +71,14 @@ class BaseCase:
             return None
         _, case = self.vary({})
         return None if case is None else case.wear
+
+    @property
+    def crack(self) -> CrackGrowth | None:
+        """How a crack grows, if the case says so."""
+        if "crack" not in self.text.root:
+            return None
+        _, case = self.vary({})
+        return None if case is None else case.crack
 
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""
