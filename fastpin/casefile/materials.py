@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text,
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, true_or_false
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.growth import LAWS, KnownLaw
+from fastpin.model.growth import LAWS, KnownLaw, known_law
 from fastpin.model.materials import MATERIALS, STRENGTHS, Material, MaterialPair
 from fastpin.model.synonyms import closest
 
@@ -83,19 +83,30 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
     return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
 
 
+class _Inside(Section):
+    """The table of a key of a section. The section reports its faults."""
+
+    def __init__(self, source: CaseText, section: Section, key: str, table: dict[str, Any]) -> None:
+        super().__init__(source, (section.name, key), table)
+        self._section, self._key = section, key
+
+    def report(self, message: str, *key: str) -> None:
+        """Add a fault of a key, or of the whole table if no key is given."""
+        self._section.report(message, self._key, *key)
+
+
 def read_law(source: CaseText, section: Section, key: str) -> KnownLaw | None:
     """The law of crack growth in the table of a key; None if it can't be used (reported)."""
     table = section.value(key)
     if not isinstance(table, dict):
         section.report(f'{key}: must be a table such as {{ law = "walker", ... }}, not {as_toml(table)}', key)
         return None
-    inner = Section(source, (*section.place, key), table)
+    inner = _Inside(source, section, key, table)
     if "law" not in inner:
         section.report(f"{key}: law is missing; it is one of {', '.join(LAWS)}", key)
     name = inner.checked("law", choice, tuple(LAWS))
     if name is None:
         return None
-    make: Callable[..., KnownLaw]
     make, allowed, needed = LAWS[name]
     for constant in table:
         if constant not in ("law", *allowed):
@@ -106,7 +117,8 @@ def read_law(source: CaseText, section: Section, key: str) -> KnownLaw | None:
             section.report(f"{key}: {constant} is missing; the law {name} needs {', '.join(needed)}", key)
     values = {constant: inner.value(constant) for constant in allowed if constant in table}
     harmless = {each.name: 1.0 if each.name in needed else each.default for each in fields(LAWS[name][0])}
-    return inner.build(make, {**dict.fromkeys(needed), **values}, harmless)
+    found = inner.build(make, {**dict.fromkeys(needed), **values}, harmless)
+    return None if found is None else known_law(key, found)
 
 
 def _has_stresses(source: CaseText, section: Section, key: str) -> bool:

@@ -250,27 +250,25 @@ class Section:
         The parsed values by key.
     present : bool
         Whether the text has this section.
-    place : tuple
-        The keys and indices that lead to it.
     """
 
     def __init__(self, text: CaseText, place: KeyPath, table: dict[str, Any], present: bool = True) -> None:
         self.table = table
         self.present = present
         self._text = text
-        self.place = place
+        self._place = place
 
     @property
     def name(self) -> str:
         """Name of the section, without brackets."""
-        return str(self.place[0])
+        return str(self._place[0])
 
     def __contains__(self, key: str) -> bool:
         return key in self.table
 
     def report(self, message: str, *key: str) -> None:
         """Add a fault of a key, or of the whole section if no key is given."""
-        self._text.report(message, *self.place, *key)
+        self._text.report(message, *self._place, *key)
 
     def require(self, key: str, hint: str = "") -> None:
         """Report the key if it is missing. The message ends with `hint`.

@@ -16,11 +16,10 @@ from fastpin.cracks.intensity import Crack, CrackedBody, CrackedEdge, Residual, 
 from fastpin.errors import InputError, InputWarning
 from fastpin.kernels.reversals import closed_cycles
 from fastpin.model.angles import from_bottom, near_bottom
-from fastpin.model.checks import check_callable, choice, instance, numbers, positive, true_or_false
-from fastpin.model.crack import CrackGrowth, law_of
+from fastpin.model.checks import check_callable, instance, numbers, positive, true_or_false
+from fastpin.model.crack import CrackGrowth, edge_of, law_of
 from fastpin.model.doubts import warn_of
 from fastpin.model.growth import GrowthLaw, checked_law
-from fastpin.model.points import EDGES
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
@@ -347,7 +346,7 @@ def planned_growth(
     check_callable("progress", progress, 2)
     law, counted = law_of(stops[0].problem, how), true_or_false("spectrum", spectrum)
     residual = None if how.residual_stress is None else how.residual
-    crack = Crack(0.0 if how.theta is None else how.theta, how.angle, choice("body", how.body, EDGES))
+    crack = Crack(0.0 if how.theta is None else how.theta, how.angle, edge_of(how.body))
     straight = counted and len(stops) > MOST_REFINED
     follow = _Following.of(stops, law, crack, (how.first, how.last), residual, counted, straight)
     return follow.grown(crack) if how.theta is not None else follow.along(crack, None, progress).fastest
@@ -431,11 +430,14 @@ class _Following(NamedTuple):
         known = (self.edge.problem, crack, self.law, fine, opening.max(axis=0), opening.min(axis=0), K_II, doubts)
         if not self.counted:
             return Growth(*known)
-        return SpectrumGrowth(*known, **_sums(self.law, fine, opening))
+        sums = _sums(self.law, fine, opening)
+        return SpectrumGrowth(
+            *known, growth_in_pass=sums[0], largest_range=sums[1], its_threshold=sums[2], counted=sums[3]
+        )
 
 
-def _sums(law: GrowthLaw, lengths: np.ndarray, opening: np.ndarray) -> dict[str, np.ndarray]:
-    """The fields of :class:`SpectrumGrowth` from K_I, shape (states, lengths)."""
+def _sums(law: GrowthLaw, lengths: np.ndarray, opening: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The four fields of :class:`SpectrumGrowth` from K_I, shape (states, lengths)."""
     values = np.ascontiguousarray(opening.T)
     tops, bottoms, counts = np.empty(values.shape), np.empty(values.shape), np.empty(len(values), dtype=np.int64)
     closed_cycles(values, tops, bottoms, counts)
@@ -448,7 +450,7 @@ def _sums(law: GrowthLaw, lengths: np.ndarray, opening: np.ndarray) -> dict[str,
         swing, threshold = law.range(top, bottom), law.threshold(top, bottom, length)
         most = int(np.argmax(swing - threshold))
         largest[k], needed[k] = swing[most], threshold[most]
-    return {"growth_in_pass": growth, "largest_range": largest, "its_threshold": needed, "counted": counts}
+    return growth, largest, needed, counts
 
 
 def _lengths(edge: CrackedEdge, crack: Crack, first: float, last: float) -> np.ndarray:

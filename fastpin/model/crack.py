@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -104,13 +104,18 @@ MOST_OF_WALL = 0.9
 """Largest depth of a tip in parts of the wall. The ligament beyond is not elastic for long."""
 
 
+def edge_of(body: str) -> Literal["plate", "seat"]:
+    """The name of an edge as a type checker knows it."""
+    return "seat" if body == "seat" else "plate"
+
+
 def wall_of(problem: Problem, body: str) -> float:
     """Depth of a body behind its edge, in radii of the edge; infinite without a rim."""
     bush = problem.joint.bush
     if body == "plate" and bush is not None:
         return bush - 1.0
-    far = far_rim(problem, "seat" if body == "seat" else "plate")
-    return math.inf if far is None else far / near_rim(problem, "seat" if body == "seat" else "plate") - 1.0
+    far = far_rim(problem, edge_of(body))
+    return math.inf if far is None else far / near_rim(problem, edge_of(body)) - 1.0
 
 
 def depth_of(angle: float, length: float) -> float:
@@ -121,7 +126,7 @@ def depth_of(angle: float, length: float) -> float:
 def check_length(field: str, problem: Problem, body: str, angle: float, longest: float) -> None:
     """Raise :class:`InputError` if a length, m, is too large for the body."""
     length = units(problem)["length"]
-    radius = problem.hole_radius * near_rim(problem, "seat" if body == "seat" else "plate")
+    radius = problem.hole_radius * near_rim(problem, edge_of(body))
     wall = wall_of(problem, body)
     if longest > LONGEST * radius:
         raise InputError(field, f"must be at most {LONGEST:g} radii of the hole, not {length.text(longest)}")
@@ -132,7 +137,7 @@ def check_length(field: str, problem: Problem, body: str, angle: float, longest:
 
 def check_crack(problem: Problem, crack: CrackGrowth) -> None:
     """Raise :class:`InputError` if no crack can grow so in a joint: its body, its length or its law."""
-    body = choice("body", crack.body, EDGES)
+    body = edge_of(crack.body)
     if material_of(problem, body).is_rigid:
         raise InputError("body", f"the {owner_of(problem, body)} is rigid: no crack grows in it")
     if problem.plate_body.lug.edge_only and (body == "seat" or problem.joint.bush is None):
@@ -160,7 +165,7 @@ def law_of(problem: Problem, crack: CrackGrowth) -> KnownLaw:
     InputError
         If there is none.
     """
-    body = choice("body", crack.body, EDGES)
+    body = edge_of(crack.body)
     law = crack.law or material_of(problem, body).growth
     if law is None:
         words = f"the material of the {owner_of(problem, body)} has no constants of crack growth"
