@@ -12,7 +12,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import DEGREE, angle_at, degrees_at, degrees_of
-from fastpin.model.checks import as_toml, choice, instance, items, number, positive
+from fastpin.model.checks import as_toml, choice, instance, items, number, numbers, positive
 from fastpin.model.growth import KnownLaw, known_law, law_entries, law_from
 from fastpin.model.points import EDGES, MOST_ANGLE, far_rim, material_of, near_rim, owner_of
 from fastpin.model.problem import Problem
@@ -75,6 +75,7 @@ class CrackGrowth:
 
     def residual(self, s: np.ndarray) -> np.ndarray:
         """The residual stress at distances to the mouth, m, of any shape; 0 unless one is given, Pa."""
+        s = numbers("s", s)
         if self.residual_stress is None:
             return np.zeros(np.shape(s))
         if isinstance(self.residual_stress, float):

@@ -11,7 +11,6 @@ Materials 5 (1970) 767; El Haddad, Smith and Topper, J. Eng. Mater. Technol. 101
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -56,7 +55,7 @@ def intrinsic_length(threshold_range: float, limit_range: float) -> float:
 
 
 @dataclass(frozen=True)
-class GrowthLaw(ABC):
+class GrowthLaw:
     """What every law answers. K_max and K_min are of K_I over a cycle, Pa sqrt(m), also negative.
 
     A law of your own is a subclass with the method ``_rate_above(K_max, K_min, length)``: the growth above the
@@ -112,9 +111,9 @@ class GrowthLaw(ABC):
         """The threshold."""
         return np.zeros(K_max.shape)
 
-    @abstractmethod
     def _rate_above(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
         """The rate above the threshold and below the toughness; any value elsewhere."""
+        raise InputError("law", "needs the method _rate_above(K_max, K_min, length), see fastpin.cracks.GrowthLaw")
 
 
 def _checked(K_max: ArrayLike, K_min: ArrayLike, length: ArrayLike) -> tuple[np.ndarray, ...]:

@@ -134,3 +134,8 @@ def test_laws_become_tables_and_come_back():
     ):
         with pytest.raises(InputError, match=fault):
             law_from(entries)
+
+
+def test_a_law_without_a_growth_is_refused():
+    with pytest.raises(InputError, match=r"law: needs the method _rate_above\(K_max, K_min, length\)"):
+        GrowthLaw().rate([2.0], [1.0], 1.0)
