@@ -146,6 +146,7 @@ class Valid:
             life[-1], worn, worn.crack, crack, law, grown, cracks.stress_intensity(state, crack, [length]), NASGRO,
             cracks.growth_along_edge(result, law, length, 2.0 * length, [-1.5]), planned,
             cracks.spectrum_growth(result, crack, law, length, 2.0 * length), cracks.CrackFate.STOPS,
+            cracks.GrowthLaw(),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]

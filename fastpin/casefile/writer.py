@@ -12,7 +12,6 @@ import json
 import math
 from collections.abc import Iterator
 from dataclasses import fields
-from typing import Any
 
 import numpy as np
 
@@ -55,17 +54,10 @@ def case_text(case: Case) -> str:
         *_bodies(case.problem),
         ["[[load]]", *_loads(case.history, case.problem.thickness)],
         ["[wear]", *(f"{name} = {_value(value)}" for name, value in wear.items())],
-        ["[crack]", *(f"{name} = {_crack_value(value)}" for name, value in crack.items())],
+        ["[crack]", *(f"{name} = {_value(value)}" for name, value in crack.items())],
         ["[solve]", *_options(case.options)],
     ]
     return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
-
-
-def _crack_value(value: Any) -> str:
-    """A value of [crack]: a law is a table, and a residual stress may be pairs."""
-    if isinstance(value, list):
-        return f"[{', '.join(f'[{depth!r}, {stress!r}]' for depth, stress in value)}]"
-    return _value([value]) if isinstance(value, dict) else _value(value)
 
 
 def _material(material: Material) -> Iterator[str]:
@@ -146,7 +138,11 @@ def _options(options: SolveOptions) -> Iterator[str]:
 
 
 def _value(value: object) -> str:
-    """A number, text, truth value, list of numbers or list of tables as TOML."""
+    """A number, text, truth value, list of numbers, table, list of tables or list of lists as TOML."""
+    if isinstance(value, dict):
+        return _value([value])
+    if isinstance(value, list) and value and isinstance(value[0], list):
+        return f"[{', '.join(_value(tuple(each)) for each in value)}]"
     if isinstance(value, tuple):
         return f"[{', '.join(map(repr, value))}]"
     if isinstance(value, list):

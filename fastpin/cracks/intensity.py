@@ -341,19 +341,15 @@ def histories(
     """
     check_callable("residual_stress", residual_stress, 1)
     cracks = CrackWeights.of(edge, rows, turns, residual_stress)
-    if straight and len(states) > MAPPED and _is_mapped(states):
+    grid = states[0].theta
+    on_one = all(state.seat is None and np.array_equal(state.theta, grid) for state in states)
+    if straight and on_one and len(states) > MAPPED:
         K = _mapped(states, edge, cracks)
     else:
         K = np.array(
             in_threads(lambda state: cracks.intensities(state.stress(cracks.points, edge.body, straight)), states)
         )
     return K * math.sqrt(edge.radius)
-
-
-def _is_mapped(states: Sequence[State]) -> bool:
-    """Whether all states are on one grid, and load the body there alone."""
-    grid = states[0].theta
-    return all(state.seat is None and np.array_equal(state.theta, grid) for state in states)
 
 
 def _mapped(states: Sequence[State], edge: CrackedEdge, cracks: CrackWeights) -> np.ndarray:

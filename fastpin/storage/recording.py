@@ -103,7 +103,8 @@ def record(
     true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
-    save_corners = _checked_corners(save_after)
+    history = as_history(history)
+    save_corners = _checked_corners(save_after, len(history))
     _check_names(options)
     solve_options = SolveOptions(**options)
     check_options(solve_options, grid, start)
@@ -111,13 +112,9 @@ def record(
         raise InputError(
             "error_bars", "a run that continues another one has none in a file; leave them or the file out"
         )
-    task = Task(problem, as_history(history), solve_options, grid, progress, save_corners)
+    task = Task(problem, history, solve_options, grid, progress, save_corners)
     if solve_options.error_bars:
         check_halves(task, start)
-    if max(save_corners, default=0) > len(task.history):
-        raise InputError(
-            "save_after", f"must be corners from 1 to {len(task.history)}, not {as_toml(max(save_corners))}"
-        )
     warn_of(doubts(problem, task.history, solve_options), 2)
     writer = FileRecorder(path, task, title, about, checked_crack(problem, crack))
     writer.overwrite = overwrite
@@ -133,10 +130,14 @@ def record(
     warn_of(_pressure_doubts(path, task), 2)
 
 
-def _checked_corners(save_after: Sequence[int]) -> frozenset[int]:
-    """Check the corners with a restart, counted from 1."""
-    corners = items("save_after", save_after, "a list of corners")
-    return frozenset(whole_number("save_after", corner, 1) for corner in corners)
+def _checked_corners(save_after: Sequence[int], count: int) -> frozenset[int]:
+    """Check the corners with a restart, of a history of so many corners, counted from 1."""
+    given = items("save_after", save_after, "a list of corners")
+    corners = frozenset(whole_number("save_after", corner, 1) for corner in given)
+    most = max(corners, default=0)
+    if most > count:
+        raise InputError("save_after", f"must be corners from 1 to {count}, not {as_toml(most)}")
+    return corners
 
 
 def _record_coarse(path: Path, task: Task) -> None:
