@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.cracks import Growth
 from fastpin.errors import InputError
@@ -90,6 +91,9 @@ def _draw(look: Look, found: Sequence[Growth]) -> Sheet:
         draw_grid(panel)
     top.set_ylabel(quantity("range of K", intensity_name))
     bottom.set_ylabel(quantity("growth", rate_name))
+    bottom.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    bottom.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    bottom.xaxis.set_minor_formatter(NullFormatter())
     bottom.set_xlabel(quantity("length of the crack", length_name))
     bottom.set_xlim(length * min(float(one.length[0]) for one in found), length * max(one.length[-1] for one in found))
     sheet.figure.align_ylabels([top, bottom])
