@@ -20,6 +20,7 @@ from contextvars import ContextVar
 import numpy as np
 
 from fastpin.errors import InputWarning
+from fastpin.model.growth import KnownLaw, Nasgro
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.materials import STRENGTHS, Material
@@ -105,6 +106,12 @@ EDGES = {
     "bore of the pin": ("pin", "in the bore of the pin"),
 }
 """Edges of the bodies: the name of the body, and words for the place."""
+
+LEAST_INTENSITY = 1e3
+"""Least plausible stress intensity of a law of growth, Pa sqrt(m): a thousandth of the threshold of metals."""
+
+TRIED_INTENSITY, LEAST_RATE, MOST_RATE = 1e7, -12.0, -4.0
+"""A range of the stress intensity, Pa sqrt(m), and the powers of ten, m, between which metals grow in its cycle."""
 
 _GIVEN: ContextVar[bool] = ContextVar("given", default=False)
 
@@ -296,6 +303,22 @@ def _of_material(name: str, material: Material, has_units: bool) -> Iterator[Inp
                 field,
                 f"{_short(value)} Pa of the {name} is very small; stresses are in Pa; {_meant(value, 'MPa', 1e6)}",
             )
+    if material.growth is not None:
+        yield from _of_growth(name, material.growth)
+
+
+def _of_growth(name: str, law: KnownLaw) -> Iterator[InputWarning]:
+    """Doubts about the units of a law of crack growth."""
+    for field in ("threshold_range", "toughness", "unit"):
+        value = getattr(law, field)
+        if value is not None and 0.0 < value < LEAST_INTENSITY:
+            words = f"{_short(value)} Pa sqrt(m) of the {name} is very small"
+            yield InputWarning(f"growth.{field}", f"{words}; {_meant(value, 'MPa sqrt(m)', 1e6)}")
+    power = law.n if isinstance(law, Nasgro) else law.m
+    rate = math.log10(law.C) + power * math.log10(TRIED_INTENSITY / law.unit)
+    if not LEAST_RATE < rate < MOST_RATE:
+        words = f"gives 1e{rate:.3g} m per cycle of 10 MPa sqrt(m) in the {name}"
+        yield InputWarning("growth.C", f"{words}; C is the growth under the range unit, in m per cycle")
 
 
 def _of_sizes(problem: Problem) -> Iterator[InputWarning]:

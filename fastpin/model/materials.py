@@ -22,12 +22,13 @@ import numpy as np
 from fastpin.errors import InputError, UnknownNameError
 from fastpin.model.checks import choice, instance, number, positive, string
 from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.growth import KnownLaw, known_law
 from fastpin.model.synonyms import explains_keywords
 
 Plane = Literal["strain", "stress"]
 """Plane strain or plane stress, for type checkers."""
 
-MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "yield_strength", "ultimate_strength")
+MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "growth", "yield_strength", "ultimate_strength")
 """Keys of the material of a body in case files."""
 
 STRENGTHS = ("yield_strength", "ultimate_strength")
@@ -68,12 +69,14 @@ class Material:
         Pa, positive. It changes no state: fastpin warns of a contact pressure above it.
     ultimate_strength : float, optional
         Stress at which a tensile specimen breaks, Pa, positive. It changes no state.
+    growth : Walker or Nasgro, optional
+        Law of crack growth with its constants, see :mod:`fastpin.cracks`. It changes no state.
 
     Raises
     ------
     InputError
         If `E` is not positive or beyond its limits, `nu` is outside [0, 0.5], `name` is no text, `fatigue` is of
-        another class, or a strength is not positive.
+        another class, a strength is not positive, or `growth` is no law of fastpin.
     """
 
     E: float
@@ -82,6 +85,7 @@ class Material:
     fatigue: FatigueConstants | None = None
     yield_strength: float | None = None
     ultimate_strength: float | None = None
+    growth: KnownLaw | None = None
 
     def __post_init__(self) -> None:
         rigid = isinstance(self.E, (float, np.floating)) and math.inf == self.E
@@ -101,11 +105,14 @@ class Material:
         for strength in STRENGTHS:
             if (value := getattr(self, strength)) is not None:
                 object.__setattr__(self, strength, positive(strength, value))
+        if self.growth is not None:
+            known_law("growth", self.growth)
 
     def __repr__(self) -> str:
         fatigue = "" if self.fatigue is None else f", fatigue={self.fatigue!r}"
         strengths = "".join(f", {name}={value:g}" for name, value in self.strengths.items())
-        return f"{self.elastic_form[:-1]}{fatigue}{strengths})"
+        growth = "" if self.growth is None else f", growth={self.growth!r}"
+        return f"{self.elastic_form[:-1]}{fatigue}{strengths}{growth})"
 
     @property
     def elastic_form(self) -> str:

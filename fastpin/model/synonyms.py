@@ -25,6 +25,7 @@ _SYNONYMS: dict[str, str] = {
     "material": "mat alloy",
     "rigid": "is_rigid stiff",
     "fatigue": "fatigue_constants",
+    "growth": "crack_growth growth_law growth_constants da_dn dadn paris walker nasgro",
     "fatigue_strength": "sigma_f sf sf_prime",
     "fatigue_ductility": "epsilon_f ef ef_prime",
     "strength_exponent": "b basquin_exponent",

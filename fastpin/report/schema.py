@@ -11,11 +11,13 @@ from dataclasses import fields
 from typing import Any
 
 from fastpin.bodies.compliance import FORMAT, VERSION
+from fastpin.cracks.fates import CRACK_FATES
 from fastpin.model.checks import choice
 from fastpin.model.fields import FIELDS, Field
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import METHODS, SolveOptions
+from fastpin.model.points import EDGES
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
 from fastpin.states.quantities import QUANTITIES
@@ -82,6 +84,25 @@ def _summary() -> Schema:
             "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing)),
             "cycles": _list_of(_object(of_cycle)),
             "cycle": _or_null(_last_cycle()),
+            "crack": _or_null(_crack()),
+        }
+    )
+
+
+def _crack() -> Schema:
+    lengths = dict.fromkeys(("first", "last", "arrest", "fracture"), _UNKNOWN)
+    return _object(
+        {
+            "angle_of_mouth": _NUMBER,
+            "direction": _NUMBER,
+            "body": {"enum": list(EDGES)},
+            "law": _or_null({"type": "object"}),
+            "repeated": {"enum": ["cycle", "spectrum"]},
+            "fate": {"enum": list(CRACK_FATES.values())},
+            "life": _UNKNOWN | {"description": "cycles or spectra; null: no end"},
+            **lengths,
+            "words": _TEXT,
+            "doubts": _list_of(_TEXT),
         }
     )
 

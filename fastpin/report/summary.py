@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fastpin import cracks
 from fastpin.bodies.body import BodyBase
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.case import Case
@@ -17,6 +18,7 @@ from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
+from fastpin.report import crack_growth
 from fastpin.report import cycle as cycle_report
 from fastpin.report.fatigue import last_cycle_margins
 from fastpin.report.margins import document as margins_document
@@ -30,7 +32,11 @@ from fastpin.version import __version__
 
 
 def document(
-    case: Case, result: Result | None, error: str | None = None, cycle: LoadCycle | None = None
+    case: Case,
+    result: Result | None,
+    error: str | None = None,
+    cycle: LoadCycle | None = None,
+    crack: cracks.Growth | None = None,
 ) -> dict[str, Any]:
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
@@ -46,12 +52,12 @@ def document(
         The reason why `result` is incomplete.
     cycle : LoadCycle, optional
         The cycle of the entry ``cycle``.
+    crack : Growth, optional
+        The crack of the entry ``crack``.
     """
     problem, pair = case.problem, case.problem.pair
     alpha, beta = problem.surfaces.dundurs()
     unit = units(problem)
-    factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
-    listed = [place for place, name in enumerate(LOADS) if name not in LATER or name in case.history.largest]
     found = {
         "fastpin": __version__,
         "title": case.title,
@@ -71,13 +77,7 @@ def document(
             "press_fit_pressure": problem.press_fit_pressure,
             "dimensionless": problem.dimensionless,
         },
-        "history": {
-            "loads": [LOADS[place] for place in listed],  # a load that a corner does not give becomes null
-            "blocks": [
-                {"repeat": each.count, "corners": (factors * each.given)[:, listed].tolist()}
-                for each in case.history.blocks
-            ],
-        },
+        "history": _history_summary(case),
         "solver": case.options.keywords(),
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
@@ -88,8 +88,23 @@ def document(
             for row in (() if result is None else result.cycles)
         ],
         "cycle": None if cycle is None else cycle_report.document(cycle),
+        "crack": None if crack is None else crack_growth.document(crack),
     }
     return json_ready(found)
+
+
+def _history_summary(case: Case) -> dict[str, Any]:
+    """Return the blocks of the load history. A load that a corner does not give becomes null."""
+    unit = units(case.problem)
+    factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
+    listed = [place for place, name in enumerate(LOADS) if name not in LATER or name in case.history.largest]
+    return {
+        "loads": [LOADS[place] for place in listed],
+        "blocks": [
+            {"repeat": each.count, "corners": (factors * each.given)[:, listed].tolist()}
+            for each in case.history.blocks
+        ],
+    }
 
 
 def _in_its_unit(problem: Problem, name: str) -> Any:

@@ -158,7 +158,7 @@ class Plan:
         InputError
             With all faults. Also if the plan has another outcome of such a name.
         """
-        found = outcomes_from(outcomes, self._base.wear)
+        found = outcomes_from(outcomes, self._base.wear, self._base.crack)
         known = {name.lower(): outcome.definition for name, outcome in self.outcomes.items()}
         for name, outcome in found.items():
             if known.get(name.lower(), outcome.definition) != outcome.definition:
@@ -270,7 +270,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     count = max(len(rows), 1) * math.prod(len(values) for values in axes.values())
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
-    outcomes = outcomes_in_text(source, folder, None if base is None else base.wear)
+    outcomes = outcomes_in_text(source, folder, *((None, None) if base is None else (base.wear, base.crack)))
     labels = labels_in(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
@@ -431,6 +431,11 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     if section == "wear":
         return (
             f'"{name}": no run of a sweep wears; an outcome such as {{ wear = "depth" }} may have {names[-1]} beside it'
+        )
+    if section == "crack":
+        return (
+            f'"{name}": no run of a sweep grows a crack; an outcome such as {{ crack = "fate" }} may have {names[-1]} '
+            "beside it"
         )
     if section == "load":
         if not 3 <= len(names) <= 4 or not names[1].isdecimal():

@@ -21,6 +21,8 @@ from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
 from fastpin.model.checks import number
+from fastpin.model.crack import CrackGrowth
+from fastpin.model.growth import law_entries
 from fastpin.model.history import check_loads
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.materials import MATERIALS, STRENGTHS, Material
@@ -77,6 +79,14 @@ class BaseCase:
         _, case = self.vary({})
         return None if case is None else case.wear
 
+    @property
+    def crack(self) -> CrackGrowth | None:
+        """How a crack grows, if the case says so."""
+        if "crack" not in self.text.root:
+            return None
+        _, case = self.vary({})
+        return None if case is None else case.crack
+
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""
         text = self.text.with_tables(with_values(self.text.root.table, values, self._materials))
@@ -114,10 +124,10 @@ def _scaled(text: CaseText, case: Case, factors: Mapping[str, Any]) -> Case:
 
 
 _REPLACED: dict[str, tuple[str, ...]] = {
-    "material": ("E", "nu", "rigid", "fatigue", *STRENGTHS),
+    "material": ("E", "nu", "rigid", "fatigue", "growth", *STRENGTHS),
     "E": ("material", "rigid"),
     "nu": ("material", "rigid"),
-    "rigid": ("material", "E", "nu", "fatigue", *STRENGTHS),
+    "rigid": ("material", "E", "nu", "fatigue", "growth", *STRENGTHS),
     "ring_outer_radius": ("reaction",),
     "reaction": ("ring_outer_radius", "support"),
 }
@@ -229,6 +239,8 @@ def _make_room(tables: dict[str, Any], name: str, value: Any, materials: Mapping
         body |= {"E": material.E, "nu": material.nu}
         if material.fatigue is not None:
             body.setdefault("fatigue", material.fatigue.given())
+        if material.growth is not None:
+            body.setdefault("growth", law_entries(material.growth))
         body |= {name: value for name, value in material.strengths.items() if name not in body}
     for replaced in _REPLACED.get(key, ()):
         body.pop(replaced, None)
