@@ -91,8 +91,8 @@ STORED = ("example.h5", "fretting.h5", "corners.h5", "stopped.h5", "lug.complian
 """Files and folders that the commands write."""
 
 COMMANDS = (
-    "example check run resume show plot report live converge sweep merge compliance paper benchmarks verify schema"
-    " completion"
+    "example check run resume show plot report live converge sweep tolerances merge compliance paper benchmarks verify"
+    " schema completion"
 )
 """All commands."""
 

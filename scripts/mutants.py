@@ -45,7 +45,7 @@ from scripts.changes import Change, changes
 
 ROOT = Path(__file__).resolve().parents[1]
 OUT = ROOT / "out" / "mutants"
-FOLDERS = ("runtime", "kernels", "elasticity", "reading", "solver", "states", "damage", "storage")
+FOLDERS = ("runtime", "kernels", "elasticity", "reading", "solver", "states", "damage", "cracks", "storage")
 TESTS = (*FOLDERS, "whole")
 """Folders of the tests that may notice a change."""
 

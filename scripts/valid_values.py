@@ -25,6 +25,8 @@ NODES = 31
 
 PLAN = 'title = "Friction"\n[grid]\n"contact.friction" = [0.2, 0.4]\n"solve.nodes" = [31]\n'
 
+TOLERANCES = 'samples = 3\n[tolerances]\n"contact.friction" = { from = 0.2, to = 0.5 }\n'
+
 LUG = (
     '[plate]\nnu = 0.3\nplane = "strain"\nhole_radius = 1.0\n[outline]\nshape = "rectangle"\nx = [-2.5, 2.5]\n'
     'y = [-2.5, 6.0]\n[[support]]\nparts = ["top"]\nhold = "both"\n'
@@ -64,8 +66,8 @@ STRENGTHS = model.FatigueConstants(1e9, -0.1, 0.5, -0.6, 5e8, -0.1, 0.5, -0.6, b
 NASGRO = cracks.Nasgro(1e-10, 3.0, 1.0, 1.0, 1e6, 1e8)
 """A law of growth."""
 
-PLATE = fastpin.Material(72e9, 0.33, "aluminium", STRENGTHS, yield_strength=4e8)
-"""A plate with constants of fatigue."""
+PLATE = fastpin.Material(72e9, 0.33, "aluminium", STRENGTHS, 4e8, 5e8, cracks.Walker(1e-10, 3.0))
+"""A plate with constants of fatigue and of crack growth."""
 
 
 class Enough(FastpinError):  # noqa: N818 - no fault
@@ -112,11 +114,16 @@ class Valid:
         studies.sweep.run(plan, "sweep", executor=Inline())
         shutil.copytree("sweep", "part")
         rows = studies.sweep.rows(plan, "sweep")
+        limited = studies.read_tolerances("tolerances.toml")
+        studies.sweep.run(limited.plan, "tolerances", executor=Inline())
+        tolerance_rows = studies.sweep.rows(limited.plan, "tolerances")
+        pressure = report.tolerances.tolerance_chart(limited, tolerance_rows, "largest_pressure")
         convergence = fastpin.converge(problem, history, (51, 101, 201))
         study = convergence.studies[0]
         fatigue = damage.fatigue(result, "smith-watson-topper")
         crack, law = cracks.Crack(-1.5), cracks.Walker(1e-10, 3.0)
         length = 0.01  # in radii
+        planned = model.CrackGrowth(length, 2.0 * length, law, -1.5)
         grown = cracks.growth(result, crack, law, length, 2.0 * length)
         steel = fastpin.Problem(pair, 0.01, 1e-5, 0.4)
         cycle_in_newtons = fastpin.LoadHistory([{"P": 1e6}]) + fastpin.LoadHistory([{"Q": 2e5}, {"Q": 0.0}]).repeated(2)
@@ -135,6 +142,7 @@ class Valid:
             bodies.Tube(0.5), bodies.Bushing(pair.plate, 2.0), model.FatigueConstants(1e9, -0.1, 0.5, -0.6),
             model.Hole("bolt", 3j, 0.5),
             model.PartLoad("sxx", ("left", "right"), normal=1.0), lug.outline[0], casefile.parse_lug(LUG),
+            limited, limited.limits["contact.friction"], limited.effects("tolerances")["largest_pressure"], pressure,
             report.sweep.chart(plan, rows, "peak_pressure"), studies.sweep.status(plan, "sweep"),
             damage.findley(HISTORY, 0.3),
             report.convergence.reported_series(study, problem, study.series[0].corner)[0],
@@ -143,7 +151,9 @@ class Valid:
             fastpin.Session, verification.solve_sliding(_sliding_problem(pair), {"P": 1.0, "Q": 1.0}),
             model.Profile.ellipse(1e-5), model.InitialGap(pin=model.Profile.lobes(3, 1e-5)), model.Wear(1e-14), life,
             life[-1], worn, worn.crack, crack, law, grown, cracks.stress_intensity(state, crack, [length]), NASGRO,
-            cracks.growth_along_edge(result, law, length, 2.0 * length, [-1.5]),
+            cracks.growth_along_edge(result, law, length, 2.0 * length, [-1.5]), planned,
+            cracks.spectrum_growth(result, crack, law, length, 2.0 * length), cracks.CrackFate.STOPS,
+            cracks.GrowthLaw(),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
@@ -164,6 +174,7 @@ class Valid:
         texts = {
             "case.toml": casefile.EXAMPLE,
             "plan.toml": PLAN,
+            "tolerances.toml": TOLERANCES,
             "lug.toml": LUG,
             "loads.csv": "P, Q\n1.0, 0\n1.0, 0.2\n",
             "rim.csv": "angle, gap\n0, 0\n90, 1e-5\n180, 2e-5\n270, 1e-5\n",
@@ -215,6 +226,7 @@ class Valid:
         return {
             "Sequence[State]": _always(result),
             "LoadHistory | Sequence[dict[str, float]]": _always([{"P": 1.0}]),
+            "ToleranceChart | Sequence[ToleranceChart]": lambda: [self.objects["ToleranceChart"]()],
             "Corner": _always({"P": 1.0}),
             "Mapping[str, float]": _always({"P": 1.0, "Q": 1.0}),
         }
@@ -242,6 +254,10 @@ class Valid:
             "parse_case.text": casefile.EXAMPLE,
             "parse_lug.text": LUG,
             "parse_plan.text": PLAN,
+            "read_tolerances.path": "tolerances.toml",
+            "parse_tolerances.text": TOLERANCES,
+            "LoadHistory.scaled.factors": {"P": 1.1},
+            "Tolerances.effects.directory": "tolerances",
             "from_document.content": bodies.Compliance(0.3, "strain", 1.0, MATRIX).document(),
             "with_outcomes.outcomes": {"work": {"quantity": "work"}},
             "angle_of_largest.values": np.arange(float(n)),
@@ -299,6 +315,15 @@ class Valid:
             "stress_intensity.lengths": [0.01, 0.02],
             "growth.first": 0.01,
             "growth.last": 0.02,
+            "spectrum_growth.first": 0.01,
+            "spectrum_growth.last": 0.02,
+            "spectrum_growth.law": cracks.Walker(1e-10, 3.0),
+            "planned_growth.how": model.CrackGrowth(0.01, 0.02, cracks.Walker(1e-10, 3.0), -1.5),
+            "CrackGrowth.first": 0.01,
+            "CrackGrowth.last": 0.02,
+            "record.crack": model.CrackGrowth(0.01, 0.02, cracks.Walker(1e-10, 3.0), -1.5),
+            "growth_along_edge.progress": enough,
+            "planned_growth.progress": half,
             "growth_along_edge.first": 0.01,
             "growth_along_edge.last": 0.02,
             "Crack.theta": -1.5,
@@ -330,7 +355,7 @@ BY_NAME: dict[str, Any] = {
     "shear_ductility_exponent": -0.6, "shear_fatigue_ductility": 0.5, "shear_fatigue_strength": 5e8,
     "shear_modulus": 8e10, "shear_strength_exponent": -0.1, "size": 1e-5, "slip_range": [1e-6], "slope": 5.0,
     "sources": ["part"], "start": -3.0, "stop": 0.0, "strength_exponent": -0.1, "sxx": 1.0, "sxy": 0.1, "syy": 0.0,
-    "theta": [-1.5, -1.0], "thickness": 0.01, "threshold_range": 5e6, "torsion_limit": 1.2e8,
+    "theta": [-1.5, -1.0], "thickness": 0.01, "threshold_range": 5e6, "torsion_limit": 1.2e8, "ultimate_strength": 5e8,
     "values": [0.0, 1.0, -1.0], "wear_coefficient": 1e-14, "x": [0.0, 0.5], "y": [0.0, 0.5], "yield_strength": 4e8,
 }  # fmt: skip
 """Valid values by the name of a parameter."""

@@ -18,6 +18,7 @@ from fastpin.model.units import units_per_thickness
 from fastpin.states import QUANTITIES
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES, WEAR_QUANTITIES
 from fastpin.studies.run_end import KEY_FIGURES
+from fastpin.studies.variation import FACTORS
 
 KINDS_OF_UNITS = {"angle": "rad", "width": "rad"}
 """Units of the kinds of quantities that :func:`fastpin.model.units.units_per_thickness` leaves out."""
@@ -129,6 +130,7 @@ def plan_fields() -> str:
     varied = [section for section in KEYS if section not in ("load", "wear")]
     rows = [(f"`{name}`", ", ".join(f"`{name}.{key}`" for key in KEYS[name])) for name in varied]
     rows.append(("`load`", ", ".join(f"`load.{key}`" for key in KEYS["load"])))
+    rows.append(("factors", ", ".join(f"`{name}`" for name in FACTORS)))
     return table(("section", "fields"), rows)
 
 

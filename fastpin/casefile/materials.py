@@ -14,15 +14,16 @@ from typing import Any
 
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, printable
-from fastpin.model.checks import any_text, as_toml, file_path, number, positive, string, true_or_false
+from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, true_or_false
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.growth import LAWS, KnownLaw, known_law
+from fastpin.model.materials import MATERIALS, STRENGTHS, Material, MaterialPair
 from fastpin.model.synonyms import closest
 
 DUNDURS_KEYS = ("alpha", "beta", "nu_pin", "convention", "beta_star")
 """Keys of [dundurs]."""
 
-FILE_KEYS = ("E", "nu", "yield_strength", "fatigue", "source")
+FILE_KEYS = ("E", "nu", "yield_strength", "ultimate_strength", "fatigue", "growth", "source")
 """Keys of a material in a file of materials."""
 
 _FATIGUE_KEYS = tuple(field.name for field in fields(FatigueConstants))
@@ -49,13 +50,16 @@ def read_pair(source: CaseText, materials: Mapping[str, Material]) -> MaterialPa
 def read_material(
     source: CaseText, section: Section, materials: Mapping[str, Material], may_be_rigid: bool = True
 ) -> Material | None:
-    """The material of a body, with its fatigue constants and yield strength. They replace those of a named material.
+    """The material of a body. Its strengths and constants of fatigue and growth replace those of a named material.
 
     None if it can't be used. The reason is reported.
     """
     given: dict[str, Any] = {"fatigue": _fatigue(source, section)}
-    if "yield_strength" in section and _has_stresses(source, section, "yield_strength"):
-        given["yield_strength"] = section.checked("yield_strength", positive)
+    if section.value("growth") is not None and _has_stresses(source, section, "growth"):
+        given["growth"] = read_law(source, section, "growth")
+    for strength in STRENGTHS:
+        if strength in section and _has_stresses(source, section, strength):
+            given[strength] = section.checked(strength, positive)
     material = _elastic(section, materials, may_be_rigid)
     if material is None:
         return None
@@ -77,6 +81,44 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
             inner.report(f'unknown key "{key}" in fatigue of [{section.name}]{hint}', key)
     given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
     return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
+
+
+class _Inside(Section):
+    """The table of a key of a section. The section reports its faults."""
+
+    def __init__(self, source: CaseText, section: Section, key: str, table: dict[str, Any]) -> None:
+        super().__init__(source, (section.name, key), table)
+        self._section, self._key = section, key
+
+    def report(self, message: str, *key: str) -> None:
+        """Add a fault of a key, or of the whole table if no key is given."""
+        self._section.report(message, self._key, *key)
+
+
+def read_law(source: CaseText, section: Section, key: str) -> KnownLaw | None:
+    """The law of crack growth in the table of a key; None if it can't be used (reported)."""
+    table = section.value(key)
+    if not isinstance(table, dict):
+        section.report(f'{key}: must be a table such as {{ law = "walker", ... }}, not {as_toml(table)}', key)
+        return None
+    inner = _Inside(source, section, key, table)
+    if "law" not in inner:
+        section.report(f"{key}: law is missing; it is one of {', '.join(LAWS)}", key)
+    name = inner.checked("law", choice, tuple(LAWS))
+    if name is None:
+        return None
+    make, allowed, needed = LAWS[name]
+    for constant in table:
+        if constant not in ("law", *allowed):
+            hint = closest(constant, allowed) or f"; the constants of this law are {', '.join(allowed)}"
+            inner.report(f'unknown key "{constant}" in {key} of [{section.name}] with the law {name}{hint}', constant)
+    for constant in needed:
+        if constant not in inner:
+            section.report(f"{key}: {constant} is missing; the law {name} needs {', '.join(needed)}", key)
+    values = {constant: inner.value(constant) for constant in allowed if constant in table}
+    harmless = {each.name: 1.0 if each.name in needed else each.default for each in fields(LAWS[name][0])}
+    found = inner.build(make, {**dict.fromkeys(needed), **values}, harmless)
+    return None if found is None else known_law(key, found)
 
 
 def _has_stresses(source: CaseText, section: Section, key: str) -> bool:
@@ -159,8 +201,8 @@ def read_materials(path: str | Path) -> dict[str, Material]:
     Parameters
     ----------
     path : str or Path
-        The file. Each section is a material, with the keys `E`, `nu`, and perhaps `yield_strength`, `fatigue` and
-        `source`::
+        The file. Each section is a material, with the keys `E`, `nu`, and perhaps `yield_strength`,
+        `ultimate_strength`, `fatigue`, `growth` and `source`::
 
             [my-alloy]
             E = 71e9

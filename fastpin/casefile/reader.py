@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
+from fastpin.casefile.cracks import read_crack
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.materials import DUNDURS_KEYS, known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
@@ -23,6 +24,7 @@ from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, rea
 from fastpin.errors import InputError
 from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
 from fastpin.model.checks import file_path, string
+from fastpin.model.crack import CRACK_KEYS, check_crack
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
@@ -49,6 +51,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
     "wear": WEAR_KEYS,
+    "crack": CRACK_KEYS,
     "solve": tuple(field.name for field in fields(SolveOptions)),
 }
 """Sections of a case file and their keys."""
@@ -174,7 +177,14 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     wear = read_wear(how, folder, count) if how.present else None
     if problem is not None and wear is not None:
         _check_together(source, lambda: check_wear(problem), "plate_body")
-    return Case(problem, history, options, title, about, wear) if problem is not None and history is not None else None
+    crack = read_crack(source, source.section("crack")) if "crack" in source.root else None
+    if problem is not None and pair is not None and crack is not None:
+        _check_together(source, lambda: check_crack(problem, crack), "crack")
+    return (
+        Case(problem, history, options, title, about, wear, crack)
+        if problem is not None and history is not None
+        else None
+    )
 
 
 def _keys_of(tables: Mapping[str, Any]) -> object:

@@ -47,6 +47,7 @@ MOST_PARTS = 8
 KINDS = {
     "case file": (("contact",), "run"),
     "plan": (("grid", "list"), "sweep"),
+    "tolerance plan": (("tolerances",), "tolerances"),
     "lug file": (("outline",), "compliance"),
 }
 """The sections that only one kind of file has, and the command for such a file."""

@@ -18,6 +18,7 @@ import numpy as np
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.fields import FIELDS
+from fastpin.model.growth import law_entries
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, Material
@@ -42,6 +43,7 @@ def case_text(case: Case) -> str:
     """
     instance("case", case, Case, "a Case")
     wear = {} if case.wear is None else case.wear.toml()
+    crack = {} if case.crack is None else case.crack.entries()
     blocks = [
         *([[f"title = {_value(case.title)}"]] if case.title else []),
         ["[about]", *(f"{name} = {_value(value)}" for name, value in case.about.given().items())],
@@ -52,6 +54,7 @@ def case_text(case: Case) -> str:
         *_bodies(case.problem),
         ["[[load]]", *_loads(case.history, case.problem.thickness)],
         ["[wear]", *(f"{name} = {_value(value)}" for name, value in wear.items())],
+        ["[crack]", *(f"{name} = {_value(value)}" for name, value in crack.items())],
         ["[solve]", *_options(case.options)],
     ]
     return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
@@ -66,11 +69,13 @@ def _material(material: Material) -> Iterator[str]:
         return
     yield f"E = {material.E!r}"
     yield f"nu = {material.nu!r}"
-    if material.yield_strength is not None:
-        yield f"yield_strength = {material.yield_strength!r}"
+    for name, strength in material.strengths.items():
+        yield f"{name} = {strength!r}"
     if material.fatigue is not None:
         constants = ", ".join(f"{name} = {_value(value)}" for name, value in material.fatigue.given().items())
         yield f"fatigue = {{ {constants} }}"
+    if material.growth is not None:
+        yield f"growth = {_value([law_entries(material.growth)])}"
 
 
 def _contact(problem: Problem) -> Iterator[str]:
@@ -133,7 +138,11 @@ def _options(options: SolveOptions) -> Iterator[str]:
 
 
 def _value(value: object) -> str:
-    """A number, text, truth value, list of numbers or list of tables as TOML."""
+    """A number, text, truth value, list of numbers, table, list of tables or list of lists as TOML."""
+    if isinstance(value, dict):
+        return _value([value])
+    if isinstance(value, list) and value and isinstance(value[0], list):
+        return f"[{', '.join(_value(tuple(each)) for each in value)}]"
     if isinstance(value, tuple):
         return f"[{', '.join(map(repr, value))}]"
     if isinstance(value, list):

@@ -1,57 +1,87 @@
-"""``fastpin crack``: the growth of a crack at the edge of the hole over the last cycle of a stored result."""
+"""``fastpin crack``: the growth of a crack at the edge of the hole under the loads of a stored result."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 
-from fastpin import cracks, damage, storage
+from fastpin import casefile, cracks, damage, figures, storage
+from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_files
 from fastpin.errors import InputError
-from fastpin.figures.crack_growth import crack_growth_of
-from fastpin.figures.subjects import InFile, with_cycles
-from fastpin.model.angles import DEGREE, angle_at, from_bottom
-from fastpin.model.checks import number
-from fastpin.report.crack_growth import growth_curve, growth_table
+from fastpin.model.case import Case
+from fastpin.model.crack import CrackGrowth, crack_from
+from fastpin.model.growth import LAW_KEYS
+from fastpin.report.crack_growth import case_growth, growth_curve, growth_line, growth_table, spectrum_stops
 from fastpin.report.curves import write_csv
+from fastpin.states.choice import NO_CYCLE, span_of
+from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
+
+PLACES = "{whole} of {total} places"
+"""Text of the bar while the fastest crack is looked for."""
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the growth of a crack, at one place or where a crack grows fastest, and draw it."""
-    subject = InFile(options.result)
-    cycle = with_cycles(subject).cycles[-1]
-    states = damage.cycle_states(subject.part(cycle), cycle)
+    path, case = options.result, storage.stored_case(options.result)
+    states, corners = stored_stops(path, case, options.spectrum)
     check_outputs({"--output": options.output, "--csv": options.csv}, figures=("--output",))
     try:
-        found = _growth(options, states)
+        with Bar(1, PLACES) as bar:
+            found = cracks.planned_growth(states, _how(options, case), not corners, progress_to(bar))
     except InputError as error:
-        raise InputError(flag(error.field) if hasattr(options, error.field) else error.field, error.reason) from None
-    place = from_bottom(found.crack.theta)
-    say(f"crack at {place:.2f} deg from the bottom: {found.words}", "")
+        name = "at" if error.field == "theta" else error.field
+        raise InputError(flag(name) if hasattr(options, name) else name, error.reason) from None
+    say(growth_line(found), "")
     say(*growth_table(found).split("\n"))
-    title = storage.stored_case(options.result).title
     code = write_files(
         [
-            (options.output, lambda path: crack_growth_of(found).save(path, title)),
+            (options.output, lambda path: figures.plot_crack_growth(found, path, case.title)),
             (options.csv, lambda path: write_csv([growth_curve(found)], path)),
         ]
     )
-    if len(states) == cycle.length + 1:
+    if len(states) == corners:
         words = "K between the corners is unknown: run --between 10 keeps states there"
         say(f"note: the cycle has only its {len(states)} corners; {words}", file=sys.stderr)
     return code
 
 
-def _growth(options: argparse.Namespace, states: list[State]) -> cracks.Growth:
-    law = cracks.Walker(
-        options.C, options.m, options.exponent, options.threshold_range,
-        intrinsic_length=options.intrinsic_length, toughness=options.toughness,
-    )  # fmt: skip
-    angle = number("angle", options.angle) * DEGREE
-    if options.at is None:
-        return cracks.growth_along_edge(
-            states, law, options.first, options.last, angle=angle, body=options.body
-        ).fastest
-    crack = cracks.Crack(angle_at(number("at", options.at)), angle, options.body)
-    return cracks.growth(states, crack, law, options.first, options.last)
+def followed(states: list[State], cycles: Sequence[Cycle], case: Case) -> cracks.Growth:
+    """Follow the crack of a case. A bar shows the progress of a search for the fastest one."""
+    with Bar(1, PLACES) as bar:
+        return case_growth(states, cycles, case, progress_to(bar))
+
+
+def stored_stops(path: Path, case: Case, spectrum: bool = False) -> tuple[list[State], int]:
+    """Read the stops of the last cycle and the number of its corners; 0 for a whole history, which is a spectrum.
+
+    Raises
+    ------
+    InputError
+        If there is neither a cycle nor a spectrum, or states are missing.
+    """
+    cycles = () if spectrum else storage.load(path, states=[]).cycles
+    if cycles:
+        part = storage.load(path, states=storage.places_between(path, *span_of(cycles[-1])))
+        return damage.cycle_states(part, cycles[-1]), cycles[-1].length + 1
+    if not spectrum and len(case.history) < 3:
+        raise InputError("result", NO_CYCLE)
+    return spectrum_stops(storage.load(path).states, len(case.history)), 0
+
+
+def _how(options: argparse.Namespace, case: Case) -> CrackGrowth:
+    """The crack of the options, else that of the case."""
+    known = case if options.case is None else casefile.read_case(options.case)
+    if options.case is not None and known.crack is None:
+        raise InputError("case", f"{options.case} has no section [crack]")
+    entries = {} if known.crack is None else known.crack.entries()
+    given = {"first": options.first, "last": options.last, "theta": options.at, "body": options.body}
+    given |= {"angle": options.angle}
+    entries |= {name: value for name, value in given.items() if value is not None}
+    law = {name: value for name in LAW_KEYS if (value := getattr(options, name, None)) is not None}
+    if law:
+        entries["law"] = {"law": "walker"} | law
+    return crack_from(**entries)

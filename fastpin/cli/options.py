@@ -29,7 +29,7 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""
 
-SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear")
+SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances")
 """Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
 
 
@@ -72,6 +72,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_live(commands)
     add_converge(commands)
     add_sweep(commands)
+    add_tolerances(commands)
     add_compliance(commands)
     add_paper(commands)
     add_benchmarks(commands)
@@ -244,24 +245,45 @@ def add_plot(commands: Any) -> None:
             plot.add_argument(f"--{name}", metavar=option.metavar, type=read, help=option.words)
 
 
+_LAW_WORDS = {
+    "C": "growth in a cycle under the range --unit, m",
+    "m": "exponent of Paris and Walker: da/dN = C (dK (1 - R)^(g - 1))^m",
+    "n": "exponent of NASGRO",
+    "p": "NASGRO's exponent near the threshold",
+    "q": "NASGRO's exponent near the toughness",
+    "exponent": "Walker's g (default 1: Paris's law)",
+    "threshold_range": "threshold of long cracks at R = 0, Pa sqrt(m) (default 0)",
+    "threshold_exponent": "Walker: exponent of 1 - R in the threshold (default 1 - g)",
+    "threshold_slope": "NASGRO's C_th for R >= 0 (default 0)",
+    "compressive_slope": "NASGRO's C_th for R < 0 (default 0)",
+    "constraint": "NASGRO's alpha, 1 to 3 (default 2)",
+    "stress_level": "NASGRO's largest stress over the flow stress (default 0.3)",
+    "intrinsic_length": "El Haddad's length of the threshold of short cracks, m (default 0)",
+    "toughness": "K at which the plate breaks, Pa sqrt(m)",
+    "unit": "range that C belongs to, Pa sqrt(m) (default 1e6)",
+}
+"""Help of the constants of the laws of growth."""
+
+
 def add_crack(commands: Any) -> None:
     """Add ``crack``."""
-    crack = _command(commands, "crack", "crack", "run", "grow a crack from the hole under the last cycle of a result")
+    crack = _command(commands, "crack", "crack", "run", "grow a crack from the hole under the loads of a result")
     crack.add_argument("result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE)")
-    for name, required, default, words in (
-        ("first", True, None, "first length of the crack, m"),
-        ("last", True, None, "last length, m"),
-        ("C", True, None, "growth in a cycle under a range of 1 MPa sqrt(m), m"),
-        ("m", True, None, "exponent: da/dN = C (dK (1 - R)^(g - 1))^m"),
-        ("exponent", False, 1.0, "Walker's g (default 1: Paris's law)"),
-        ("threshold-range", False, 0.0, "threshold of long cracks at R = 0, Pa sqrt(m) (default 0)"),
-        ("intrinsic-length", False, 0.0, "El Haddad's length of the threshold of short cracks, m (default 0)"),
-        ("toughness", False, None, "K at which the plate breaks, Pa sqrt(m)"),
-        ("at", False, None, "angle of its mouth from the bottom, deg (default: where a crack grows fastest)"),
-        ("angle", False, 0.0, "its direction from the radius, counter-clockwise, deg (default 0)"),
+    whose = "default: [crack] of the case"
+    for name, words in (
+        ("first", f"first length of the crack, m ({whose})"),
+        ("last", f"last length, m ({whose})"),
+        ("at", "angle of its mouth from the bottom, deg (default: [crack], else where a crack grows fastest)"),
+        ("angle", "its direction from the radius, counter-clockwise, deg (default: [crack], else 0)"),
     ):
-        crack.add_argument(f"--{name}", metavar="X", type=literal, required=required, default=default, help=words)
-    crack.add_argument("--body", choices=("plate", "seat"), default="plate", help="seat: the plate round a bush")
+        crack.add_argument(f"--{name}", metavar="X", type=literal, help=words)
+    crack.add_argument("--body", choices=("plate", "seat"), help="seat: the plate round a bush (default: plate)")
+    crack.add_argument("--case", metavar="CASE", type=Path, help="case file whose [crack] replaces that of the result")
+    crack.add_argument("--spectrum", action="store_true", help="count the cycles of the whole history")
+    laws = "law of the constants below (default walker; without constants: [crack], else the material)"
+    crack.add_argument("--law", choices=("paris", "walker", "nasgro"), help=laws)
+    for name, words in _LAW_WORDS.items():
+        crack.add_argument(f"--{name.replace('_', '-')}", metavar="X", type=literal, help=words)
     crack.add_argument("-o", "--output", metavar="FIGURE", type=Path, help="draw the growth (png, pdf, svg)")
     crack.add_argument("--csv", metavar="FILE", type=Path, help="write the numbers at all lengths")
 
@@ -362,16 +384,7 @@ def add_sweep(commands: Any) -> None:
     """Add ``sweep`` and ``merge``."""
     sweep = _command(commands, "sweep", "sweep", "run", "solve all runs of a plan that are not finished")
     sweep.add_argument("plan", type=Path, help="plan (TOML): a case, and the fields that are varied")
-    sweep.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, help="directory of index and results (default: the plan's name)"
-    )
-    sweep.add_argument("--status", action="store_true", help="report the progress; solve nothing")
-    sweep.add_argument("--retry", action="store_true", help="also solve failed runs again")
-    sweep.add_argument("--files", action="store_true", help="also write each result to an HDF5 file of its own")
-    sweep.add_argument(
-        "--workers", metavar="N", type=literal, help="worker processes (default: one for each processor)"
-    )
-    sweep.add_argument("--dask", metavar="ADDRESS", help="use the workers of a dask scheduler")
+    _add_runs(sweep)
     sweep.add_argument(
         "--shard", metavar="I/N", help="solve only the I-th of N parts; each part needs a directory of its own"
     )
@@ -395,6 +408,34 @@ def add_sweep(commands: Any) -> None:
     merge = _command(commands, "merge", "sweep", "merge", "join the directories of the parts of a sweep")
     merge.add_argument("parts", metavar="DIR", type=Path, nargs="+", help="directories of the parts")
     merge.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="directory of the whole")
+
+
+def _add_runs(command: argparse.ArgumentParser) -> None:
+    """Add the options of the runs of a plan."""
+    command.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, help="directory of index and results (default: the plan's name)"
+    )
+    command.add_argument("--status", action="store_true", help="report the progress; solve nothing")
+    command.add_argument("--retry", action="store_true", help="also solve failed runs again")
+    command.add_argument("--files", action="store_true", help="also write each result to an HDF5 file of its own")
+    command.add_argument(
+        "--workers", metavar="N", type=literal, help="worker processes (default: one for each processor)"
+    )
+    command.add_argument("--dask", metavar="ADDRESS", help="use the workers of a dask scheduler")
+
+
+def add_tolerances(commands: Any) -> None:
+    """Add ``tolerances``."""
+    words = "run a case at the limits of its fields: one at a time, at all corners, and at random samples"
+    tolerances = _command(commands, "tolerances", "tolerances", "run", words)
+    tolerances.add_argument("plan", type=Path, help="plan (TOML): a case, and the limits of its fields [tolerances]")
+    _add_runs(tolerances)
+    _add_outcomes(tolerances)
+    tolerances.add_argument("--table", metavar="FILE", type=Path, help="write all runs to FILE as CSV")
+    tolerances.add_argument("--plot", metavar="FILE", type=Path, help="tornado of the fields (png, pdf or svg)")
+    tolerances.add_argument("--scatter", metavar="FILE", type=Path, help="samples over the fields (png, pdf or svg)")
+    tolerances.add_argument("--value", metavar="NAME", help="outcomes of the figures: a,b (default: the first ones)")
+    _add_json(tolerances, "write the effects as JSON")
 
 
 def add_compliance(commands: Any) -> None:

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fastpin import casefile, figures, live, report, solver, storage
+from fastpin import casefile, cracks, figures, live, report, solver, storage
 from fastpin.cli import wear
+from fastpin.cli.crack import followed, stored_stops
 from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.options import literal
 from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration, progress_to
@@ -35,6 +36,8 @@ from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
+from fastpin.report.crack_growth import growth_line
+from fastpin.report.margins import margin_lines, static_margins
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import (
     TableRows,
@@ -47,7 +50,7 @@ from fastpin.report.states import (
     table_rows,
 )
 from fastpin.states.choice import check_choice, span_of
-from fastpin.states.extremes import KeptStates, marked_extremes, marked_places, yield_doubts_of
+from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
 from fastpin.states.quantities import load_point
 
 if TYPE_CHECKING:  # it imports compiled code
@@ -78,7 +81,8 @@ def run(options: argparse.Namespace) -> int:
         if options.output is None:
             ended = _ending(lambda: solved.append(solver.solve(case.problem, case.history, **keywords)))
         else:
-            keywords |= {"title": case.title, "about": case.about, "save_after": saved, "overwrite": options.overwrite}
+            keywords |= {"title": case.title, "about": case.about, "crack": case.crack}
+            keywords |= {"save_after": saved, "overwrite": options.overwrite}
             ended = _ending(lambda: storage.record(case.problem, case.history, options.output, **keywords))
     if options.output is not None:
         return _write_stored(case, options, ended)
@@ -247,13 +251,13 @@ class ShownPart(NamedTuple):
         The rows of the table.
     places : list of int
         The places of the states that were read, in increasing order.
-    peaks : list of int
-        The places of the extremes that are printed.
+    extremes : dict
+        The extremes that are printed, of all states of the file.
     """
 
     rows: TableRows
     places: list[int]
-    peaks: list[int]
+    extremes: Found
 
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
@@ -264,7 +268,8 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     if options.json is not None:
         return RunReport(case, path, storage.load(path), ended).write(options)
     points, cycles = storage.load_points(path), storage.load(path, states=[]).cycles
-    peaks = marked_places(storage.marked_extremes(path))
+    extremes = storage.marked_extremes(path)
+    peaks = marked_places(extremes)
     rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(path, places).states, peaks)
     places, ends = {*rows.printed, *peaks}, [*range(points.size)[-1:]]
     if cycles:
@@ -278,7 +283,7 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
         places |= set(ends)
     if options.record is not None:
         places |= set(live.recorded_places(points.size))
-    part = ShownPart(rows, sorted(places), list(peaks))
+    part = ShownPart(rows, sorted(places), extremes)
     return RunReport(case, path, storage.load(path, states=sorted(places)), ended, part).write(options)
 
 
@@ -313,7 +318,8 @@ class RunReport:
         cycle = None
         with contextlib.suppress(InputError):
             cycle = self._last_cycle() if case.options.slip_sums else None
-        document = report.summary.document(case, result, error, cycle) if options.json is not None else None
+        grown = self._crack()
+        document = report.summary.document(case, result, error, cycle, grown) if options.json is not None else None
         text = json.dumps(document, indent=2, allow_nan=False) + "\n"
         writers: list[tuple[Any, Callable[[Path], object]]] = []
         if options.json != "-":
@@ -330,7 +336,7 @@ class RunReport:
         if options.json == "-":  # last: the reader of the output may close it early
             sys.stdout.write(text)
         else:
-            self._print_states(cycle)
+            self._print_states(cycle, grown)
         return code
 
     def _report_end(self) -> tuple[int, str | None]:
@@ -366,6 +372,19 @@ class RunReport:
         places = storage.places_between(self.path, *span_of(self.result.cycles[-1]))
         return storage.load(self.path, states=places).cycle()
 
+    def _crack(self) -> cracks.Growth | None:
+        """Follow the crack of the case. None without one; a note says why it can't be followed."""
+        case, result = self.case, self.result
+        if case.crack is None or result is None or self.ended is not None:
+            return None
+        try:
+            if self.part is None or self.path is None:
+                return followed(result.states, result.cycles, case)
+            return followed(stored_stops(self.path, case)[0], result.cycles, case)
+        except InputError as error:
+            say(f"fastpin: note: no crack is followed: {error}", file=sys.stderr)
+            return None
+
     def _plot(self, options: argparse.Namespace, path: Path) -> None:
         """Draw the tractions. States that were not read before are read from the file."""
         try:
@@ -379,7 +398,7 @@ class RunReport:
         if drawn.note:
             say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)
 
-    def _print_states(self, cycle: LoadCycle | None) -> None:
+    def _print_states(self, cycle: LoadCycle | None, grown: cracks.Growth | None) -> None:
         case, result = self.case, self.result
         if case.title:
             say(case.title)
@@ -389,13 +408,13 @@ class RunReport:
             return
         if self.part is None:
             found = dict(enumerate(result.states))
-            places = list(marked_places(marked_extremes(KeptStates(result.states))))
-            rows = table_rows(case.problem, result.states, wanted=places)
+            extremes = marked_extremes(KeptStates(result.states))
+            rows = table_rows(case.problem, result.states, wanted=list(marked_places(extremes)))
         else:
             found = dict(zip(self.part.places, result.states, strict=True))
-            rows, _, places = self.part
+            rows, _, extremes = self.part
         say(*state_table(case.problem, [found[place] for place in rows.printed], rows).split("\n"))
-        peaks = [found[place] for place in places]
+        peaks = [found[place] for place in marked_places(extremes)]
         lines = [hoop_line(case.problem, peaks, body) for body in EDGES]
         lines += bush_line(case.problem, peaks).splitlines()
         ends = span_of(result.cycles[-1]) if result.cycles else ()
@@ -405,12 +424,18 @@ class RunReport:
         say(*cycle_lines(case.problem, result.cycles, peaks))
         if cycle is not None:
             say(report.cycle.cycle_line(cycle))
+        states = result.states if cycle is None else cycle.states
+        margins = static_margins(case.problem, extremes, lambda places: [found[place] for place in places])
         if result.cycles:
-            states = result.states if cycle is None else cycle.states
+            margins += report.fatigue.last_cycle_margins(case.problem, states, result.cycles)
+        say(*margin_lines(case.problem, margins))
+        if result.cycles:
             say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
         elif _is_spectrum(case):
             damages = report.cycle.spectrum_damages(result.states, len(case.history))
             say(*(report.cycle.spectrum_line(one) for one in damages))
+        if grown is not None:
+            say(growth_line(grown))
         say(*(f"note: {note}" for note in note_lines(case, result)))
         say(solver_line(result))
 

@@ -28,7 +28,10 @@ CLUSTER_SECONDS = 30
 def run(options: argparse.Namespace) -> int:
     """Run all cases of a plan that are not finished, then write tables and figures."""
     shard = _shard(options.shard)
-    _check_combination(options)
+    check_combination(options)
+    for name in ("value", "x", "y"):
+        if getattr(options, name) is not None and options.plot is None:
+            raise InputError(f"--{name}", "says what a figure shows; --plot FILE is missing")
     with Bar(1, READ_POINTS) as progress_bar:
         plan = studies.read_plan(options.plan, progress_to(progress_bar))
     if options.outcomes is not None:
@@ -39,21 +42,20 @@ def run(options: argparse.Namespace) -> int:
         summary = studies.sweep.status(plan, directory, shard)
     else:
         try:
-            summary = _run(options, plan, directory, shard)
+            summary = run_plan(options, plan, directory, shard)
         except KeyboardInterrupt:
-            now = studies.sweep.status(plan, directory, shard)
-            kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command continues"
-            return fail(f"interrupted; {kept}", EXIT_INTERRUPTED)
+            return fail_interrupted(plan, directory, shard)
     rows = _written(options, plan, directory)
-    _print_summary(plan, directory, summary, options.status, options.retry)
+    print_summary(plan, directory, summary, options.status, options.retry)
     if options.table == "-":
         say(*report.sweep.text(plan, rows).split("\n"))
     return EXIT_FAILED if (summary.failed or summary.unread) and not options.status else EXIT_OK
 
 
-def _run(
+def run_plan(
     options: argparse.Namespace, plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None
 ) -> studies.sweep.Summary:
+    """Solve the runs of a plan with a progress bar."""
     if options.dask is None:
         note_duration(_expected_seconds(plan, directory, shard, options.workers))
     with _executor(options.dask) as executor, Bar(len(plan.points), "run {n} of {total}") as progress_bar:
@@ -66,6 +68,13 @@ def _run(
             if error.field == "workers":
                 raise InputError("--workers", error.reason) from None
             raise
+
+
+def fail_interrupted(plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None) -> int:
+    """Print how many runs are kept, and return the exit code."""
+    now = studies.sweep.status(plan, directory, shard)
+    kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command continues"
+    return fail(f"interrupted; {kept}", EXIT_INTERRUPTED)
 
 
 def _expected_seconds(
@@ -107,7 +116,7 @@ def _shard(text: str | None) -> tuple[int, int] | None:
     return int(parts[1]), int(parts[2])
 
 
-def _check_combination(options: argparse.Namespace) -> None:
+def check_combination(options: argparse.Namespace) -> None:
     """Refuse options that would have no effect."""
     if options.workers is not None and options.dask is not None:
         raise InputError("--workers", "is for processes of this machine; the scheduler has its own workers")
@@ -115,9 +124,6 @@ def _check_combination(options: argparse.Namespace) -> None:
         raise InputError("--retry", "runs what failed again, --status runs nothing")
     if options.status and options.files:
         raise InputError("--files", "writes the results to files, --status writes nothing")
-    for name in ("value", "x", "y"):
-        if getattr(options, name) is not None and options.plot is None:
-            raise InputError(f"--{name}", "says what a figure shows; --plot FILE is missing")
 
 
 def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None:
@@ -137,9 +143,10 @@ def _values(options: argparse.Namespace, plan: studies.plan.Plan) -> list[str]:
     return [name.strip() for name in given.split(",")]
 
 
-def _print_summary(
+def print_summary(
     plan: studies.plan.Plan, directory: Path, summary: studies.sweep.Summary, only_status: bool, retried: bool
 ) -> None:
+    """Print the progress of a plan, and its failed runs with their reasons."""
     if plan.title:
         say(plan.title)
     counts = f"{summary.done} done, {len(summary.failed)} failed, {summary.waiting} waiting"

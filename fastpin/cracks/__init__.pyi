@@ -1,10 +1,15 @@
+from .fates import CrackFate as CrackFate
 from .growing import EdgeGrowth as EdgeGrowth
 from .growing import Growth as Growth
+from .growing import SpectrumGrowth as SpectrumGrowth
 from .growing import growth as growth
 from .growing import growth_along_edge as growth_along_edge
+from .growing import planned_growth as planned_growth
+from .growing import spectrum_growth as spectrum_growth
 from .intensity import Crack as Crack
 from .intensity import StressIntensity as StressIntensity
 from .intensity import stress_intensity as stress_intensity
+from .laws import GrowthLaw as GrowthLaw
 from .laws import Nasgro as Nasgro
 from .laws import Walker as Walker
 from .laws import intrinsic_length as intrinsic_length

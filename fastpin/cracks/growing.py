@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+from fastpin.cracks.fates import CrackFate
 from fastpin.cracks.intensity import Crack, CrackedBody, CrackedEdge, Residual, histories, sliding_doubt
-from fastpin.cracks.laws import GrowthLaw, checked_law
 from fastpin.errors import InputError, InputWarning
+from fastpin.kernels.reversals import closed_cycles
 from fastpin.model.angles import from_bottom, near_bottom
-from fastpin.model.checks import instance, numbers, positive
+from fastpin.model.checks import check_callable, instance, numbers, positive, true_or_false
+from fastpin.model.crack import CrackGrowth, edge_of, law_of
 from fastpin.model.doubts import warn_of
+from fastpin.model.growth import GrowthLaw, checked_law
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
@@ -24,6 +28,12 @@ from fastpin.states.state import State
 
 COMPUTED, DRAWN = 8, 100
 """Lengths a decade at which K is computed, and lengths a decade of a result: lives are exact to 1e-5."""
+
+MOST_REFINED = 500
+"""Most states of a planned spectrum whose tractions are refined: each takes 0.03 s."""
+
+GrowthProgress = Callable[[float, float], None]
+"""Called with the number of places that are done, and of all places."""
 
 MOST_DECADES = 8.0
 """Most decades from the first to the last length."""
@@ -56,6 +66,9 @@ class Growth(ReadOnly):
     K_min: np.ndarray
     K_II: np.ndarray
     doubts: tuple[InputWarning, ...] = ()
+
+    per: ClassVar[str] = "cycle"
+    """What is repeated: a cycle, or a spectrum."""
 
     def __repr__(self) -> str:
         place = from_bottom(self.crack.theta)
@@ -113,17 +126,64 @@ class Growth(ReadOnly):
         return float(self.length[k - 1] * (self.length[k] / self.length[k - 1]) ** part)
 
     @property
+    def fate(self) -> CrackFate:
+        """Whether the crack starts, stops, or grows to the end."""
+        if self.arrest == self.length[0]:
+            return CrackFate.NONE
+        if not math.isnan(self.arrest):
+            return CrackFate.STOPS
+        return CrackFate.GROWS if math.isnan(self.fracture) else CrackFate.BREAKS
+
+    @property
     def words(self) -> str:
         """A sentence on life, arrest and fracture."""
-        length = units(self.problem)["length"]
-        first, last, stop = length.text(float(self.length[0])), length.text(float(self.length[-1])), self.arrest
-        if stop == self.length[0]:
+        length, fate = units(self.problem)["length"], self.fate
+        first, last = length.text(float(self.length[0])), length.text(float(self.length[-1]))
+        passes = f"in {self.life:.3g} {'cycles' if self.per == 'cycle' else 'spectra'}"
+        if fate == CrackFate.NONE:
             return f"no growth at {first}"
-        if not math.isnan(stop):
-            return f"grows from {first} and stops at {length.text(stop, 4)}"
-        if not math.isnan(self.fracture):
-            return f"grows from {first} to fracture at {length.text(self.fracture, 4)} in {self.life:.3g} cycles"
-        return f"grows from {first} to {last} in {self.life:.3g} cycles"
+        if fate == CrackFate.STOPS:
+            return f"grows from {first} and stops at {length.text(self.arrest, 4)}"
+        if fate == CrackFate.BREAKS:
+            return f"grows from {first} to fracture at {length.text(self.fracture, 4)} {passes}"
+        return f"grows from {first} to {last} {passes}"
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SpectrumGrowth(Growth):
+    """The growth of a crack under a spectrum that is repeated. K_max and K_min are those of one pass.
+
+    Attributes
+    ----------
+    growth_in_pass : ndarray
+        Growth in a pass of the spectrum, m.
+    largest_range, its_threshold : ndarray
+        Range and threshold of the cycle that exceeds its threshold most, Pa sqrt(m).
+    counted : ndarray of int
+        Number of cycles in a pass.
+    """
+
+    growth_in_pass: np.ndarray
+    largest_range: np.ndarray
+    its_threshold: np.ndarray
+    counted: np.ndarray
+
+    per: ClassVar[str] = "spectrum"
+
+    @property
+    def delta_K(self) -> np.ndarray:
+        """The range of the cycle that exceeds its threshold most, Pa sqrt(m)."""
+        return self.largest_range
+
+    @property
+    def threshold(self) -> np.ndarray:
+        """The threshold of the same cycle, Pa sqrt(m)."""
+        return self.its_threshold
+
+    @property
+    def rate(self) -> np.ndarray:
+        """The growth in a pass of the spectrum, m."""
+        return self.growth_in_pass
 
 
 def growth(
@@ -158,15 +218,7 @@ def growth(
         the body is rigid, or a compliance gives its plate no stress inside.
     """
     instance("crack", crack, Crack, "a Crack")
-    stops = stops_of_one_problem(states)
-    edge = CrackedEdge.of(stops[0].problem, crack.body)
-    lengths = _lengths(edge, crack, first, last)
-    checked_law(law)
-    rows = [edge.lines([crack], length) for length in lengths]
-    K = histories(stops, edge, rows, np.zeros(1), residual_stress)[:, 0, :, 0]
-    found = edge.doubts("last", crack, float(lengths[-1])) + sliding_doubt("last", edge.problem, lengths, K)
-    warn_of(found, 2)
-    return _grown(edge.problem, crack, law, lengths, K, tuple(found))
+    return _Following.of(states, law, crack, (first, last), residual_stress).grown(crack)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -202,6 +254,7 @@ def growth_along_edge(
     theta: ArrayLike | None = None,
     angle: float = 0.0,
     body: CrackedBody = "plate",
+    progress: GrowthProgress | None = None,
 ) -> EdgeGrowth:
     """The growth of a crack at many places of the edge, to find the place at which it grows fastest.
 
@@ -216,33 +269,188 @@ def growth_along_edge(
     angle : float
         Direction of the cracks from the radius, rad.
     body : {"plate", "seat"}
+    progress : callable, optional
+        Called as ``progress(done, all)`` with numbers of places.
 
     Raises
     ------
     InputError
         See :func:`growth`.
     """
-    stops = stops_of_one_problem(states)
-    every = np.linspace(-1.5 * np.pi, 0.5 * np.pi, 360, endpoint=False) if theta is None else numbers("theta", theta)
-    every = np.array([near_bottom(place) for place in every.ravel()])
-    if not every.size:
-        raise InputError("theta", "must be at least one angle")
     crack = Crack(0.0, angle, body)
-    edge = CrackedEdge.of(stops[0].problem, crack.body)
-    lengths = _lengths(edge, crack, first, last)
-    checked_law(law)
-    rows, doubts = [edge.lines([crack], length) for length in lengths], edge.doubts("last", crack, float(lengths[-1]))
-    grown = []
-    for part in np.array_split(every, max(1, every.size // 40)):  # 40 places need some 30,000 points in each state
-        K = histories(stops, edge, rows, part)[:, :, :, 0]
-        for k, place in enumerate(part.tolist()):
-            found = (*doubts, *sliding_doubt("last", edge.problem, lengths, K[:, k]))
-            grown.append(_grown(edge.problem, Crack(place, angle, body), law, lengths, K[:, k], found))
-    life, arrest = np.array([one.life for one in grown]), np.array([one.arrest for one in grown])
-    farthest = np.where(np.isnan(arrest), np.inf, arrest)
-    fastest = grown[int(np.lexsort((life, -farthest))[0])]
-    warn_of(fastest.doubts, 2)
-    return EdgeGrowth(every, life, arrest, fastest)
+    check_callable("progress", progress, 2)
+    return _Following.of(states, law, crack, (first, last), None).along(crack, theta, progress)
+
+
+def spectrum_growth(
+    states: Sequence[State],
+    crack: Crack,
+    law: GrowthLaw,
+    first: float,
+    last: float,
+    residual_stress: Residual | None = None,
+    straight: bool = False,
+) -> SpectrumGrowth:
+    """The growth of a crack under a spectrum, a history that is repeated for ever.
+
+    At each length the cycles of K_I are counted over the history (Matsuishi and Endo 1968; ASTM E1049, 5.4.5). The
+    growth in a pass is the sum over its cycles. So no overload retards the growth, and the order of cycles makes no
+    difference. The growth in one pass must be small beside the length.
+
+    Parameters
+    ----------
+    states : sequence of State
+        All stops of one pass in the order of time, at least two, such as a result without repeats.
+    crack, law, first, last, residual_stress
+        See :func:`growth`.
+    straight : bool
+        See :func:`stress_intensity`: quick for thousands of states.
+
+    Raises
+    ------
+    InputError
+        See :func:`growth`.
+    """
+    instance("crack", crack, Crack, "a Crack")
+    follow = _Following.of(
+        states, law, crack, (first, last), residual_stress, True, true_or_false("straight", straight)
+    )
+    found = follow.grown(crack)
+    assert isinstance(found, SpectrumGrowth)
+    return found
+
+
+def planned_growth(
+    states: Sequence[State], how: CrackGrowth, spectrum: bool = False, progress: GrowthProgress | None = None
+) -> Growth:
+    """The growth of a crack as a case says: at its place, or at the place of the fastest growth.
+
+    Parameters
+    ----------
+    states : sequence of State
+        All stops of a cycle, or of a spectrum in the order of time. Of more than 500 states of a spectrum the tractions
+        are straight lines between the nodes.
+    how : CrackGrowth
+    spectrum : bool
+        Whether the states are one pass of a spectrum, see :func:`spectrum_growth`.
+    progress : callable, optional
+        See :func:`growth_along_edge`.
+
+    Raises
+    ------
+    InputError
+        See :func:`growth`; also if neither the case nor the body's material has a law of growth.
+    """
+    stops = stops_of_one_problem(states)
+    instance("how", how, CrackGrowth, "a fastpin.model.CrackGrowth")
+    check_callable("progress", progress, 2)
+    law, counted = law_of(stops[0].problem, how), true_or_false("spectrum", spectrum)
+    residual = None if how.residual_stress is None else how.residual
+    crack = Crack(0.0 if how.theta is None else how.theta, how.angle, edge_of(how.body))
+    straight = counted and len(stops) > MOST_REFINED
+    follow = _Following.of(stops, law, crack, (how.first, how.last), residual, counted, straight)
+    return follow.grown(crack) if how.theta is not None else follow.along(crack, None, progress).fastest
+
+
+class _Following(NamedTuple):
+    """What all cracks of one analysis share."""
+
+    stops: Sequence[State]
+    edge: CrackedEdge
+    law: GrowthLaw
+    lengths: np.ndarray
+    residual: Residual | None
+    counted: bool
+    straight: bool
+
+    @classmethod
+    def of(
+        cls,
+        states: Sequence[State],
+        law: GrowthLaw,
+        crack: Crack,
+        ends: tuple[float, float],
+        residual: Residual | None,
+        counted: bool = False,
+        straight: bool = False,
+    ) -> _Following:
+        """Check the arguments of :func:`growth`."""
+        stops = stops_of_one_problem(states)
+        edge = CrackedEdge.of(stops[0].problem, crack.body)
+        return cls(stops, edge, checked_law(law), _lengths(edge, crack, *ends), residual, counted, straight)
+
+    def intensities(self, crack: Crack, turns: np.ndarray) -> np.ndarray:
+        """K at the computed lengths, shape (states, turns, lengths, 2)."""
+        rows = [self.edge.lines([crack], length) for length in self.lengths]
+        return histories(self.stops, self.edge, rows, turns, self.residual, self.straight)[:, :, :, 0]
+
+    def grown(self, crack: Crack) -> Growth:
+        """The growth of one crack."""
+        K = self.intensities(crack, np.zeros(1))[:, 0]
+        found = self.doubts(crack, K)
+        warn_of(found, 3)
+        return self.read(crack, K, found)
+
+    def along(self, crack: Crack, theta: ArrayLike | None, progress: GrowthProgress | None) -> EdgeGrowth:
+        """The growth of one crack at many places, by default at each degree."""
+        every = (
+            np.linspace(-1.5 * np.pi, 0.5 * np.pi, 360, endpoint=False) if theta is None else numbers("theta", theta)
+        )
+        every = np.array([near_bottom(place) for place in every.ravel()])
+        if not every.size:
+            raise InputError("theta", "must be at least one angle")
+        grown: list[Growth] = []
+        for part in np.array_split(every, max(1, every.size // 40)):  # 40 places need some 30,000 points in each state
+            K = self.intensities(crack, part)
+            for k, place in enumerate(part.tolist()):
+                there = Crack(place, crack.angle, crack.body)
+                grown.append(self.read(there, K[:, k], self.doubts(there, K[:, k])))
+                if progress is not None:
+                    progress(len(grown), every.size)
+        life, arrest = np.array([one.life for one in grown]), np.array([one.arrest for one in grown])
+        farthest = np.where(np.isnan(arrest), np.inf, arrest)
+        fastest = grown[int(np.lexsort((life, -farthest))[0])]
+        warn_of(fastest.doubts, 3)
+        return EdgeGrowth(every, life, arrest, fastest)
+
+    def doubts(self, crack: Crack, K: np.ndarray) -> tuple[InputWarning, ...]:
+        """Doubts about a crack with these intensities, shape (states, lengths, 2)."""
+        longest = float(self.lengths[-1])
+        sliding = sliding_doubt("last", self.edge.problem, self.lengths, K)
+        return (*self.edge.doubts("last", crack, longest), *sliding)
+
+    def read(self, crack: Crack, K: np.ndarray, doubts: tuple[InputWarning, ...]) -> Growth:
+        """The growth from K at the lengths, shape (states, lengths, 2). K/sqrt(a) is smooth over ln a."""
+        lengths = self.lengths
+        count = max(math.ceil(DRAWN * math.log10(lengths[-1] / lengths[0])) + 1, 20)
+        fine = np.geomspace(lengths[0], lengths[-1], count)
+        spline = CubicSpline(np.log(lengths), K / np.sqrt(lengths)[:, None], axis=1)
+        opening, sliding = np.moveaxis(spline(np.log(fine)) * np.sqrt(fine)[:, None], -1, 0)
+        K_II = np.take_along_axis(sliding, np.argmax(opening, axis=0)[None], axis=0)[0]
+        known = (self.edge.problem, crack, self.law, fine, opening.max(axis=0), opening.min(axis=0), K_II, doubts)
+        if not self.counted:
+            return Growth(*known)
+        sums = _sums(self.law, fine, opening)
+        return SpectrumGrowth(
+            *known, growth_in_pass=sums[0], largest_range=sums[1], its_threshold=sums[2], counted=sums[3]
+        )
+
+
+def _sums(law: GrowthLaw, lengths: np.ndarray, opening: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The four fields of :class:`SpectrumGrowth` from K_I, shape (states, lengths)."""
+    values = np.ascontiguousarray(opening.T)
+    tops, bottoms, counts = np.empty(values.shape), np.empty(values.shape), np.empty(len(values), dtype=np.int64)
+    closed_cycles(values, tops, bottoms, counts)
+    growth, largest, needed = np.zeros(lengths.size), np.zeros(lengths.size), np.zeros(lengths.size)
+    for k, (length, count) in enumerate(zip(lengths.tolist(), counts.tolist(), strict=True)):
+        if not count:
+            continue
+        top, bottom = tops[k, :count], bottoms[k, :count]
+        growth[k] = law.rate(top, bottom, length).sum()
+        swing, threshold = law.range(top, bottom), law.threshold(top, bottom, length)
+        most = int(np.argmax(swing - threshold))
+        largest[k], needed[k] = swing[most], threshold[most]
+    return growth, largest, needed, counts
 
 
 def _lengths(edge: CrackedEdge, crack: Crack, first: float, last: float) -> np.ndarray:
@@ -254,21 +462,3 @@ def _lengths(edge: CrackedEdge, crack: Crack, first: float, last: float) -> np.n
         raise InputError("last", f"must be longer than the first length of {start:g} m {most}, not {end:g}")
     edge.check("last", crack, np.array([end]))
     return np.geomspace(start, end, max(math.ceil(COMPUTED * decades) + 1, 4))
-
-
-def _grown(
-    problem: Problem,
-    crack: Crack,
-    law: GrowthLaw,
-    lengths: np.ndarray,
-    K: np.ndarray,
-    doubts: tuple[InputWarning, ...],
-) -> Growth:
-    """The growth from K at the lengths, shape (states, m, 2). K/sqrt(a) is smooth over ln a."""
-    count = max(math.ceil(DRAWN * math.log10(lengths[-1] / lengths[0])) + 1, 20)
-    fine = np.geomspace(lengths[0], lengths[-1], count)
-    spline = CubicSpline(np.log(lengths), K / np.sqrt(lengths)[:, None], axis=1)
-    opening, sliding = np.moveaxis(spline(np.log(fine)) * np.sqrt(fine)[:, None], -1, 0)
-    at = np.argmax(opening, axis=0)[None]
-    K_II = np.take_along_axis(sliding, at, axis=0)[0]
-    return Growth(problem, crack, law, fine, opening.max(axis=0), opening.min(axis=0), K_II, doubts)

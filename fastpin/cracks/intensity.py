@@ -14,33 +14,28 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.cracks.dislocations import CrackLine, needed_points, places, rule, weights
+from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import FastpinError, InputError, InputWarning
 from fastpin.kernels.harmonics import FREE
 from fastpin.model.angles import from_bottom
-from fastpin.model.checks import check_callable, choice, instances, number, numbers
+from fastpin.model.checks import check_callable, choice, instances, number, numbers, true_or_false
+from fastpin.model.crack import MOST_INCLINATION, NO_INSIDE, check_length, depth_of, wall_of
 from fastpin.model.doubts import warn_of
-from fastpin.model.points import EDGES, MOST_ANGLE, Points, far_rim, near_rim
+from fastpin.model.loads import LOADS, REMOTE
+from fastpin.model.points import EDGES, MOST_ANGLE, Points, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
-from fastpin.reading.stress import check_body
+from fastpin.reading.stress import Stress, check_body, stress_at
 from fastpin.runtime.threads import in_threads
 from fastpin.states.choice import stops_of_one_problem
+from fastpin.states.reading_bounds import MAPPED, Hats, NodalStress
 from fastpin.states.state import State
 
 CrackedBody = Literal["plate", "seat"]
 
 Residual = Callable[[np.ndarray], ArrayLike]
 """Normal stress on the line of a crack, Pa, from the distances to its mouth, m, of any shape."""
-
-MOST_INCLINATION = math.radians(60.0)
-"""Largest inclination of a crack, rad. There 80 points still give 1e-4."""
-
-LONGEST = 1e4
-"""Largest length in parts of the hole's radius, checked against the crack in a plate without a hole."""
-
-MOST_OF_WALL = 0.9
-"""Largest depth of a tip in parts of the wall. The ligament beyond is not elastic for long."""
 
 UNKNOWN_FROM = 0.05
 """Depth in parts of the wall from which the outline counts: K of a free rim rises by 1.6 % there."""
@@ -114,6 +109,7 @@ def stress_intensity(
     cracks: Crack | Sequence[Crack],
     lengths: ArrayLike,
     residual_stress: Residual | None = None,
+    straight: bool = False,
 ) -> StressIntensity:
     """The stress intensities of a crack, or of several together, at each state and length.
 
@@ -127,6 +123,9 @@ def stress_intensity(
         Lengths of the crack, m. Several cracks have equal lengths unless there is a column for each.
     residual_stress : callable, optional
         Normal stress on the line of each crack that is added at every state, Pa, from the distances to the mouth, m.
+    straight : bool
+        Whether the tractions are straight lines between the nodes everywhere, see :meth:`fastpin.State.stress`. The
+        intensities of many states are then one product with weights of the nodes. Use it for thousands of states.
 
     Returns
     -------
@@ -158,7 +157,7 @@ def stress_intensity(
     rows = [edge.lines(group, row) for row in table]
     if len(group) > 1:
         _check_apart(rows)
-    K = histories(stops, edge, rows, np.zeros(1), residual_stress)[:, 0]
+    K = histories(stops, edge, rows, np.zeros(1), residual_stress, true_or_false("straight", straight))[:, 0]
     K_I, K_II = (K[..., 0, mode] if single else K[..., mode] for mode in (0, 1))
     found = []
     for k, crack in enumerate(group):
@@ -194,13 +193,11 @@ class CrackedEdge(NamedTuple):
         """The edge of a body. Raise :class:`InputError` if its stress is unknown."""
         check_body(problem, body)
         near, bush, lug = near_rim(problem, body), problem.joint.bush, problem.plate_body.lug
-        if body == "plate" and bush is not None:
-            return cls(problem, body, problem.hole_radius, bush - 1.0, False)
-        if lug.edge_only:
-            raise InputError("body", "a compliance gives no stress inside the plate: a crack needs it")
-        far = far_rim(problem, body)
-        wall = math.inf if far is None else far / near - 1.0
-        return cls(problem, body, near * problem.hole_radius, wall, far is None or lug.outer_kind == FREE)
+        in_bush, wall = body == "plate" and bush is not None, wall_of(problem, body)
+        if not in_bush and lug.edge_only:
+            raise InputError("body", NO_INSIDE)
+        is_free = not in_bush and (math.isinf(wall) or lug.outer_kind == FREE)
+        return cls(problem, body, near * problem.hole_radius, wall, is_free)
 
     @property
     def far(self) -> float:
@@ -214,19 +211,11 @@ class CrackedEdge(NamedTuple):
 
     def depth(self, angle: float, length: float) -> float:
         """Depth of a tip, in radii of the edge, of a crack of this length, m."""
-        return abs(1.0 + length / self.radius * complex(math.cos(angle), math.sin(angle))) - 1.0
+        return depth_of(angle, length / self.radius)
 
     def check(self, field: str, crack: Crack, lengths: np.ndarray) -> None:
         """Raise :class:`InputError` if a length, m, is too large for the body."""
-        length = units(self.problem)["length"]
-        longest = float(np.max(lengths))
-        if longest > LONGEST * self.radius:
-            raise InputError(field, f"must be at most {LONGEST:g} radii of the hole, not {length.text(longest)}")
-        if self.depth(crack.angle, longest) > MOST_OF_WALL * self.wall:
-            wall = length.text(self.wall * self.radius)
-            raise InputError(
-                field, f"must end within {MOST_OF_WALL:g} of the wall of {wall}, not be {length.text(longest)}"
-            )
+        check_length(field, self.problem, self.body, crack.angle, float(np.max(lengths)))
 
     def doubts(self, field: str, crack: Crack, longest: float) -> list[InputWarning]:
         """Doubts about the kernel for a crack of this length, m."""
@@ -257,12 +246,83 @@ def sliding_doubt(field: str, problem: Problem, lengths: np.ndarray, K: np.ndarr
     return [InputWarning(field, words)]
 
 
+class CrackWeights(NamedTuple):
+    """The weights by which the stresses on the lines of cracks give their intensities.
+
+    Attributes
+    ----------
+    points : Points
+        All points, shape (turns, rows, cracks, points).
+    weights : ndarray, shape (rows, cracks, points, 2, cracks, 2)
+        Of the normal and the shear traction at each point, for K_I and K_II of each crack.
+    turn : ndarray, shape (rows, cracks, points)
+        exp(2i (direction of the crack - angle of the point)).
+    added : ndarray
+        Normal stress on the lines that is added to all states, Pa.
+    """
+
+    points: Points
+    weights: np.ndarray
+    turn: np.ndarray
+    added: np.ndarray
+
+    @classmethod
+    def of(
+        cls,
+        edge: CrackedEdge,
+        rows: Sequence[tuple[CrackLine, ...]],
+        turns: np.ndarray,
+        residual_stress: Residual | None,
+    ) -> CrackWeights:
+        """The weights of the cracks of :func:`histories`."""
+        n = needed_points(rows[0], edge.far)
+        # With the first mouth at the angle 0 the weights are found again at other places.
+        at_zero = [tuple(line._replace(mouth=line.mouth - row[0].mouth) for line in row) for row in rows]
+        of_rows = np.array([weights(row, edge.far, n) for row in at_zero])
+        found = np.array([[places(line, n) for line in row] for row in rows])  # rows, cracks, (depth, angle), points
+        depth, angle = found[:, :, 0], found[:, :, 1]
+        mouths = np.array([[line.mouth for line in row] for row in rows])[..., None]
+        inclined = np.array([[line.angle for line in row] for row in rows])[..., None]
+        theta = turns[:, None, None, None] + (mouths + angle)
+        s = np.array([[line.length * rule(n).place for line in row] for row in rows]) * edge.radius
+        added = np.zeros(1) if residual_stress is None else residual_on(s, residual_stress)
+        return cls(
+            Points.at_depth(depth * edge.radius, theta), of_rows, np.exp(2j * (inclined - angle)), np.asarray(added)
+        )
+
+    def intensities(self, stress: Stress) -> np.ndarray:
+        """K_I and K_II in Pa times the root of the edge's radius, shape (turns, rows, cracks, 2)."""
+        mean, half = 0.5 * (stress.radial + stress.hoop), 0.5 * (stress.hoop - stress.radial)
+        traction = mean + self.turn * (half + 1j * stress.shear)
+        return self.of_tractions(traction.real + self.added, traction.imag)
+
+    def of_tractions(self, normal: np.ndarray, shear: np.ndarray) -> np.ndarray:
+        """The same of tractions on the lines, shape (turns, rows, cracks, points)."""
+        pair = np.stack([normal, shear], axis=-1)
+        return np.asarray(np.einsum("mcakne,pmkne->pmca", self.weights, pair, optimize=True))
+
+
+def residual_on(s: np.ndarray, residual_stress: Residual) -> np.ndarray:
+    """Check and return the residual stress of a user's function at distances, m."""
+    try:
+        given = numbers("residual_stress", residual_stress(s))
+    except FastpinError:
+        raise
+    except Exception as error:  # The function is anyone's.
+        words = f"must take an array of distances, it raised a {type(error).__name__}"
+        raise InputError("residual_stress", words) from error
+    if given.shape not in ((), s.shape):
+        raise InputError("residual_stress", f"must return numbers of the shape {s.shape}, not {given.shape}")
+    return given
+
+
 def histories(
     states: Sequence[State],
     edge: CrackedEdge,
     rows: Sequence[tuple[CrackLine, ...]],
     turns: np.ndarray,
     residual_stress: Residual | None = None,
+    straight: bool = False,
 ) -> np.ndarray:
     """K_I and K_II, Pa sqrt(m), shape (states, turns, rows, cracks, 2).
 
@@ -276,42 +336,43 @@ def histories(
         Angles by which all mouths are turned, rad.
     residual_stress : callable, optional
         See :func:`stress_intensity`.
+    straight : bool
+        See :func:`stress_intensity`.
     """
     check_callable("residual_stress", residual_stress, 1)
-    n = needed_points(rows[0], edge.far)
-    # With the first mouth at the angle 0 the weights are found again at other places.
-    at_zero = [tuple(line._replace(mouth=line.mouth - row[0].mouth) for line in row) for row in rows]
-    of_rows = np.array([weights(row, edge.far, n) for row in at_zero])
-    found = np.array([[places(line, n) for line in row] for row in rows])  # rows, cracks, (depth, angle), points
-    depth, angle = found[:, :, 0], found[:, :, 1]
-    mouths = np.array([[line.mouth for line in row] for row in rows])[..., None]
-    inclined = np.array([[line.angle for line in row] for row in rows])[..., None]
-    turn = np.exp(2j * (inclined - angle))
-    added = np.zeros(1)
-    if residual_stress is not None:
-        s = np.array([[line.length * rule(n).place for line in row] for row in rows]) * edge.radius
-        try:
-            given = numbers("residual_stress", residual_stress(s))
-        except FastpinError:
-            raise
-        except Exception as error:  # The function is anyone's.
-            words = f"must take an array of distances, it raised a {type(error).__name__}"
-            raise InputError("residual_stress", words) from error
-        if given.shape not in ((), s.shape):
-            raise InputError("residual_stress", f"must return numbers of the shape {s.shape}, not {given.shape}")
-        added = given
+    cracks = CrackWeights.of(edge, rows, turns, residual_stress)
+    grid = states[0].theta
+    on_one = all(state.seat is None and np.array_equal(state.theta, grid) for state in states)
+    if straight and on_one and len(states) > MAPPED:
+        K = _mapped(states, edge, cracks)
+    else:
+        K = np.array(
+            in_threads(lambda state: cracks.intensities(state.stress(cracks.points, edge.body, straight)), states)
+        )
+    return K * math.sqrt(edge.radius)
 
-    theta = turns[:, None, None, None] + (mouths + angle)
-    points = Points.at_depth(depth * edge.radius, theta)
 
-    def intensities(state: State) -> np.ndarray:
-        stress = state.stress(points, edge.body)
-        mean, half = 0.5 * (stress.radial + stress.hoop), 0.5 * (stress.hoop - stress.radial)
-        traction = mean + turn * (half + 1j * stress.shear)
-        pair = np.stack([traction.real + added, traction.imag], axis=-1)
-        return np.asarray(np.einsum("mcakne,pmkne->pmca", of_rows, pair, optimize=True))
+def _mapped(states: Sequence[State], edge: CrackedEdge, cracks: CrackWeights) -> np.ndarray:
+    """The intensities of many states: the product of their nodal tractions and those of the nodes' hat functions."""
+    names, shape = [list(LOADS)[place] for place in REMOTE], (len(states), *cracks.points.theta.shape[:3], 2)
 
-    return np.array(in_threads(intensities, states)) * math.sqrt(edge.radius)
+    # The residual stress is added at the end: beside it the hat of a node would be rounding.
+    none = np.zeros((1, *cracks.turn.shape))
+    residual, cracks = cracks.of_tractions(none + cracks.added, none), cracks._replace(added=np.zeros(1))
+
+    def of(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+        load = dict(zip(names, remote.tolist(), strict=True))
+        return cracks.intensities(stress_at(edge.problem, tractions, load, cracks.points, edge.body, None)).reshape(
+            1, -1
+        )
+
+    pressure, shear = np.array([one.pressure for one in states]), np.array([one.shear for one in states])
+    hats = Hats(edge.problem, states[0].grid)
+    linear = NodalStress(hats, of)
+    for nodes, functions in hats.blocks(pressure, shear):
+        linear.learn(nodes, functions)
+    remote = np.array([[state.load.get(name, 0.0) for name in names] for state in states])
+    return linear.component(0, slice(None), pressure, shear, remote).reshape(shape) + residual
 
 
 def _check_apart(rows: Sequence[tuple[CrackLine, ...]]) -> None:

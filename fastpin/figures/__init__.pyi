@@ -30,4 +30,6 @@ from .stress import plot_hoop_stress as plot_hoop_stress
 from .stress import plot_stress_field as plot_stress_field
 from .stress import plot_stress_profile as plot_stress_profile
 from .sweep import plot_sweep as plot_sweep
+from .tolerances import plot_samples as plot_samples
+from .tolerances import plot_tornado as plot_tornado
 from .tractions import plot_tractions as plot_tractions

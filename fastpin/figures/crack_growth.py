@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.cracks import Growth
 from fastpin.errors import InputError
@@ -48,6 +49,8 @@ def crack_growth_of(found: Growth | Sequence[Growth]) -> Plot:
         raise InputError("found", f"must be a Growth, or a list of 1 to {MAX_NAMED} of them, not of {len(each)}")
     if any(one.problem != each[0].problem for one in each):
         raise InputError("found", "must be of one problem")
+    if any(one.per != each[0].per for one in each):
+        raise InputError("found", "must be all of cycles, or all of spectra")
     words = "; ".join(f"at {_place(one)}: {one.words}" for one in each)
     return Plot(
         lambda look: _draw(look, each),
@@ -69,7 +72,7 @@ def _draw(look: Look, found: Sequence[Growth]) -> Sheet:
     intensity, intensity_name = unit["stress intensity"].scale([float(one.delta_K.max()) for one in found])
     finite = [one.rate[np.isfinite(one.rate)].max(initial=0.0) for one in found]
     rate, rate_name = unit["crack growth"].scale([float(value) for value in finite])
-    handles = []
+    rate_name, handles = rate_name.replace("cycle", found[0].per), []
     for k, one in enumerate(found):
         a = length * one.length
         top.plot(a, _shown(intensity * one.delta_K), **line(k))
@@ -88,6 +91,9 @@ def _draw(look: Look, found: Sequence[Growth]) -> Sheet:
         draw_grid(panel)
     top.set_ylabel(quantity("range of K", intensity_name))
     bottom.set_ylabel(quantity("growth", rate_name))
+    bottom.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    bottom.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    bottom.xaxis.set_minor_formatter(NullFormatter())
     bottom.set_xlabel(quantity("length of the crack", length_name))
     bottom.set_xlim(length * min(float(one.length[0]) for one in found), length * max(one.length[-1] for one in found))
     sheet.figure.align_ylabels([top, bottom])

@@ -91,7 +91,7 @@ def plot_sweep(
             raise InputError("chart", "must hold at least one chart")
         if ax is not None:
             raise InputError("ax", "holds one chart; give a list of charts no axes")
-        look = Look(path, each[0].title if title is None else title, width or SIDE_BY_SIDE, dpi)
+        look = Look(path, each[0].title if title is None else title, SIDE_BY_SIDE if width is None else width, dpi)
         return look.drawn(sweeps_of(each))
     plot = sweep_of(chart)
     maps = 0 if chart.y is None else len(chart.parts)
@@ -125,7 +125,7 @@ def _draw_beside(look: Look, charts: Sequence[Chart]) -> Sheet:
         for panel, chart in zip(sheet.axes.flat, charts, strict=False):
             draw_chart = _draw_curves if chart.y is None else _draw_maps
             draw_chart(Look(ax=panel), replace(chart, problem=None, title="", label=""))
-            above = [_shown(chart.label), panel.get_title()]
+            above = [shown_label(chart.label), panel.get_title()]
             panel.set_title("\n".join(filter(None, above)), fontsize=8.0, parse_math=False)
     sheet.head(look.title, caption=_fixed_parameters(charts[0]))
     return sheet
@@ -176,13 +176,13 @@ def _draw_maps(look: Look, chart: Chart) -> Sheet:
         labels.append(_draw_contours(panel, chart, numbers, levels))
         _dot_cells(panel, chart, unsure)
         _scale_axes(panel, chart)
-        panel.set_title(_shown(name), fontsize=8.0, parse_math=False)
+        panel.set_title(shown_label(name), fontsize=8.0, parse_math=False)
     _label_panels(sheet, chart)
     bar = sheet.figure.colorbar(mesh, ax=list(sheet.axes.flat), aspect=30, pad=0.02)
-    bar.set_label(_shown(chart.label), parse_math=False)
+    bar.set_label(shown_label(chart.label), parse_math=False)
     bar.outline.set_linewidth(0.5)
     if isinstance(scale, LogNorm):
-        _round_numbers(bar.ax.yaxis, known)
+        round_numbers(bar.ax.yaxis, known)
     sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
     _explain(sheet, chart)
     _thin_out(sheet, [label for part in labels for label in part])
@@ -198,9 +198,9 @@ def _draw_class_maps(sheet: Sheet, chart: Chart, title: str) -> Sheet:
         _draw_empty_cells(panel, x, y, numbers, failed)
         _dot_cells(panel, chart, unsure)
         _scale_axes(panel, chart)
-        panel.set_title(_shown(name), fontsize=8.0, parse_math=False)
+        panel.set_title(shown_label(name), fontsize=8.0, parse_math=False)
     _label_panels(sheet, chart)
-    sheet.head(title, _shown(chart.label), _bar_line(chart), caption=_fixed_parameters(chart))
+    sheet.head(title, shown_label(chart.label), _bar_line(chart), caption=_fixed_parameters(chart))
     _explain(sheet, chart)
     return sheet
 
@@ -276,7 +276,7 @@ def _bar_line(chart: Chart) -> str:
     largest = float(finite.max())
     part = f", {100.0 * largest / spread_of_values:.2g} % of the range" if spread_of_values > 0.0 else ""
     unknown = f"; not known in {bars.size - finite.size:,} runs" if finite.size < bars.size else ""
-    unit = re.search(r"\(([^()]*)\)$", _shown(chart.label))
+    unit = re.search(r"\(([^()]*)\)$", shown_label(chart.label))
     return f"largest error bar: {largest:.2g}{f' {unit[1]}' if unit else ''}{part}{unknown}"
 
 
@@ -335,7 +335,7 @@ def _explain(sheet: Sheet, chart: Chart) -> None:
 
 def _draw_curves(look: Look, chart: Chart) -> Sheet:
     shown = spread(len(chart.parts), MAX_NAMED)
-    names = [_shown(chart.parts[k][0].replace("\n", ", ")) for k in shown]
+    names = [shown_label(chart.parts[k][0].replace("\n", ", ")) for k in shown]
     across = max(1, min(3, 78 // (max(map(len, names)) + 8)))  # entries of the legend side by side
     sheet = look.sheet([2.9], extra=0.6 + 0.17 * math.ceil(len(names) / across))
     panel = sheet.axes[0, 0]
@@ -358,13 +358,13 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
         if name:
             handles.append(Line2D([], [], label=name, **style))
     _scale_axes(panel, chart)
-    panel.set_ylabel(_shown(chart.label), parse_math=False)
+    panel.set_ylabel(shown_label(chart.label), parse_math=False)
     if chart.classes:
         panel.set_yticks(list(chart.classes), list(chart.classes.values()))
         panel.set_ylim(min(chart.classes) - 0.5, max(chart.classes) + 0.5)
     elif _spans_decades(_known_values(chart)):
         panel.set_yscale("log")
-        _round_numbers(panel.yaxis, _known_values(chart))
+        round_numbers(panel.yaxis, _known_values(chart))
     _label_panels(sheet, chart)
     if any_failed:
         handles.append(Line2D([], [], color="0.3", linestyle="none", marker="x", markersize=4.0, label="failed run"))
@@ -409,7 +409,7 @@ def _mark_failed(panel: Axes, x: np.ndarray, index: int) -> None:
     )
 
 
-def _shown(label: str) -> str:
+def shown_label(label: str) -> str:
     """A label with the letters of figures in its units."""
     label = re.sub(r"\(([^()]*)\)$", lambda found: f"({shown_unit(found[1])})", label)
     return re.sub(r"(?<=\d )u(?=\w+$)", "µ", label, flags=re.MULTILINE).replace(" -", " −")
@@ -418,13 +418,13 @@ def _shown(label: str) -> str:
 def _scale_axes(panel: Axes, chart: Chart) -> None:
     if chart.x.log:
         panel.set_xscale("log")
-        _round_numbers(panel.xaxis, chart.x.values)
+        round_numbers(panel.xaxis, chart.x.values)
     if chart.y is not None and chart.y.log:
         panel.set_yscale("log")
-        _round_numbers(panel.yaxis, chart.y.values)
+        round_numbers(panel.yaxis, chart.y.values)
 
 
-def _round_numbers(axis: MatplotlibAxis, values: np.ndarray) -> None:
+def round_numbers(axis: MatplotlibAxis, values: np.ndarray) -> None:
     """Put numbers at 1, 2 and 5 times powers of ten on a logarithmic axis, or at powers of ten on a long one."""
     decades = math.log10(float(values.max()) / float(values.min()))
     subs = (1.0, 2.0, 5.0) if decades <= DECADES else (1.0, 3.0) if decades <= 2.0 * DECADES else (1.0,)
@@ -454,7 +454,7 @@ def _label_panels(sheet: Sheet, chart: Chart) -> None:
     for index, panel in enumerate(sheet.axes.flat):
         panel.set_visible(index < filled)
         if index + sheet.axes.shape[1] >= filled:
-            panel.set_xlabel(_shown(chart.x.label))
+            panel.set_xlabel(shown_label(chart.x.label))
     if chart.y is not None:
         for panel in sheet.axes[:, 0]:
-            panel.set_ylabel(_shown(chart.y.label))
+            panel.set_ylabel(shown_label(chart.y.label))

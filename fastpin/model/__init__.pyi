@@ -1,5 +1,6 @@
 from .case import About as About
 from .case import Case as Case
+from .crack import CrackGrowth as CrackGrowth
 from .fatigue import FatigueConstants as FatigueConstants
 from .grid import Grid as Grid
 from .history import LoadHistory as LoadHistory

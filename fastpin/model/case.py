@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field, fields
 
 from fastpin.errors import InputError
 from fastpin.model.checks import instance, string
+from fastpin.model.crack import CrackGrowth
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
@@ -62,6 +63,8 @@ class Case:
         Project, author, revision and date. No result depends on them.
     wear : Wear or None
         How the bodies wear, for ``fastpin wear``.
+    crack : CrackGrowth or None
+        How a crack grows from the hole.
 
     Raises
     ------
@@ -75,10 +78,13 @@ class Case:
     title: str = ""
     about: About = field(default_factory=About)
     wear: Wear | None = None
+    crack: CrackGrowth | None = None
 
     def __post_init__(self) -> None:
         if self.wear is not None:
             instance("wear", self.wear, Wear, "a Wear")
+        if self.crack is not None:
+            instance("crack", self.crack, CrackGrowth, "a CrackGrowth")
         instance("about", self.about, About, "an About")
         instance("problem", self.problem, Problem, "a Problem")
         instance("history", self.history, LoadHistory, "a LoadHistory")

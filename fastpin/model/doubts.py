@@ -20,9 +20,10 @@ from contextvars import ContextVar
 import numpy as np
 
 from fastpin.errors import InputWarning
+from fastpin.model.growth import KnownLaw, Nasgro
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.materials import Material
+from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import owner_of
 from fastpin.model.problem import LOOKED_AT, Problem
@@ -106,10 +107,16 @@ EDGES = {
 }
 """Edges of the bodies: the name of the body, and words for the place."""
 
+LEAST_INTENSITY = 1e3
+"""Least plausible stress intensity of a law of growth, Pa sqrt(m): a thousandth of the threshold of metals."""
+
+TRIED_INTENSITY, LEAST_RATE, MOST_RATE = 1e7, -12.0, -4.0
+"""A range of the stress intensity, Pa sqrt(m), and the powers of ten, m, between which metals grow in its cycle."""
+
 _GIVEN: ContextVar[bool] = ContextVar("given", default=False)
 
 _STRENGTHS = (
-    "yield_strength", "fatigue_strength", "shear_fatigue_strength", "bending_limit", "torsion_limit", "limit_range",
+    *STRENGTHS, "fatigue_strength", "shear_fatigue_strength", "bending_limit", "torsion_limit", "limit_range",
 )  # fmt: skip
 """Constants of a material that are stresses."""
 
@@ -285,13 +292,33 @@ def _of_material(name: str, material: Material, has_units: bool) -> Iterator[Inp
     if MOST_NU < nu < 0.5 and material.E >= STIFF:
         yield InputWarning("nu", f"{nu:g} of the {name} is unusual for a stiff body; metals have 0.25 to 0.45")
     strengths = {} if material.fatigue is None else material.fatigue.given()
-    strengths |= {} if material.yield_strength is None else {"yield_strength": material.yield_strength}
+    strengths |= material.strengths
+    least = material.known_yield_strength
+    if least is not None and material.ultimate_strength is not None and material.ultimate_strength < least:
+        words = f"{_short(material.ultimate_strength)} Pa of the {name} is less than its yield strength"
+        yield InputWarning("ultimate_strength", f"{words} of {_short(least)} Pa")
     for field in _STRENGTHS:
         if field in strengths and (value := strengths[field]) < LEAST_STRENGTH * material.E:
             yield InputWarning(
                 field,
                 f"{_short(value)} Pa of the {name} is very small; stresses are in Pa; {_meant(value, 'MPa', 1e6)}",
             )
+    if material.growth is not None:
+        yield from _of_growth(name, material.growth)
+
+
+def _of_growth(name: str, law: KnownLaw) -> Iterator[InputWarning]:
+    """Doubts about the units of a law of crack growth."""
+    for field in ("threshold_range", "toughness", "unit"):
+        value = getattr(law, field)
+        if value is not None and 0.0 < value < LEAST_INTENSITY:
+            words = f"{_short(value)} Pa sqrt(m) of the {name} is very small"
+            yield InputWarning(f"growth.{field}", f"{words}; {_meant(value, 'MPa sqrt(m)', 1e6)}")
+    power = law.n if isinstance(law, Nasgro) else law.m
+    rate = math.log10(law.C) + power * math.log10(TRIED_INTENSITY / law.unit)
+    if not LEAST_RATE < rate < MOST_RATE:
+        words = f"gives 1e{rate:.3g} m per cycle of 10 MPa sqrt(m) in the {name}"
+        yield InputWarning("growth.C", f"{words}; C is the growth under the range unit, in m per cycle")
 
 
 def _of_sizes(problem: Problem) -> Iterator[InputWarning]:

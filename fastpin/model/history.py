@@ -355,6 +355,17 @@ class LoadHistory:
             ends.append(np.tile(once, block.count))
         return LoadHistory.of_blocks([Block(given, np.concatenate(ends), lengths, count, cycle=True)])
 
+    def scaled(self, factors: Corner) -> LoadHistory:
+        """This history with some loads multiplied by factors, plain numbers by load: ``{"P": 1.1}``. Other loads stay.
+
+        An unknown load, or a factor that is no finite number, raises :class:`InputError`.
+        """
+        factor = np.ones(len(LOADS))
+        for name, value in check_corner("factors", factors).items():
+            factor[LOADS.index(name)] = value
+        with np.errstate(over="ignore"):  # an infinite load is refused
+            return LoadHistory.of_blocks([replace(block, given=block.given * factor) for block in self._blocks])
+
     def per_thickness(self, thickness: float) -> LoadHistory:
         """This history with its forces, N, and moments, N m, divided by a thickness, m.
 

@@ -22,13 +22,17 @@ import numpy as np
 from fastpin.errors import InputError, UnknownNameError
 from fastpin.model.checks import choice, instance, number, positive, string
 from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.growth import KnownLaw, known_law
 from fastpin.model.synonyms import explains_keywords
 
 Plane = Literal["strain", "stress"]
 """Plane strain or plane stress, for type checkers."""
 
-MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "yield_strength")
+MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "growth", "yield_strength", "ultimate_strength")
 """Keys of the material of a body in case files."""
+
+STRENGTHS = ("yield_strength", "ultimate_strength")
+"""Strengths of a material, Pa, each of them optional."""
 
 PLANES = ("strain", "stress")
 """Words for plane strain and plane stress."""
@@ -63,12 +67,16 @@ class Material:
         They change no state, and serve :mod:`fastpin.damage` only.
     yield_strength : float, optional
         Pa, positive. It changes no state: fastpin warns of a contact pressure above it.
+    ultimate_strength : float, optional
+        Stress at which a tensile specimen breaks, Pa, positive. It changes no state.
+    growth : Walker or Nasgro, optional
+        Law of crack growth with its constants, see :mod:`fastpin.cracks`. It changes no state.
 
     Raises
     ------
     InputError
         If `E` is not positive or beyond its limits, `nu` is outside [0, 0.5], `name` is no text, `fatigue` is of
-        another class, or `yield_strength` is not positive.
+        another class, a strength is not positive, or `growth` is no law of fastpin.
     """
 
     E: float
@@ -76,6 +84,8 @@ class Material:
     name: str = ""
     fatigue: FatigueConstants | None = None
     yield_strength: float | None = None
+    ultimate_strength: float | None = None
+    growth: KnownLaw | None = None
 
     def __post_init__(self) -> None:
         rigid = isinstance(self.E, (float, np.floating)) and math.inf == self.E
@@ -92,13 +102,17 @@ class Material:
         object.__setattr__(self, "name", string("name", self.name))
         if self.fatigue is not None:
             instance("fatigue", self.fatigue, FatigueConstants, "fastpin.model.FatigueConstants")
-        if self.yield_strength is not None:
-            object.__setattr__(self, "yield_strength", positive("yield_strength", self.yield_strength))
+        for strength in STRENGTHS:
+            if (value := getattr(self, strength)) is not None:
+                object.__setattr__(self, strength, positive(strength, value))
+        if self.growth is not None:
+            known_law("growth", self.growth)
 
     def __repr__(self) -> str:
         fatigue = "" if self.fatigue is None else f", fatigue={self.fatigue!r}"
-        strength = "" if self.yield_strength is None else f", yield_strength={self.yield_strength:g}"
-        return f"{self.elastic_form[:-1]}{fatigue}{strength})"
+        strengths = "".join(f", {name}={value:g}" for name, value in self.strengths.items())
+        growth = "" if self.growth is None else f", growth={self.growth!r}"
+        return f"{self.elastic_form[:-1]}{fatigue}{strengths}{growth})"
 
     @property
     def elastic_form(self) -> str:
@@ -120,6 +134,11 @@ class Material:
     def shear_modulus(self) -> float:
         """G = E / (2 (1 + nu)), Pa."""
         return self.E / (2.0 * (1.0 + self.nu))
+
+    @property
+    def strengths(self) -> dict[str, float]:
+        """The strengths that are given, Pa, by name: `yield_strength` and `ultimate_strength`."""
+        return {name: value for name in STRENGTHS if (value := getattr(self, name)) is not None}
 
     @property
     def known_yield_strength(self) -> float | None:

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.loads import LATER, LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
 
 
@@ -132,6 +132,14 @@ def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
 def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:
     """Names of the loads that are not zero in at least one of `loads`."""
     return [name for name in LOADS if any(load.get(name, 0.0) != 0.0 for load in loads)]
+
+
+def printed_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, float]:
+    """Return loads, by name, in printed units. Later loads are left out where they are 0."""
+    unit = units(problem)
+    return {
+        name: unit[LOAD_KIND[name]].factor * value for name, value in load.items() if value != 0.0 or name not in LATER
+    }
 
 
 def named_loads(problem: Problem, load: Mapping[str, float]) -> str:

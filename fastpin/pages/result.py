@@ -14,7 +14,7 @@ from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.album import Album
 from fastpin.pages.content import Page
-from fastpin.pages.sections import SECTIONS, PageParts, seat
+from fastpin.pages.sections import SECTIONS, PageParts, crack, seat
 from fastpin.pages.source import Source, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
 from fastpin.pages.writing import check_page, write_page
@@ -106,7 +106,9 @@ def write_source(
     page, sections = PageParts(source, Album(), convergence), []
     makers = WEAR_SECTIONS
     if source.life is None:
-        makers = [make for make in SECTIONS if make is not seat or source.case.problem.seat is not None]
+        left_out = [seat] if source.case.problem.seat is None else []
+        left_out += [crack] if source.case.crack is None else []
+        makers = [make for make in SECTIONS if make not in left_out]
     for number, make in enumerate(makers):
         report(number, len(makers))
         sections.append(make(page))

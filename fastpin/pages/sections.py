@@ -10,6 +10,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
+from fastpin.figures.crack_growth import crack_growth_of
 from fastpin.figures.cycles import cycles_of
 from fastpin.figures.fatigue import fatigue_of, spectrum_of
 from fastpin.figures.gap import gap_of
@@ -25,6 +26,7 @@ from fastpin.kernels.status import SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
+from fastpin.model.growth import Nasgro, Walker, law_words
 from fastpin.model.loads import LOAD, named_load
 from fastpin.model.materials import Material
 from fastpin.model.options import OPTIONS
@@ -36,8 +38,10 @@ from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import ROUNDING, case_rows, corner_columns, edge_body
 from fastpin.report.convergence import heading, reported_series, series_columns
+from fastpin.report.crack_growth import growth_line
 from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
-from fastpin.report.margins import HEADS, fatigue_margins, margin_rows, static_margins
+from fastpin.report.fatigue import fatigue_margins
+from fastpin.report.margins import HEADS, margin_rows, static_margins
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_line, state_columns
 from fastpin.report.table import MAX_ROWS, Column
@@ -153,7 +157,7 @@ def margins(page: PageParts) -> PageSection:
     found += fatigue_margins(problem, source.fatigue, cycle)
     run = "" if source.result.complete else " of an unfinished run"
     states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
-    words = f"Margins over {states}{run}: allowable/value - 1"
+    words = f"Margins of safety over {states}{run}: allowable/value - 1"
     remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
     remarks += "down to a third of the hole's radius below them; fastpin is elastic."
     rows = margin_rows(problem, found)
@@ -211,6 +215,9 @@ def materials(page: PageParts) -> PageSection:
         parts += [Text(f"Source of the constants of the {body}: {text}.") for body, text in sources.items() if text]
     else:
         parts.append(Text("No material has fatigue constants: see the key fatigue of a case file.", "missing"))
+    for body, material in found.items():
+        if material.growth is not None:
+            parts.append(Text(sentence(f"Crack growth in the {body}: {law_words(material.growth)}")))
     return PageSection("materials", "Materials", parts)
 
 
@@ -430,6 +437,18 @@ def fatigue(page: PageParts) -> PageSection:
     return PageSection("fatigue", "Fatigue", parts)
 
 
+def crack(page: PageParts) -> PageSection:
+    """Return the growth of the crack of the case, with its figure."""
+    found = page.source.crack
+    if isinstance(found, str):
+        return PageSection("crack", "Crack", [Text(found, "missing")])
+    parts: list[SectionPart] = [Text(sentence(growth_line(found))), page.album.figure(crack_growth_of(found))]
+    if isinstance(found.law, Walker | Nasgro):
+        parts.append(Text(sentence(f"Law of growth: {law_words(found.law)}")))
+    parts += [Text(sentence(f"Doubt: {doubt}")) for doubt in found.doubts]
+    return PageSection("crack", "Crack", parts)
+
+
 def convergence(page: PageParts) -> PageSection:
     """Return a convergence study, if there is one."""
     study = page.convergence
@@ -499,6 +518,6 @@ def _shortened(text: str) -> str:
 
 SECTIONS: Sequence[Callable[[PageParts], PageSection]] = (
     overview, margins, case, materials, loads, key_figures, tractions, zones, seat, hysteresis, stresses,
-    fatigue, convergence, checks, provenance,
+    fatigue, crack, convergence, checks, provenance,
 )  # fmt: skip
-"""All sections, in the order of the page. Only a joint whose bush slips has a seat."""
+"""All sections, in the order of the page. Only a joint whose bush slips has a seat, and only some cases a crack."""

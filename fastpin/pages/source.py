@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from fastpin import storage
+from fastpin.cracks import Growth
 from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
@@ -23,6 +24,7 @@ from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import elastic_bodies
 from fastpin.report.case import edge_body
+from fastpin.report.crack_growth import case_growth
 from fastpin.report.cycle import MOST_STOPS, fatigue_bodies, spectrum_damages
 from fastpin.report.states import stored_rows
 from fastpin.solver.result import Result
@@ -44,6 +46,9 @@ MOST_DRAWN = 6
 
 MOST_MAPPED = 60
 """States of the map of a history that is too long to be mapped whole: its first cycles."""
+
+MOST_OF_SPECTRUM = 500
+"""Most states of a spectrum under which a crack is followed: more take longer than the rest of the page."""
 
 MOST_SUMMED = 60
 """Most stored cycles of a life of wear from which damage is summed up: each takes some 0.15 s."""
@@ -302,6 +307,20 @@ class Source:
             return spectrum_damages(states, len(self.case.history))
         except InputError:
             return []
+
+    @cached_property
+    def crack(self) -> Growth | str:
+        """The growth of the crack of the case over its last cycle or spectrum; or why it is not known."""
+        if self.case.crack is None:
+            return "The case has no crack: its section [crack] gives one."
+        whole = not self.result.cycles
+        if whole and self.points.size > MOST_OF_SPECTRUM:
+            return f"The history has {self.points.size:,} states. Left to: fastpin crack {self.path or 'FILE'}"
+        states = self.read(range(self.points.size)) if whole or self.cycle is None else self.cycle.states
+        try:
+            return case_growth(states, self.result.cycles, self.case)
+        except InputError as error:
+            return f"No crack is followed: {error.field} {error.reason}."
 
     @cached_property
     def worn(self) -> list[WornFatigue]:

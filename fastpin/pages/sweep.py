@@ -17,6 +17,7 @@ from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Listing, Page, PageSection, SectionPart, Table, Text
 from fastpin.pages.result import merged
 from fastpin.pages.source import now
+from fastpin.pages.tolerances import effects_section, limits_section
 from fastpin.pages.writing import check_page, write_page
 from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.sweep import brief, chart, check_axes, definition_words, run_columns
@@ -24,6 +25,7 @@ from fastpin.storage.files import INDEX
 from fastpin.studies.index import DONE, FAILED, WAITING, Index
 from fastpin.studies.plan import Plan, describe_values, parse_plan, read_plan
 from fastpin.studies.sweep import PLAN, rows
+from fastpin.studies.tolerances import Tolerances, has_tolerances, parse_tolerances, read_tolerances
 from fastpin.version import __version__
 
 MOST_CHARTS = 8
@@ -82,22 +84,42 @@ def write_sweep_report(
     if version != __version__:
         words = f"was made by fastpin {version}, which names its runs differently: write its page with that version"
         raise InputError(str(folder), words)
-    found = _plan_of(folder, digest) if plan is None else read_plan(plan)
+    found, study = _plan_of(folder, digest) if plan is None else _read(file_path("plan", plan))
     runs, album, sections = rows(found, folder), Album(), []
-    for number, make in enumerate(SECTIONS):
-        report(number, len(SECTIONS))
+    makers = SECTIONS if study is None else _sections_of(study)
+    for number, make in enumerate(makers):
+        report(number, len(makers))
         sections.append(make(found, runs, album))
-    report(len(SECTIONS), len(SECTIONS))
+    report(len(makers), len(makers))
     if found.digest != digest:
         words = "The sweep was last run with another plan than this one; runs that it lacks are waiting."
         sections[0] = PageSection("overview", "Overview", [*sections[0].parts, Text(words, "note")])
-    lead = "A parameter sweep of the frictional contact of an elastic pin in the hole of an elastic plate."
+    kind = "parameter sweep" if study is None else "tolerance study"
+    lead = f"A {kind} of the frictional contact of an elastic pin in the hole of an elastic plate."
     made = f"Made by fastpin {__version__} on {now()} from {folder.resolve().name}/{INDEX}."
     named = merged(found.case(found.points[0]).about, about)
     write_page(Page(found.title or "Report of a sweep", lead, sections, made, named), target)
 
 
-def _plan_of(folder: Path, digest: str | None) -> Plan:
+def _read(path: Path) -> tuple[Plan, Tolerances | None]:
+    """Read a plan, which may be a tolerance plan."""
+    if has_tolerances(read_text(path, MOST_BYTES_OF_PLAN)):
+        study = read_tolerances(path)
+        return study.plan, study
+    return read_plan(path), None
+
+
+def _sections_of(study: Tolerances) -> Sequence[Callable[[Plan, Sequence[dict[str, Any]], Album], PageSection]]:
+    """Return the sections of a tolerance study: its limits and effects stand for plan and charts of a sweep."""
+    own = {_plan: limits_section, _charts: effects_section}
+
+    def of_study(make: Callable[..., PageSection]) -> Callable[..., PageSection]:
+        return lambda plan, runs, album: own[make](study, runs, album)
+
+    return [of_study(make) if make in own else make for make in SECTIONS]
+
+
+def _plan_of(folder: Path, digest: str | None) -> tuple[Plan, Tolerances | None]:
     """Return the plan of a sweep from its copy. Its base case lies where the plan was read, which is not known."""
     copy, fault, changed = folder / PLAN, None, False
     if not copy.is_file():
@@ -105,12 +127,13 @@ def _plan_of(folder: Path, digest: str | None) -> Plan:
     text = read_text(copy, MOST_BYTES_OF_PLAN)
     for base in (folder.resolve().parent, folder):
         try:
-            plan = parse_plan(text, str(copy), base)
+            study = parse_tolerances(text, str(copy), base) if has_tolerances(text) else None
+            plan = parse_plan(text, str(copy), base) if study is None else study.plan
         except CaseFileError as error:
             fault = fault or error
             continue
         if plan.digest == digest:
-            return plan
+            return plan, study
         changed = True
     if changed:
         raise InputError(str(folder), "its base case has changed since the sweep was run; name the plan")

@@ -5,6 +5,7 @@ from . import fatigue as fatigue
 from . import stress as stress
 from . import summary as summary
 from . import sweep as sweep
+from . import tolerances as tolerances
 from . import wear as wear
 from .case import describe as describe
 from .schema import json_schema as json_schema

@@ -7,8 +7,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
+from fastpin.model.crack import CrackGrowth, law_of
+from fastpin.model.growth import law_words
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import Material
@@ -77,7 +80,20 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         rows.append(("states", f"kept: {options.keep}"))
     if case.wear is not None:
         rows.append(("wear", _wear_words(case.wear)))
+    if case.crack is not None:
+        rows.append(("crack", crack_words(problem, case.crack)))
     return rows
+
+
+def crack_words(problem: Problem, crack: CrackGrowth) -> str:
+    """Lengths, place, direction, law and residual stress of a crack that is to grow."""
+    length = units(problem)["length"]
+    place = "where it grows fastest" if crack.theta is None else f"at {from_bottom(crack.theta):.4g} deg"
+    parts = [f"{length.text(crack.first)} to {length.text(crack.last)}", place]
+    parts += [f"{math.degrees(crack.angle):.4g} deg from the radius"] if crack.angle else []
+    parts += ["in the plate round the bush"] if crack.body == "seat" else []
+    parts += [law_words(law_of(problem, crack))]
+    return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
 
 
 def _wear_words(wear: Wear) -> str:

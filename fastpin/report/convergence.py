@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from fastpin.model.problem import Problem
-from fastpin.model.units import DEGREE, named_loads, scaled, units
+from fastpin.model.units import DEGREE, named_loads, printed_loads, scaled, units
 from fastpin.report.cells import csv_cell
-from fastpin.report.summary import json_ready, printed_loads, unit_names
+from fastpin.report.summary import json_ready, unit_names
 from fastpin.report.table import Column, table
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
 from fastpin.storage.files import replacing

@@ -2,22 +2,38 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
 import numpy as np
 
-from fastpin.cracks import Growth
+from fastpin import cracks, damage
+from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
+from fastpin.model.case import Case
+from fastpin.model.growth import Nasgro, Walker, law_entries
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
 from fastpin.report.table import table
+from fastpin.states.choice import missing_corners
+from fastpin.states.cycles import Cycle
+from fastpin.states.state import State
 
 ROWS = 13
 """Most lengths of a table, in equal steps of their logarithm."""
 
 
-def growth_curve(found: Growth) -> Curve:
+def passes_of(found: cracks.Growth) -> str:
+    """Return the name of the passes that are counted: "cycles" or "spectra"."""
+    return "cycles" if found.per == "cycle" else "spectra"
+
+
+def growth_curve(found: cracks.Growth) -> Curve:
     """Return length, stress intensities, range, threshold, rate and cycles of a crack, by its length."""
     unit = units(found.problem)
     length, intensity, rate = (unit[kind].name for kind in ("length", "stress intensity", "crack growth"))
+    rate, passes = rate.replace("cycle", found.per), passes_of(found)
     return Curve(
         {"mouth [deg]": from_bottom(found.crack.theta), "body": found.crack.body},
         {
@@ -28,12 +44,67 @@ def growth_curve(found: Growth) -> Curve:
             f"range [{intensity}]": found.delta_K,
             f"threshold [{intensity}]": found.threshold,
             f"rate [{rate}]": found.rate,
-            "cycles": found.cycles,
+            passes: found.cycles,
         },
     )
 
 
-def growth_table(found: Growth) -> str:
+def growth_line(found: cracks.Growth) -> str:
+    """Return a line of text: the place of a crack, and what becomes of it."""
+    where = " in the plate round the bush" if found.crack.body == "seat" else ""
+    return f"crack{where} at {from_bottom(found.crack.theta):z.2f} deg from the bottom: {found.words}"
+
+
+def spectrum_stops(states: Sequence[State], corners: int) -> list[State]:
+    """Return the states of a whole history of so many corners, which is a spectrum.
+
+    Raises
+    ------
+    InputError
+        If a corner was not kept, or there are less than two.
+    """
+    if len(states) < 2:
+        raise InputError("states", "a spectrum needs at least two kept states")
+    if missing_corners(states, 1, corners):
+        raise InputError("states", 'not all corners of the history are kept; keep = "all" keeps them')
+    return list(states)
+
+
+def case_growth(
+    states: Sequence[State], cycles: Sequence[Cycle], case: Case, progress: Callable[[float, float], None] | None = None
+) -> cracks.Growth:
+    """Return the growth of the crack of a case over its last cycle; without cycles over the history as a spectrum.
+
+    Raises
+    ------
+    InputError
+        If states are missing, or the crack can't be followed.
+    """
+    assert case.crack is not None
+    if cycles:
+        return cracks.planned_growth(damage.cycle_states(states, cycles[-1]), case.crack, progress=progress)
+    return cracks.planned_growth(spectrum_stops(states, len(case.history)), case.crack, True, progress)
+
+
+def document(found: cracks.Growth) -> dict[str, Any]:
+    """Return a growth as a JSON-ready dict. A life without end is infinite, and a length that is not known is NaN."""
+    length, law = units(found.problem)["length"].factor, found.law
+    values = {"first": found.length[0], "last": found.length[-1], "arrest": found.arrest, "fracture": found.fracture}
+    return {
+        "angle_of_mouth": from_bottom(found.crack.theta),
+        "direction": math.degrees(found.crack.angle),
+        "body": found.crack.body,
+        "law": law_entries(law) if isinstance(law, Walker | Nasgro) else None,
+        "repeated": found.per,
+        "fate": found.fate.words,
+        "life": found.life,
+        **{name: length * float(value) for name, value in values.items()},
+        "words": found.words,
+        "doubts": [str(doubt) for doubt in found.doubts],
+    }
+
+
+def growth_table(found: cracks.Growth) -> str:
     """Return some lengths of a crack with its stress intensities, threshold, rate and cycles, as text."""
     unit = units(found.problem)
     at = np.unique(np.linspace(0, found.length.size - 1, ROWS).round().astype(int))
@@ -45,11 +116,12 @@ def growth_table(found: Growth) -> str:
         ("range", "stress intensity", found.delta_K),
         ("threshold", "stress intensity", found.threshold),
         ("growth", "crack growth", found.rate),
-        ("cycles", "life", found.cycles),
+        (passes_of(found), "life", found.cycles),
     ]
     cells = []
     for name, kind, values in columns:
         factor, label = unit[kind].scale([float(value) for _, same, each in columns if same == kind for value in each])
         texts = [f"{factor * value:.4g}" for value in values[at].tolist()]
-        cells.append((name, "" if kind == "life" else label, ["never" if text == "inf" else text for text in texts]))
+        label = "" if kind == "life" else label.replace("cycle", found.per)
+        cells.append((name, label, ["never" if text == "inf" else text for text in texts]))
     return table(cells)

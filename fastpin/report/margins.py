@@ -1,28 +1,27 @@
-"""Margins of a result: yield of each body, the bush in its seat, and fatigue, each with the state that governs it.
+"""Margins of safety of a result: strengths of each body, the bush in its seat, and fatigue, each with its state.
 
-A margin is allowable/value - 1, as engineers of joints write it: below 0 the part fails.
+A margin of safety is allowable/value - 1, as aerospace engineers write it: below 0 the part fails. One table serves the
+terminal, JSON and reports. Extremes are those of all kept states.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from fastpin.damage import Fatigue
-from fastpin.damage import fatigue as fatigue_of
-from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
-from fastpin.model.points import bodies_of, elastic_bodies, owner_of
+from fastpin.model.points import bodies_of, material_of
 from fastpin.model.problem import Problem
-from fastpin.model.units import units
-from fastpin.report.case import edge_body
+from fastpin.model.units import named_loads, printed_loads, units
+from fastpin.report.table import aligned
 from fastpin.states.extremes import Found
 from fastpin.states.quantities import point_name
 from fastpin.states.state import State
 from fastpin.states.yielding import PREFIX, circles, place_words, strength_of, von_mises_peak
 
-HEADS = ("subject", "value", "allowable", "margin", "load point", "remark")
+HEADS = ("subject", "value", "allowable", "margin", "load point", "loads", "remark")
 """Headings of :func:`margin_rows`."""
 
 
@@ -39,6 +38,8 @@ class Margin(NamedTuple):
         The load point of the state that governs.
     remark : str
         The place; or why there is no margin.
+    loads : mapping
+        The loads of that state by name; empty where no single state governs.
     """
 
     subject: str
@@ -47,6 +48,7 @@ class Margin(NamedTuple):
     allowable: float = math.nan
     load_point: float = math.nan
     remark: str = ""
+    loads: Mapping[str, float] = MappingProxyType({})
 
     @property
     def margin(self) -> float:
@@ -57,7 +59,10 @@ class Margin(NamedTuple):
 
 
 def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
-    """Return the margins of yield and of the bush over all states.
+    """Return the margins of the strengths and of the bush over all states.
+
+    The elastic von Mises stress of each body is compared with its yield strength, and with its ultimate strength if
+    that is given.
 
     Parameters
     ----------
@@ -70,18 +75,41 @@ def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]
     rows = []
     for owner in dict.fromkeys(circle.owner for circle in circles(problem)):
         circle = next(each for each in circles(problem) if each.owner == owner)
-        strength, subject = strength_of(problem, circle), f"{owner}: yield, von Mises"
         extreme = found.get((PREFIX + owner, "largest"))
-        if problem.dimensionless:
-            rows.append(Margin(subject, remark="not known: the problem has no dimensions"))
-        elif strength is None:
-            rows.append(Margin(subject, remark="not known: no yield strength given"))
-        elif extreme is None:
-            rows.append(Margin(subject, "traction", allowable=strength, remark="not known: there is no state"))
-        else:
-            place = place_words(problem, von_mises_peak(read([extreme.place])[0], owner))
-            rows.append(Margin(subject, "traction", extreme.value, strength, extreme.load_point, place))
+        state = None if extreme is None else read([extreme.place])[0]
+        strengths = {"yield": strength_of(problem, circle)}
+        if (ultimate := material_of(problem, circle.body).ultimate_strength) is not None:
+            strengths["ultimate"] = ultimate
+        for name, strength in strengths.items():
+            subject = f"{owner}: {name}, von Mises"
+            if problem.dimensionless:
+                rows.append(Margin(subject, remark="not known: the problem has no dimensions"))
+            elif strength is None:
+                rows.append(Margin(subject, remark="not known: no yield strength given"))
+            elif extreme is None or state is None:
+                rows.append(Margin(subject, "traction", allowable=strength, remark="not known: there is no state"))
+            else:
+                place = place_words(problem, von_mises_peak(state, owner))
+                row = Margin(subject, "traction", extreme.value, strength, extreme.load_point, place, state.load)
+                rows.append(row)
     return rows + (_of_bush(problem, found, read) if "seat" in bodies_of(problem) else [])
+
+
+def smallest_margin(rows: Sequence[Margin]) -> Margin | None:
+    """Return the row with the smallest margin that is known and finite; None if there is none."""
+    return min((row for row in rows if math.isfinite(row.margin)), key=lambda row: row.margin, default=None)
+
+
+def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
+    """Return lines of text on the margins that are known, the smallest one marked; none if no margin is known."""
+    known = [row for row in rows if math.isfinite(row.margin)]
+    if not known:
+        return []
+    cells = []
+    for name, value, allowable, margin, point, loads, place in margin_rows(problem, known):
+        where = "" if point == "-" else f"load point {point}: {loads}"
+        cells.append((name, f"{value} of {allowable}", margin, where, place))
+    return ["margins of safety over all kept states, allowable/value - 1:", *aligned(cells, "lrrll")]
 
 
 def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
@@ -98,60 +126,29 @@ def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], lis
     smallest = f"smallest pressure {pressure}" if least.value > 0.0 or not problem.bush_slips else "the bush opens"
     where = f"{smallest} at {from_bottom(fit.open_angle):z.1f} deg"
     needed = fit.pressure_to_close or math.nan  # of a loose bush it is not known: without pressure it is open anyhow
-    opened = Margin(opening, "traction", needed, fit.press_fit_pressure, least.load_point, where)
+    opened = Margin(opening, "traction", needed, fit.press_fit_pressure, least.load_point, where, state.load)
     slip = found.get(("seat_slip", "largest magnitude"))
     if slip is not None and problem.bush_slips:
-        seat = read([slip.place])[0].seat
+        sliding = read([slip.place])[0]
+        seat = sliding.seat
         angle = math.nan if seat is None else from_bottom(seat.peak_slip_angle)
         words = f"no limit of the slip is known; largest at {angle:z.1f} deg"
-        return [Margin(turning, "displacement", abs(slip.value), load_point=slip.load_point, remark=words), opened]
+        most = abs(slip.value)
+        return [Margin(turning, "displacement", most, math.nan, slip.load_point, words, sliding.load), opened]
     words = "not known: no friction between bush and plate given" if least.value > 0.0 else "the bush opens"
-    return [Margin(turning, "ratio", slipping.value, load_point=slipping.load_point, remark=words), opened]
-
-
-def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Sequence[State]) -> list[Margin]:
-    """Return the margins of fatigue over the last cycle, with a row for each elastic edge of a hole.
-
-    Parameters
-    ----------
-    problem : Problem
-    known : sequence of Fatigue or str
-        Smith, Watson and Topper's parameter over the last cycle; or why it is not known.
-    states : sequence of State
-        The states of the last cycle.
-    """
-    rows = []
-    for body in (body for body in elastic_bodies(problem) if body != "pin"):
-        subject = f"last cycle only: {edge_body(problem, body)}, fatigue"
-        one = next((one for one in known if not isinstance(one, str) and one.body == body), None)
-        if one is None:
-            why = known.rstrip(".") if isinstance(known, str) else "no constants of fatigue given"
-            rows.append(Margin(subject, remark=f"not known: {why[0].lower()}{why[1:]}"))
-            continue
-        try:
-            limited = fatigue_of(states, "findley", body)  # its limit follows from the bending and the torsion limit
-        except InputError:
-            remark = f"not known: no bending_limit and torsion_limit of the {owner_of(problem, body)} given"
-            life = one.hot_spot.life
-            if not math.isnan(life):
-                remark += f"; life {life:.3g} cycles" if math.isfinite(life) else "; infinite life"
-            kind = "stress times strain"
-            rows.append(Margin(f"{subject}, Smith-Watson-Topper", kind, one.hot_spot.parameter, remark=remark))
-            continue
-        place = "" if math.isnan(limited.hot_spot.theta) else f"at {from_bottom(limited.hot_spot.theta):z.1f} deg"
-        limit = math.nan if limited.limit is None else float(limited.limit)
-        rows.append(Margin(f"{subject}, Findley", "traction", limited.hot_spot.parameter, limit, remark=place))
-    return rows
+    loads = read([slipping.place])[0].load
+    return [Margin(turning, "ratio", slipping.value, math.nan, slipping.load_point, words, loads), opened]
 
 
 def margin_rows(problem: Problem, found: Sequence[Margin]) -> list[tuple[str, ...]]:
     """Return rows of text under :data:`HEADS`."""
-    unit = units(problem)
+    unit, least = units(problem), smallest_margin(found)
 
-    def verdict(margin: float) -> str:
-        if math.isnan(margin):
+    def verdict(row: Margin) -> str:
+        if math.isnan(row.margin):
             return "not known"
-        return "none needed" if math.isinf(margin) else f"{margin:+.2f}"
+        words = "none needed" if math.isinf(row.margin) else f"{row.margin:+.2f}"
+        return f"{words}, the smallest" if row is least else words
 
     def shown(row: Margin, value: float) -> str:
         if math.isnan(value):
@@ -165,8 +162,9 @@ def margin_rows(problem: Problem, found: Sequence[Margin]) -> list[tuple[str, ..
             row.subject,
             shown(row, row.value),
             shown(row, row.allowable),
-            verdict(row.margin),
+            verdict(row),
             "-" if math.isnan(row.load_point) else point_name(row.load_point),
+            named_loads(problem, row.loads) if row.loads else "-",
             row.remark,
         )
         for row in found
@@ -175,7 +173,7 @@ def margin_rows(problem: Problem, found: Sequence[Margin]) -> list[tuple[str, ..
 
 def document(problem: Problem, found: Sequence[Margin]) -> list[dict[str, Any]]:
     """Return margins as JSON-ready dicts, in printed units."""
-    unit = units(problem)
+    unit, least = units(problem), smallest_margin(found)
     factors = {row.kind: 1.0 if row.kind == "ratio" else unit[row.kind].factor for row in found}
     return [
         {
@@ -184,6 +182,8 @@ def document(problem: Problem, found: Sequence[Margin]) -> list[dict[str, Any]]:
             "allowable": factors[row.kind] * row.allowable,
             "unit": "" if row.kind == "ratio" else unit[row.kind].name,
             "margin": row.margin,
+            "smallest": row is least,
+            "loads": printed_loads(problem, row.loads),
             "load_point": row.load_point,
             "remark": row.remark,
         }

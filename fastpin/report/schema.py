@@ -11,10 +11,13 @@ from dataclasses import fields
 from typing import Any
 
 from fastpin.bodies.compliance import FORMAT, VERSION
+from fastpin.cracks.fates import CRACK_FATES
 from fastpin.model.checks import choice
 from fastpin.model.fields import FIELDS, Field
 from fastpin.model.loads import ACTING, LOADS
+from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import METHODS, SolveOptions
+from fastpin.model.points import EDGES
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
 from fastpin.states.quantities import QUANTITIES
@@ -37,7 +40,7 @@ def json_schema(command: str) -> Schema:
 
     Parameters
     ----------
-    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear"}
+    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances"}
         ``fastpin resume`` and ``show`` write the document of "run".
 
     Raises
@@ -57,6 +60,7 @@ def _summary() -> Schema:
     extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
     sides = _object({"smallest": extreme, "largest": extreme})
     texts, numbers = ("subject", "unit", "remark"), ("value", "allowable", "margin", "load_point")
+    governing = {"smallest": _TRUTH, "loads": _map_of(_NUMBER, "loads of the state that governs")}
     of_cycle = dict.fromkeys(Cycle._fields, _UNKNOWN)
     of_cycle |= {"corner": _WHOLE, "length": _WHOLE, "number": _WHOLE, "solved": _TRUTH}
     return _object(
@@ -77,9 +81,28 @@ def _summary() -> Schema:
             "statistics": _map_of(_NUMBER, "counters of the solver, and its time, s"),
             "states": _list_of(_state(seat=_state())),
             "extremes": _object(dict.fromkeys(READINGS, sides), required=()),
-            "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN))),
+            "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing)),
             "cycles": _list_of(_object(of_cycle)),
             "cycle": _or_null(_last_cycle()),
+            "crack": _or_null(_crack()),
+        }
+    )
+
+
+def _crack() -> Schema:
+    lengths = dict.fromkeys(("first", "last", "arrest", "fracture"), _UNKNOWN)
+    return _object(
+        {
+            "angle_of_mouth": _NUMBER,
+            "direction": _NUMBER,
+            "body": {"enum": list(EDGES)},
+            "law": _or_null({"type": "object"}),
+            "repeated": {"enum": ["cycle", "spectrum"]},
+            "fate": {"enum": list(CRACK_FATES.values())},
+            "life": _UNKNOWN | {"description": "cycles or spectra; null: no end"},
+            **lengths,
+            "words": _TEXT,
+            "doubts": _list_of(_TEXT),
         }
     )
 
@@ -91,7 +114,7 @@ def _problem() -> Schema:
             "rigid": _TRUTH,
             "E": _UNKNOWN | {"description": "Pa; null: rigid"},
             "nu": _NUMBER,
-            "yield_strength": _UNKNOWN,
+            **dict.fromkeys(STRENGTHS, _UNKNOWN | {"description": "Pa; null: unknown"}),
         }
     )
     body = {"type": "object", "properties": {"kind": _TEXT}, "required": ["kind"]}
@@ -279,6 +302,35 @@ def _wear() -> Schema:
     )
 
 
+def _tolerances() -> Schema:
+    values = _map_of(_NUMBER, "the fields")
+    reached = _object({"value": _NUMBER, "part": _TEXT, "values": values})
+    span = _or_null(_object({"smallest": reached, "largest": reached}))
+    alone = {"values": _list_of(_NUMBER), "outcomes": _list_of(_UNKNOWN)}
+    field = _object(alone | dict.fromkeys(("swing", "rank_correlation"), _UNKNOWN))
+    outcome = _object(
+        {
+            "unit": _TEXT,
+            "nominal": _UNKNOWN,
+            "fields": _map_of(field, "the effect of each field, the largest swing first"),
+            "corners": span,
+            "all": span,
+            "percentiles": _map_of(_NUMBER, "percentiles of the samples"),
+        }
+    )
+    limits = _object(dict.fromkeys(("nominal", "from", "to"), _NUMBER) | {"spacing": {"enum": ["linear", "log"]}})
+    return _object(
+        {
+            "fastpin": _TEXT,
+            "title": _TEXT,
+            **dict.fromkeys(("points", "done", "corners", "samples"), _WHOLE),
+            "failed": _list_of(_object({"part": _TEXT, "values": values, "reason": _TEXT})),
+            "fields": _map_of(limits, "the limits of each field, in the units of the case file"),
+            "outcomes": _map_of(outcome, "the effects on each outcome"),
+        }
+    )
+
+
 _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "run": _summary,
     "converge": _convergence,
@@ -286,6 +338,7 @@ _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "benchmarks": _benchmarks,
     "compliance": _compliance,
     "wear": _wear,
+    "tolerances": _tolerances,
 }
 
 COMMANDS = tuple(_DOCUMENTS)

@@ -8,16 +8,19 @@ from typing import Any
 
 import numpy as np
 
+from fastpin import cracks
 from fastpin.bodies.body import BodyBase
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LATER, LOAD_KIND, LOADS
-from fastpin.model.materials import Material
+from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
-from fastpin.model.units import DEGREE, Unit, units
+from fastpin.model.units import DEGREE, Unit, printed_loads, units
+from fastpin.report import crack_growth
 from fastpin.report import cycle as cycle_report
+from fastpin.report.fatigue import last_cycle_margins
 from fastpin.report.margins import document as margins_document
 from fastpin.report.margins import static_margins
 from fastpin.solver.result import Result
@@ -29,7 +32,11 @@ from fastpin.version import __version__
 
 
 def document(
-    case: Case, result: Result | None, error: str | None = None, cycle: LoadCycle | None = None
+    case: Case,
+    result: Result | None,
+    error: str | None = None,
+    cycle: LoadCycle | None = None,
+    crack: cracks.Growth | None = None,
 ) -> dict[str, Any]:
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
@@ -45,12 +52,12 @@ def document(
         The reason why `result` is incomplete.
     cycle : LoadCycle, optional
         The cycle of the entry ``cycle``.
+    crack : Growth, optional
+        The crack of the entry ``crack``.
     """
     problem, pair = case.problem, case.problem.pair
     alpha, beta = problem.surfaces.dundurs()
     unit = units(problem)
-    factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
-    listed = [place for place, name in enumerate(LOADS) if name not in LATER or name in case.history.largest]
     found = {
         "fastpin": __version__,
         "title": case.title,
@@ -70,13 +77,7 @@ def document(
             "press_fit_pressure": problem.press_fit_pressure,
             "dimensionless": problem.dimensionless,
         },
-        "history": {
-            "loads": [LOADS[place] for place in listed],  # a load that a corner does not give becomes null
-            "blocks": [
-                {"repeat": each.count, "corners": (factors * each.given)[:, listed].tolist()}
-                for each in case.history.blocks
-            ],
-        },
+        "history": _history_summary(case),
         "solver": case.options.keywords(),
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
@@ -87,8 +88,23 @@ def document(
             for row in (() if result is None else result.cycles)
         ],
         "cycle": None if cycle is None else cycle_report.document(cycle),
+        "crack": None if crack is None else crack_growth.document(crack),
     }
     return json_ready(found)
+
+
+def _history_summary(case: Case) -> dict[str, Any]:
+    """Return the blocks of the load history. A load that a corner does not give becomes null."""
+    unit = units(case.problem)
+    factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
+    listed = [place for place, name in enumerate(LOADS) if name not in LATER or name in case.history.largest]
+    return {
+        "loads": [LOADS[place] for place in listed],
+        "blocks": [
+            {"repeat": each.count, "corners": (factors * each.given)[:, listed].tolist()}
+            for each in case.history.blocks
+        ],
+    }
 
 
 def _in_its_unit(problem: Problem, name: str) -> Any:
@@ -107,18 +123,10 @@ def unit_names(problem: Problem) -> dict[str, str]:
     return {kind: unit.name for kind, unit in units(problem).items()} | angle
 
 
-def printed_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, float]:
-    """Return loads, by name, in printed units. Later loads are left out where they are 0."""
-    unit = units(problem)
-    return {
-        name: unit[LOAD_KIND[name]].factor * value for name, value in load.items() if value != 0.0 or name not in LATER
-    }
-
-
 def _material_summary(material: Material) -> dict[str, Any]:
     modulus = None if material.is_rigid else material.E
     known = {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
-    return known | {"yield_strength": material.yield_strength}
+    return known | {name: getattr(material, name) for name in STRENGTHS}
 
 
 def _body_summary(body: BodyBase) -> dict[str, Any]:
@@ -173,12 +181,12 @@ def _extremes_summary(result: Result) -> dict[str, Any]:
 
 
 def _margins_summary(result: Result) -> list[dict[str, Any]]:
-    """Return the margins of yield and of the bush over all states."""
+    """Return the margins over all states, and those of fatigue over the last cycle where they are known."""
     found = Found()
     for name, pair in result.extremes().items():
         found |= {(name, "smallest"): pair.smallest, (name, "largest"): pair.largest}
     rows = static_margins(result.problem, found, lambda places: [result.states[place] for place in places])
-    return margins_document(result.problem, rows)
+    return margins_document(result.problem, rows + last_cycle_margins(result.problem, result.states, result.cycles))
 
 
 def json_ready(value: Any) -> Any:

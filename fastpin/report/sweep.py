@@ -80,7 +80,7 @@ def run_columns(plan: Plan, rows: Sequence[TableRow]) -> list[Column]:
     for name, heading in shown.items():
         values = [_in_words(plan, name, row.get(name)) for row in rows]
         bars = [row.get(bar_column(name)) for row in rows]
-        columns.append(_column(plan.labels.get(name, heading), values, _unit(plan, name, unit), bars))
+        columns.append(_column(plan.labels.get(name, heading), values, unit_name(plan, name, unit), bars))
     columns.append(("status", "", [row["status"] for row in rows]))
     return columns
 
@@ -100,7 +100,7 @@ def write_csv(plan: Plan, rows: Sequence[TableRow], path: Path) -> None:
     check_writable(path)
     rows, unit = printed_rows(plan, rows)
     named = [(name, unit.get(field_kind(name), "")) for name in plan.fields]
-    named += [(name, _unit(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
+    named += [(name, unit_name(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
     with_bars = [
         each
         for name in (*plan.outcomes, *KEY_FIGURES)
@@ -247,7 +247,7 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
     found = [row.get(value) for row in rows if row["status"] == DONE and row.get(value) is not None]
     least = _rounding(plan, rows, value, unit)
     factor, label = scaled(
-        [number for number in found if number is not None and abs(number) > least], _unit(plan, value, unit)
+        [number for number in found if number is not None and abs(number) > least], unit_name(plan, value, unit)
     )
     others_words = {other: _value_words(plan, rows, other, unit) for other in others}
     axes = [_axis(plan, rows, name, unit) for name in (y, x) if name is not None]
@@ -265,7 +265,7 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
             bars[name][place] = factor * row.get(bar_column(value), math.nan)
     return Chart(
         plan.title,
-        _label(plan.labels.get(value, value.replace("_", " ")), label),
+        axis_label(plan.labels.get(value, value.replace("_", " ")), label),
         axes[-1][0],
         axes[0][0] if y else None,
         [(name, *arrays) for name, arrays in parts.items()],
@@ -282,7 +282,7 @@ def _axis(plan: Plan, rows: Sequence[TableRow], name: str, unit: dict[str, str])
     values = sorted({row[name] for row in rows})
     factor, label = scaled(values, unit.get(field_kind(name), ""))
     words = plan.labels.get(name, field_words(name))
-    axis = Axis(_label(words, label), factor * np.array(values, float), plan.fields[name] == "log")
+    axis = Axis(axis_label(words, label), factor * np.array(values, float), plan.fields[name] == "log")
     return axis, {value: place for place, value in enumerate(values)}
 
 
@@ -292,7 +292,7 @@ def _in_words(plan: Plan, name: str, value: Any) -> Any:
     return next((word for number, word in classes.items() if number == value), value)
 
 
-def _label(words: str, unit: str) -> str:
+def axis_label(words: str, unit: str) -> str:
     return f"{words} ({unit})" if unit else words
 
 
@@ -315,7 +315,7 @@ def _rounding(plan: Plan, rows: Sequence[TableRow], value: str, unit: dict[str, 
     if value in KEY_FIGURES and value not in plan.outcomes and KEY_FIGURES[value]:
         alike = [name for name, kind in KEY_FIGURES.items() if kind == KEY_FIGURES[value]]
     numbers = [abs(row[name]) for row in rows if row["status"] == DONE for name in alike if _is_number(row.get(name))]
-    return max(_ROUNDING.get(_unit(plan, value, unit), 0.0), ROUNDING * max(numbers, default=0.0))
+    return max(_ROUNDING.get(unit_name(plan, value, unit), 0.0), ROUNDING * max(numbers, default=0.0))
 
 
 def _column(name: str, values: Sequence[Any], unit: str, bars: Sequence[float | None] = ()) -> Column:
@@ -362,7 +362,7 @@ def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRo
     return found, names
 
 
-def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:
+def unit_name(plan: Plan, value: str, unit: dict[str, str]) -> str:
     if value in plan.outcomes:
         return plan.outcomes[value].unit_in({kind: Unit(1.0, name) for kind, name in unit.items()}).name
     return "s" if value == "seconds" else unit.get(KEY_FIGURES[value], "")

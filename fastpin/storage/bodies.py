@@ -16,7 +16,8 @@ from fastpin.bodies.body import BodyBase
 from fastpin.bodies.kinds import KINDS
 from fastpin.model.checks import as_toml
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.materials import Material
+from fastpin.model.growth import law_entries, law_from
+from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.problem import Problem
 from fastpin.storage.damage import as_python, dataset_of, text_of
 
@@ -24,11 +25,11 @@ from fastpin.storage.damage import as_python, dataset_of, text_of
 def write_material(group: h5py.Group, name: str, material: Material) -> None:
     """Write a material into a new group of this name."""
     body = group.create_group(name)
-    body.attrs.update(E=material.E, nu=material.nu, name=material.name)
-    if material.yield_strength is not None:
-        body.attrs["yield_strength"] = material.yield_strength
+    body.attrs.update(E=material.E, nu=material.nu, name=material.name, **material.strengths)
     if material.fatigue is not None:
         body.create_group("fatigue").attrs.update(material.fatigue.given())
+    if material.growth is not None:
+        body.create_group("growth").attrs.update(law_entries(material.growth))
 
 
 def read_material(group: h5py.Group) -> Material:
@@ -37,8 +38,12 @@ def read_material(group: h5py.Group) -> Material:
     if "fatigue" in group:
         stored = group["fatigue"].attrs.items()
         fatigue = FatigueConstants(**{str(constant): as_python(value) for constant, value in stored})
-    strength = float(attributes["yield_strength"]) if "yield_strength" in attributes else None
-    return Material(float(attributes["E"]), float(attributes["nu"]), text_of(attributes["name"]), fatigue, strength)
+    growth = None
+    if "growth" in group:
+        growth = law_from({str(constant): as_python(value) for constant, value in group["growth"].attrs.items()})
+    strengths = {name: float(attributes[name]) for name in STRENGTHS if name in attributes}
+    elastic = float(attributes["E"]), float(attributes["nu"])
+    return Material(*elastic, text_of(attributes["name"]), fatigue, **strengths, growth=growth)
 
 
 def write_bodies(group: h5py.Group, problem: Problem) -> None:

@@ -20,6 +20,7 @@ Every array has its unit as an attribute. Dimensions are named as in netCDF, so 
 from __future__ import annotations
 
 import functools
+import json
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -35,6 +36,7 @@ from fastpin.errors import InputError
 from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
 from fastpin.model.case import About
+from fastpin.model.crack import CRACK_KEYS, CrackGrowth, crack_from
 from fastpin.model.fields import FIELDS
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
@@ -301,6 +303,17 @@ def read_about(file: h5py.File) -> About:
     """Read who made the case of a result, and for what."""
     stored = file["solver"].attrs
     return About(**{each.name: text_of(stored.get(each.name, "")) for each in fields(About)})
+
+
+def read_crack(file: h5py.File) -> CrackGrowth | None:
+    """Read how a crack grows in the case of a result; None unless the case said so."""
+    text = text_of(file["solver"].attrs.get("crack", ""))
+    if not text:
+        return None
+    entries = json.loads(text)
+    if not isinstance(entries, dict) or not set(entries) <= set(CRACK_KEYS):
+        raise ValueError("the crack of its case can't be read")
+    return crack_from(**entries)
 
 
 def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:

@@ -21,6 +21,7 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
+from fastpin.model.crack import CrackGrowth, checked_crack
 from fastpin.model.doubts import doubts, pressure_doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
@@ -36,7 +37,7 @@ from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.journal import check_beside, is_empty
-from fastpin.storage.layout import read_about, read_history, read_options, read_problem
+from fastpin.storage.layout import read_about, read_crack, read_history, read_options, read_problem
 from fastpin.storage.origin import largest_pressure, provenance, stored_yield_doubts
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
@@ -49,6 +50,7 @@ def record(
     *,
     title: str = "",
     about: About | None = None,
+    crack: CrackGrowth | None = None,
     save_after: Sequence[int] = (),
     overwrite: bool = False,
     grid: Grid | None = None,
@@ -72,6 +74,8 @@ def record(
         Title of the run, stored in the file.
     about : About, optional
         Project, author, revision and date, stored in the file for its report.
+    crack : CrackGrowth, optional
+        How a crack grows from the hole, stored in the file for ``fastpin crack`` and its report.
     save_after : sequence of int
         Corners, counted from 1, with a restart in the file. ``load(path, after=corner)`` is quick at these corners.
     overwrite : bool
@@ -99,8 +103,8 @@ def record(
     true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
-    corners = items("save_after", save_after, "a list of corners")
-    save_corners = frozenset(whole_number("save_after", corner, 1) for corner in corners)
+    history = as_history(history)
+    save_corners = _checked_corners(save_after, len(history))
     _check_names(options)
     solve_options = SolveOptions(**options)
     check_options(solve_options, grid, start)
@@ -108,15 +112,11 @@ def record(
         raise InputError(
             "error_bars", "a run that continues another one has none in a file; leave them or the file out"
         )
-    task = Task(problem, as_history(history), solve_options, grid, progress, save_corners)
+    task = Task(problem, history, solve_options, grid, progress, save_corners)
     if solve_options.error_bars:
         check_halves(task, start)
-    if max(save_corners, default=0) > len(task.history):
-        raise InputError(
-            "save_after", f"must be corners from 1 to {len(task.history)}, not {as_toml(max(save_corners))}"
-        )
     warn_of(doubts(problem, task.history, solve_options), 2)
-    writer = FileRecorder(path, task, title, about)
+    writer = FileRecorder(path, task, title, about, checked_crack(problem, crack))
     writer.overwrite = overwrite
     writer.check_overwriting()
     writer.chosen_arc &= start is None
@@ -128,6 +128,16 @@ def record(
     if solve_options.error_bars:
         _record_coarse(path, task)
     warn_of(_pressure_doubts(path, task), 2)
+
+
+def _checked_corners(save_after: Sequence[int], count: int) -> frozenset[int]:
+    """Check the corners with a restart, of a history of so many corners, counted from 1."""
+    given = items("save_after", save_after, "a list of corners")
+    corners = frozenset(whole_number("save_after", corner, 1) for corner in given)
+    most = max(corners, default=0)
+    if most > count:
+        raise InputError("save_after", f"must be corners from 1 to {count}, not {as_toml(most)}")
+    return corners
 
 
 def _record_coarse(path: Path, task: Task) -> None:
@@ -249,7 +259,8 @@ def stored_case(path: str | Path) -> Case:
     """
     with open_result(file_path("path", path)) as file:
         title = text_of(file["solver"].attrs.get("title", ""))
-        return Case(read_problem(file), read_history(file), read_options(file), title, read_about(file))
+        parts = read_problem(file), read_history(file), read_options(file), title, read_about(file)
+        return Case(*parts, crack=read_crack(file))
 
 
 def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:

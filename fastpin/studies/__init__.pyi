@@ -2,7 +2,10 @@ from . import convergence as convergence
 from . import outcomes as outcomes
 from . import plan as plan
 from . import sweep as sweep
+from . import tolerances as tolerances
 from .convergence import converge as converge
 from .outcome_tables import read_outcomes as read_outcomes
 from .plan import parse_plan as parse_plan
 from .plan import read_plan as read_plan
+from .tolerances import parse_tolerances as parse_tolerances
+from .tolerances import read_tolerances as read_tolerances

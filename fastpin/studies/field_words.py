@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOAD, LOAD_KIND
+from fastpin.studies.variation import FACTORS
 
 _OWNERS = {"pin": "pin", "plate": "plate", "pin_body": "pin", "plate_body": "plate"}
 """Sections of a case whose keys belong to a body."""
@@ -51,6 +52,9 @@ _GAP_LENGTHS = ("hole", "pin", "ellipse", "size", "flat", "crown", "constant", "
 
 def field_words(field: str) -> str:
     """Return words for a field of a case: "modulus of the pin" for "pin.E", "moment M in load 2" for "load.2.M"."""
+    if field in FACTORS:
+        _, _, load = field.partition(".")
+        return f"factor of the {LOAD[load].short}" if load else "factor of all loads"
     section, *between, key = field.split(".")
     if between and section in ("gap", "contact"):
         owner = "friction" if section == "contact" else between[0]

@@ -17,6 +17,7 @@ import numpy as np
 
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
+from fastpin.model.growth import law_entries
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material
@@ -83,7 +84,10 @@ def _material(material: Material) -> dict[str, Any]:
     elastic = {"E": "inf" if math.isinf(material.E) else material.E, "nu": _number(material.nu)}
     constants = {} if material.fatigue is None else material.fatigue.given()
     constants.pop("source", None)
-    return {**elastic, "fatigue": constants} if constants else elastic
+    growth = {} if material.growth is None else law_entries(material.growth)
+    growth.pop("source", None)
+    later = {"fatigue": constants, "growth": growth}
+    return elastic | {name: given for name, given in later.items() if given}
 
 
 def _fields(problem: Problem) -> dict[str, Any]:

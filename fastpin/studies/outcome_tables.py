@@ -18,16 +18,19 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from fastpin.casefile.cracks import read_crack
 from fastpin.casefile.profiles import read_wear
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
+from fastpin.model.crack import CRACK_KEYS, CrackGrowth
 from fastpin.model.points import BODIES
 from fastpin.model.profile import Profile
 from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.quantities import QUANTITIES
+from fastpin.studies.crack_outcomes import CRACK_QUANTITIES, of_crack
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
@@ -51,6 +54,7 @@ KEYS = {
     "quantity": ("quantity", "take", "over", "interface"),
     "cycle": ("cycle", "interface"),
     "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
+    "crack": ("crack", *CRACK_KEYS),
     "function": ("function", "classes"),
 }
 """The first key of an outcome says what is read. The others may stand beside it."""
@@ -111,7 +115,7 @@ def read_outcomes(path: str | Path) -> Outcomes:
     return found
 
 
-def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None) -> Outcomes:
+def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None, crack: CrackGrowth | None = None) -> Outcomes:
     """Check outcomes that are given in Python.
 
     Parameters
@@ -121,6 +125,8 @@ def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None) -> Outcome
         :class:`StudyOutcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
     wear : Wear, optional
         How the bodies wear, for outcomes of wear that leave it out.
+    crack : CrackGrowth, optional
+        How a crack grows, for outcomes of cracks that leave it out.
 
     Returns
     -------
@@ -134,17 +140,19 @@ def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None) -> Outcome
     if not isinstance(given, Mapping):
         raise InputError("outcomes", f"must be a dict of functions and tables by name, not {as_toml(given)}")
     source = CaseText("").with_tables({"outcomes": dict(given)})
-    found = outcomes_in_text(source, Path(), wear)
+    found = outcomes_in_text(source, Path(), wear, crack)
     if source.faults:
         raise CaseFileError("outcomes", source.faults)
     return found
 
 
-def outcomes_in_text(source: CaseText, folder: Path, wear: Wear | None = None) -> Outcomes:
+def outcomes_in_text(
+    source: CaseText, folder: Path, wear: Wear | None = None, crack: CrackGrowth | None = None
+) -> Outcomes:
     """Read the table [outcomes] of a text, and report its faults.
 
-    Relative names of files start in `folder`. `wear` is that of the case, for outcomes that leave its keys out. The
-    outcomes have no meaning if the text has faults.
+    Relative names of files start in `folder`. `wear` and `crack` are those of the case, for outcomes that leave their
+    keys out. The outcomes have no meaning if the text has faults.
     """
     found: Outcomes = {}
     section = source.section("outcomes")
@@ -157,7 +165,7 @@ def outcomes_in_text(source: CaseText, folder: Path, wear: Wear | None = None) -
             if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
-                outcome = _of_table(_Table(source, name, value), folder, wear)
+                outcome = _of_table(source, _Table(source, name, value), folder, (wear, crack))
                 found |= {} if outcome is None else {name: outcome}
             elif callable(value):
                 found[name] = _of_callable(value)
@@ -214,7 +222,9 @@ class _Table(Section):
         super().report(f"{self.outcome}: {message}", *key)
 
 
-def _of_table(section: _Table, folder: Path, wear: Wear | None) -> StudyOutcome | None:
+def _of_table(
+    source: CaseText, section: _Table, folder: Path, defaults: tuple[Wear | None, CrackGrowth | None]
+) -> StudyOutcome | None:
     """Read the table of one outcome, and report its faults. No outcome if a value is wrong."""
     first = [key for key in KEYS if key in section]
     if len(first) != 1:
@@ -227,7 +237,9 @@ def _of_table(section: _Table, folder: Path, wear: Wear | None) -> StudyOutcome 
             hint = closest(str(key), allowed) or f"; beside {first[0]} there {others}"
             section.report(f'unknown key "{key}"{hint}', str(key))
     if first[0] == "wear":
-        return _of_wear(section, folder, wear)
+        return _of_wear(section, folder, defaults[0])
+    if first[0] == "crack":
+        return _of_crack(source, section, defaults[1])
     if first[0] == "function":
         return _of_function(section, folder)
     return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
@@ -294,6 +306,17 @@ def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutco
     kind, classes = WEAR_QUANTITIES[quantity].kind, dict(WEAR_QUANTITIES[quantity].classes)
     read = partial(of_wear, quantity, wear, criterion, body)
     return StudyOutcome(kind, "", json.dumps(definition, sort_keys=True), read, classes, wear=wear)
+
+
+def _of_crack(source: CaseText, section: Section, default: CrackGrowth | None) -> StudyOutcome | None:
+    """Read a number of a crack that grows: as the case says, unless the table does."""
+    quantity = _choice(section, "crack", tuple(CRACK_QUANTITIES))
+    crack = read_crack(source, section, {} if default is None else default.entries())
+    if quantity is None or crack is None:
+        return None
+    definition = json.dumps({"crack": quantity, "how": crack.entries()}, sort_keys=True)
+    chosen = CRACK_QUANTITIES[quantity]
+    return StudyOutcome(chosen.kind, "", definition, partial(of_crack, quantity, crack), dict(chosen.classes))
 
 
 def _of_function(section: Section, folder: Path) -> StudyOutcome | None:

@@ -42,7 +42,7 @@ from fastpin.model.synonyms import closest
 from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, bar_faults, outcomes_from, outcomes_in_text
 from fastpin.studies.run_end import KEY_FIGURES
-from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units, reads_files
+from fastpin.studies.variation import FACTORS, LOAD_TABLES, BaseCase, conflict, other_units, reads_files
 
 MAX_RUNS = 100_000
 """Most runs of one plan."""
@@ -65,7 +65,11 @@ SweepProgress = Callable[[int, int], None]
 LONGEST_LABEL = 80
 """Most letters of a label. It stands beside an axis of a figure."""
 
-_ROOT_KEYS = ("title", "case", "grid", "list", "outcomes", "labels")
+ROOT_KEYS = {name: name for name in ("title", "case")} | {
+    "grid": "[grid]", "list": "[[list]]", "outcomes": "[outcomes]", "labels": "[labels]"
+}  # fmt: skip
+"""Keys of a plan, as they are written."""
+
 _RANGE_KEYS = ("from", "to", "count", "spacing")
 
 
@@ -154,7 +158,7 @@ class Plan:
         InputError
             With all faults. Also if the plan has another outcome of such a name.
         """
-        found = outcomes_from(outcomes, self._base.wear)
+        found = outcomes_from(outcomes, self._base.wear, self._base.crack)
         known = {name.lower(): outcome.definition for name, outcome in self.outcomes.items()}
         for name, outcome in found.items():
             if known.get(name.lower(), outcome.definition) != outcome.definition:
@@ -250,9 +254,9 @@ def describe_values(values: dict[str, Any]) -> str:
 
 def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | None) -> Plan | None:
     """Read the plan. It has no meaning if the text has faults."""
-    _check_root(source)
+    check_root(source)
     title = source.root.checked("title", string) or ""
-    base = _base(source, folder)
+    base = base_case(source, folder)
     places: dict[str, KeyPath] = {}
     spacings: dict[str, Spacing] = {}
     rows = _rows(source, base)
@@ -266,13 +270,13 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     count = max(len(rows), 1) * math.prod(len(values) for values in axes.values())
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
-    outcomes = outcomes_in_text(source, folder, None if base is None else base.wear)
-    labels = _labels(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
+    outcomes = outcomes_in_text(source, folder, *((None, None) if base is None else (base.wear, base.crack)))
+    labels = labels_in(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
     cases: dict[str, Case] = {}
     found: list[InputWarning] = []
-    points = _points(source, base, places, rows or [{}], axes, (cases, found), progress)
+    points = checked_points(source, base, places, rows or [{}], axes, (cases, found), progress)
     wears = dict.fromkeys(each.wear for each in outcomes.values() if each.wear is not None)
     case = base.vary({})[1] if wears else None
     if case is not None:
@@ -281,7 +285,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     return Plan(title, text, fields, axes, points, outcomes, found, labels, base, cases)
 
 
-def _labels(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
+def labels_in(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
     """Read the words for fields, outcomes and key figures."""
     labels: dict[str, str] = {}
     for place, name, words in _leaves(source, source.section("labels").table, ("labels",)):
@@ -310,17 +314,18 @@ def _leaves(
             yield (*place, key), ".".join((*parts, str(key))), value
 
 
-def _check_root(source: CaseText) -> None:
-    """Report unknown sections, and unknown keys before the first section."""
+def check_root(source: CaseText, keys: Mapping[str, str] = ROOT_KEYS, varied_in: str = "[grid]") -> None:
+    """Report unknown sections, and unknown keys before the first section. `keys` are those of the plan, as written."""
     for key, value in source.root.table.items():
-        if key in _ROOT_KEYS:
+        if key in keys:
             continue
         section, owners = written(key, value), sections_with(key)
-        hint = closest(key, _ROOT_KEYS) or "; a plan has title, case, [grid], [[list]], [outcomes] and [labels]"
+        *first, last = keys.values()
+        hint = closest(key, tuple(keys)) or f"; a plan has {', '.join(first)} and {last}"
         if section and key in KEYS:
             hint = '; it belongs in the case file, which a plan names: case = "case.toml"'
         elif owners:
-            hint = f"; a plan varies it in [grid]: {_varied(owners[0], key)} = ..."
+            hint = f"; a plan varies it in {varied_in}: {_varied(owners[0], key)} = ..."
         source.report(f"unknown section {section}{hint}" if section else f'unknown key "{key}"{hint}', key)
 
 
@@ -329,7 +334,7 @@ def _varied(section: str, key: str) -> str:
     return f"load.1.{key}" if section == "load" else f"{section}.{key}"
 
 
-def _base(source: CaseText, folder: Path) -> BaseCase | None:
+def base_case(source: CaseText, folder: Path) -> BaseCase | None:
     """Read the base case, and report its faults on the line of the plan's ``case``."""
     name = source.root.checked("case", any_text)
     try:
@@ -354,7 +359,7 @@ def _rows(source: CaseText, base: BaseCase | None) -> list[PlanRow]:
     for index, block in enumerate(blocks):
         if not block.table:
             block.report("[[list]]: gives no field")
-        fields = _fields(source, base, block.table, ("list", index))
+        fields = varied_fields(source, base, block.table, ("list", index))
         rows.append({name: (place, item) for place, name, item in fields})
     return rows
 
@@ -364,7 +369,7 @@ def _axes(
 ) -> dict[str, list[Any]]:
     """Read the values of each field of the grid. Add the fields to `places` and `spacings`."""
     axes = {}
-    for place, name, value in _fields(source, base, source.section("grid").table, ("grid",)):
+    for place, name, value in varied_fields(source, base, source.section("grid").table, ("grid",)):
         if name in places:
             source.report(f"{name}: is varied already, in line {source.line(*places[name])}", *place)
             continue
@@ -373,7 +378,7 @@ def _axes(
         if isinstance(value, list) and value:
             axes[name] = value
         elif isinstance(value, dict):
-            axes[name], spacings[name] = _range(source, place, name, value)
+            axes[name], spacings[name] = range_in(source, place, name, value)
         else:
             allowed = "a list of values, or { from = 0.1, to = 1.0, count = 10 }"
             source.report(
@@ -382,7 +387,7 @@ def _axes(
     return axes
 
 
-def _fields(
+def varied_fields(
     source: CaseText, base: BaseCase | None, table: dict[str, Any], place: KeyPath, parts: tuple[str, ...] = ()
 ) -> Iterator[tuple[KeyPath, str, Any]]:
     """Yield place, field and value of all keys of a table.
@@ -394,11 +399,16 @@ def _fields(
         value = Section(source, place, table).value(key)
         if value is None:  # This fault is reported already.
             continue
-        if isinstance(value, dict) and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES):
-            yield from _fields(source, base, value, here, names)
+        is_factor = names == ("loads",) and set(value if isinstance(value, dict) else ()) <= set(_RANGE_KEYS)
+        if (
+            isinstance(value, dict)
+            and not is_factor
+            and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES)
+        ):
+            yield from varied_fields(source, base, value, here, names)
             continue
         if isinstance(value, dict) and names[:2] in PROFILES and not set(value) <= set(_RANGE_KEYS):
-            yield from _fields(source, base, value, here, names)  # the keys of a term
+            yield from varied_fields(source, base, value, here, names)  # the keys of a term
             continue
         fault = _field_fault(names, base)
         if fault:
@@ -410,6 +420,9 @@ def _fields(
 def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     """Return the fault of a field's name, or None."""
     name, section = ".".join(names), names[0]
+    if section == "loads":
+        hint = "; loads multiplies all loads, and loads.P one of them"
+        return None if name in FACTORS else f'"{name}": is no factor{closest(name, tuple(FACTORS)) or hint}'
     if section not in KEYS and len(names) == 1 and (owners := sections_with(name)):
         return f'"{name}": a field is written section.key: {_varied(owners[0], name)}'
     if section not in KEYS:
@@ -418,6 +431,11 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     if section == "wear":
         return (
             f'"{name}": no run of a sweep wears; an outcome such as {{ wear = "depth" }} may have {names[-1]} beside it'
+        )
+    if section == "crack":
+        return (
+            f'"{name}": no run of a sweep grows a crack; an outcome such as {{ crack = "fate" }} may have {names[-1]} '
+            "beside it"
         )
     if section == "load":
         if not 3 <= len(names) <= 4 or not names[1].isdecimal():
@@ -439,22 +457,28 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     return other_units(base.text.root.table, name) if base else None
 
 
-def _range(source: CaseText, place: KeyPath, name: str, table: dict[str, Any]) -> tuple[list[Any], Spacing]:
-    """Read the values of a range, and their spacing. A range with a fault has no values."""
+def range_in(
+    source: CaseText, place: KeyPath, name: str, table: dict[str, Any], usual: int | None = None
+) -> tuple[list[Any], Spacing]:
+    """Read the values of a range, and their spacing. A range with a fault has no values.
+
+    `usual` is the number of values without ``count``; None if ``count`` must be given.
+    """
     section = Section(source, place, table)
     before = len(source.placed)
     for key in table:
         if key not in _RANGE_KEYS:
             section.report(f'{name}: unknown key "{key}" in a range; there are {", ".join(_RANGE_KEYS)}', key)
-    for key in _RANGE_KEYS[:3]:
+    needed = _RANGE_KEYS[: 3 if usual is None else 2]
+    for key in needed:
         if key not in table:
-            section.report(f"{name}: {key} is missing; a range has from, to and count")
+            section.report(f"{name}: {key} is missing; a range has {', '.join(needed[:-1])} and {needed[-1]}")
 
     def checked(key: str, check: Callable[..., Any], *limits: Any) -> Any:
         return section.checked(key, lambda _, value: check(f"{name}: {key}", value, *limits))
 
     first, last = checked("from", number), checked("to", number)
-    count = checked("count", whole_number, 2, MAX_RUNS)
+    count = checked("count", whole_number, 2, MAX_RUNS) if usual is None or "count" in table else usual
     spacing: Any = checked("spacing", choice, ("linear", "log")) or "linear"
     if first is None or last is None or count is None or len(source.placed) > before:
         return [], spacing
@@ -472,7 +496,7 @@ def _range(source: CaseText, place: KeyPath, name: str, table: dict[str, Any]) -
 # -- runs ----------------------------------------------------------------------------------------------------
 
 
-def _points(
+def checked_points(
     source: CaseText,
     base: BaseCase,
     places: dict[str, KeyPath],

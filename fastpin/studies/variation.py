@@ -2,13 +2,14 @@
 
 A case file has several ways to give some inputs. A varied field then replaces the other ways. A named material replaces
 moduli, Dundurs' parameters replace two materials, a CSV file replaces load blocks; and the other way round. A kind of
-body replaces the keys of other kinds.
+body replaces the keys of other kinds. A factor, ``loads`` or ``loads.P``, multiplies loads after the case is read.
 """
 
 from __future__ import annotations
 
 import contextlib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +20,20 @@ from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
-from fastpin.model.materials import MATERIALS, Material
+from fastpin.model.checks import number
+from fastpin.model.crack import CrackGrowth
+from fastpin.model.growth import law_entries
+from fastpin.model.history import check_loads
+from fastpin.model.loads import ACTING, LOADS
+from fastpin.model.materials import MATERIALS, STRENGTHS, Material
 from fastpin.model.wear import Wear
 from fastpin.states.error_bars import check_nodes
 
 LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
 """Keys of a [[load]] block that are tables of loads."""
+
+FACTORS = {"loads": LOADS[:ACTING], **{f"loads.{name}": (name,) for name in LOADS[:ACTING]}}
+"""Fields that are factors, and the loads that each multiplies. They are no keys of a case."""
 
 
 class BaseCase:
@@ -70,12 +79,23 @@ class BaseCase:
         _, case = self.vary({})
         return None if case is None else case.wear
 
+    @property
+    def crack(self) -> CrackGrowth | None:
+        """How a crack grows, if the case says so."""
+        if "crack" not in self.text.root:
+            return None
+        _, case = self.vary({})
+        return None if case is None else case.crack
+
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""
         text = self.text.with_tables(with_values(self.text.root.table, values, self._materials))
         case = None
         with contextlib.suppress(TooManyFaultsError):
             case = case_from(text, self._folder, self._shared)
+        factors = {name: value for name, value in values.items() if name in FACTORS}
+        if case is not None and factors:
+            case = _scaled(text, case, factors)
         if case is not None and case.options.error_bars:
             try:
                 check_nodes(case.options.nodes)
@@ -84,11 +104,30 @@ class BaseCase:
         return text, case
 
 
+def _scaled(text: CaseText, case: Case, factors: Mapping[str, Any]) -> Case:
+    """Return the case with its loads multiplied by factors. Report the faults of a factor on its name."""
+    scale = dict.fromkeys(LOADS[:ACTING], 1.0)
+    for name, value in factors.items():
+        try:
+            for load in FACTORS[name]:
+                scale[load] *= number(name.rpartition(".")[2], value)
+        except InputError as error:
+            text.report(str(error), *name.split("."))
+            return case
+    try:
+        history = case.history.scaled(scale)
+        check_loads(case.problem, history)
+    except InputError as error:
+        text.report(str(error), *next(iter(factors)).split("."))
+        return case
+    return replace(case, history=history)
+
+
 _REPLACED: dict[str, tuple[str, ...]] = {
-    "material": ("E", "nu", "rigid", "fatigue", "yield_strength"),
+    "material": ("E", "nu", "rigid", "fatigue", "growth", *STRENGTHS),
     "E": ("material", "rigid"),
     "nu": ("material", "rigid"),
-    "rigid": ("material", "E", "nu", "fatigue", "yield_strength"),
+    "rigid": ("material", "E", "nu", "fatigue", "growth", *STRENGTHS),
     "ring_outer_radius": ("reaction",),
     "reaction": ("ring_outer_radius", "support"),
 }
@@ -107,6 +146,7 @@ def with_values(
 
     `materials` are those with a name.
     """
+    values = {name: value for name, value in values.items() if name not in FACTORS}
     # Only loads change blocks.
     blocks_change = any(name.startswith("load.") for name in values)
     new = {
@@ -199,8 +239,9 @@ def _make_room(tables: dict[str, Any], name: str, value: Any, materials: Mapping
         body |= {"E": material.E, "nu": material.nu}
         if material.fatigue is not None:
             body.setdefault("fatigue", material.fatigue.given())
-        if material.yield_strength is not None:
-            body.setdefault("yield_strength", material.yield_strength)
+        if material.growth is not None:
+            body.setdefault("growth", law_entries(material.growth))
+        body |= {name: value for name, value in material.strengths.items() if name not in body}
     for replaced in _REPLACED.get(key, ()):
         body.pop(replaced, None)
 

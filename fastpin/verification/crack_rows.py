@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from fastpin.cracks import Crack, stress_intensity
-from fastpin.cracks.laws import SMOOTH_EDGE
+from fastpin.model.growth import SMOOTH_EDGE
 from fastpin.model.problem import Problem
 from fastpin.states.state import State
 from fastpin.verification.body_cases import RING

@@ -11,8 +11,11 @@ import pytest
 import fastpin
 from fastpin.casefile import read_materials
 from fastpin.casefile.reader import EXAMPLE, parse_case
+from fastpin.cracks import GrowthLaw, Nasgro, Walker
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model import materials
+from fastpin.model.doubts import doubts
+from fastpin.studies.identity import canonical
 from fastpin.studies.plan import read_plan
 
 SHEET = """
@@ -20,12 +23,14 @@ SHEET = """
 E = 71e9
 nu = 0.33
 yield_strength = 352e6
+ultimate_strength = 440e6
 source = "certificate 4711"
 
 ["cast iron"]
 E = 110e9
 nu = 0.26
 fatigue = { fatigue_strength = 1.1e9, strength_exponent = -0.1, source = "a book" }
+growth = { law = "paris", C = 1e-11, m = 3, threshold_range = 2e6, source = "a standard" }
 """
 
 OWN = EXAMPLE.replace("[pin]  ", 'materials = "own.toml"\n[pin]  ', 1).replace('"Ti-6Al-4V"', '"cast iron"', 1)
@@ -45,8 +50,9 @@ def folder(tmp_path: Path) -> Path:
 def test_a_file_gives_materials_by_name(folder: Path) -> None:
     found = read_materials(folder / "own.toml")
     assert list(found) == ["sheet", "cast iron"]
-    assert found["sheet"] == fastpin.Material(71e9, 0.33, "sheet", yield_strength=352e6)
+    assert found["sheet"] == fastpin.Material(71e9, 0.33, "sheet", yield_strength=352e6, ultimate_strength=440e6)
     assert found["cast iron"].fatigue.fatigue_strength == 1.1e9
+    assert found["cast iron"].growth == Walker(1e-11, 3.0, threshold_range=2e6, source="a standard")
     assert found["cast iron"].name == "cast iron"
 
 
@@ -74,6 +80,10 @@ def test_a_plan_varies_them(folder: Path) -> None:
         (50e9, 0.26, 1.1e9),
         (60e9, 0.26, 1.1e9),
     ]
+    (folder / "case.toml").write_text(OWN.replace('"cast iron"', '"sheet"', 1))
+    plan = read_plan(folder / "plan.toml")
+    pin = plan.case(plan.points[0]).problem.pair.pin
+    assert (pin.E, pin.strengths) == (50e9, {"yield_strength": 352e6, "ultimate_strength": 440e6})
 
 
 @pytest.mark.parametrize(
@@ -85,10 +95,28 @@ def test_a_plan_varies_them(folder: Path) -> None:
         ("E = 71e9", "", 2, "[sheet]: E is missing"),
         ("yield_strength = 352e6", "yield_strength = 0", 5, "yield_strength: must be positive, not 0"),
         ("yield_strength", "yield_stress", 5, 'unknown key "yield_stress" in [sheet], did you mean "yield_strength"?'),
+        ("ultimate_strength = 440e6", "ultimate_strength = -1", 6, "ultimate_strength: must be positive, not -1"),
+        ("ultimate_strength", "uts", 6, 'unknown key "uts" in [sheet], did you mean "ultimate_strength"?'),
         ("[sheet]", "[steel]", 2, "[steel]: is a material of fastpin; choose another name"),
         ("[sheet]", "colour = 3\n[sheet]", 2, "colour: must be a section [colour] with E and nu, not 3"),
-        ('source = "certificate 4711"', "source = 4711", 6, "source: must be text in quotes, not 4711"),
-        ("-0.1", "0.1", 11, "strength_exponent: must be negative, not 0.1"),
+        ('source = "certificate 4711"', "source = 4711", 7, "source: must be text in quotes, not 4711"),
+        ("-0.1", "0.1", 12, "strength_exponent: must be negative, not 0.1"),
+        ('"paris"', '"pares"', 13, 'law: must be "paris", "walker" or "nasgro", not "pares", did you mean "paris"?'),
+        ('law = "paris", ', "", 13, "growth: law is missing; it is one of paris, walker, nasgro"),
+        ("C = 1e-11", "C = 0", 13, "C: must be positive, not 0"),
+        ("m = 3,", "", 13, "growth: m is missing; the law paris needs C, m"),
+        (
+            "m = 3,",
+            "m = 3, exponent = 0.5,",
+            13,
+            'unknown key "exponent" in growth of [cast iron] with the law paris; the constants of this law are C, m,',
+        ),
+        (
+            '{ law = "paris"',
+            '3 # { law = "paris"',
+            13,
+            'growth: must be a table such as { law = "walker", ... }, not 3',
+        ),
         (SHEET, "", 0, "no materials: a material is a section, such as [my-alloy], with E and nu"),
         (SHEET, "[sheet\n", 1, "not TOML"),
     ],
@@ -146,3 +174,56 @@ def test_named_materials_have_sources_and_plausible_numbers() -> None:
 def test_other_names_of_materials_are_answered(typed: str, name: str) -> None:
     with pytest.raises(CaseFileError, match=rf'did you mean "{name}"\?'):
         parse_case(EXAMPLE.replace('"Ti-6Al-4V"', f'"{typed}"', 1))
+
+
+NASGRO = 'growth = { law = "nasgro", C = 1e-10, n = 2.5, p = 1, q = 1, threshold_range = 1e6, toughness = 4e7 }'
+
+
+def test_a_body_of_a_case_has_growth_constants() -> None:
+    case = parse_case(EXAMPLE.replace("nu = 0.33 ", f"nu = 0.33\n{NASGRO} ", 1))
+    assert case.problem.pair.plate.growth == Nasgro(1e-10, 2.5, 1.0, 1.0, 1e6, 4e7)
+    with pytest.raises(CaseFileError, match="growth: has no meaning with load_parameter"):
+        parse_case(
+            EXAMPLE.replace("nu = 0.33 ", f"nu = 0.33\n{NASGRO} ", 1)
+            .replace("hole_radius = 10e-3", "load_parameter = 0.1")
+            .replace("clearance = 20e-6", "")
+        )
+
+
+@pytest.mark.parametrize(
+    ("constants", "sentence"),
+    [
+        (
+            '"paris", C = 1e-11, m = 3, threshold_range = 3.2',
+            "growth.threshold_range: 3.2 Pa sqrt(m) of the plate is very",
+        ),
+        ('"paris", C = 1.65e-8, m = 3', None),
+        ('"paris", C = 1.65e-5, m = 3', "growth.C: gives 1e-1.78 m per cycle of 10 MPa sqrt(m) in the plate; C is the"),
+        ('"paris", C = 1e-30, m = 3e300', "growth.C: gives 1e3e+300 m per cycle"),
+    ],
+)
+def test_constants_in_other_units_are_doubted(constants: str, sentence: str | None) -> None:
+    case = parse_case(EXAMPLE.replace("nu = 0.33 ", f"nu = 0.33\ngrowth = {{ law = {constants} }} ", 1))
+    found = [str(doubt) for doubt in doubts(case.problem, case.history)]
+    assert [text[: len(sentence or "")] for text in found] == ([sentence] if sentence else [])
+
+
+def test_only_laws_that_files_can_hold_belong_to_a_material() -> None:
+    class Own(GrowthLaw):
+        def _rate_above(self, K_max, K_min, length):
+            return 1e-9 * K_max
+
+    with pytest.raises(InputError, match=r"growth: must be a law with constants, .*; a law of your own is an argument"):
+        fastpin.Material(70e9, 0.3, growth=Own())
+
+
+def test_ids_change_with_the_growth_constants_only_where_they_are_given() -> None:
+    plain, grown, cited = (
+        parse_case(EXAMPLE.replace("nu = 0.33 ", f"nu = 0.33{text} ", 1))
+        for text in ("\nultimate_strength = 4e8", f"\n{NASGRO}", "\n" + NASGRO.replace("p = 1", 'source = "x", p = 1'))
+    )
+    assert canonical(plain) == canonical(parse_case(EXAMPLE))
+    assert canonical(grown) == canonical(cited) != canonical(plain)
+    assert canonical(grown)["plate"]["growth"] == {
+        "law": "nasgro", "C": 1e-10, "n": 2.5, "p": 1.0, "q": 1.0, "threshold_range": 1e6, "toughness": 4e7,
+    }  # fmt: skip

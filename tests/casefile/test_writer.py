@@ -13,6 +13,7 @@ from fastpin import casefile
 from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.reader import parse_case
+from fastpin.cracks import Walker
 from fastpin.errors import InputError
 from fastpin.model.case import About, Case
 from fastpin.model.history import LoadHistory
@@ -58,12 +59,15 @@ def test_a_written_case_reads_back_to_the_same_bits(name: str) -> None:
 
 
 def test_named_rigid_and_worn_materials_are_written() -> None:
-    worn = dataclasses.replace(SHEET, E=71e9)
+    worn = dataclasses.replace(SHEET, E=71e9, yield_strength=1e9 * THIRD, ultimate_strength=2e9 * THIRD)
+    worn = dataclasses.replace(worn, growth=Walker(1e-10 * THIRD, 3.0, 0.5, toughness=3e7, source='a "book"'))
     for pair in (MaterialPair(STEEL, SHEET), MaterialPair(Material.rigid(), worn), MaterialPair(worn, STEEL)):
         problem = Problem(pair, 0.01, 0.0, 0.5)
         back = parse_case(casefile.case_text(Case(problem, LoadHistory([{"P": 1e6}]))))
         assert back.problem.pair.pin.E == pair.pin.E
         assert back.problem.pair.plate.fatigue == pair.plate.fatigue
+        assert back.problem.pair.plate.strengths == pair.plate.strengths
+        assert back.problem.pair.plate.growth == pair.plate.growth
         assert back.problem.pair.pin.fatigue == pair.pin.fatigue
 
 

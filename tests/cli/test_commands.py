@@ -226,8 +226,10 @@ def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: 
     first = lines[3].split()
     assert first[:3] == ["1", "2.42", "0"]
     assert float(first[3]) == pytest.approx(100.0, rel=1e-3)  # MPa
-    assert len(lines) == 8
-    assert lines[-2].startswith("largest hoop stress of the plate in all kept states: ")
+    assert len(lines) == 10
+    assert lines[-4].startswith("largest hoop stress of the plate in all kept states: ")
+    assert lines[-3] == "margins of safety over all kept states, allowable/value - 1:"
+    assert lines[-2].startswith("  pin: yield, von Mises  ")
     assert "81 nodes" in lines[-1]
 
 

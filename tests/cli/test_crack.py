@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import csv
+import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import fastpin
 from fastpin import cracks, damage
+from fastpin.casefile import case_text
 from fastpin.cli.main import main
 
 LAW = ["--first", "1e-4", "--last", "3e-3", "--C", "1e-10", "--m", "3"]
@@ -79,6 +82,10 @@ def test_a_cycle_of_corners_alone_is_noted(tmp_path, capsys):
         (["--at", "0", "--threshold-range", "-1"], "--threshold-range: must not be negative"),
         (["--at", "0", "--body", "seat"], '--body: "seat" is the edge of the plate round a bush'),
         (["--at", "0", "-o", "a.txt"], "--output: must"),
+        (["--at", "0", "--last", "1e3"], "--last: must be at most 10000 radii of the hole"),
+        (["--at", "0", "--law", "nasgro"], "--m: is no constant of the law nasgro"),
+        (["--at", "0", "--law", "paris", "--exponent", "0.5"], "--exponent: is no constant of the law paris"),
+        (["--at", "0", "--case", "none.toml"], "none.toml: there is no such file"),
     ],
 )
 def test_refusals(stored, capsys, arguments, words):
@@ -92,3 +99,98 @@ def test_a_result_without_a_cycle(tmp_path, capsys):
     fastpin.save(fastpin.solve(fastpin.Problem(pair, 10e-3, 20e-6, 0.3), [{"P": 3e6}], nodes=61), path)
     assert main(["crack", str(path), *LAW]) == 2
     assert "no cycle of the history has ended" in capsys.readouterr().err
+
+
+CASE = """
+[pin]
+material = "steel"
+[plate]
+E = 70e9
+nu = 0.33
+growth = { law = "walker", C = 1e-10, m = 3, exponent = 0.5, source = "own tests" }
+[contact]
+hole_radius = 10e-3
+clearance = 20e-6
+friction = 0.3
+[[load]]
+P = [3e6, 3e5]
+repeat = 2
+[solve]
+nodes = 61
+[crack]
+first = 1e-4
+last = 1e-3
+theta = 66
+residual_stress = -10e6
+"""
+
+
+def planned(case: fastpin.Case, spectrum: bool = False) -> cracks.Growth:
+    result = fastpin.solve(case.problem, case.history, nodes=61)
+    states = list(result) if spectrum else damage.cycle_states(result, result.cycles[-1])
+    assert case.crack is not None
+    return cracks.planned_growth(states, case.crack, spectrum)
+
+
+def test_a_case_with_a_crack_is_told_by_every_command(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CASE)
+    found = planned(fastpin.read_case("case.toml"))
+    line = f"crack at 66.00 deg from the bottom: {found.words}"
+    assert main(["run", "case.toml"]) == 0
+    assert line in capsys.readouterr().out
+    assert main(["run", "case.toml", "-o", "case.h5", "--json", "case.json"]) == 0
+    assert line in capsys.readouterr().out
+    document = json.loads(Path("case.json").read_text())["crack"]
+    assert document["life"] == pytest.approx(found.life, rel=1e-12)
+    assert document["law"]["source"] == "own tests"
+    assert (document["fate"], document["arrest"], document["angle_of_mouth"]) == ("grows", None, pytest.approx(66.0))
+    assert fastpin.storage.stored_case("case.h5").crack == fastpin.read_case("case.toml").crack
+    for command in (["show", "case.h5"], ["crack", "case.h5"], ["check", "case.toml"]):
+        assert main(command) == 0
+        assert (
+            line if command[0] != "check" else "100 um to 1 mm, at 66 deg, walker, C = 1e-10"
+        ) in capsys.readouterr().out
+    assert main(["report", "case.h5", "-o", "page.html"]) == 0
+    page = Path("page.html").read_text()
+    assert line[1:] in page
+    assert "Law of growth: walker, C = 1e-10, m = 3, exponent = 0.5; source: own tests." in page
+
+
+def test_options_and_another_case_replace_the_crack_of_a_result(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CASE)
+    assert main(["run", "case.toml", "-o", "case.h5"]) == 0
+    capsys.readouterr()
+    case = fastpin.read_case("case.toml")
+    other = replace(case.crack, last=2e-3, law=cracks.Nasgro(6e-10, 2.5, 1.0, 1.0, 1e6, 3e7), theta=None)
+    Path("other.toml").write_text(case_text(replace(case, crack=other)))
+    nasgro = ["--law", "nasgro", "--C", "6e-10", "--n", "2.5", "--p", "1", "--q", "1"]
+    nasgro += ["--threshold-range", "1e6", "--toughness", "3e7", "--last", "2e-3"]
+    for words in (nasgro, ["--case", "other.toml", "--at", "66"]):
+        assert main(["crack", "case.h5", *words]) == 0
+        expected = planned(replace(case, crack=replace(other, theta=case.crack.theta)))
+        assert capsys.readouterr().out.startswith(f"crack at 66.00 deg from the bottom: {expected.words}\n")
+    Path("none.toml").write_text(CASE[: CASE.index("[crack]")])
+    assert main(["crack", "case.h5", "--case", "none.toml"]) == 2
+    assert "--case: none.toml has no section [crack]" in capsys.readouterr().err
+
+
+def test_a_history_without_cycles_is_a_spectrum(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CASE.replace("P = [3e6, 3e5]\nrepeat = 2", "P = [3e6, 3e5, 1.5e6, 3e5, 1.5e6, 3e5]"))
+    found = planned(fastpin.read_case("case.toml"), spectrum=True)
+    assert main(["run", "case.toml", "-o", "case.h5"]) == 0
+    assert f"crack at 66.00 deg from the bottom: {found.words}\n" in capsys.readouterr().out
+    assert main(["crack", "case.h5", "-o", "figure.svg"]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith(f"crack at 66.00 deg from the bottom: {found.words}\n")
+    assert printed.splitlines()[2].endswith("spectra")
+    assert "m/spectrum" in Path("figure.svg").read_text()
+
+
+def test_a_crack_that_can_not_be_followed_is_noted(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CASE.replace("nodes = 61", 'nodes = 61\nkeep = "every 3"'))
+    assert main(["run", "case.toml"]) == 0
+    assert "note: no crack is followed: states: must hold all corners of the cycle" in capsys.readouterr().err

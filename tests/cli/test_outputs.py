@@ -32,6 +32,7 @@ COMMANDS = {
     "report": ["report", "r.h5"],
     "converge": ["converge", "case.toml"],
     "sweep": ["sweep", "plan.toml"],
+    "tolerances": ["tolerances", "tolerances.toml"],
     "compliance": ["compliance", "lug.toml"],
     "benchmarks": ["benchmarks", "kirsch"],
     "verify": ["verify"],
@@ -51,6 +52,7 @@ TEXTS: dict[str, dict[str, str]] = {
     "report": {"--output": ".html"},
     "converge": {"--csv": ".csv", "--json": ".json", "--plot": ".pdf"},
     "sweep": {"--table": ".csv", "--plot": ".png"},
+    "tolerances": {"--table": ".csv", "--plot": ".png", "--scatter": ".svg", "--json": ".json"},
     "compliance": {"--output": ".json", "--plot": ".png"},
     "benchmarks": {"--json": ".json"},
     "verify": {"--json": ".json"},
@@ -63,11 +65,12 @@ ENDINGS.append(("report", "--output", ".pdf"))
 """Commands, their options and the endings of their files."""
 
 RESULTS = {"run": {"--output"}, "wear": {"--output"}}
-DIRECTORIES = {"sweep": {"--output"}, "merge": {"--output"}, "paper": {"--output"}, "benchmarks": {"--output"}}
+DIRECTORIES = {name: {"--output"} for name in ("sweep", "tolerances", "merge", "paper", "benchmarks")}
 INPUTS = {
     "run": {"--start"},
     "converge": {"--outcomes"},
     "sweep": {"--outcomes"},
+    "tolerances": {"--outcomes"},
     "report": {"--case", "--plan"},
 }
 
@@ -79,6 +82,9 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "case.toml").write_text(CASE)
     (folder / "lug.toml").write_text(LUG_EXAMPLE)
     (folder / "plan.toml").write_text('case = "case.toml"\n[grid]\nsolve.nodes = [41]\ncontact.friction = [0.2, 0.3]\n')
+    (folder / "tolerances.toml").write_text(
+        'case = "case.toml"\nsamples = 2\n[tolerances]\ncontact.friction = { from = 0.2, to = 0.5 }\n'
+    )
     assert main(["run", str(folder / "case.toml"), "--nodes", "41", "-o", str(folder / "r.h5")]) == 0
     plan = read_plan(folder / "plan.toml")
     with Index(folder, write=True) as index:
@@ -88,7 +94,7 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    for name in ("case.toml", "lug.toml", "plan.toml", "r.h5"):
+    for name in ("case.toml", "lug.toml", "plan.toml", "tolerances.toml", "r.h5"):
         shutil.copyfile(samples / name, tmp_path / name)
     monkeypatch.chdir(tmp_path)
     return tmp_path

@@ -62,7 +62,8 @@ def test_every_command_with_json_has_a_schema() -> None:
     for command in SCHEMAS:
         Draft202012Validator.check_schema(json_schema(command))
     with pytest.raises(
-        InputError, match='command: must be "run", "converge", "verify", "benchmarks", "compliance" or "wear", not "x"'
+        InputError,
+        match='must be "run", "converge", "verify", "benchmarks", "compliance", "wear" or "tolerances", not "x"',
     ):
         json_schema("x")
 

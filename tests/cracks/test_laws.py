@@ -8,9 +8,10 @@ import pickle
 import numpy as np
 import pytest
 
-from fastpin.cracks import Nasgro, Walker, intrinsic_length, paris
+from fastpin.cracks import GrowthLaw, Nasgro, Walker, intrinsic_length, paris
 from fastpin.damage import critical_distance
 from fastpin.errors import InputError
+from fastpin.model.growth import law_entries, law_from, law_words
 
 M = 1e6
 NASGRO = Nasgro(6.35e-10, 2.5, 1.0, 1.0, 0.8 * M, 35.16 * M, 2.2, 0.1, 2.0, 0.3, 38.1e-6)
@@ -101,3 +102,40 @@ def test_refusals(words):
 def test_pickles():
     for law in (NASGRO, paris(1e-10, 3.0)):
         assert pickle.loads(pickle.dumps(law)) == law
+
+
+def test_a_law_of_the_user_needs_one_method():
+    class Forman(GrowthLaw):
+        """Forman, Kearney, Engle 1967, with the toughness 50 MPa sqrt(m)."""
+
+        @property
+        def fracture_toughness(self):
+            return 50.0 * M
+
+        def _rate_above(self, K_max, K_min, length):
+            swing = self._range(K_max, K_min) / M
+            return 1e-8 * swing**3 / (50.0 * swing / (K_max / M) - swing)
+
+    law = Forman()
+    assert one(law, 20.0 * M, 10.0 * M) == pytest.approx((10.0 * M, 0.0, 1e-5 / (25.0 - 10.0)))
+    assert one(law, 50.0 * M, 10.0 * M)[2] == math.inf
+    assert one(law, -1.0 * M, -2.0 * M) == (0.0, 0.0, 0.0)
+
+
+def test_laws_become_tables_and_come_back():
+    for law in (NASGRO, Walker(1e-10, 3.0), Walker(1e-10, 3.0, 0.5, toughness=5e7, source="own")):
+        assert law_from(law_entries(law)) == law
+    assert law_entries(paris(1e-10, 3.0)) == {"law": "walker", "C": 1e-10, "m": 3.0}
+    assert law_words(NASGRO).startswith("nasgro, C = 6.35e-10, n = 2.5, p = 1, q = 1, threshold_range = 800000, ")
+    for entries, fault in (
+        ({"law": "parris"}, 'law: must be one of paris, walker, nasgro, not "parris"'),
+        ({"law": "paris", "C": 1.0, "m": 3.0, "exponent": 0.5}, "exponent: is no constant of the law paris"),
+        ({"law": "walker", "C": 1.0}, "m: is missing; the law walker needs C, m"),
+    ):
+        with pytest.raises(InputError, match=fault):
+            law_from(entries)
+
+
+def test_a_law_without_a_growth_is_refused():
+    with pytest.raises(InputError, match=r"law: needs the method _rate_above\(K_max, K_min, length\)"):
+        GrowthLaw().rate([2.0], [1.0], 1.0)

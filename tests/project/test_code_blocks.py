@@ -34,6 +34,7 @@ from fastpin.casefile.reader import KEYS, ROOT_KEYS
 from fastpin.cli.options import join_words, parser
 from fastpin.elasticity import plate_compliance
 from fastpin.studies import parse_plan, sweep
+from fastpin.studies.tolerances import KEYS as TOLERANCE_KEYS
 from scripts.inline import Inline
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -56,6 +57,7 @@ ELSEWHERE = {
     "superposition.md": "test_teaching_pages.py",
     "bush.md": "test_bush_page.py",
     "wear.md": "test_wear_page.py",
+    "tolerances.md": "test_tolerances_page.py",
 }
 """Pages whose blocks of Python run in another test of this folder, as some of them may come later."""
 
@@ -183,11 +185,11 @@ def has_known_keys(table: Mapping[str, Any], sections: Mapping[str, Any]) -> boo
 @pytest.mark.parametrize("page", with_blocks("toml"))
 def test_toml_has_known_keys(page: Path) -> None:
     case = {**KEYS, **dict.fromkeys(ROOT_KEYS)}
-    plan = dict.fromkeys(PLAN_KEYS)
+    plan, tolerances = dict.fromkeys(PLAN_KEYS), dict.fromkeys(TOLERANCE_KEYS)
     for text in blocks(page, "toml"):
         table = tomllib.loads(text)
         materials = dict.fromkeys(table, FILE_KEYS)
-        assert any(has_known_keys(table, sections) for sections in (case, plan, LUG_KEYS, materials)), text
+        assert any(has_known_keys(table, sections) for sections in (case, plan, tolerances, LUG_KEYS, materials)), text
         if "grid" in table:
             for section in table["grid"]:
                 assert section in KEYS, section

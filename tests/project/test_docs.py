@@ -130,9 +130,11 @@ def test_the_example_of_cracks_prints_its_numbers(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "cracks.md").read_text(encoding="utf-8")
-    (code,), (printed,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
-    exec(compile(code, "cracks.md", "exec"), {})
+    code, printed = ("".join(re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL)) for kind in ("python", "text"))
+    names: dict[str, Any] = {}
+    exec(compile(code, "cracks.md", "exec"), names)
     assert capsys.readouterr().out == printed
+    assert names["own"].fate.words == "grows"
     assert [path.name for path in tmp_path.iterdir()] == ["growth.png"]
 
 

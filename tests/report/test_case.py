@@ -140,7 +140,7 @@ def test_the_summary_has_the_bodies() -> None:
     found, problem = document(case, None)["problem"], case.problem
     assert found["pin_body"] == {"kind": "tube", "bore_radius": 5e-3, "load": "held"}
     assert found["plate_body"]["material"] == {
-        "name": "", "rigid": False, "E": 110e9, "nu": 0.34, "yield_strength": None,
+        "name": "", "rigid": False, "E": 110e9, "nu": 0.34, "yield_strength": None, "ultimate_strength": None,
     }  # fmt: skip
     assert found["plate_body"]["inside"] == {"kind": "plate", "reaction": None}
     assert found["plate_body"]["interference"] == 20e-6

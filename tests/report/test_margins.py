@@ -15,7 +15,14 @@ from fastpin.model import FatigueConstants
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.report import summary
-from fastpin.report.margins import Margin, fatigue_margins, margin_rows, static_margins
+from fastpin.report.fatigue import fatigue_margins, last_cycle_margins
+from fastpin.report.margins import (
+    Margin,
+    margin_lines,
+    margin_rows,
+    smallest_margin,
+    static_margins,
+)
 from fastpin.states.extremes import KeptStates, marked_extremes
 from fastpin.states.yielding import von_mises_peak
 
@@ -125,8 +132,71 @@ def test_the_summary_has_the_margins() -> None:
     result = solved()
     found = summary.document(Case(result.problem, result.history), result)["margins"]
     rows = of(result)
-    assert [each["subject"] for each in found] == list(rows)
+    assert [each["subject"] for each in found] == [*rows, "last cycle only: plate at the seat, fatigue, Findley"]
+    (smallest,) = (each for each in found if each["smallest"])
+    assert smallest["margin"] == min(each["margin"] for each in found if each["margin"] is not None)
     bush = next(each for each in found if each["subject"] == "bush: yield, von Mises")
     assert (bush["allowable"], bush["unit"]) == (300e6, "Pa")
+    loads = result[int(bush["load_point"]) - 1].load
+    assert bush["loads"] == {name: loads[name] for name in bush["loads"]}
+    assert bush["loads"]["P"] > 0.0
     assert bush["margin"] == rows["bush: yield, von Mises"].margin
     assert next(each for each in found if each["subject"] == "pin: yield, von Mises")["margin"] is None
+
+
+def test_the_ultimate_strength_has_a_margin_of_its_own() -> None:
+    result = solved(pair=MaterialPair(STEEL, replace(ALUMINIUM, ultimate_strength=572e6)))
+    rows = of(result)
+    yielding, ultimate = rows["plate: yield, von Mises"], rows["plate: ultimate, von Mises"]
+    assert (ultimate.value, ultimate.load_point, ultimate.remark) == (
+        yielding.value,
+        yielding.load_point,
+        yielding.remark,
+    )
+    assert (ultimate.margin + 1.0) / (yielding.margin + 1.0) == pytest.approx(572.0 / 503.0)
+    assert ultimate.loads == result[int(ultimate.load_point) - 1].load
+    assert "bush: ultimate, von Mises" not in rows  # its strength is not given
+
+
+def test_the_margin_of_a_press_fit_is_that_of_lame() -> None:
+    pair = MaterialPair(STEEL, replace(ALUMINIUM, ultimate_strength=600e6), "stress")
+    with doubts_given():
+        result = solve(Problem(pair, 10e-3, -20e-6, 0.3), [{"P": 1e-3}], nodes=61)  # the load is next to nothing
+    rows = of(result)
+    pressure = 20e-6 / 10e-3 / ((1.0 - 0.3) / 210e9 + (1.0 + 0.33) / 71e9)
+    mises = math.sqrt(3.0) * pressure  # -p across the edge of the hole, and p along it
+    assert rows["plate: yield, von Mises"].margin == pytest.approx(503e6 / mises - 1.0, rel=1e-6)
+    assert rows["plate: ultimate, von Mises"].margin == pytest.approx(600e6 / mises - 1.0, rel=1e-6)
+
+
+def test_the_smallest_margin_is_marked() -> None:
+    problem = solved().problem
+    rows = [
+        Margin("a", "traction", 2e6, 3e6, 1.0, "at 0 deg", {"P": 1e3}),
+        Margin("b", "traction", 4e6, 3e6, 2.5, "at 1 deg", {"P": 2e3}),
+        Margin("c", remark="not known: no yield strength given"),
+        Margin("d", "traction", 0.0, 3e6, 1.0),
+    ]
+    assert smallest_margin(rows) is rows[1]
+    assert [row[3] for row in margin_rows(problem, rows)] == [
+        "+0.50",
+        "-0.25, the smallest",
+        "not known",
+        "none needed",
+    ]
+    assert smallest_margin(rows[2:]) is None
+    head, *lines = margin_lines(problem, rows)
+    assert head == "margins of safety over all kept states, allowable/value - 1:"
+    assert [" ".join(line.split()) for line in lines] == [
+        "a 2 MPa of 3 MPa +0.50 load point 1: P = 1 kN/m at 0 deg",
+        "b 4 MPa of 3 MPa -0.25, the smallest load point 2.5: P = 2 kN/m at 1 deg",
+    ]
+    assert margin_lines(problem, rows[2:]) == []
+
+
+def test_fatigue_of_the_last_cycle_has_a_margin_where_its_limit_is_known() -> None:
+    result = solved()
+    (seat,) = last_cycle_margins(result.problem, result.states, result.cycles)
+    assert seat.margin == pytest.approx(fatigue(result.cycle().states, "findley", "seat").limit / seat.value - 1.0)
+    assert last_cycle_margins(result.problem, result.states[:2], result.cycles) == []  # a corner is missing
+    assert last_cycle_margins(result.problem, result.states, []) == []

@@ -12,6 +12,7 @@ import pytest
 
 from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.bodies.compliance import Compliance
+from fastpin.cracks import Nasgro
 from fastpin.errors import InputError
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
@@ -23,7 +24,8 @@ from fastpin.storage.store import load, save
 from tests.support.interrupts import StopAt
 from tests.support.samples import PAIR, sample_result
 
-BUSH = Bushing(Material(110e9, 0.34, "bronze"), 0.0125)
+LAW = Nasgro(1e-10 / 3.0, 2.5, 1.0, 0.5, 1e6 / 3.0, 4e7, threshold_slope=-0.1, source="own tests")
+BUSH = Bushing(Material(110e9, 0.34, "bronze", yield_strength=2e8, ultimate_strength=4e8, growth=LAW), 0.0125)
 
 
 def plate() -> Compliance:

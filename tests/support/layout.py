@@ -14,7 +14,7 @@ from pathlib import Path
 
 ABOVE_BODIES = tuple(
     f"model/{name}.py"
-    for name in ("__init__", "case", "doubts", "history", "history_csv", "lug", "points", "problem", "units")
+    for name in ("__init__", "case", "crack", "doubts", "history", "history_csv", "lug", "points", "problem", "units")
 )
 """The upper floor of model/, which knows the bodies. The bodies know the lower floor: checks, materials, loads."""
 

@@ -13,6 +13,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 import fastpin
+from fastpin.cracks import Nasgro, Walker
 from fastpin.model.angles import DEGREE, angle_at
 from fastpin.model.history import Block
 from fastpin.model.loads import LOADS
@@ -183,8 +184,28 @@ def cases(draw: st.DrawFn) -> fastpin.Case:
     problem = dataclasses.replace(problem, pair=fastpin.MaterialPair(pin, plate, problem.pair.plane))
     history = draw(histories(problem))
     chosen = draw(options(problem.is_gripped))
+    crack = st.none() if problem.pair.plate.is_rigid else st.none() | cracks(problem.hole_radius)
     about = fastpin.model.About(*(draw(words) for _ in range(4)))
-    return fastpin.Case(problem, history, chosen, draw(words), about, draw(st.none() | wears()))
+    return fastpin.Case(problem, history, chosen, draw(words), about, draw(st.none() | wears()), draw(crack))
+
+
+@st.composite
+def cracks(draw: st.DrawFn, radius: float) -> fastpin.model.CrackGrowth:
+    """Cracks that grow by any law, up to ten radii."""
+    walker = st.builds(Walker, scale(-20, -3), between(0.5, 8.0), between(0.0, 1.0), scale(3, 8), source=words)
+    nasgro = st.builds(
+        Nasgro, scale(-20, -3), between(0.5, 8.0), between(0.0, 2.0), between(0.0, 2.0), scale(3, 8), scale(6, 9)
+    )
+    pairs = st.lists(st.tuples(between(0.0, 1.0), between(-1e9, 1e9)), min_size=2, max_size=4, unique_by=lambda p: p[0])
+    last = draw(between(1e-3, 10.0)) * radius
+    return fastpin.model.CrackGrowth(
+        draw(between(0.01, 0.9)) * last,
+        last,
+        draw(walker | nasgro),
+        draw(st.none() | angles),
+        draw(degrees(-60.0, 60.0)) * DEGREE,
+        residual_stress=draw(st.none() | between(-1e9, 1e9) | pairs.map(sorted)),
+    )
 
 
 @st.composite
@@ -220,6 +241,8 @@ def tables_of(case: fastpin.Case) -> Tables:
     if case.wear is not None:
         given = {field.name: getattr(case.wear, field.name) for field in dataclasses.fields(case.wear)}
         tables["wear"] = {name: written(value) for name, value in given.items() if value is not None}
+    if case.crack is not None:
+        tables["crack"] = case.crack.entries()
     tables["solve"] = {name: value for name, value in case.options.keywords().items() if value is not None}
     return tables
 

@@ -270,6 +270,11 @@ DOUBTFUL: list[tuple[str, str, str]] = [
     ),
     (
         "nu = 0.33",
+        "nu = 0.33\nyield_strength = 345e6\nultimate_strength = 310e6",
+        "ultimate_strength: 310e6 Pa of the plate is less than its yield strength of 345e6 Pa",
+    ),
+    (
+        "nu = 0.33",
         "nu = 0.33\nfatigue = { fatigue_strength = 1100, strength_exponent = -0.124 }",
         "fatigue_strength: 1100 Pa of the plate is very small; stresses are in Pa; did you mean 1100 MPa, which is "
         "1.1e9?",

@@ -1,0 +1,215 @@
+"""How a crack is to be followed: its law, lengths, place, direction, body, and the residual stress on its line."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any, Literal
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.angles import DEGREE, angle_at, degrees_at, degrees_of
+from fastpin.model.checks import as_toml, choice, instance, items, number, numbers, positive
+from fastpin.model.growth import KnownLaw, known_law, law_entries, law_from
+from fastpin.model.points import EDGES, MOST_ANGLE, far_rim, material_of, near_rim, owner_of
+from fastpin.model.problem import Problem
+from fastpin.model.units import units
+
+MOST_INCLINATION = 60.0 * DEGREE
+"""Largest inclination of a crack, rad. There 80 points still give 1e-4."""
+
+MOST_PAIRS = 1000
+"""Pairs of a residual stress, at most."""
+
+
+@dataclass(frozen=True)
+class CrackGrowth:
+    """A crack at the edge of the hole, and how it grows.
+
+    Parameters
+    ----------
+    first, last : float
+        First and last length, m.
+    law : Walker or Nasgro, optional
+        Law of growth. Unless given, it is the law of the body's material.
+    theta : float, optional
+        Angle of its mouth, rad, counter-clockwise from the +x axis; where a crack grows fastest unless given.
+    angle : float
+        Its direction from the radius, rad, counter-clockwise, at most 60 deg.
+    body : {"plate", "seat"}
+        See :class:`fastpin.cracks.Crack`.
+    residual_stress : float or sequence of (float, float), optional
+        Normal stress on the line of the crack that is added at all times, Pa: a number, or pairs of a distance to the
+        mouth, m, and the stress there. Between them it is a straight line; beyond the last one it stays.
+
+    Raises
+    ------
+    InputError
+        If a field can't be used.
+    """
+
+    first: float
+    last: float
+    law: KnownLaw | None = None
+    theta: float | None = None
+    angle: float = 0.0
+    body: str = "plate"
+    residual_stress: float | Sequence[Sequence[float]] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "first", positive("first", self.first))
+        object.__setattr__(self, "last", positive("last", self.last))
+        if self.last <= self.first:
+            raise InputError("last", f"must be longer than the first length of {self.first:g} m, not {self.last:g}")
+        if self.law is not None:
+            known_law("law", self.law)
+        if self.theta is not None:
+            object.__setattr__(self, "theta", number("theta", self.theta, -MOST_ANGLE, MOST_ANGLE))
+        object.__setattr__(self, "angle", number("angle", self.angle, -MOST_INCLINATION, MOST_INCLINATION))
+        object.__setattr__(self, "body", choice("body", self.body, EDGES))
+        if self.residual_stress is not None:
+            object.__setattr__(self, "residual_stress", _residual(self.residual_stress))
+
+    def residual(self, s: np.ndarray) -> np.ndarray:
+        """The residual stress at distances to the mouth, m, of any shape; 0 unless one is given, Pa."""
+        s = numbers("s", s)
+        if self.residual_stress is None:
+            return np.zeros(np.shape(s))
+        if isinstance(self.residual_stress, float):
+            return np.full(np.shape(s), self.residual_stress)
+        depth, stress = np.array(self.residual_stress).T
+        return np.interp(s, depth, stress)
+
+    def entries(self) -> dict[str, Any]:
+        """The keys and values of the section [crack] of a case file. Angles are in degrees, theta from the bottom."""
+        found = {each.name: getattr(self, each.name) for each in fields(self)}
+        found = {name: value for name, value in found.items() if value is not None}
+        if isinstance(self.residual_stress, tuple):
+            found["residual_stress"] = [list(pair) for pair in self.residual_stress]
+        if self.law is not None:
+            found["law"] = law_entries(self.law)
+        if self.theta is not None:
+            found["theta"] = degrees_at(self.theta)
+        del found["angle"], found["body"]
+        usual = {"angle": degrees_of(self.angle)} if self.angle else {}
+        return found | usual | ({} if self.body == "plate" else {"body": self.body})
+
+
+LONGEST = 1e4
+"""Largest length in parts of the hole's radius, checked against the crack in a plate without a hole."""
+
+MOST_OF_WALL = 0.9
+"""Largest depth of a tip in parts of the wall. The ligament beyond is not elastic for long."""
+
+
+def edge_of(body: str) -> Literal["plate", "seat"]:
+    """The name of an edge as a type checker knows it."""
+    return "seat" if body == "seat" else "plate"
+
+
+def wall_of(problem: Problem, body: str) -> float:
+    """Depth of a body behind its edge, in radii of the edge; infinite without a rim."""
+    bush = problem.joint.bush
+    if body == "plate" and bush is not None:
+        return bush - 1.0
+    far = far_rim(problem, edge_of(body))
+    return math.inf if far is None else far / near_rim(problem, edge_of(body)) - 1.0
+
+
+def depth_of(angle: float, length: float) -> float:
+    """Depth of the tip of a crack, in radii of its edge. The length is in these radii, too."""
+    return abs(1.0 + length * complex(math.cos(angle), math.sin(angle))) - 1.0
+
+
+def check_length(field: str, problem: Problem, body: str, angle: float, longest: float) -> None:
+    """Raise :class:`InputError` if a length, m, is too large for the body."""
+    length = units(problem)["length"]
+    radius = problem.hole_radius * near_rim(problem, edge_of(body))
+    wall = wall_of(problem, body)
+    if longest > LONGEST * radius:
+        raise InputError(field, f"must be at most {LONGEST:g} radii of the hole, not {length.text(longest)}")
+    if depth_of(angle, longest / radius) > MOST_OF_WALL * wall:
+        words = f"must end within {MOST_OF_WALL:g} of the wall of {length.text(wall * radius)}"
+        raise InputError(field, f"{words}, not be {length.text(longest)}")
+
+
+def check_crack(problem: Problem, crack: CrackGrowth) -> None:
+    """Raise :class:`InputError` if no crack can grow so in a joint: its body, its length or its law."""
+    body = edge_of(crack.body)
+    if material_of(problem, body).is_rigid:
+        raise InputError("body", f"the {owner_of(problem, body)} is rigid: no crack grows in it")
+    if problem.plate_body.lug.edge_only and (body == "seat" or problem.joint.bush is None):
+        raise InputError("body", NO_INSIDE)
+    check_length("last", problem, body, crack.angle, crack.last)
+    law_of(problem, crack)
+
+
+def checked_crack(problem: Problem, crack: CrackGrowth | None) -> CrackGrowth | None:
+    """Check the crack of a run, if there is one, and return it."""
+    if crack is not None:
+        check_crack(problem, instance("crack", crack, CrackGrowth, "a fastpin.model.CrackGrowth"))
+    return crack
+
+
+NO_INSIDE = "a compliance gives no stress inside the plate: a crack needs it"
+"""Refusal of a plate that is a compliance."""
+
+
+def law_of(problem: Problem, crack: CrackGrowth) -> KnownLaw:
+    """The law of a crack: its own, or else that of its body's material.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    body = edge_of(crack.body)
+    law = crack.law or material_of(problem, body).growth
+    if law is None:
+        words = f"the material of the {owner_of(problem, body)} has no constants of crack growth"
+        raise InputError("law", f"is missing: {words}, and none are given")
+    return law
+
+
+CRACK_KEYS = tuple(each.name for each in fields(CrackGrowth))
+"""The fields of :class:`CrackGrowth`, the keys of [crack] in a case file."""
+
+
+def crack_from(**given: Any) -> CrackGrowth:
+    """Return the crack of such entries: angles are in degrees, theta from the bottom, and a law may be a table.
+
+    Raises
+    ------
+    InputError
+        See :class:`CrackGrowth`.
+    """
+    if isinstance(given.get("law"), dict):
+        given["law"] = law_from(given["law"])
+    if given.get("theta") is not None:
+        given["theta"] = angle_at(number("theta", given["theta"], -1e4, 1e4))
+    if given.get("angle") is not None:
+        given["angle"] = number("angle", given["angle"], -60.0, 60.0) * DEGREE
+    for name in ("first", "last"):
+        if given.get(name) is None:
+            raise InputError(name, "is missing: give the length of the crack, m")
+    return CrackGrowth(**given)
+
+
+def _residual(given: object) -> float | tuple[tuple[float, float], ...]:
+    name = "residual_stress"
+    if not isinstance(given, (list, tuple, np.ndarray)):
+        return number(name, given)
+    pairs = items(name, given, "a number, or pairs of a distance and a stress")
+    if not 2 <= len(pairs) <= MOST_PAIRS:
+        raise InputError(name, f"must be a number or 2 to {MOST_PAIRS:,} pairs, not {len(pairs)}")
+    found = []
+    for pair in pairs:
+        if not isinstance(pair, (list, tuple, np.ndarray)) or len(pair) != 2:
+            raise InputError(name, f"must be pairs of a distance, m, and a stress, Pa, not {as_toml(pair)}")
+        found.append((number(name, pair[0], 0.0), number(name, pair[1])))
+    if any(later[0] <= earlier[0] for earlier, later in itertools.pairwise(found)):
+        raise InputError(name, "must have increasing distances to the mouth")
+    return tuple(found)

@@ -1,0 +1,60 @@
+"""Outcomes of cracks that grow from the hole under the loads of a result."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+from fastpin import cracks, damage
+from fastpin.cracks.fates import CRACK_FATES
+from fastpin.errors import FastpinError
+from fastpin.model.crack import CrackGrowth
+from fastpin.model.doubts import doubts_given
+from fastpin.solver.result import Result
+from fastpin.states.choice import missing_corners
+
+_GROWN: WeakKeyDictionary[Result, dict[CrackGrowth, cracks.Growth]] = WeakKeyDictionary()
+
+
+class CrackQuantity(NamedTuple):
+    """A number of a crack that grows, see :class:`CycleQuantity`. `of` gives its value for a growth."""
+
+    kind: str
+    of: Callable[[Any], float]
+    classes: Mapping[int, str] = MappingProxyType({})
+
+
+CRACK_QUANTITIES: dict[str, CrackQuantity] = {
+    "fate": CrackQuantity("class", lambda found: float(found.fate), CRACK_FATES),
+    "life": CrackQuantity("life", lambda found: found.life if math.isfinite(found.life) else math.nan),
+    "arrest": CrackQuantity("length", lambda found: found.arrest),
+    "theta": CrackQuantity("angle", lambda found: found.crack.theta),
+    "largest_K": CrackQuantity("stress intensity", lambda found: float(found.K_max.max())),
+}
+"""The quantities of a crack that grows from the hole in the last cycle, or in a history without cycles, by name.
+
+"fate" says whether it starts, stops, grows or breaks, see :class:`fastpin.cracks.CrackFate`. "life" counts cycles from
+the first to the last length, or spectra. "arrest" is the length at which the crack stops. "theta" is its mouth.
+"largest_K" is the largest K_I up to the last length.
+"""
+
+
+def of_crack(quantity: str, crack: CrackGrowth, result: Result) -> float:
+    """The value of a name in :data:`CRACK_QUANTITIES`. Growths are kept while the result lives.
+
+    Raises
+    ------
+    FastpinError
+        If the result has neither a cycle nor a spectrum, or the crack can't be followed.
+    """
+    known = _GROWN.setdefault(result, {})
+    if crack not in known:
+        if not result.cycles and (len(result) < 3 or missing_corners(result, 1, len(result.history))):
+            raise FastpinError("the history has no cycle, and is no spectrum of at least 3 kept corners")
+        states = damage.cycle_states(result, result.cycles[-1]) if result.cycles else list(result)
+        with doubts_given():
+            known[crack] = cracks.planned_growth(states, crack, not result.cycles)
+    return CRACK_QUANTITIES[quantity].of(known[crack])

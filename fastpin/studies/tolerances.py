@@ -1,0 +1,388 @@
+"""Tolerance studies: how far the outcomes of a case move where its fields lie anywhere between their limits.
+
+A tolerance plan is a TOML text with a base case and the limits of some of its fields. It makes the points of a sweep:
+the nominal case, each field alone, all corners of the limits, and random samples between them. A sweep solves and keeps
+their runs, so the parts of a study share runs, and a study continues after a stop.
+
+    >>> from fastpin.studies import read_tolerances, sweep
+    >>> study = read_tolerances("tolerances.toml")                  # doctest: +SKIP
+    >>> summary = sweep.run(study.plan, "tolerances")               # doctest: +SKIP
+    >>> effects = study.effects("tolerances")                       # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, parse_text, read_text
+from fastpin.errors import InputError, InputWarning
+from fastpin.model.case import Case
+from fastpin.model.checks import as_toml, check_callable, file_path, string, true_or_false, whole_number
+from fastpin.model.doubts import warn_of
+from fastpin.model.points import elastic_bodies
+from fastpin.model.problem import Problem
+from fastpin.studies.index import DONE
+from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
+from fastpin.studies.plan import (
+    MAX_RUNS,
+    ROOT_KEYS,
+    Plan,
+    PlanRow,
+    Spacing,
+    SweepProgress,
+    base_case,
+    check_root,
+    checked_points,
+    labels_in,
+    range_in,
+    varied_fields,
+)
+from fastpin.studies.run_end import KEY_FIGURES
+from fastpin.studies.sweep import rows
+from fastpin.studies.tolerance_effects import OutcomeEffect, effect_of
+from fastpin.studies.variation import FACTORS, BaseCase
+
+MOST_FIELDS = 10
+"""Most fields whose corners are all run: 1,024 corners."""
+
+SAMPLES = 200
+"""Samples unless given. The rank correlation of independent numbers then scatters by 0.07."""
+
+KEYS = {name: words for name, words in ROOT_KEYS.items() if name not in ("grid", "list")} | {
+    "tolerances": "[tolerances]", "corners": "corners", "samples": "samples", "seed": "seed"
+}  # fmt: skip
+"""Keys of a tolerance plan, as they are written."""
+
+USUAL_OUTCOMES = {
+    "largest_pressure": {"quantity": "peak_pressure", "take": "largest"},
+    "largest_shear": {"quantity": "peak_shear", "take": "largest magnitude"},
+    "largest_hoop": {"quantity": "peak_hoop", "take": "largest"},
+    "least_bush_pressure": {"quantity": "bush_open_margin", "take": "smallest"},
+}
+"""The outcomes of a plan without [outcomes], as far as the joint has them: over all kept states."""
+
+
+class FieldLimits(NamedTuple):
+    """The limits of a field, in the units of the case file.
+
+    Attributes
+    ----------
+    nominal : float
+        The value of the case; 1 for a factor.
+    values : tuple of float
+        All values that are run one at a time, increasing: both limits, the nominal value, and values between them.
+    spacing : {"linear", "log"}
+        How samples lie between the limits: uniform in the value, or in its logarithm.
+    """
+
+    nominal: float
+    values: tuple[float, ...]
+    spacing: Spacing
+
+    @property
+    def low(self) -> float:
+        """The lower limit."""
+        return self.values[0]
+
+    @property
+    def high(self) -> float:
+        """The upper limit."""
+        return self.values[-1]
+
+
+@dataclass(frozen=True, repr=False)
+class Tolerances:
+    """A tolerance plan and its points. :func:`read_tolerances` and :func:`parse_tolerances` make it.
+
+    Attributes
+    ----------
+    plan : Plan
+        The points, for :func:`fastpin.studies.sweep.run`. The nominal case is the first point.
+    limits : dict of str to FieldLimits
+        The fields and their limits.
+    alone : dict of str to list of int
+        The places among the points where only this field differs from the nominal case, one for each value of its
+        limits. The nominal case has place 0.
+    corners, samples : range
+        The places of the corners and of the samples.
+    """
+
+    plan: Plan
+    limits: dict[str, FieldLimits]
+    alone: dict[str, list[int]]
+    corners: range
+    samples: range
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.corners):,} corners, {len(self.samples):,} samples"
+        return f"<Tolerances of {', '.join(self.limits)}: {counts}>"
+
+    def with_outcomes(self, outcomes: Mapping[str, Any]) -> Tolerances:
+        """Return this plan with more outcomes, see :meth:`fastpin.studies.plan.Plan.with_outcomes`.
+
+        Raises
+        ------
+        InputError
+            Also if an outcome is a class: classes have no swing.
+        """
+        plan = self.plan.with_outcomes(outcomes)
+        for name, outcome in plan.outcomes.items():
+            if outcome.classes:
+                raise InputError("outcomes", _no_swing(name))
+        return replace(self, plan=plan)
+
+    def effects(self, directory: str | Path) -> dict[str, OutcomeEffect]:
+        """Return the effects of the tolerances on every outcome, from the finished runs in a directory.
+
+        Parameters
+        ----------
+        directory : path
+            The folder of :func:`fastpin.studies.sweep.run`.
+
+        Returns
+        -------
+        dict of str to OutcomeEffect
+            Values have the units of :func:`fastpin.studies.sweep.load`. Places are those of ``plan.points``.
+
+        Raises
+        ------
+        InputError
+            If the index can't be used.
+        """
+        return effects_of(self, rows(self.plan, directory))
+
+
+def effects_of(study: Tolerances, found: Sequence[dict[str, Any]]) -> dict[str, OutcomeEffect]:
+    """Return the effects on every outcome from rows of :func:`fastpin.studies.sweep.rows`, in any unit."""
+    inputs = {name: np.array([row[name] for row in found], dtype=float) for name in study.limits}
+    effects = {}
+    for name, outcome in study.plan.outcomes.items():
+        known = [row.get(name) if row["status"] == DONE else None for row in found]
+        values = np.array([math.nan if value is None else value for value in known], dtype=float)
+        if outcome.kind == "angle":  # places on a circle are compared with the nominal place
+            values = values[0] + np.mod(values - values[0] + 180.0, 360.0) - 180.0
+        effects[name] = effect_of(values, inputs, study.alone, study.corners, study.samples)
+    return effects
+
+
+def part_words(study: Tolerances, place: int) -> str:
+    """Return the part of a study to which a point belongs: "a corner", "a sample", "nominal", or a field "alone"."""
+    if place in study.corners:
+        return "a corner"
+    if place in study.samples:
+        return "a sample"
+    return next((f"{name} alone" for name, places in study.alone.items() if place in places and place), "nominal")
+
+
+def read_tolerances(path: str | Path, progress: SweepProgress | None = None) -> Tolerances:
+    """Read a tolerance plan.
+
+    Parameters
+    ----------
+    path : path
+        The plan. Relative paths start as in :func:`fastpin.studies.read_plan`.
+    progress : callable, optional
+        Called as ``progress(done, total)`` before each point is checked.
+
+    Raises
+    ------
+    CaseFileError
+        With all faults of the plan, of the base case and of the runs, each with its line.
+    InputError
+        If `path` is no path, or `progress` can't be called.
+    """
+    path = file_path("path", path)
+    check_callable("progress", progress)
+    text = read_text(path, MOST_BYTES_OF_PLAN)
+    study = parse_text(text, str(path), "tolerance plan", lambda source: _study(source, text, path.parent, progress))
+    warn_of(study.plan.doubts, 2)
+    return study
+
+
+def parse_tolerances(text: str, name: str = "tolerance plan", folder: str | Path = ".") -> Tolerances:
+    """Read a tolerance plan from `text`. See :func:`fastpin.studies.parse_plan` for the arguments and errors."""
+    place = file_path("folder", folder)
+    study = parse_text(text, name, "tolerance plan", lambda source: _study(source, text, place, None))
+    warn_of(study.plan.doubts, 2)
+    return study
+
+
+def has_tolerances(text: str) -> bool:
+    """Whether the text of a plan is a tolerance plan."""
+    return "tolerances" in CaseText(text).root
+
+
+# -- text of a plan ------------------------------------------------------------------------------------------
+
+
+def _study(source: CaseText, text: str, folder: Path, progress: SweepProgress | None) -> Tolerances | None:
+    """Read the plan. It has no meaning if the text has faults."""
+    check_root(source, KEYS, "[tolerances]")
+    title = source.root.checked("title", string) or ""
+    base = base_case(source, folder)
+    text_of_case, case = (None, None) if base is None else base.vary({})
+    if base is not None and text_of_case is not None and text_of_case.faults:
+        for line, message in text_of_case.faults:
+            source.report(f"{base.name}{f', line {line}' if line else ''}: {message}", "case")
+        case = None
+    places: dict[str, KeyPath] = {}
+    limits: dict[str, FieldLimits] = {}
+    for place, name, value in varied_fields(source, base, source.section("tolerances").table, ("tolerances",)):
+        if name in places:
+            source.report(f"{name}: has limits already, in line {source.line(*places[name])}", *place)
+            continue
+        places[name] = place
+        found = None if base is None or case is None else _limits(source, base, case, (place, name, value))
+        limits |= {} if found is None else {name: found}
+    if not places and not source.faults:
+        source.report("no field has limits: give [tolerances], such as contact.friction = { from = 0.1, to = 0.6 }")
+    outcomes = outcomes_in_text(source, folder, *((None, None) if base is None else (base.wear, base.crack)))
+    for name, outcome in outcomes.items():
+        if outcome.classes:
+            source.report(_no_swing(name), "outcomes", name)
+    if not outcomes and case is not None:
+        outcomes = _usual_outcomes(case.problem)
+    with_corners, count, seed = _extent(source, len(places))
+    labels = labels_in(source, (*places, *outcomes, *KEY_FIGURES))
+    if base is None or source.faults:
+        return None
+    alone, corners, samples, values = _values(limits, with_corners, _samples(limits, count, seed))
+    if len(values) > MAX_RUNS:
+        source.report(f"the study has {len(values):,} runs; more than {MAX_RUNS:,} are not possible in one")
+        return None
+    cases: dict[str, Case] = {}
+    doubts: list[InputWarning] = []
+    plan_rows: list[PlanRow] = [{name: (places[name], row[name]) for name in limits} for row in values]
+    points = checked_points(source, base, places, plan_rows, {}, (cases, doubts), progress)
+    fields: dict[str, Spacing] = {name: each.spacing for name, each in limits.items()}
+    plan = Plan(title, text, fields, {}, points, outcomes, doubts, labels, base, cases)
+    return Tolerances(plan, limits, alone, corners, samples)
+
+
+def _limits(source: CaseText, base: BaseCase, case: Case, given: tuple[KeyPath, str, Any]) -> FieldLimits | None:
+    """Read the limits of a field, given by its place, its name and its value in the text. None with a fault."""
+    place, name, value = given
+    before = len(source.placed)
+    if name.startswith("solve."):
+        source.report(f"{name}: is an option of the solver and has no tolerance; fastpin converge varies it", *place)
+        return None
+    if not isinstance(value, dict):
+        source.report(f"{name}: must be limits such as {{ from = 0.1, to = 0.6 }}, not {as_toml(value)}", *place)
+        return None
+    values, spacing = range_in(source, place, name, value, 2)
+    nominal = _nominal(base, case, name)
+    if len(source.placed) > before:
+        return None
+    if values[0] >= values[-1]:
+        source.report(f"{name}: from must lie below to, but {values[0]:g} is not below {values[-1]:g}", *place)
+    elif name in FACTORS and not any(case.history.largest.get(load) for load in FACTORS[name]):
+        source.report(f"{name}: the case has no such load, and a factor would change nothing", *place)
+    elif nominal is None:
+        words = f"{name}: the case has no number for it, which would be the nominal value"
+        hint = "; a load with several points is varied by a factor, such as loads.P" if name.startswith("load.") else ""
+        source.report(f"{words}{hint}", *place)
+    elif not values[0] <= nominal <= values[-1]:
+        source.report(
+            f"{name}: the case has {nominal:g}, outside of the limits {values[0]:g} and {values[-1]:g}", *place
+        )
+    else:
+        return FieldLimits(nominal, tuple(sorted({*values, nominal})), spacing)
+    return None
+
+
+def _nominal(base: BaseCase, case: Case, name: str) -> float | None:
+    """Return the value of a field in the case: from its text, or else from its materials and defaults."""
+    if name in FACTORS:
+        return 1.0
+    section, *keys = name.split(".")
+    value: Any = base.text.root.table.get(section)
+    if section == "load" and isinstance(value, dict):
+        value = [value]
+    for key in keys:
+        if isinstance(value, list):
+            value = value[int(key) - 1] if key.isdecimal() and 1 <= int(key) <= len(value) else None
+        else:
+            value = value.get(key) if isinstance(value, dict) else None
+    problem = case.problem
+    owners: dict[str, Any] = {
+        "contact": problem, "pin": problem.pair.pin, "plate": problem.pair.plate, "pin_body": problem.pin_body,
+        "plate_body": problem.plate_body,
+    }  # fmt: skip
+    if value is None and section in owners and len(keys) == 1:
+        owner = owners[section]
+        value = getattr(owner, keys[0], getattr(getattr(owner, "material", None), keys[0], None))
+    is_number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return value if is_number else None
+
+
+def _usual_outcomes(problem: Problem) -> Outcomes:
+    """Return the outcomes of a plan without any."""
+    without = set() if "plate" in elastic_bodies(problem) else {"largest_hoop"}
+    if problem.joint.bush is None:
+        without.add("least_bush_pressure")
+    return outcomes_from({name: table for name, table in USUAL_OUTCOMES.items() if name not in without})
+
+
+def _extent(source: CaseText, fields: int) -> tuple[bool, int, int]:
+    """Read whether corners are run, and the number and the seed of the samples."""
+    root = source.root
+    corners = root.checked("corners", true_or_false)
+    samples = root.checked("samples", whole_number, 0, MAX_RUNS)
+    seed = root.checked("seed", whole_number, 0, 2**32 - 1)
+    if fields > MOST_FIELDS and corners is not False:
+        source.report(
+            f"{fields} fields have {2**fields:,} corners, and those of at most {MOST_FIELDS} fields are run: write "
+            "corners = false, and leave the combinations to samples",
+            "corners" if "corners" in root else "tolerances",
+        )
+    return corners is not False, SAMPLES if samples is None else samples, 1 if seed is None else seed
+
+
+def _no_swing(name: str) -> str:
+    return f"{name}: is a class, which has no swing; an outcome of a tolerance study is a number"
+
+
+# -- points --------------------------------------------------------------------------------------------------
+
+
+def _samples(limits: Mapping[str, FieldLimits], count: int, seed: int) -> Iterator[dict[str, float]]:
+    """Yield the samples of a Latin hypercube: each field has one value in each of `count` equal parts of its limits.
+
+    Two lines of NumPy stand for :mod:`scipy.stats.qmc`, whose import takes two seconds.
+    """
+    random = np.random.default_rng(seed)
+    parts = {name: (random.permutation(count) + random.random(count)) / max(count, 1) for name in limits}
+    for place in range(count):
+        row = {}
+        for name, (low, high) in ((name, (each.low, each.high)) for name, each in limits.items()):
+            part = float(parts[name][place])
+            value = low * (high / low) ** part if limits[name].spacing == "log" else low + part * (high - low)
+            row[name] = float(f"{value:.12g}")
+        yield row
+
+
+def _values(
+    limits: Mapping[str, FieldLimits], with_corners: bool, samples: Iterator[dict[str, float]]
+) -> tuple[dict[str, list[int]], range, range, list[dict[str, float]]]:
+    """Return the places of the values alone, of the corners and of the samples; and the fields of all points."""
+    nominal = {name: each.nominal for name, each in limits.items()}
+    values, alone = [nominal], dict[str, list[int]]()
+    for name, each in limits.items():
+        alone[name] = []
+        for value in each.values:
+            alone[name].append(0 if value == each.nominal else len(values))
+            values += [] if value == each.nominal else [nominal | {name: value}]
+    first = len(values)
+    if with_corners:
+        ends = itertools.product(*((each.low, each.high) for each in limits.values()))
+        values += [dict(zip(limits, corner, strict=True)) for corner in ends]
+    second = len(values)
+    values += samples
+    return alone, range(first, second), range(second, len(values)), values
