@@ -319,6 +319,7 @@ class Valid:
             "spectrum_growth.last": 0.02,
             "spectrum_growth.law": cracks.Walker(1e-10, 3.0),
             "planned_growth.how": model.CrackGrowth(0.01, 0.02, cracks.Walker(1e-10, 3.0), -1.5),
+            "CrackGrowth.residual.s": [0.0, 0.005],
             "CrackGrowth.first": 0.01,
             "CrackGrowth.last": 0.02,
             "record.crack": model.CrackGrowth(0.01, 0.02, cracks.Walker(1e-10, 3.0), -1.5),
