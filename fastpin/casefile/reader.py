@@ -15,15 +15,18 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
+from fastpin.casefile.assessment import read_assessment
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.materials import DUNDURS_KEYS, known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
+from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment, check_assessment
 from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
 from fastpin.model.checks import file_path, string
 from fastpin.model.fields import FIELDS
+from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
@@ -49,6 +52,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
     "wear": WEAR_KEYS,
+    "fatigue": ASSESSMENT_KEYS,
     "solve": tuple(field.name for field in fields(SolveOptions)),
 }
 """Sections of a case file and their keys."""
@@ -174,7 +178,23 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     wear = read_wear(how, folder, count) if how.present else None
     if problem is not None and wear is not None:
         _check_together(source, lambda: check_wear(problem), "plate_body")
-    return Case(problem, history, options, title, about, wear) if problem is not None and history is not None else None
+    fatigue = _fatigue(source, problem, history, options)
+    if problem is None or history is None:
+        return None
+    return Case(problem, history, options, title, about, wear, fatigue)
+
+
+def _fatigue(
+    source: CaseText, problem: Problem | None, history: LoadHistory | None, options: SolveOptions
+) -> FatigueAssessment | None:
+    """How the fatigue of the history is assessed; None without the section, or if it can't be used (reported)."""
+    section = source.section("fatigue")
+    if not section.present:
+        return None
+    how = read_assessment(section)
+    if how is not None and problem is not None and not source.placed:
+        _check_together(source, lambda: check_assessment(problem, how, history, options), "fatigue")
+    return how
 
 
 def _keys_of(tables: Mapping[str, Any]) -> object:

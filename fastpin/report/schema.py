@@ -11,10 +11,13 @@ from dataclasses import fields
 from typing import Any
 
 from fastpin.bodies.compliance import FORMAT, VERSION
+from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA
 from fastpin.model.checks import choice
+from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.fields import FIELDS, Field
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.options import METHODS, SolveOptions
+from fastpin.model.points import BODIES
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
 from fastpin.states.quantities import QUANTITIES
@@ -80,6 +83,7 @@ def _summary() -> Schema:
             "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN))),
             "cycles": _list_of(_object(of_cycle)),
             "cycle": _or_null(_last_cycle()),
+            "fatigue": _or_null(_fatigue()),
         }
     )
 
@@ -167,6 +171,32 @@ def _last_cycle() -> Schema:
             "dissipation": _UNKNOWN,
             "nodes": _map_of(_WHOLE, "number of nodes of each behaviour"),
             "work": _map_of(_UNKNOWN, "work of each load"),
+        }
+    )
+
+
+def _fatigue() -> Schema:
+    numbers = dict.fromkeys(("start", "stop", "largest", "parameter", "damage"), _NUMBER)
+    words = {"description": "counted cycles at the hot spot, the largest damage first; start and stop are load points"}
+    body = _object(
+        {
+            "criterion": {"enum": list(LIFE_CONSTANTS)},
+            "body": {"enum": list(BODIES)},
+            "damage": _NUMBER,
+            "life": _UNKNOWN | {"description": "spectra, or cycles over the last cycle; null without damage"},
+            **dict.fromkeys(("angle", "depth", "plane"), _UNKNOWN),
+            "cycles": _list_of(_object(numbers | {"times": _WHOLE})) | words,
+        }
+    )
+    return _object(
+        {
+            "criterion": _list_of({"enum": list(LIFE_CONSTANTS)}),
+            "over": {"enum": list(SPECTRA)},
+            "method": {"enum": list(DISTANCES)},
+            "small_cycles": {"enum": list(MINER_RULES)},
+            "knee": _UNKNOWN,
+            "error": _OPTIONAL_TEXT,
+            "bodies": _list_of(body),
         }
     )
 

@@ -17,7 +17,9 @@ from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, units
+from fastpin.report import assessment
 from fastpin.report import cycle as cycle_report
+from fastpin.report.assessment import Assessed
 from fastpin.report.margins import document as margins_document
 from fastpin.report.margins import static_margins
 from fastpin.solver.result import Result
@@ -29,7 +31,11 @@ from fastpin.version import __version__
 
 
 def document(
-    case: Case, result: Result | None, error: str | None = None, cycle: LoadCycle | None = None
+    case: Case,
+    result: Result | None,
+    error: str | None = None,
+    cycle: LoadCycle | None = None,
+    fatigue: Assessed | None = None,
 ) -> dict[str, Any]:
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
@@ -45,6 +51,8 @@ def document(
         The reason why `result` is incomplete.
     cycle : LoadCycle, optional
         The cycle of the entry ``cycle``.
+    fatigue : Assessed, optional
+        The assessment of the entry ``fatigue``.
     """
     problem, pair = case.problem, case.problem.pair
     alpha, beta = problem.surfaces.dundurs()
@@ -87,6 +95,7 @@ def document(
             for row in (() if result is None else result.cycles)
         ],
         "cycle": None if cycle is None else cycle_report.document(cycle),
+        "fatigue": None if fatigue is None else assessment.document(fatigue),
     }
     return json_ready(found)
 

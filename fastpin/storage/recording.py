@@ -10,6 +10,7 @@ from typing import Unpack
 import numpy as np
 
 from fastpin.errors import InputError, InputWarning
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import About, Case
 from fastpin.model.checks import (
     as_toml,
@@ -36,7 +37,7 @@ from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.journal import check_beside, is_empty
-from fastpin.storage.layout import read_about, read_history, read_options, read_problem
+from fastpin.storage.layout import read_about, read_assessment, read_history, read_options, read_problem
 from fastpin.storage.origin import largest_pressure, provenance, stored_yield_doubts
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
@@ -49,6 +50,7 @@ def record(
     *,
     title: str = "",
     about: About | None = None,
+    fatigue: FatigueAssessment | None = None,
     save_after: Sequence[int] = (),
     overwrite: bool = False,
     grid: Grid | None = None,
@@ -72,6 +74,8 @@ def record(
         Title of the run, stored in the file.
     about : About, optional
         Project, author, revision and date, stored in the file for its report.
+    fatigue : FatigueAssessment, optional
+        How the fatigue is assessed, stored in the file for its text, figures and report.
     save_after : sequence of int
         Corners, counted from 1, with a restart in the file. ``load(path, after=corner)`` is quick at these corners.
     overwrite : bool
@@ -96,6 +100,8 @@ def record(
     check_writable(path, result=True)
     string("title", title)
     about = About() if about is None else instance("about", about, About, "an About")
+    if fatigue is not None:
+        instance("fatigue", fatigue, FatigueAssessment, "a FatigueAssessment")
     true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
@@ -116,7 +122,7 @@ def record(
             "save_after", f"must be corners from 1 to {len(task.history)}, not {as_toml(max(save_corners))}"
         )
     warn_of(doubts(problem, task.history, solve_options), 2)
-    writer = FileRecorder(path, task, title, about)
+    writer = FileRecorder(path, task, title, about, fatigue)
     writer.overwrite = overwrite
     writer.check_overwriting()
     writer.chosen_arc &= start is None
@@ -240,7 +246,7 @@ def stored_error(path: str | Path) -> str | None:
 
 
 def stored_case(path: str | Path) -> Case:
-    """Read the case of a stored result: problem, history, options, title, and who made it for what.
+    """Read the case of a stored result: problem, history, options, title, who made it for what, and its assessment.
 
     Raises
     ------
@@ -249,7 +255,8 @@ def stored_case(path: str | Path) -> Case:
     """
     with open_result(file_path("path", path)) as file:
         title = text_of(file["solver"].attrs.get("title", ""))
-        return Case(read_problem(file), read_history(file), read_options(file), title, read_about(file))
+        parts = read_problem(file), read_history(file), read_options(file), title, read_about(file)
+        return Case(*parts, fatigue=read_assessment(file))
 
 
 def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:

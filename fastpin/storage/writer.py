@@ -15,6 +15,7 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError, OutputError
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import About
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.result import Restart
@@ -31,6 +32,7 @@ from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_r
 from fastpin.storage.layout import (
     Rows,
     append,
+    assessment_attributes,
     check_format,
     check_growing,
     count,
@@ -38,6 +40,7 @@ from fastpin.storage.layout import (
     node_fields,
     option_attributes,
     read_about,
+    read_assessment,
     read_cycles,
     read_grid,
     read_history,
@@ -134,6 +137,7 @@ class FileRecorder:
         The task that is followed. Its stops get a restart in the file.
     title : str
     about : About
+    fatigue : FatigueAssessment, optional
 
     Attributes
     ----------
@@ -143,12 +147,14 @@ class FileRecorder:
         Whether an existing file may be replaced, also the file of an unfinished run.
     """
 
-    def __init__(self, path: Path, task: Task, title: str, about: About) -> None:
+    def __init__(
+        self, path: Path, task: Task, title: str, about: About, fatigue: FatigueAssessment | None = None
+    ) -> None:
         self.path = path
         self.task = task
         self.chosen_arc = task.options.arc is None and task.grid is None
         self.overwrite = True
-        self._title, self._about = title, about
+        self._title, self._about, self._fatigue = title, about, fatigue
         self._file: JournaledFile | None = None
         self._h5: h5py.File
         self._run: Run
@@ -207,6 +213,7 @@ class FileRecorder:
         extra = {
             "title": self._title,
             **self._about.given(),
+            **assessment_attributes(self._fatigue),
             "arc_chosen": self.chosen_arc,
             "save_after": sorted(task.stops),
         }
@@ -440,7 +447,7 @@ def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Rest
                 check_growing(stored, task.grid.size)
                 read_statistics(stored)  # they are written again at the end
                 options = stored["solver"].attrs
-                writer = FileRecorder(path, task, str(options["title"]), read_about(stored))
+                writer = FileRecorder(path, task, str(options["title"]), read_about(stored), read_assessment(stored))
                 writer.chosen_arc = bool(options["arc_chosen"])
                 restart = _latest(
                     path,
