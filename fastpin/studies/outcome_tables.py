@@ -18,16 +18,19 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from fastpin.casefile.assessment import read_assessment
 from fastpin.casefile.profiles import read_wear
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
+from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment
 from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
 from fastpin.model.points import BODIES
 from fastpin.model.profile import Profile
 from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.quantities import QUANTITIES
+from fastpin.studies.fatigue_outcomes import FATIGUE_QUANTITIES, of_assessment, unit_of_life
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
@@ -51,6 +54,7 @@ KEYS = {
     "quantity": ("quantity", "take", "over", "interface"),
     "cycle": ("cycle", "interface"),
     "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
+    "fatigue": ("fatigue", *ASSESSMENT_KEYS),
     "function": ("function", "classes"),
 }
 """The first key of an outcome says what is read. The others may stand beside it."""
@@ -111,7 +115,9 @@ def read_outcomes(path: str | Path) -> Outcomes:
     return found
 
 
-def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None) -> Outcomes:
+def outcomes_from(
+    given: Mapping[str, Any], wear: Wear | None = None, fatigue: FatigueAssessment | None = None
+) -> Outcomes:
     """Check outcomes that are given in Python.
 
     Parameters
@@ -121,6 +127,8 @@ def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None) -> Outcome
         :class:`StudyOutcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
     wear : Wear, optional
         How the bodies wear, for outcomes of wear that leave it out.
+    fatigue : FatigueAssessment, optional
+        How the fatigue is assessed, for outcomes of fatigue that leave keys out.
 
     Returns
     -------
@@ -134,17 +142,19 @@ def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None) -> Outcome
     if not isinstance(given, Mapping):
         raise InputError("outcomes", f"must be a dict of functions and tables by name, not {as_toml(given)}")
     source = CaseText("").with_tables({"outcomes": dict(given)})
-    found = outcomes_in_text(source, Path(), wear)
+    found = outcomes_in_text(source, Path(), wear, fatigue)
     if source.faults:
         raise CaseFileError("outcomes", source.faults)
     return found
 
 
-def outcomes_in_text(source: CaseText, folder: Path, wear: Wear | None = None) -> Outcomes:
+def outcomes_in_text(
+    source: CaseText, folder: Path, wear: Wear | None = None, fatigue: FatigueAssessment | None = None
+) -> Outcomes:
     """Read the table [outcomes] of a text, and report its faults.
 
-    Relative names of files start in `folder`. `wear` is that of the case, for outcomes that leave its keys out. The
-    outcomes have no meaning if the text has faults.
+    Relative names of files start in `folder`. `wear` and `fatigue` are those of the case, for outcomes that leave
+    their keys out. The outcomes have no meaning if the text has faults.
     """
     found: Outcomes = {}
     section = source.section("outcomes")
@@ -157,7 +167,7 @@ def outcomes_in_text(source: CaseText, folder: Path, wear: Wear | None = None) -
             if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
-                outcome = _of_table(_Table(source, name, value), folder, wear)
+                outcome = _of_table(_Table(source, name, value), folder, wear, fatigue)
                 found |= {} if outcome is None else {name: outcome}
             elif callable(value):
                 found[name] = _of_callable(value)
@@ -214,7 +224,9 @@ class _Table(Section):
         super().report(f"{self.outcome}: {message}", *key)
 
 
-def _of_table(section: _Table, folder: Path, wear: Wear | None) -> StudyOutcome | None:
+def _of_table(
+    section: _Table, folder: Path, wear: Wear | None, fatigue: FatigueAssessment | None
+) -> StudyOutcome | None:
     """Read the table of one outcome, and report its faults. No outcome if a value is wrong."""
     first = [key for key in KEYS if key in section]
     if len(first) != 1:
@@ -228,6 +240,8 @@ def _of_table(section: _Table, folder: Path, wear: Wear | None) -> StudyOutcome 
             section.report(f'unknown key "{key}"{hint}', str(key))
     if first[0] == "wear":
         return _of_wear(section, folder, wear)
+    if first[0] == "fatigue":
+        return _of_fatigue(section, fatigue)
     if first[0] == "function":
         return _of_function(section, folder)
     return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
@@ -294,6 +308,18 @@ def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutco
     kind, classes = WEAR_QUANTITIES[quantity].kind, dict(WEAR_QUANTITIES[quantity].classes)
     read = partial(of_wear, quantity, wear, criterion, body)
     return StudyOutcome(kind, "", json.dumps(definition, sort_keys=True), read, classes, wear=wear)
+
+
+def _of_fatigue(section: Section, default: FatigueAssessment | None) -> StudyOutcome | None:
+    """Read a number of the worst hot spot by one criterion: as the case says, unless the table does."""
+    quantity = _choice(section, "fatigue", tuple(FATIGUE_QUANTITIES))
+    how = read_assessment(section, {} if default is None else default.given)
+    if quantity is None or how is None:
+        return None
+    how = how.changed(criterion=how.criteria[0])
+    kind, unit = unit_of_life(how) if quantity == "life" else (FATIGUE_QUANTITIES[quantity].kind, "")
+    definition = json.dumps({"fatigue": quantity, "how": how.toml()}, sort_keys=True)
+    return StudyOutcome(kind, unit, definition, partial(of_assessment, quantity, how))
 
 
 def _of_function(section: Section, folder: Path) -> StudyOutcome | None:

@@ -154,7 +154,7 @@ class Plan:
         InputError
             With all faults. Also if the plan has another outcome of such a name.
         """
-        found = outcomes_from(outcomes, self._base.wear)
+        found = outcomes_from(outcomes, self._base.wear, self._base.fatigue)
         known = {name.lower(): outcome.definition for name, outcome in self.outcomes.items()}
         for name, outcome in found.items():
             if known.get(name.lower(), outcome.definition) != outcome.definition:
@@ -266,7 +266,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     count = max(len(rows), 1) * math.prod(len(values) for values in axes.values())
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
-    outcomes = outcomes_in_text(source, folder, None if base is None else base.wear)
+    outcomes = outcomes_in_text(source, folder, *((None, None) if base is None else (base.wear, base.fatigue)))
     labels = _labels(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
@@ -419,6 +419,9 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
         return (
             f'"{name}": no run of a sweep wears; an outcome such as {{ wear = "depth" }} may have {names[-1]} beside it'
         )
+    if section == "fatigue":
+        beside = f'an outcome such as {{ fatigue = "life" }} may have {names[-1]} beside it'
+        return f'"{name}": changes no run of a sweep; {beside}'
     if section == "load":
         if not 3 <= len(names) <= 4 or not names[1].isdecimal():
             return f'"{name}": a load is written load.N.key, such as load.2.Q in the second [[load]] block'
