@@ -61,23 +61,37 @@ def stress_history(states: Sequence[State], points: Points, body: Body = "plate"
 def different_states(states: Sequence[State], straight: bool) -> tuple[list[State], np.ndarray]:
     """Return the states with different stresses, and the place of each state among them, int64, shape (states,)."""
     seen: dict[bytes, int] = {}
+    shared: dict[
+        tuple[float, tuple[int, ...]], bytes
+    ] = {}  # by the arrays of a state: repeated states often share them
     different: list[State] = []
     order = np.empty(len(states), dtype=np.int64)
     for k, state in enumerate(states):
-        key = hashlib.blake2b(digest_size=16)
-        for part in (state, state.seat):
-            if part is not None:
-                arrays = [part.theta, part.pressure, part.shear, part.status, _remote(part)]
-                if not straight and part.marks is not None:
-                    arrays += part.marks.arrays(part.theta.size)
-                if not straight:
-                    arrays.append(part.friction)
-                for array in arrays:
-                    key.update(np.ascontiguousarray(array).data)
-        order[k] = seen.setdefault(key.digest(), len(different))
+        parts = [part for part in (state, state.seat) if part is not None]
+        same = tuple(id(each) for part in parts for each in (part.theta, part.pressure, part.shear, part.status))
+        same += tuple(id(part.marks) for part in parts)
+        change = state.load.get("friction_change", 0.0)
+        if (change, same) not in shared:
+            shared[change, same] = _digest(parts, straight)
+        key = shared[change, same] + b"".join(_remote(part).tobytes() for part in parts)
+        order[k] = seen.setdefault(key, len(different))
         if order[k] == len(different):
             different.append(state)
     return different, order
+
+
+def _digest(parts: Sequence[State], straight: bool) -> bytes:
+    """Return a digest of the tractions of a state and its seat, which tell its stresses but for the remote ones."""
+    key = hashlib.blake2b(digest_size=16)
+    for part in parts:
+        arrays = [part.theta, part.pressure, part.shear, part.status]
+        if not straight and part.marks is not None:
+            arrays += part.marks.arrays(part.theta.size)
+        if not straight:
+            arrays.append(part.friction)
+        for array in arrays:
+            key.update(np.ascontiguousarray(array).data)
+    return key.digest()
 
 
 def history_blocks(
