@@ -127,7 +127,7 @@ def test_stresses_that_do_not_change_end_with_one_sentence(folder, capsys, tmp_p
 
 def test_an_unfinished_run_has_no_fatigue(folder, capsys, tmp_path):
     def interrupt(done, total):
-        if done > 2.0:
+        if done > 4.5:
             raise KeyboardInterrupt
 
     case, path = fastpin.read_case(folder / "case.toml"), tmp_path / "part.h5"
