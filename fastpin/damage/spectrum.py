@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from fastpin.damage.counted import SPECTRUM_CRITERIA, CountedMaterial, Spectrum
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, Criterion
 from fastpin.damage.histories import different_states, history_blocks
-from fastpin.damage.hot_spots import CRITERIA, NO_CRACK, bodies_at, edge_angles
+from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_angles
 from fastpin.errors import InputError
 from fastpin.model.checks import check_callable, choice, instance, true_or_false
 from fastpin.model.fatigue import FatigueConstants
@@ -112,7 +112,7 @@ class SpectrumDamage(ReadOnly):
     def __repr__(self) -> str:
         spot = self.hot_spot
         if math.isnan(spot.theta):
-            return f"<SpectrumDamage of the {self.body}, {self.criterion}: {NO_CRACK}>"
+            return f"<SpectrumDamage of the {self.body}, {self.criterion}: no damage>"
         place = f"theta {spot.theta:.5f} rad, depth {spot.depth:.4g} m"
         return f"<SpectrumDamage of the {self.body}, {self.criterion}: life {spot.life:.4g} spectra at {place}>"
 

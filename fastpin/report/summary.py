@@ -31,12 +31,9 @@ from fastpin.version import __version__
 
 
 def document(
-    case: Case,
-    result: Result | None,
-    error: str | None = None,
-    cycle: LoadCycle | None = None,
+    case: Case, result: Result | None, error: str | None = None, cycle: LoadCycle | None = None,
     fatigue: Assessed | None = None,
-) -> dict[str, Any]:
+) -> dict[str, Any]:  # fmt: skip
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
     The entry ``units`` names the unit of every kind of quantity: with a thickness forces are in N, else in N/m. Angles

@@ -110,10 +110,7 @@ def record(
     _check_names(options)
     solve_options = SolveOptions(**options)
     check_options(solve_options, grid, start)
-    if solve_options.error_bars and start is not None:
-        raise InputError(
-            "error_bars", "a run that continues another one has none in a file; leave them or the file out"
-        )
+    _check_bars(solve_options, start)
     task = Task(problem, as_history(history), solve_options, grid, progress, save_corners)
     if solve_options.error_bars:
         check_halves(task, start)
@@ -134,6 +131,14 @@ def record(
     if solve_options.error_bars:
         _record_coarse(path, task)
     warn_of(_pressure_doubts(path, task), 2)
+
+
+def _check_bars(options: SolveOptions, start: Result | None) -> None:
+    """Refuse error bars of a run in a file that continues another one."""
+    if options.error_bars and start is not None:
+        raise InputError(
+            "error_bars", "a run that continues another one has none in a file; leave them or the file out"
+        )
 
 
 def _record_coarse(path: Path, task: Task) -> None:
