@@ -131,7 +131,7 @@ def test_an_unfinished_run_has_no_fatigue(folder, capsys, tmp_path):
             raise KeyboardInterrupt
 
     case, path = fastpin.read_case(folder / "case.toml"), tmp_path / "part.h5"
-    how = {"nodes": 61, "arc": (-4.7, 1.5), "fatigue": case.fatigue}
+    how = {"nodes": 61, "arc": (-4.7, 1.5), "save_after": [3], "fatigue": case.fatigue}
     with pytest.raises(KeyboardInterrupt):
         fastpin.record(case.problem, case.history, path, progress=interrupt, **how)
     capsys.readouterr()
