@@ -52,7 +52,8 @@ KEYWORDS: dict[str, tuple[str, ...]] = {
     "WearResult.fatigue": ("theta", "depth", "constants"),
     "wear": ("nodes", "arc"),
     "Result.fatigue": ("points", "depth", "constants"),
-    "Result.spectrum_damage": ("criterion", "body", "points", "depth", "constants", "straight"),
+    "Result.spectrum_damage": ("criterion", "body", "points", "depth", "constants", "straight", "small_cycles", "knee"),
+    "FatigueAssessment.changed": ("criterion", "bodies", "method", "length", "angles", "small_cycles", "knee"),
     "Result.report": ("title", "about", "case", "convergence", "progress"),
     "Look.sheet": ("sharex",),
     "record": ("nodes", "method", "arc", "between", "keep", "slip_sums"),
@@ -150,6 +151,7 @@ class Valid:
             Curve({"mu": 0.4}, {"angle (deg)": np.zeros(3)}), model.About("a project", revision="B"),
             fastpin.Session, verification.solve_sliding(_sliding_problem(pair), {"P": 1.0, "Q": 1.0}),
             model.Profile.ellipse(1e-5), model.InitialGap(pin=model.Profile.lobes(3, 1e-5)), model.Wear(1e-14), life,
+            model.FatigueAssessment(),
             life[-1], worn, worn.crack, crack, law, grown, cracks.stress_intensity(state, crack, [length]), NASGRO,
             cracks.growth_along_edge(result, law, length, 2.0 * length, [-1.5]), planned,
             cracks.spectrum_growth(result, crack, law, length, 2.0 * length), cracks.CrackFate.STOPS,
@@ -167,6 +169,7 @@ class Valid:
         }
         self._by_target = self._targets(result) | {"worn_fatigue.cycles": _always(life), "after.cycles": _always(1)}
         self._by_target["damage_ranking.states"] = _always(list(life[0].states))
+        self._by_target["assessed_fatigue.states"] = _always(list(life[0].states))
         self._by_annotation = self._annotations(result)
 
     def _write_files(self, result: fastpin.Result, case: fastpin.Case) -> None:

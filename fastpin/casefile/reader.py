@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
+from fastpin.casefile.assessment import read_assessment
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.cracks import read_crack
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
@@ -22,10 +23,12 @@ from fastpin.casefile.materials import DUNDURS_KEYS, known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
+from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment, check_assessment
 from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
 from fastpin.model.checks import file_path, string
 from fastpin.model.crack import CRACK_KEYS, check_crack
 from fastpin.model.fields import FIELDS
+from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
@@ -51,6 +54,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
     "wear": WEAR_KEYS,
+    "fatigue": ASSESSMENT_KEYS,
     "crack": CRACK_KEYS,
     "solve": tuple(field.name for field in fields(SolveOptions)),
 }
@@ -177,14 +181,26 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     wear = read_wear(how, folder, count) if how.present else None
     if problem is not None and wear is not None:
         _check_together(source, lambda: check_wear(problem), "plate_body")
+    fatigue = _fatigue(source, problem, history, options)
     crack = read_crack(source, source.section("crack")) if "crack" in source.root else None
     if problem is not None and pair is not None and crack is not None:
         _check_together(source, lambda: check_crack(problem, crack), "crack")
-    return (
-        Case(problem, history, options, title, about, wear, crack)
-        if problem is not None and history is not None
-        else None
-    )
+    if problem is None or history is None:
+        return None
+    return Case(problem, history, options, title, about, wear, fatigue, crack)
+
+
+def _fatigue(
+    source: CaseText, problem: Problem | None, history: LoadHistory | None, options: SolveOptions
+) -> FatigueAssessment | None:
+    """How the fatigue of the history is assessed; None without the section, or if it can't be used (reported)."""
+    section = source.section("fatigue")
+    if not section.present:
+        return None
+    how = read_assessment(section)
+    if how is not None and problem is not None and not source.placed:
+        _check_together(source, lambda: check_assessment(problem, how, history, options), "fatigue")
+    return how
 
 
 def _keys_of(tables: Mapping[str, Any]) -> object:

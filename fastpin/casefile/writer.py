@@ -15,6 +15,7 @@ from dataclasses import fields
 
 import numpy as np
 
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.fields import FIELDS
@@ -54,10 +55,17 @@ def case_text(case: Case) -> str:
         *_bodies(case.problem),
         ["[[load]]", *_loads(case.history, case.problem.thickness)],
         ["[wear]", *(f"{name} = {_value(value)}" for name, value in wear.items())],
+        *([] if case.fatigue is None else [_fatigue(case.fatigue)]),
         ["[crack]", *(f"{name} = {_value(value)}" for name, value in crack.items())],
         ["[solve]", *_options(case.options)],
     ]
     return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
+
+
+def _fatigue(how: FatigueAssessment) -> list[str]:
+    """Return the section [fatigue]. It names its criterion, so that it is never empty."""
+    given = {"criterion": how.criteria[0] if len(how.criteria) == 1 else list(how.criteria)} | how.toml()
+    return ["[fatigue]", *(f"{name} = {_value(value)}" for name, value in given.items())]
 
 
 def _material(material: Material) -> Iterator[str]:
@@ -143,6 +151,8 @@ def _value(value: object) -> str:
         return _value([value])
     if isinstance(value, list) and value and isinstance(value[0], list):
         return f"[{', '.join(_value(tuple(each)) for each in value)}]"
+    if isinstance(value, list) and not any(isinstance(each, dict) for each in value):
+        return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, tuple):
         return f"[{', '.join(map(repr, value))}]"
     if isinstance(value, list):

@@ -53,7 +53,8 @@ from fastpin.states.choice import check_choice, span_of
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
 from fastpin.states.quantities import load_point
 
-if TYPE_CHECKING:  # it imports compiled code
+if TYPE_CHECKING:  # they import compiled code
+    from fastpin.report.assessment import Assessed
     from fastpin.states.load_cycle import LoadCycle
 
 LISTS = ("arc", "between")
@@ -81,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
         if options.output is None:
             ended = _ending(lambda: solved.append(solver.solve(case.problem, case.history, **keywords)))
         else:
-            keywords |= {"title": case.title, "about": case.about, "crack": case.crack}
+            keywords |= {"title": case.title, "about": case.about, "fatigue": case.fatigue, "crack": case.crack}
             keywords |= {"save_after": saved, "overwrite": options.overwrite}
             ended = _ending(lambda: storage.record(case.problem, case.history, options.output, **keywords))
     if options.output is not None:
@@ -110,7 +111,7 @@ def show(options: argparse.Namespace) -> int:
     case = _stored_case(options)
     if options.interface == "seat":
         seat = load_seat(options.output)
-        shown = dataclasses.replace(case, problem=seat.problem, title=seat_title(case.title))
+        shown = dataclasses.replace(case, problem=seat.problem, title=seat_title(case.title), fatigue=None)
         code = RunReport(shown, None, seat, None).write(options)
     else:
         code = _write_stored(case, options, None)
@@ -318,8 +319,12 @@ class RunReport:
         cycle = None
         with contextlib.suppress(InputError):
             cycle = self._last_cycle() if case.options.slip_sums else None
-        grown = self._crack()
-        document = report.summary.document(case, result, error, cycle, grown) if options.json is not None else None
+        fatigue, grown = self._assessed(), self._crack()
+        if fatigue is not None and fatigue.reason and result is not None and result.complete:
+            code = fail(f"fatigue: {fatigue.reason}", EXIT_FAILED)
+        document = None
+        if options.json is not None:
+            document = report.summary.document(case, result, error, cycle, fatigue, grown)
         text = json.dumps(document, indent=2, allow_nan=False) + "\n"
         writers: list[tuple[Any, Callable[[Path], object]]] = []
         if options.json != "-":
@@ -336,8 +341,17 @@ class RunReport:
         if options.json == "-":  # last: the reader of the output may close it early
             sys.stdout.write(text)
         else:
-            self._print_states(cycle, grown)
+            self._print_states(cycle, fatigue, grown)
         return code
+
+    def _assessed(self) -> Assessed | None:
+        """Assess the fatigue of all states, if the case has a section for it."""
+        if self.case.fatigue is None:
+            return None
+        from_file = self.part is not None and self.path is not None and self.result is not None
+        with Bar(1.0, "of the damage of the spectrum") as progress_bar:
+            whole = storage.load(self.path) if from_file and self.path is not None else self.result
+            return report.assessment.assess(self.case, whole, progress_to(progress_bar))
 
     def _report_end(self) -> tuple[int, str | None]:
         """Print why the run ended early, and return the exit code and the reason."""
@@ -398,7 +412,7 @@ class RunReport:
         if drawn.note:
             say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)
 
-    def _print_states(self, cycle: LoadCycle | None, grown: cracks.Growth | None) -> None:
+    def _print_states(self, cycle: LoadCycle | None, fatigue: Assessed | None, grown: cracks.Growth | None) -> None:
         case, result = self.case, self.result
         if case.title:
             say(case.title)
@@ -429,7 +443,9 @@ class RunReport:
         if result.cycles:
             margins += report.fatigue.last_cycle_margins(case.problem, states, result.cycles)
         say(*margin_lines(case.problem, margins))
-        if result.cycles:
+        if fatigue is not None:
+            say(*report.assessment.assessment_lines(fatigue))
+        elif result.cycles:
             say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
         elif _is_spectrum(case):
             damages = report.cycle.spectrum_damages(result.states, len(case.history))

@@ -29,8 +29,9 @@ from fastpin.model.units import units
 from fastpin.reading.stress import Stress, check_body, stress_at
 from fastpin.runtime.threads import in_threads
 from fastpin.states.choice import stops_of_one_problem
-from fastpin.states.reading_bounds import MAPPED, Hats, NodalStress
+from fastpin.states.reading_bounds import MAPPED
 from fastpin.states.state import State
+from fastpin.states.stress_map import mapped, share_grids
 
 CrackedBody = Literal["plate", "seat"]
 
@@ -341,9 +342,7 @@ def histories(
     """
     check_callable("residual_stress", residual_stress, 1)
     cracks = CrackWeights.of(edge, rows, turns, residual_stress)
-    grid = states[0].theta
-    on_one = all(state.seat is None and np.array_equal(state.theta, grid) for state in states)
-    if straight and on_one and len(states) > MAPPED:
+    if straight and len(states) > MAPPED and share_grids(states):
         K = _mapped(states, edge, cracks)
     else:
         K = np.array(
@@ -360,19 +359,12 @@ def _mapped(states: Sequence[State], edge: CrackedEdge, cracks: CrackWeights) ->
     none = np.zeros((1, *cracks.turn.shape))
     residual, cracks = cracks.of_tractions(none + cracks.added, none), cracks._replace(added=np.zeros(1))
 
-    def of(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+    def of(tractions: list[Tractions], remote: np.ndarray) -> np.ndarray:
         load = dict(zip(names, remote.tolist(), strict=True))
-        return cracks.intensities(stress_at(edge.problem, tractions, load, cracks.points, edge.body, None)).reshape(
-            1, -1
-        )
+        stress = stress_at(edge.problem, tractions[0], load, cracks.points, edge.body, *tractions[1:])
+        return cracks.intensities(stress).reshape(1, -1)
 
-    pressure, shear = np.array([one.pressure for one in states]), np.array([one.shear for one in states])
-    hats = Hats(edge.problem, states[0].grid)
-    linear = NodalStress(hats, of)
-    for nodes, functions in hats.blocks(pressure, shear):
-        linear.learn(nodes, functions)
-    remote = np.array([[state.load.get(name, 0.0) for name in names] for state in states])
-    return linear.component(0, slice(None), pressure, shear, remote).reshape(shape) + residual
+    return mapped(states, of)[0].reshape(shape) + residual
 
 
 def _check_apart(rows: Sequence[tuple[CrackLine, ...]]) -> None:

@@ -1,3 +1,4 @@
+from .assessed import assessed_fatigue as assessed_fatigue
 from .counted import SPECTRUM_CRITERIA as SPECTRUM_CRITERIA
 from .counting import rainflow as rainflow
 from .counting import stress_life as stress_life

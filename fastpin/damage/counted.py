@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, PlaneCount
+from fastpin.damage.lives import curve_with_knee
 from fastpin.errors import InputError
 from fastpin.kernels import rainflow
 from fastpin.model.checks import alternatives, choice
@@ -96,8 +97,8 @@ class CountedMaterial(NamedTuple):
     material : Material
     constants : tuple of float
         The constants of the parameter.
-    life : ndarray, shape (4,)
-        Logarithms of the coefficients of the life, and its exponents.
+    life : ndarray, shape (7,)
+        The curve of lives with its knee, see :func:`fastpin.damage.lives.curve_with_knee`.
     """
 
     counting: PlaneCount
@@ -106,13 +107,17 @@ class CountedMaterial(NamedTuple):
     life: np.ndarray
 
     @classmethod
-    def of(cls, name: str, material: Material, constants: FatigueConstants | None, body: str) -> CountedMaterial:
-        """Check a criterion and the constants, by default those of the material of a body.
+    def of(
+        cls, name: str, material: Material, constants: FatigueConstants | None, body: str,
+        rule: str = "elementary", knee: float | None = None,
+    ) -> CountedMaterial:  # fmt: skip
+        """Check a criterion, the constants, by default those of the material of a body, and the rule of small cycles.
 
         Raises
         ------
         InputError
             If the criterion has no life, or a constant is missing. The message names the constants and the `body`.
+            Also if the rule or its knee can't be used.
         """
         criterion = FATIGUE_CRITERIA[choice("criterion", name, tuple(FATIGUE_CRITERIA))]
         if criterion.counting is None:
@@ -121,7 +126,7 @@ class CountedMaterial(NamedTuple):
         known = given.required((*criterion.needs, *criterion.life_needs), name, body)
         needs = len(criterion.needs)
         curve = criterion.counting.curve(material, *known[needs:])
-        life = np.array([*np.log(curve.coefficients), *curve.exponents])
+        life = curve_with_knee(curve, criterion.counting.degree, rule, knee)
         return cls(criterion.counting, material, known[:needs], life)
 
     def worst(

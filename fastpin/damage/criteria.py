@@ -22,6 +22,7 @@ from fastpin.damage import lives
 from fastpin.errors import InputError
 from fastpin.kernels import planes, spheres
 from fastpin.model.checks import number, numbers, positive
+from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.materials import Material
 from fastpin.runtime.threads import in_chunks
 
@@ -308,6 +309,9 @@ class PlaneCount(NamedTuple):
     ----------
     form : int
         SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.kernels.planes`.
+    degree : int
+        Power of the stresses with which the parameter grows: 2 for a product of stress and strain. The factor of the
+        normal stress in SWING_TIMES_MORE does not count.
     swung_and_push : callable
         ``swung_and_push(history, material, *constants)`` returns the coefficients of both components on planes, each of
         shape (stops, points, 3). The constants are those of the parameter.
@@ -318,6 +322,7 @@ class PlaneCount(NamedTuple):
     """
 
     form: int
+    degree: int
     swung_and_push: Callable[..., tuple[np.ndarray, np.ndarray]]
     natural: Callable[[float, Material], float]
     curve: Callable[..., lives.LifeCurve]
@@ -379,6 +384,7 @@ def _by_limits(
 
 SWT_COUNT = PlaneCount(
     planes.SWING_TIMES_PUSH,
+    2,
     lambda history, material: _normal_strain(history, material.E, material.nu),
     lambda stress, material: stress**2 / material.E,
     lambda material, *constants: lives.smith_watson_topper_curve(material.E, *constants),
@@ -386,6 +392,7 @@ SWT_COUNT = PlaneCount(
 
 FS_COUNT = PlaneCount(
     planes.SWING_TIMES_MORE,
+    1,
     lambda history, material, k, strength: _shear_strain(history, material.shear_modulus, k / strength),
     lambda stress, material: stress / material.shear_modulus,
     lambda material, *constants: lives.fatemi_socie_curve(material.shear_modulus, *constants),
@@ -396,16 +403,16 @@ _LIMITS = ("bending_limit", "torsion_limit")
 FATIGUE_CRITERIA: dict[str, FatigueCriterion] = {
     "smith-watson-topper": FatigueCriterion(
         "stress times strain",
-        (),
+        LIFE_CONSTANTS["smith-watson-topper"][0],
         _smith_watson_topper,
-        ("fatigue_strength", "strength_exponent", "fatigue_ductility", "ductility_exponent"),
+        LIFE_CONSTANTS["smith-watson-topper"][1],
         SWT_COUNT,
     ),
     "fatemi-socie": FatigueCriterion(
         "rotation",
-        ("normal_stress_factor", "yield_strength"),
+        LIFE_CONSTANTS["fatemi-socie"][0],
         _fatemi_socie,
-        ("shear_fatigue_strength", "shear_strength_exponent", "shear_fatigue_ductility", "shear_ductility_exponent"),
+        LIFE_CONSTANTS["fatemi-socie"][1],
         FS_COUNT,
     ),
     "findley": FatigueCriterion("traction", _LIMITS, _by_limits(findley, findley_limit)),

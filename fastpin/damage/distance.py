@@ -21,7 +21,8 @@ from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.points import Body, Points, near_rim, owner_of
+from fastpin.model.points import Body, Points, material_of, near_rim, owner_of
+from fastpin.model.problem import Problem
 from fastpin.reading.stress import check_body
 from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.state import State
@@ -101,30 +102,62 @@ def fatigue_at_distance(
         See :func:`fatigue`; also if the method is unknown, constants for L are missing, the length reaches beyond the
         body or its bush, or no `theta` is given and the parameter is 0 on the whole edge.
     """
-    choice("method", method, METHODS)
     stops = stops_of_one_problem(states)
     problem = stops[0].problem
-    material = check_body(problem, body)
-    given = material.fatigue or FatigueConstants()
+    check_body(problem, body)
     if constants is not None:
-        given = instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
-    if length is None:
-        names = ("threshold_range", "limit_range")
-        length = critical_distance(*given.required(names, f'method "{method}"', owner_of(problem, body)))
-    length = positive("length", length)
+        instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
+    length = checked_length(problem, method, body, length, constants)
     if theta is None:
         theta = fatigue(stops, criterion, body, constants=constants).hot_spot.theta
         if math.isnan(theta):
             raise InputError("theta", f"must be given: the edge has no hot spot, {NO_CRACK}")
     angles = numbers("theta", theta)
+    points, weights = points_of_means(problem, method, body, length, angles)
+    history = stress_history(stops, points, body).reshape(len(stops), *points.shape, 4)
+    place = angles, np.full(angles.shape, mean_depth(method, length))
+    return evaluated(np.einsum("tpqc,q->tpc", history, weights), stops[0], criterion, body, place, constants)
+
+
+def checked_length(
+    problem: Problem, method: str, body: Body, length: float | None = None, constants: FatigueConstants | None = None
+) -> float:
+    """Return L, m: the given one, or that of the constants, by default those of the body's material.
+
+    Raises
+    ------
+    InputError
+        If the method is unknown, the length is not positive, or constants are missing.
+    """
+    choice("method", method, METHODS)
+    if length is None:
+        given = (material_of(problem, body).fatigue if constants is None else constants) or FatigueConstants()
+        names = ("threshold_range", "limit_range")
+        length = critical_distance(*given.required(names, f'method "{method}"', owner_of(problem, body)))
+    return positive("length", length)
+
+
+def mean_depth(method: str, length: float) -> float:
+    """Return the depth that belongs to a mean, m: L/2 for the point method, 0 for the others."""
+    return 0.5 * length if method == "point" else 0.0
+
+
+def points_of_means(
+    problem: Problem, method: DistanceMethod, body: Body, length: float, angles: np.ndarray
+) -> tuple[Points, np.ndarray]:
+    """Return the points of the means at angles of the edge, shape (angles, q), and their weights, shape (q,).
+
+    Raises
+    ------
+    InputError
+        If the points lie outside the body, or beyond its bush.
+    """
     radius = problem.hole_radius
     depth, turn, weights = _places(method, length / radius, near_rim(problem, body), body)
     points = Points.at_depth(depth * radius, np.ravel(angles)[:, None] + turn)
     if body == "plate" and is_beyond_bush(problem, points.depths(problem, body)).any():
         raise InputError("length", f"{length:g} reaches beyond the bush: a mean over two materials has no meaning")
-    history = stress_history(stops, points, body).reshape(len(stops), *points.shape, 4)
-    place = angles, np.full(angles.shape, 0.5 * length if method == "point" else 0.0)
-    return evaluated(np.einsum("tpqc,q->tpc", history, weights), stops[0], criterion, body, place, constants)
+    return points, weights
 
 
 def _places(

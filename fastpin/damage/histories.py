@@ -15,7 +15,7 @@ from fastpin.reading.stress import Stress, stress_at
 from fastpin.runtime.threads import in_threads
 from fastpin.states.reading_bounds import MAPPED
 from fastpin.states.state import State
-from fastpin.states.stress_map import StressMap
+from fastpin.states.stress_map import mapped, share_grids
 
 ROOM = 2**24
 """Numbers that a block of points may hold: 128 MB."""
@@ -62,23 +62,37 @@ def stress_history(states: Sequence[State], points: Points, body: Body = "plate"
 def different_states(states: Sequence[State], straight: bool) -> tuple[list[State], np.ndarray]:
     """Return the states with different stresses, and the place of each state among them, int64, shape (states,)."""
     seen: dict[bytes, int] = {}
+    shared: dict[
+        tuple[float, tuple[int, ...]], bytes
+    ] = {}  # by the arrays of a state: repeated states often share them
     different: list[State] = []
     order = np.empty(len(states), dtype=np.int64)
     for k, state in enumerate(states):
-        key = hashlib.blake2b(digest_size=16)
-        for part in (state, state.seat):
-            if part is not None:
-                arrays = [part.theta, part.pressure, part.shear, part.status, _remote(part)]
-                if not straight and part.marks is not None:
-                    arrays += part.marks.arrays(part.theta.size)
-                if not straight:
-                    arrays.append(part.friction)
-                for array in arrays:
-                    key.update(np.ascontiguousarray(array).data)
-        order[k] = seen.setdefault(key.digest(), len(different))
+        parts = [part for part in (state, state.seat) if part is not None]
+        same = tuple(id(each) for part in parts for each in (part.theta, part.pressure, part.shear, part.status))
+        same += tuple(id(part.marks) for part in parts)
+        change = state.load.get("friction_change", 0.0)
+        if (change, same) not in shared:
+            shared[change, same] = _digest(parts, straight)
+        key = shared[change, same] + b"".join(_remote(part).tobytes() for part in parts)
+        order[k] = seen.setdefault(key, len(different))
         if order[k] == len(different):
             different.append(state)
     return different, order
+
+
+def _digest(parts: Sequence[State], straight: bool) -> bytes:
+    """Return a digest of the tractions of a state and its seat, which tell its stresses but for the remote ones."""
+    key = hashlib.blake2b(digest_size=16)
+    for part in parts:
+        arrays = [part.theta, part.pressure, part.shear, part.status]
+        if not straight and part.marks is not None:
+            arrays += part.marks.arrays(part.theta.size)
+        if not straight:
+            arrays.append(part.friction)
+        for array in arrays:
+            key.update(np.ascontiguousarray(array).data)
+    return key.digest()
 
 
 def history_blocks(
@@ -92,18 +106,13 @@ def history_blocks(
     count, nodes = points.theta.size, states[0].theta.size
     size = max(ROOM // (8 * nodes + 4 * len(states)), 1)
     theta, depth = points.theta.ravel(), points.depths(states[0].problem, body).ravel()
-    mapped = straight and len(states) > MAPPED and all(_is_on_grids_of(state, states[0]) for state in states)
-    mapped = mapped and not (body == "pin" and np.any(depth > 0.5))  # near its centre a moment has an infinite stress
+    is_deep = body == "pin" and bool(np.any(depth > 0.5))  # near the centre a moment has an infinite stress
+    is_mapped = straight and not is_deep and len(states) > MAPPED and share_grids(states)
     for begin in range(0, max(count, 1), size):
         part = slice(begin, min(begin + size, count))
         some = Points.at_depth(depth[part] * states[0].problem.hole_radius, theta[part]) if size < count else points
         told = None if progress is None else _within(progress, part, count)
-        yield part, (_mapped(states, some, body, told) if mapped else _read(states, some, body, straight, told))
-
-
-def _is_on_grids_of(state: State, other: State) -> bool:
-    pairs = ((state, other), (state.seat, other.seat))
-    return all(one is two if one is None or two is None else np.array_equal(one.theta, two.theta) for one, two in pairs)
+        yield part, (_mapped(states, some, body, told) if is_mapped else _read(states, some, body, straight, told))
 
 
 def _within(progress: Progress, part: slice, count: int) -> Progress:
@@ -137,16 +146,7 @@ def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progr
         load = dict(zip(names, remote.tolist(), strict=True))
         return _components(stress_at(problem, tractions[0], load, points, body, *tractions[1:]))
 
-    seats = [state.seat for state in states if state.seat is not None]
-    parts = [part for part in (states, seats) if part]
-    linear = StressMap(problem, [part[0].grid for part in parts], stress)
-    tractions = [(np.array([one.pressure for one in part]), np.array([one.shear for one in part])) for part in parts]
-    linear.learn(tractions, progress)
-    remote = np.array([_remote(state) for state in states])
-    found = [linear.component(which, tractions, remote) for which in range(4)]
-    if progress is not None:
-        progress(1.0)
-    return np.stack(found, axis=-1)
+    return np.moveaxis(mapped(states, stress, progress), 0, -1)
 
 
 def _components(stress: Stress) -> np.ndarray:

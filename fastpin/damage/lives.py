@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
+from fastpin.model.assessment import checked_knee
 from fastpin.model.checks import negative, number_array, numbers, positive
 
 
@@ -134,6 +135,48 @@ def miner(counts: ArrayLike, lives: ArrayLike) -> np.ndarray:
     if not np.all(cycles > 0.0):
         raise InputError("lives", "must be above 0")
     return np.tensordot(number_of, 1.0 / cycles, axes=1)
+
+
+def curve_with_knee(curve: LifeCurve, degree: int, rule: str = "elementary", knee: float | None = None) -> np.ndarray:
+    """Return the numbers of a curve of lives, and of its part beyond the knee, for :mod:`fastpin.kernels.rainflow`.
+
+    Let P be the parameter, P_D that of the curve at the knee N_D, and P proportional to the power `degree` of the
+    amplitude: 2 for Smith, Watson and Topper, 1 for Fatemi and Socie. The slope at the knee is k in
+    N ~ amplitude^-k = P^(-k/degree), from the tangent of the curve in logarithms. Below P_D:
+
+    * "elementary": the curve goes on.
+    * "original": no damage.
+    * "haibach": N = N_D (P_D/P)^((2k - 1)/degree), the slope 2k - 1 (Haibach 1970).
+
+    Parameters
+    ----------
+    curve : LifeCurve
+    degree : int
+    rule : {"elementary", "original", "haibach"}
+    knee : float, optional
+        N_D, cycles; for "original" and "haibach" only.
+
+    Returns
+    -------
+    ndarray, shape (7,)
+        Logarithms of both coefficients, both exponents, logarithms of P_D and 2 N_D, and the slope beyond them.
+
+    Raises
+    ------
+    InputError
+        If the rule is unknown, its knee is missing or out of range, or the slope k at the knee is not above 1.
+    """
+    cycles = checked_knee(rule, knee)
+    logs, slopes = np.log(curve.coefficients), np.array(curve.exponents)
+    if cycles is None:
+        return np.array([*logs, *slopes, -np.inf, 0.0, 0.0])
+    at = math.log(2.0 * cycles)
+    powers = logs + at * slopes
+    limit = float(np.logaddexp(*powers))
+    k = -degree / float(np.sum(slopes * np.exp(powers - limit)))
+    if k <= 1.0:
+        raise InputError("knee", f"must lie where the slope k of the curve of lives is above 1, not {k:.3g}")
+    return np.array([*logs, *slopes, limit, at, np.inf if rule == "original" else (2.0 * k - 1.0) / degree])
 
 
 def _coefficient(field: str, value: float) -> float:

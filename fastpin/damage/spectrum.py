@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from fastpin.damage.counted import SPECTRUM_CRITERIA, CountedMaterial, Spectrum
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, Criterion
 from fastpin.damage.histories import different_states, history_blocks
-from fastpin.damage.hot_spots import CRITERIA, NO_CRACK, bodies_at, edge_angles
+from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_angles
 from fastpin.errors import InputError
 from fastpin.model.checks import check_callable, choice, instance, true_or_false
 from fastpin.model.fatigue import FatigueConstants
@@ -112,7 +112,7 @@ class SpectrumDamage(ReadOnly):
     def __repr__(self) -> str:
         spot = self.hot_spot
         if math.isnan(spot.theta):
-            return f"<SpectrumDamage of the {self.body}, {self.criterion}: {NO_CRACK}>"
+            return f"<SpectrumDamage of the {self.body}, {self.criterion}: no damage>"
         place = f"theta {spot.theta:.5f} rad, depth {spot.depth:.4g} m"
         return f"<SpectrumDamage of the {self.body}, {self.criterion}: life {spot.life:.4g} spectra at {place}>"
 
@@ -140,6 +140,8 @@ def spectrum_damage(
     depth: ArrayLike | None = None,
     constants: FatigueConstants | None = None,
     straight: bool = False,
+    small_cycles: str = "elementary",
+    knee: float | None = None,
     progress: Callable[[float, float], None] | None = None,
 ) -> SpectrumDamage:
     """Damage of plate, bush or pin over a load spectrum, at points on an edge or inside.
@@ -161,14 +163,21 @@ def spectrum_damage(
     straight : bool
         Whether the tractions are straight lines between the nodes everywhere, see :meth:`fastpin.State.stress`. The
         stresses are then one product with a matrix, which takes a small part of the time.
+    small_cycles : {"elementary", "original", "haibach"}
+        The variant of Miner's rule for cycles below the knee of the curve of lives. Let P_D be the parameter of the
+        curve at the knee. "elementary": the curve goes on. "original": cycles below P_D do no damage. "haibach": their
+        life is N_D (P_D/P)^((2k - 1)/m). The slope k of the curve at its knee belongs to the amplitude: P grows with
+        its power m, 2 for "smith-watson-topper" and 1 for "fatemi-socie" (Haibach 1970, on the tangent at the knee).
+    knee : float, optional
+        Cycles N_D at the knee, for "original" and "haibach" only.
     progress : callable, optional
         Called as ``progress(done, total)`` now and then.
 
     Raises
     ------
     InputError
-        See :func:`fatigue`; also if the criterion has no life, the material lacks one of its constants, or the
-        stresses do not change.
+        See :func:`fatigue`; also if the criterion has no life, the material lacks one of its constants, the stresses do
+        not change, or the rule of small cycles can't be used.
     """
     stops = stops_of_one_problem(states)
     problem = stops[0].problem
@@ -185,21 +194,59 @@ def spectrum_damage(
         instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
     below = np.broadcast_to(points.depths(problem, body), points.shape)
     parts = [
-        (chosen, CountedMaterial.of(criterion, material_of(problem, one), constants, owner_of(problem, one)))
+        (
+            chosen,
+            CountedMaterial.of(
+                criterion, material_of(problem, one), constants, owner_of(problem, one), small_cycles, knee
+            ),
+        )
         for chosen, one in bodies_at(problem, body, below.ravel())
     ]
-    tell_read, tell_counted = _halves(progress)
-    spectrum, found, changes = Spectrum.of(order), _Found(below.size), False
-    for block, history in history_blocks(different, points, body, straight, tell_read):
+    tell_read, tell_counted = halves(progress)
+    blocks = history_blocks(different, points, body, straight, tell_read)
+    where = body, points.theta, below * problem.hole_radius
+    return counted_damage(criterion, where, (different, order), parts, blocks, tell_counted)
+
+
+def counted_damage(
+    criterion: str,
+    where: tuple[str, np.ndarray, np.ndarray],
+    stops: tuple[Sequence[State], np.ndarray],
+    parts: Sequence[tuple[np.ndarray, CountedMaterial]],
+    blocks: Iterable[tuple[slice, np.ndarray]],
+    progress: Callable[[float], None],
+) -> SpectrumDamage:
+    """Count the cycles of histories, given in blocks of points with their stresses (states, points of the block, 4).
+
+    Parameters
+    ----------
+    criterion : str
+    where : tuple of str, ndarray, ndarray
+        Body, angles of the points, rad, and their distances from the edge, m.
+    stops : tuple
+        The different states, and the place of each stop among them.
+    parts : sequence of (ndarray of bool, CountedMaterial)
+        The points of each material, in a row.
+    blocks : iterable of (slice, ndarray)
+    progress : callable
+
+    Raises
+    ------
+    InputError
+        If the stresses do not change.
+    """
+    (body, theta, depth), (different, order) = where, stops
+    spectrum, found, changes = Spectrum.of(order), _Found(theta.size), False
+    for block, history in blocks:
         changes = changes or bool(np.ptp(history, axis=0).max() > ROUNDING * np.abs(history).max())
         for chosen, counted in parts:
             places = block.start + np.flatnonzero(chosen[block])
-            found.take(counted, history[:, chosen[block]], spectrum, places, tell_counted)
+            found.take(counted, history[:, chosen[block]], spectrum, places, progress)
     if not changes:
         raise InputError("states", "must have a turning point: their stresses do not change")
-    damage, plane = found.damage.reshape(points.shape), found.plane.reshape(points.shape)
+    damage, plane = found.damage.reshape(theta.shape), found.plane.reshape(theta.shape)
     cycles = found.cycles(spectrum, np.array([load_point(state) for state in different]))
-    return SpectrumDamage(problem, criterion, body, points.theta, below * problem.hole_radius, damage, plane, cycles)
+    return SpectrumDamage(different[0].problem, criterion, body, theta, depth, damage, plane, cycles)
 
 
 def damage_ranking(
@@ -208,6 +255,8 @@ def damage_ranking(
     *,
     depth: ArrayLike | None = None,
     straight: bool = False,
+    small_cycles: str = "elementary",
+    knee: float | None = None,
     progress: Callable[[float, float], None] | None = None,
 ) -> list[SpectrumDamage]:
     """Damage of all elastic bodies whose own material has the constants of the criterion, the largest first.
@@ -216,7 +265,7 @@ def damage_ranking(
 
     Parameters
     ----------
-    states, criterion, depth, straight, progress
+    states, criterion, depth, straight, small_cycles, knee, progress
         See :func:`spectrum_damage`. The progress begins anew for each body.
 
     Raises
@@ -226,9 +275,8 @@ def damage_ranking(
     """
     problem = stops_of_one_problem(states)[0].problem
     bodies = bodies_with_lives(problem, choice("criterion", criterion, CRITERIA)) or elastic_bodies(problem)[:1]
-    found = [
-        spectrum_damage(states, criterion, body, depth=depth, straight=straight, progress=progress) for body in bodies
-    ]
+    how: dict[str, Any] = {"depth": depth, "straight": straight, "small_cycles": small_cycles, "knee": knee}
+    found = [spectrum_damage(states, criterion, body, progress=progress, **how) for body in bodies]
     return sorted((one for one in found if one.damage.any()), key=lambda one: -one.hot_spot.damage)
 
 
@@ -243,7 +291,7 @@ def bodies_with_lives(problem: Problem, criterion: str) -> list[Body]:
     ]
 
 
-def _halves(progress: Callable[[float, float], None] | None) -> tuple[Callable[[float], None], Callable[[float], None]]:
+def halves(progress: Callable[[float, float], None] | None) -> tuple[Callable[[float], None], Callable[[float], None]]:
     """Return the progress of the readings, and that of the counts: half of the work each."""
     done = [0.0, 0.0]
 

@@ -13,7 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.damage import CRITERIA, NO_CRACK, Fatigue, SpectrumDamage, cycle_states, fatigue
+from fastpin.damage import CRITERIA, NO_CRACK, SPECTRUM_CRITERIA, Fatigue, SpectrumDamage, cycle_states, fatigue
+from fastpin.damage.assessed import MOST_REFINED
 from fastpin.damage.criteria import Criterion
 from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
@@ -22,10 +23,11 @@ from fastpin.figures.style import COLOURS, angle_axis, line
 from fastpin.figures.subjects import Subject, with_cycles
 from fastpin.figures.words import ANGLE, caption, quantity, short
 from fastpin.model.angles import from_bottom
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import choice, instance, instances
 from fastpin.model.points import EDGES, Body
 from fastpin.model.units import scaled, units
-from fastpin.report.case import edge_body
+from fastpin.report.case import assessment_words, edge_body
 from fastpin.report.curves import write_csv
 from fastpin.report.cycle import fatigue_bodies
 from fastpin.report.fatigue import fatigue_curve, spectrum_curve
@@ -35,10 +37,6 @@ PLANES = 40
 
 LEAST = 0.02
 """Least parameter with a plane, in parts of the largest."""
-
-
-MOST_REFINED = 500
-"""States of a spectrum up to which refined tractions are read for a figure: some ten seconds."""
 
 
 def plot_fatigue(
@@ -66,18 +64,32 @@ def plot_fatigue(
 
 
 def fatigue_plot(
-    subject: Subject, criterion: Criterion = "smith-watson-topper", body: Body | None = None, depth: float | None = None
+    subject: Subject, criterion: Criterion | None = None, body: Body | None = None, depth: float | None = None
 ) -> Plot:
     """Return the fatigue of the last cycle: of one body, or of all edges of holes with constants.
 
-    Without a cycle it is the damage of the whole history.
+    Without a cycle it is the damage of the whole history. A section [fatigue] of the case replaces both, unless a depth
+    or a criterion without lives is given.
     """
+    how = subject.assessment()
+    if how is not None and depth is None and criterion in (None, *SPECTRUM_CRITERIA):
+        return _assessed_plot(subject, how.changed(criterion=criterion or how.criteria[0], bodies=body or how.bodies))
+    criterion = criterion or "smith-watson-topper"
     if not subject.cycles:
         return _spectrum_plot(subject, criterion, body, depth)
     result = subject.part(with_cycles(subject).cycles[-1])
     cycle = cycle_states(result, result.cycles[-1])
     bodies = fatigue_bodies(cycle[0].problem, criterion) if body is None else [body]
     return fatigue_of([fatigue(cycle, criterion, one, depth=depth) for one in bodies])
+
+
+def _assessed_plot(subject: Subject, how: FatigueAssessment) -> Plot:
+    """Return the damage along the whole edges of the bodies as the case asks for it."""
+    notes = [f"the figure shows {how.criteria[0]} over {assessment_words(how.changed(method='edge', length=None))}"]
+    if how.method != "edge" or how.angles is not None:
+        notes.append("the figure shows the whole edge; fastpin show prints the places and the method of [fatigue]")
+    edges = how.changed(method="edge", length=None, angles=None)
+    return replace(spectrum_of(subject.whole().assessed_fatigue(edges, subject.progress)), notes=notes)
 
 
 def _spectrum_plot(subject: Subject, criterion: Criterion, body: Body | None, depth: float | None) -> Plot:

@@ -8,12 +8,14 @@ from typing import Any
 
 from fastpin.errors import InputError
 from fastpin.figures.states import DrawnStates, drawn_states, stored_states
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import instance
 from fastpin.solver.result import Result
 from fastpin.solver.wear_result import WearResult
 from fastpin.states.choice import NO_CYCLE, StateChoice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
+from fastpin.storage.recording import stored_case
 from fastpin.storage.store import load, places_between
 from fastpin.storage.wear_files import holds_wear, load_wear
 
@@ -56,6 +58,9 @@ class InMemory:
         """Return the result."""
         return self.result()
 
+    def assessment(self) -> None:
+        """Return None: a result in memory does not know the section [fatigue] of its case."""
+
     def wear(self) -> WearResult:
         """Return the life of wear."""
         return instance("result", self._life, WearResult, "a WearResult")
@@ -95,6 +100,10 @@ class InFile:
     def whole(self) -> Result:
         """Return the result with all its states."""
         return load(self._path)
+
+    def assessment(self) -> FatigueAssessment | None:
+        """Return how the fatigue is assessed; None if the case did not say it."""
+        return stored_case(self._path).fatigue
 
     def wear(self) -> WearResult:
         """Raise :class:`InputError`: there is no life of wear."""

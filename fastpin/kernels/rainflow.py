@@ -7,6 +7,9 @@ parameter is that of the forms SWING_TIMES_PUSH and SWING_TIMES_MORE. Its damage
 
     parameter = exp(life[0]) (2N)^life[2] + exp(life[1]) (2N)^life[3]
 
+for a logarithm of the parameter of at least life[4]. Below it log 2N = life[5] + life[6] (life[4] - log parameter). An
+infinite life[6] does no damage.
+
 A spectrum is a list of blocks. A block of many passes is followed three times: from the third pass on each pass closes
 the same cycles. A spectrum with such blocks is followed twice, and the second time is counted, for the same reason.
 """
@@ -120,10 +123,16 @@ def _root(target, life):
 
 
 @inner
+def _beyond(target, life):
+    """1/N of a cycle beyond the knee of the curve."""
+    return 2.0 * math.exp(min(-(life[5] + life[6] * (life[4] - target)), 700.0))
+
+
+@inner
 def _fill(table, life):
-    """Fill the roots and their slopes, down from the logarithm life[4] of the highest parameter, a row each."""
+    """Fill the roots and their slopes, down from the logarithm life[7] of the highest parameter, a row each."""
     for k in range(table.shape[0]):
-        x = _root(life[4] - k * PITCH, life)
+        x = _root(life[7] - k * PITCH, life)
         one, two = math.exp(life[0] + x * life[2]), math.exp(life[1] + x * life[3])
         table[k, 0], table[k, 1] = x, -PITCH * (one + two) / (life[2] * one + life[3] * two)
 
@@ -132,7 +141,9 @@ def _fill(table, life):
 def _damage(parameter, life, table):
     """1/N of a cycle: a cubic between two rows of the table, off by 1e-7, and a step of Newton's method."""
     target = math.log(parameter)
-    place = (life[4] - target) / PITCH
+    if target < life[4]:
+        return _beyond(target, life)
+    place = (life[7] - target) / PITCH
     k = int(place) if place >= 0.0 else table.shape[0]
     if k + 1 >= table.shape[0]:
         return 2.0 * math.exp(min(-_root(target, life), 700.0))
@@ -195,8 +206,9 @@ def worst_sums(paths, order, blocks, form, least, life, out):
         SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.kernels.planes`.
     least : float
         Cycles with a parameter up to this one do no damage.
-    life : ndarray, shape (4,)
-        Logarithms of the coefficients, and the exponents, both below 0.
+    life : ndarray, shape (7,)
+        Logarithms of the coefficients, and the exponents, both below 0. Then the logarithms of the parameter and of 2N
+        at the knee, and the slope beyond it. The first is -inf for a curve without a knee.
     out : ndarray, shape (points, 2)
         Damage of the spectrum, and the angle x/2 of its plane in (-pi/2, pi/2], rad. The angle is NaN where the damage
         is 0.
@@ -204,8 +216,8 @@ def worst_sums(paths, order, blocks, form, least, life, out):
     u, v = np.empty(paths.shape[1]), np.empty(paths.shape[1])
     stack, cycles = np.empty((6 * order.size + 2, 2), np.int64), np.empty((3 * order.size + 2, 3), np.int64)
     weights, scanned = np.empty(3 * order.size + 2, np.int64), np.empty(COARSE)
-    table, curve = np.empty((ROWS, 2)), np.empty(5)
-    curve[:4], curve[4] = life, _highest(paths, form)
+    table, curve = np.empty((ROWS, 2)), np.empty(8)
+    curve[:7], curve[7] = life, _highest(paths, form)
     _fill(table, curve)
     step = 2.0 * math.pi / COARSE
     for i in range(paths.shape[0]):
@@ -272,5 +284,7 @@ def cycles_on_plane(path, angle, order, blocks, form, least, life, places, value
         values[k, 0], values[k, 1] = weights[k], parameter
         values[k, 2] = 0.0
         if parameter > least:
-            values[k, 2] = weights[k] * 2.0 * math.exp(min(-_root(math.log(parameter), life), 700.0))
+            target = math.log(parameter)
+            one = _beyond(target, life) if target < life[4] else 2.0 * math.exp(min(-_root(target, life), 700.0))
+            values[k, 2] = weights[k] * one
     return count

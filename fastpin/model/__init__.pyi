@@ -1,3 +1,4 @@
+from .assessment import FatigueAssessment as FatigueAssessment
 from .case import About as About
 from .case import Case as Case
 from .crack import CrackGrowth as CrackGrowth

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field, fields
 
 from fastpin.errors import InputError
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import instance, string
 from fastpin.model.crack import CrackGrowth
 from fastpin.model.history import LoadHistory
@@ -63,6 +64,8 @@ class Case:
         Project, author, revision and date. No result depends on them.
     wear : Wear or None
         How the bodies wear, for ``fastpin wear``.
+    fatigue : FatigueAssessment or None
+        How the fatigue of the history is assessed.
     crack : CrackGrowth or None
         How a crack grows from the hole.
 
@@ -78,9 +81,12 @@ class Case:
     title: str = ""
     about: About = field(default_factory=About)
     wear: Wear | None = None
+    fatigue: FatigueAssessment | None = None
     crack: CrackGrowth | None = None
 
     def __post_init__(self) -> None:
+        if self.fatigue is not None:
+            instance("fatigue", self.fatigue, FatigueAssessment, "a FatigueAssessment")
         if self.wear is not None:
             instance("wear", self.wear, Wear, "a Wear")
         if self.crack is not None:

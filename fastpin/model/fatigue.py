@@ -10,6 +10,18 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, items, negative, positive, string
 from fastpin.model.synonyms import explains_keywords
 
+LIFE_CONSTANTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "smith-watson-topper": (
+        (),
+        ("fatigue_strength", "strength_exponent", "fatigue_ductility", "ductility_exponent"),
+    ),
+    "fatemi-socie": (
+        ("normal_stress_factor", "yield_strength"),
+        ("shear_fatigue_strength", "shear_strength_exponent", "shear_fatigue_ductility", "shear_ductility_exponent"),
+    ),
+}
+"""The criteria with lives: the constants of the parameter, and those of the life."""
+
 
 @explains_keywords
 @dataclass(frozen=True, repr=False)

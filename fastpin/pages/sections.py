@@ -36,6 +36,7 @@ from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
 from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
+from fastpin.report.assessment import Assessed, assessment_lines
 from fastpin.report.case import ROUNDING, case_rows, corner_columns, edge_body
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.crack_growth import growth_line
@@ -109,7 +110,8 @@ def overview(page: PageParts) -> PageSection:
         many = f"{len(lines):,} blocks of cycles: see hysteresis and slip"
         sentences += lines if len(lines) <= MOST_BLOCKS else [many]
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
-        known = [] if isinstance(source.fatigue, str) else source.fatigue
+        known = [] if isinstance(source.fatigue, str) or source.assessed else source.fatigue
+        sentences += [] if source.assessed is None else assessment_lines(source.assessed)
         sentences += [hot_spot_line(found, source.peaks) for found in known]
         sentences += [spectrum_line(found) for found in source.spectrum]
         parts.append(Items([sentence(line) for line in sentences if line]))
@@ -419,8 +421,23 @@ def stresses(page: PageParts) -> PageSection:
     return PageSection("stresses", "Stresses", parts)
 
 
+def _assessed(page: PageParts, assessed: Assessed) -> list[SectionPart]:
+    """Return the damage along the edges by each criterion, and the hot spots of all bodies."""
+    parts: list[SectionPart] = []
+    for criterion in assessed.how.criteria if assessed.is_along_edges else ():
+        found = [one for one in assessed.found if one.criterion == criterion]
+        parts += [page.album.figure(spectrum_of(found))] if found else []
+    kind = "missing" if assessed.reason else ""
+    return [*parts, *(Text(sentence(line), kind) for line in assessment_lines(assessed))]
+
+
 def fatigue(page: PageParts) -> PageSection:
-    """Return the hot spot over the last cycle, with the life if the material has constants for it."""
+    """Return the hot spot over the last cycle, with the life if the material has constants for it.
+
+    A section [fatigue] of the case replaces it.
+    """
+    if page.source.assessed is not None:
+        return PageSection("fatigue", "Fatigue", _assessed(page, page.source.assessed))
     found = page.source.fatigue
     if page.source.spectrum:
         figure, lines = page.album.figure(spectrum_of(page.source.spectrum)), map(spectrum_line, page.source.spectrum)

@@ -23,6 +23,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import elastic_bodies
+from fastpin.report.assessment import Assessed, assess
 from fastpin.report.case import edge_body
 from fastpin.report.crack_growth import case_growth
 from fastpin.report.cycle import MOST_STOPS, fatigue_bodies, spectrum_damages
@@ -299,9 +300,18 @@ class Source:
             return f"There is no fatigue: {error.field} {error.reason}."
 
     @cached_property
+    def assessed(self) -> Assessed | None:
+        """The fatigue as the section [fatigue] of the case asks for it; None without the section."""
+        if self.case.fatigue is None or self.life is not None:
+            return None
+        return assess(self.case, replace(self.result, states=self.read(range(self.points.size))))
+
+    @cached_property
     def spectrum(self) -> list[SpectrumDamage]:
         """Damage of plate and bush over a whole history without cycles, see :func:`spectrum_damages`."""
-        is_short = self.cycle is None and self.life is None and self.points.size <= MOST_STOPS
+        is_short = (
+            self.case.fatigue is None and self.cycle is None and self.life is None and self.points.size <= MOST_STOPS
+        )
         states = self.read(range(self.points.size)) if is_short else []
         try:
             return spectrum_damages(states, len(self.case.history))

@@ -1,3 +1,4 @@
+from . import assessment as assessment
 from . import checks as checks
 from . import convergence as convergence
 from . import cycle as cycle

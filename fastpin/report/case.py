@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fastpin.model.angles import from_bottom
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.crack import CrackGrowth, law_of
@@ -23,6 +24,13 @@ from fastpin.report.table import Column, table, visible_rows
 
 ROUNDING = 1e-9
 """Values below this part of the largest of their kind are rounding. They are printed, written and drawn as 0."""
+
+RULES = {
+    "elementary": "elementary Miner's rule",
+    "original": "original Miner's rule, no damage below the knee at {} cycles",
+    "haibach": "Miner's rule modified by Haibach below the knee at {} cycles",
+}
+"""Words for the variants of Miner's rule."""
 
 
 def describe(case: Case) -> str:
@@ -80,9 +88,19 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         rows.append(("states", f"kept: {options.keep}"))
     if case.wear is not None:
         rows.append(("wear", _wear_words(case.wear)))
+    if case.fatigue is not None:
+        rows.append(("fatigue", f"{', '.join(case.fatigue.criteria)}, over {assessment_words(case.fatigue)}"))
     if case.crack is not None:
         rows.append(("crack", crack_words(problem, case.crack)))
     return rows
+
+
+def assessment_words(how: FatigueAssessment) -> str:
+    """Return an assessment of fatigue in words: the spectrum, the rule of small cycles, the places of the stresses."""
+    spectrum = "the whole history as a spectrum" if how.over == "history" else "the last cycle"
+    rule = RULES[how.small_cycles].format("" if how.knee is None else f"{how.knee:.6g}")
+    place = "" if how.method == "edge" else f", stresses by the {how.method} method of critical distances"
+    return f"{spectrum}, {rule}{place}"
 
 
 def crack_words(problem: Problem, crack: CrackGrowth) -> str:

@@ -12,12 +12,14 @@ from typing import Any
 
 from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.cracks.fates import CRACK_FATES
+from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA
 from fastpin.model.checks import choice
+from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.fields import FIELDS, Field
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import METHODS, SolveOptions
-from fastpin.model.points import EDGES
+from fastpin.model.points import BODIES, EDGES
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
 from fastpin.states.quantities import QUANTITIES
@@ -84,6 +86,7 @@ def _summary() -> Schema:
             "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing)),
             "cycles": _list_of(_object(of_cycle)),
             "cycle": _or_null(_last_cycle()),
+            "fatigue": _or_null(_fatigue()),
             "crack": _or_null(_crack()),
         }
     )
@@ -190,6 +193,32 @@ def _last_cycle() -> Schema:
             "dissipation": _UNKNOWN,
             "nodes": _map_of(_WHOLE, "number of nodes of each behaviour"),
             "work": _map_of(_UNKNOWN, "work of each load"),
+        }
+    )
+
+
+def _fatigue() -> Schema:
+    numbers = dict.fromkeys(("start", "stop", "largest", "parameter", "damage"), _NUMBER)
+    words = {"description": "counted cycles at the hot spot, the largest damage first; start and stop are load points"}
+    body = _object(
+        {
+            "criterion": {"enum": list(LIFE_CONSTANTS)},
+            "body": {"enum": list(BODIES)},
+            "damage": _NUMBER,
+            "life": _UNKNOWN | {"description": "spectra, or cycles over the last cycle; null without damage"},
+            **dict.fromkeys(("angle", "depth", "plane"), _UNKNOWN),
+            "cycles": _list_of(_object(numbers | {"times": _WHOLE})) | words,
+        }
+    )
+    return _object(
+        {
+            "criterion": _list_of({"enum": list(LIFE_CONSTANTS)}),
+            "over": {"enum": list(SPECTRA)},
+            "method": {"enum": list(DISTANCES)},
+            "small_cycles": {"enum": list(MINER_RULES)},
+            "knee": _UNKNOWN,
+            "error": _OPTIONAL_TEXT,
+            "bodies": _list_of(body),
         }
     )
 

@@ -18,8 +18,9 @@ from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
-from fastpin.report import crack_growth
+from fastpin.report import assessment, crack_growth
 from fastpin.report import cycle as cycle_report
+from fastpin.report.assessment import Assessed
 from fastpin.report.fatigue import last_cycle_margins
 from fastpin.report.margins import document as margins_document
 from fastpin.report.margins import static_margins
@@ -32,12 +33,9 @@ from fastpin.version import __version__
 
 
 def document(
-    case: Case,
-    result: Result | None,
-    error: str | None = None,
-    cycle: LoadCycle | None = None,
-    crack: cracks.Growth | None = None,
-) -> dict[str, Any]:
+    case: Case, result: Result | None, error: str | None = None, cycle: LoadCycle | None = None,
+    fatigue: Assessed | None = None, crack: cracks.Growth | None = None,
+) -> dict[str, Any]:  # fmt: skip
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
     The entry ``units`` names the unit of every kind of quantity: with a thickness forces are in N, else in N/m. Angles
@@ -52,6 +50,8 @@ def document(
         The reason why `result` is incomplete.
     cycle : LoadCycle, optional
         The cycle of the entry ``cycle``.
+    fatigue : Assessed, optional
+        The assessment of the entry ``fatigue``.
     crack : Growth, optional
         The crack of the entry ``crack``.
     """
@@ -88,6 +88,7 @@ def document(
             for row in (() if result is None else result.cycles)
         ],
         "cycle": None if cycle is None else cycle_report.document(cycle),
+        "fatigue": None if fatigue is None else assessment.document(fatigue),
         "crack": None if crack is None else crack_growth.document(crack),
     }
     return json_ready(found)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
@@ -13,6 +13,7 @@ import numpy as np
 from fastpin import states
 from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import instance, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import CycleKey, LoadHistory
@@ -293,10 +294,46 @@ class Result(Sequence[State]):
         """
         from fastpin.damage import spectrum_damage
 
+        self._check_corners()
+        return spectrum_damage(self.states, criterion, body, **options)
+
+    def assessed_fatigue(
+        self, how: FatigueAssessment | None = None, progress: Callable[[float, float], None] | None = None
+    ) -> Any:
+        """Damage of the bodies over the history as a spectrum, as a section [fatigue] of a case asks for it.
+
+        Parameters
+        ----------
+        how : FatigueAssessment, optional
+            Such as ``case.fatigue``. Its ``over`` chooses the whole history or the last cycle.
+        progress : callable, optional
+            Called as ``progress(done, total)`` now and then.
+
+        Returns
+        -------
+        list of fastpin.damage.SpectrumDamage
+            The largest damage first, criterion by criterion, see :func:`fastpin.damage.assessed_fatigue`.
+
+        Raises
+        ------
+        InputError
+            See :func:`fastpin.damage.assessed_fatigue`; also if the history has no cycle, or the state at a corner was
+            not kept.
+        """
+        from fastpin.damage import assessed_fatigue, cycle_states
+
+        if instance("how", how or FatigueAssessment(), FatigueAssessment, "a FatigueAssessment").over == "history":
+            self._check_corners()
+            return assessed_fatigue(self.states, how, progress)
+        if not self.cycles:
+            raise InputError("over", "the history has no cycles: none of its blocks is repeated")
+        return assessed_fatigue(cycle_states(self, self.cycles[-1]), how, progress)
+
+    def _check_corners(self) -> None:
+        """Refuse a result without the states at all corners of its history."""
         missing = states.choice.missing_corners(self.states, 1, len(self.history))
         if missing:
             raise InputError("states", f"must hold all corners of the history; {len(missing):,} were not kept")
-        return spectrum_damage(self.states, criterion, body, **options)
 
     def wear(self, **how: Any) -> WearResult:
         """Follow the last cycle of the history many times on a profile that wears.

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fastpin.elasticity.tractions import Tractions
 from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.problem import Problem
+
+if TYPE_CHECKING:  # this module imports compiled code
+    from fastpin.states.state import State
 
 NodalTractions = tuple[np.ndarray, np.ndarray]
 """Pressure and shear of the nodes of an interface, shape (k, n) each."""
@@ -99,6 +104,10 @@ class StressMap:
     stress : callable
         ``stress(tractions, remote)`` gives components at the points, shape (components, m), from the tractions of each
         interface.
+
+    Attributes
+    ----------
+    components : int
     """
 
     def __init__(
@@ -106,6 +115,7 @@ class StressMap:
     ) -> None:
         none = [Tractions(())] * len(grids)
         unloaded = stress(none, np.zeros(3))
+        self.components = len(unloaded)
 
         def of_pin(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
             return stress([tractions, *none[1:]], remote)
@@ -128,3 +138,39 @@ class StressMap:
         """Return a component, shape (k, m), of tractions that were learned, and remote stresses (k, 3)."""
         parts = zip(self._parts, tractions, strict=True)
         return np.asarray(sum(part.component(which, slice(None), *values, remote) for part, values in parts))
+
+
+def share_grids(states: Sequence[State]) -> bool:
+    """Whether all states have the same nodes, and so have their seats."""
+    first = states[0]
+    pairs = ((each, other) for state in states for each, other in ((state, first), (state.seat, first.seat)))
+    return all(one is two if one is None or two is None else np.array_equal(one.theta, two.theta) for one, two in pairs)
+
+
+def mapped(
+    states: Sequence[State],
+    stress: Callable[[list[Tractions], np.ndarray], np.ndarray],
+    progress: Callable[[float], None] | None = None,
+) -> np.ndarray:
+    """Return the components of many states by one product, shape (components, states, m).
+
+    Parameters
+    ----------
+    states : sequence of State
+        States that share their grids.
+    stress : callable
+        See :class:`StressMap`.
+    progress : callable, optional
+        It is told the part that is done, 0 to 1.
+    """
+    seats = [state.seat for state in states if state.seat is not None]
+    parts = [part for part in (states, seats) if part]
+    tractions = [(np.array([one.pressure for one in part]), np.array([one.shear for one in part])) for part in parts]
+    names = [list(LOADS)[place] for place in REMOTE]
+    remote = np.array([[state.load.get(name, 0.0) for name in names] for state in states])
+    linear = StressMap(states[0].problem, [part[0].grid for part in parts], stress)
+    linear.learn(tractions, progress)
+    found = np.array([linear.component(which, tractions, remote) for which in range(linear.components)])
+    if progress is not None:
+        progress(1.0)
+    return found

@@ -35,6 +35,7 @@ from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
 from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import About
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth, crack_from
 from fastpin.model.fields import FIELDS
@@ -303,6 +304,20 @@ def read_about(file: h5py.File) -> About:
     """Read who made the case of a result, and for what."""
     stored = file["solver"].attrs
     return About(**{each.name: text_of(stored.get(each.name, "")) for each in fields(About)})
+
+
+def assessment_attributes(how: FatigueAssessment | None) -> dict[str, str]:
+    """Return the attribute of the solver that says how the fatigue is assessed: JSON of all given fields."""
+    if how is None:
+        return {}
+    values = {each.name: getattr(how, each.name) for each in fields(how)}
+    return {"fatigue": json.dumps({name: value for name, value in values.items() if value is not None})}
+
+
+def read_assessment(file: h5py.File) -> FatigueAssessment | None:
+    """Read how the fatigue of a result is assessed; None if its case did not say it, as in older files."""
+    text = file["solver"].attrs.get("fatigue")
+    return None if text is None else FatigueAssessment(**json.loads(text_of(text)))
 
 
 def read_crack(file: h5py.File) -> CrackGrowth | None:

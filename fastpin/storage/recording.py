@@ -10,6 +10,7 @@ from typing import Unpack
 import numpy as np
 
 from fastpin.errors import InputError, InputWarning
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import About, Case
 from fastpin.model.checks import (
     as_toml,
@@ -37,7 +38,14 @@ from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.journal import check_beside, is_empty
-from fastpin.storage.layout import read_about, read_crack, read_history, read_options, read_problem
+from fastpin.storage.layout import (
+    read_about,
+    read_assessment,
+    read_crack,
+    read_history,
+    read_options,
+    read_problem,
+)
 from fastpin.storage.origin import largest_pressure, provenance, stored_yield_doubts
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
@@ -50,6 +58,7 @@ def record(
     *,
     title: str = "",
     about: About | None = None,
+    fatigue: FatigueAssessment | None = None,
     crack: CrackGrowth | None = None,
     save_after: Sequence[int] = (),
     overwrite: bool = False,
@@ -74,6 +83,8 @@ def record(
         Title of the run, stored in the file.
     about : About, optional
         Project, author, revision and date, stored in the file for its report.
+    fatigue : FatigueAssessment, optional
+        How the fatigue is assessed, stored in the file for its text, figures and report.
     crack : CrackGrowth, optional
         How a crack grows from the hole, stored in the file for ``fastpin crack`` and its report.
     save_after : sequence of int
@@ -100,6 +111,8 @@ def record(
     check_writable(path, result=True)
     string("title", title)
     about = About() if about is None else instance("about", about, About, "an About")
+    if fatigue is not None:
+        instance("fatigue", fatigue, FatigueAssessment, "a FatigueAssessment")
     true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
@@ -108,15 +121,12 @@ def record(
     _check_names(options)
     solve_options = SolveOptions(**options)
     check_options(solve_options, grid, start)
-    if solve_options.error_bars and start is not None:
-        raise InputError(
-            "error_bars", "a run that continues another one has none in a file; leave them or the file out"
-        )
+    _check_bars(solve_options, start)
     task = Task(problem, history, solve_options, grid, progress, save_corners)
     if solve_options.error_bars:
         check_halves(task, start)
     warn_of(doubts(problem, task.history, solve_options), 2)
-    writer = FileRecorder(path, task, title, about, checked_crack(problem, crack))
+    writer = FileRecorder(path, task, title, about, fatigue, checked_crack(problem, crack))
     writer.overwrite = overwrite
     writer.check_overwriting()
     writer.chosen_arc &= start is None
@@ -128,6 +138,14 @@ def record(
     if solve_options.error_bars:
         _record_coarse(path, task)
     warn_of(_pressure_doubts(path, task), 2)
+
+
+def _check_bars(options: SolveOptions, start: Result | None) -> None:
+    """Refuse error bars of a run in a file that continues another one."""
+    if options.error_bars and start is not None:
+        raise InputError(
+            "error_bars", "a run that continues another one has none in a file; leave them or the file out"
+        )
 
 
 def _checked_corners(save_after: Sequence[int], count: int) -> frozenset[int]:
@@ -250,7 +268,7 @@ def stored_error(path: str | Path) -> str | None:
 
 
 def stored_case(path: str | Path) -> Case:
-    """Read the case of a stored result: problem, history, options, title, and who made it for what.
+    """Read the case of a stored result: problem, history, options, title, who made it for what, and its assessment.
 
     Raises
     ------
@@ -260,7 +278,7 @@ def stored_case(path: str | Path) -> Case:
     with open_result(file_path("path", path)) as file:
         title = text_of(file["solver"].attrs.get("title", ""))
         parts = read_problem(file), read_history(file), read_options(file), title, read_about(file)
-        return Case(*parts, crack=read_crack(file))
+        return Case(*parts, fatigue=read_assessment(file), crack=read_crack(file))
 
 
 def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:

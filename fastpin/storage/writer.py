@@ -16,6 +16,7 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError, OutputError
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import About
 from fastpin.model.crack import CrackGrowth
 from fastpin.solver.errors import Interrupted, SolveError
@@ -33,6 +34,7 @@ from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_r
 from fastpin.storage.layout import (
     Rows,
     append,
+    assessment_attributes,
     check_format,
     check_growing,
     count,
@@ -40,6 +42,7 @@ from fastpin.storage.layout import (
     node_fields,
     option_attributes,
     read_about,
+    read_assessment,
     read_crack,
     read_cycles,
     read_grid,
@@ -137,6 +140,7 @@ class FileRecorder:
         The task that is followed. Its stops get a restart in the file.
     title : str
     about : About
+    fatigue : FatigueAssessment or None
     crack : CrackGrowth or None
 
     Attributes
@@ -147,12 +151,15 @@ class FileRecorder:
         Whether an existing file may be replaced, also the file of an unfinished run.
     """
 
-    def __init__(self, path: Path, task: Task, title: str, about: About, crack: CrackGrowth | None = None) -> None:
+    def __init__(
+        self, path: Path, task: Task, title: str, about: About,
+        fatigue: FatigueAssessment | None = None, crack: CrackGrowth | None = None,
+    ) -> None:  # fmt: skip
         self.path = path
         self.task = task
         self.chosen_arc = task.options.arc is None and task.grid is None
         self.overwrite = True
-        self._title, self._about, self._crack = title, about, crack
+        self._title, self._about, self._fatigue, self._crack = title, about, fatigue, crack
         self._file: JournaledFile | None = None
         self._h5: h5py.File
         self._run: Run
@@ -211,6 +218,7 @@ class FileRecorder:
         extra = {
             "title": self._title,
             **self._about.given(),
+            **assessment_attributes(self._fatigue),
             **({} if self._crack is None else {"crack": json.dumps(self._crack.entries())}),
             "arc_chosen": self.chosen_arc,
             "save_after": sorted(task.stops),
@@ -445,7 +453,8 @@ def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Rest
                 check_growing(stored, task.grid.size)
                 read_statistics(stored)  # they are written again at the end
                 options = stored["solver"].attrs
-                writer = FileRecorder(path, task, str(options["title"]), read_about(stored), read_crack(stored))
+                assessed = read_assessment(stored), read_crack(stored)
+                writer = FileRecorder(path, task, str(options["title"]), read_about(stored), *assessed)
                 writer.chosen_arc = bool(options["arc_chosen"])
                 restart = _latest(
                     path,

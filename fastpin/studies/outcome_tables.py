@@ -18,11 +18,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from fastpin.casefile.assessment import read_assessment
 from fastpin.casefile.cracks import read_crack
 from fastpin.casefile.profiles import read_wear
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
+from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment
 from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth
 from fastpin.model.points import BODIES
@@ -31,6 +33,7 @@ from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.crack_outcomes import CRACK_QUANTITIES, of_crack
+from fastpin.studies.fatigue_outcomes import FATIGUE_QUANTITIES, of_assessment, unit_of_life
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
@@ -54,6 +57,7 @@ KEYS = {
     "quantity": ("quantity", "take", "over", "interface"),
     "cycle": ("cycle", "interface"),
     "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
+    "fatigue": ("fatigue", *ASSESSMENT_KEYS),
     "crack": ("crack", *CRACK_KEYS),
     "function": ("function", "classes"),
 }
@@ -115,7 +119,12 @@ def read_outcomes(path: str | Path) -> Outcomes:
     return found
 
 
-def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None, crack: CrackGrowth | None = None) -> Outcomes:
+def outcomes_from(
+    given: Mapping[str, Any],
+    wear: Wear | None = None,
+    fatigue: FatigueAssessment | None = None,
+    crack: CrackGrowth | None = None,
+) -> Outcomes:
     """Check outcomes that are given in Python.
 
     Parameters
@@ -125,6 +134,8 @@ def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None, crack: Cra
         :class:`StudyOutcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
     wear : Wear, optional
         How the bodies wear, for outcomes of wear that leave it out.
+    fatigue : FatigueAssessment, optional
+        How the fatigue is assessed, for outcomes of fatigue that leave keys out.
     crack : CrackGrowth, optional
         How a crack grows, for outcomes of cracks that leave it out.
 
@@ -140,19 +151,23 @@ def outcomes_from(given: Mapping[str, Any], wear: Wear | None = None, crack: Cra
     if not isinstance(given, Mapping):
         raise InputError("outcomes", f"must be a dict of functions and tables by name, not {as_toml(given)}")
     source = CaseText("").with_tables({"outcomes": dict(given)})
-    found = outcomes_in_text(source, Path(), wear, crack)
+    found = outcomes_in_text(source, Path(), wear, fatigue, crack)
     if source.faults:
         raise CaseFileError("outcomes", source.faults)
     return found
 
 
 def outcomes_in_text(
-    source: CaseText, folder: Path, wear: Wear | None = None, crack: CrackGrowth | None = None
+    source: CaseText,
+    folder: Path,
+    wear: Wear | None = None,
+    fatigue: FatigueAssessment | None = None,
+    crack: CrackGrowth | None = None,
 ) -> Outcomes:
     """Read the table [outcomes] of a text, and report its faults.
 
-    Relative names of files start in `folder`. `wear` and `crack` are those of the case, for outcomes that leave their
-    keys out. The outcomes have no meaning if the text has faults.
+    Relative names of files start in `folder`. `wear`, `fatigue` and `crack` are those of the case, for outcomes that
+    leave their keys out. The outcomes have no meaning if the text has faults.
     """
     found: Outcomes = {}
     section = source.section("outcomes")
@@ -165,7 +180,7 @@ def outcomes_in_text(
             if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
-                outcome = _of_table(source, _Table(source, name, value), folder, (wear, crack))
+                outcome = _of_table(source, _Table(source, name, value), folder, (wear, fatigue, crack))
                 found |= {} if outcome is None else {name: outcome}
             elif callable(value):
                 found[name] = _of_callable(value)
@@ -223,7 +238,10 @@ class _Table(Section):
 
 
 def _of_table(
-    source: CaseText, section: _Table, folder: Path, defaults: tuple[Wear | None, CrackGrowth | None]
+    source: CaseText,
+    section: _Table,
+    folder: Path,
+    defaults: tuple[Wear | None, FatigueAssessment | None, CrackGrowth | None],
 ) -> StudyOutcome | None:
     """Read the table of one outcome, and report its faults. No outcome if a value is wrong."""
     first = [key for key in KEYS if key in section]
@@ -238,8 +256,10 @@ def _of_table(
             section.report(f'unknown key "{key}"{hint}', str(key))
     if first[0] == "wear":
         return _of_wear(section, folder, defaults[0])
+    if first[0] == "fatigue":
+        return _of_fatigue(section, defaults[1])
     if first[0] == "crack":
-        return _of_crack(source, section, defaults[1])
+        return _of_crack(source, section, defaults[2])
     if first[0] == "function":
         return _of_function(section, folder)
     return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
@@ -306,6 +326,18 @@ def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutco
     kind, classes = WEAR_QUANTITIES[quantity].kind, dict(WEAR_QUANTITIES[quantity].classes)
     read = partial(of_wear, quantity, wear, criterion, body)
     return StudyOutcome(kind, "", json.dumps(definition, sort_keys=True), read, classes, wear=wear)
+
+
+def _of_fatigue(section: Section, default: FatigueAssessment | None) -> StudyOutcome | None:
+    """Read a number of the worst hot spot by one criterion: as the case says, unless the table does."""
+    quantity = _choice(section, "fatigue", tuple(FATIGUE_QUANTITIES))
+    how = read_assessment(section, {} if default is None else default.given)
+    if quantity is None or how is None:
+        return None
+    how = how.changed(criterion=how.criteria[0])
+    kind, unit = unit_of_life(how) if quantity == "life" else (FATIGUE_QUANTITIES[quantity].kind, "")
+    definition = json.dumps({"fatigue": quantity, "how": how.toml()}, sort_keys=True)
+    return StudyOutcome(kind, unit, definition, partial(of_assessment, quantity, how))
 
 
 def _of_crack(source: CaseText, section: Section, default: CrackGrowth | None) -> StudyOutcome | None:

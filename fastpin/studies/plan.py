@@ -158,7 +158,7 @@ class Plan:
         InputError
             With all faults. Also if the plan has another outcome of such a name.
         """
-        found = outcomes_from(outcomes, self._base.wear, self._base.crack)
+        found = outcomes_from(outcomes, self._base.wear, self._base.fatigue, self._base.crack)
         known = {name.lower(): outcome.definition for name, outcome in self.outcomes.items()}
         for name, outcome in found.items():
             if known.get(name.lower(), outcome.definition) != outcome.definition:
@@ -270,7 +270,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     count = max(len(rows), 1) * math.prod(len(values) for values in axes.values())
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
-    outcomes = outcomes_in_text(source, folder, *((None, None) if base is None else (base.wear, base.crack)))
+    outcomes = outcomes_in_text(source, folder, *(() if base is None else (base.wear, base.fatigue, base.crack)))
     labels = labels_in(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
@@ -432,6 +432,9 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
         return (
             f'"{name}": no run of a sweep wears; an outcome such as {{ wear = "depth" }} may have {names[-1]} beside it'
         )
+    if section == "fatigue":
+        beside = f'an outcome such as {{ fatigue = "life" }} may have {names[-1]} beside it'
+        return f'"{name}": changes no run of a sweep; {beside}'
     if section == "crack":
         return (
             f'"{name}": no run of a sweep grows a crack; an outcome such as {{ crack = "fate" }} may have {names[-1]} '

@@ -19,6 +19,7 @@ from fastpin.casefile.profiles import PROFILES, varied
 from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
 from fastpin.model.checks import number
 from fastpin.model.crack import CrackGrowth
@@ -74,18 +75,24 @@ class BaseCase:
     @property
     def wear(self) -> Wear | None:
         """How its bodies wear, if the case says so."""
-        if "wear" not in self.text.root:
-            return None
-        _, case = self.vary({})
+        case = self._case_with("wear")
         return None if case is None else case.wear
+
+    @property
+    def fatigue(self) -> FatigueAssessment | None:
+        """How its fatigue is assessed, if the case says so."""
+        case = self._case_with("fatigue")
+        return None if case is None else case.fatigue
 
     @property
     def crack(self) -> CrackGrowth | None:
         """How a crack grows, if the case says so."""
-        if "crack" not in self.text.root:
-            return None
-        _, case = self.vary({})
+        case = self._case_with("crack")
         return None if case is None else case.crack
+
+    def _case_with(self, section: str) -> Case | None:
+        """Return the case if it has a section of this name."""
+        return self.vary({})[1] if section in self.text.root else None
 
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""

@@ -1,13 +1,15 @@
 """Counts on planes: compiled, as plain Python, against pylife, and against a naive count."""
 
+import itertools
+
 import numpy as np
 import pytest
 
 from fastpin import damage
 from fastpin.kernels import planes, rainflow
 
-LIFE = np.array([np.log(2e3), np.log(5e5), -0.25, -0.7])
-INNER = ("_count", "_parameter", "_root", "_fill", "_damage", "_on_plane", "_sum", "_highest")
+LIFE = np.array([np.log(2e3), np.log(5e5), -0.25, -0.7, -np.inf, 0.0, 0.0])
+INNER = ("_count", "_parameter", "_root", "_beyond", "_fill", "_damage", "_on_plane", "_sum", "_highest")
 
 
 def python_kernel(name):
@@ -23,10 +25,10 @@ def one_block(states):
     return np.arange(states), np.array([[0, states, 1]])
 
 
-def counted(path, angle, order, blocks, form=planes.SWING_TIMES_PUSH, kernel=rainflow.cycles_on_plane):
+def counted(path, angle, order, blocks, form=planes.SWING_TIMES_PUSH, kernel=rainflow.cycles_on_plane, life=LIFE):
     most = 3 * order.size + 2
     places, values = np.empty((most, 3), dtype=np.int64), np.empty((most, 3))
-    count = kernel(path, angle, order, blocks, form, 0.0, LIFE, places, values)
+    count = kernel(path, angle, order, blocks, form, 0.0, life, places, values)
     return places[:count], values[:count]
 
 
@@ -131,14 +133,15 @@ def test_compiled_and_plain_python():
     rng = np.random.default_rng(6)
     paths, order = rng.normal(size=(3, 9, 6)), rng.integers(0, 9, 14)
     blocks = np.array([[0, 5, 1], [5, 9, 6], [9, 14, 2]])
-    for form in (planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE):
+    knees = [LIFE, np.r_[LIFE[:4], 0.3, 40.0, 6.0], np.r_[LIFE[:4], 0.3, 40.0, np.inf]]
+    for form, life in itertools.product((planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE), knees):
         one, two = np.empty((3, 2)), np.empty((3, 2))
-        rainflow.worst_sums(paths, order, blocks, form, 0.0, LIFE, one)
-        python_kernel("worst_sums")(paths, order, blocks, form, 0.0, LIFE, two)
+        rainflow.worst_sums(paths, order, blocks, form, 0.0, life, one)
+        python_kernel("worst_sums")(paths, order, blocks, form, 0.0, life, two)
         np.testing.assert_allclose(one[:, 0], two[:, 0], rtol=1e-12)
         np.testing.assert_allclose(one[:, 1], two[:, 1], rtol=0.0, atol=1e-3)
-        first = counted(paths[0], 0.4, order, blocks, form)
-        second = counted(paths[0], 0.4, order, blocks, form, python_kernel("cycles_on_plane"))
+        first = counted(paths[0], 0.4, order, blocks, form, life=life)
+        second = counted(paths[0], 0.4, order, blocks, form, python_kernel("cycles_on_plane"), life)
         np.testing.assert_array_equal(first[0], second[0])
         np.testing.assert_allclose(first[1], second[1], rtol=1e-12)
 

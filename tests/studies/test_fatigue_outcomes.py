@@ -14,6 +14,7 @@ import pytest
 
 import fastpin
 from fastpin.cli.main import main
+from fastpin.errors import CaseFileError
 from fastpin.model import FatigueConstants
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units
@@ -21,6 +22,7 @@ from fastpin.solver.result import Result
 from fastpin.studies import converge
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, OutcomeValue, StudyOutcome, value_of
+from fastpin.studies.plan import parse_plan
 
 CONSTANTS = FatigueConstants(
     fatigue_strength=1100e6,
@@ -281,3 +283,82 @@ def test_a_convergence_study_gives_a_life_an_error_bar(plan: Path, capsys: pytes
     assert main(["converge", "case.toml", "--nodes", "51,101,201", "--outcomes", "plan.toml"]) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert [line[1] for line in lines if line[:1] in (["place"], ["energy"])] == ["deg", "J/m^2"]
+
+
+# -- the section [fatigue] -------------------------------------------------------------------------------------------
+
+SECTION_CASE = """\
+[pin]
+material = "Ti-6Al-4V"
+[plate]
+material = "2024-T3"
+[contact]
+hole_radius = 10e-3
+clearance = 40e-6
+friction = 0.4
+[[load]]
+P = 3e6
+[[load]]
+Q = [7e5, -7e5]
+repeat = 2
+[fatigue]
+small_cycles = "haibach"
+knee = 1e6
+[solve]
+nodes = 41
+"""
+
+SECTION_PLAN = """\
+case = "case.toml"
+[grid]
+contact.friction = [0.2, 0.4]
+[outcomes]
+life = { fatigue = "life" }
+damage = { fatigue = "damage" }
+place = { fatigue = "angle" }
+plain = { fatigue = "damage", small_cycles = "elementary" }
+never = { fatigue = "life", small_cycles = "original", knee = 1 }
+nowhere = { fatigue = "angle", small_cycles = "original", knee = 1 }
+cycle = { fatigue = "life", over = "cycle" }
+"""
+
+
+def test_outcomes_of_the_section(tmp_path):
+    (tmp_path / "case.toml").write_text(SECTION_CASE, encoding="utf-8")
+    plan = parse_plan(SECTION_PLAN, folder=tmp_path)
+    assert [plan.outcomes[name].unit for name in ("life", "never")] == ["spectra", "spectra"]
+    assert plan.outcomes["cycle"].kind == "life"
+    for point in plan.points:
+        case = plan.case(point)
+        result = fastpin.solve(case.problem, case.history, **case.options.keywords())
+        values = {name: value_of(outcome, result) for name, outcome in plan.outcomes.items()}
+        spot = result.assessed_fatigue(case.fatigue)[0].hot_spot
+        assert values["life"].value == spot.life
+        assert values["damage"].value == spot.damage
+        assert values["place"].value == spot.theta
+        assert values["plain"].value > values["damage"].value  # Haibach's line lies below the curve
+        assert values["never"] == (plan.outcomes["never"].definition, None, None, None)
+        assert values["nowhere"].value is None
+        assert values["cycle"].value == result.assessed_fatigue(case.fatigue.changed(over="cycle"))[0].hot_spot.life
+
+
+def test_keys_of_the_section_change_no_run(tmp_path):
+    (tmp_path / "case.toml").write_text(SECTION_CASE, encoding="utf-8")
+    words = 'an outcome such as { fatigue = "life" } may have knee beside it'
+    with pytest.raises(CaseFileError, match=f'"fatigue.knee": changes no run of a sweep; {words}'):
+        parse_plan('case = "case.toml"\n[grid]\nfatigue.knee = [1e5, 1e6]\n', folder=tmp_path)
+    without = SECTION_CASE.replace('small_cycles = "haibach"\nknee = 1e6\n', "").replace("[fatigue]\n", "")
+    plan = parse_plan(SECTION_PLAN, folder=tmp_path)
+    (tmp_path / "case.toml").write_text(without, encoding="utf-8")
+    other = parse_plan(SECTION_PLAN, folder=tmp_path)
+    assert [point.id for point in plan.points] == [point.id for point in other.points]
+
+
+def test_faults_of_an_outcome(tmp_path):
+    text = '[outcomes]\na = { fatigue = "knee" }\nb = { fatigue = "life", small_cycles = "haibach" }\n'
+    with pytest.raises(CaseFileError) as error:
+        parse_plan("[grid]\ncontact.friction = [0.2]\n" + text)
+    assert [fault for _, fault in error.value.problems] == [
+        'a: fatigue: must be "life", "damage" or "angle", not "knee"',
+        'b: knee: must be given with small_cycles = "haibach": the cycles at the knee, such as 1e6',
+    ]

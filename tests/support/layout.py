@@ -14,7 +14,19 @@ from pathlib import Path
 
 ABOVE_BODIES = tuple(
     f"model/{name}.py"
-    for name in ("__init__", "case", "crack", "doubts", "history", "history_csv", "lug", "points", "problem", "units")
+    for name in (
+        "__init__",
+        "assessment",
+        "case",
+        "crack",
+        "doubts",
+        "history",
+        "history_csv",
+        "lug",
+        "points",
+        "problem",
+        "units",
+    )
 )
 """The upper floor of model/, which knows the bodies. The bodies know the lower floor: checks, materials, loads."""
 
@@ -94,6 +106,7 @@ LONG_FUNCTIONS: dict[str, str] = {}
 
 MANY_PARAMETERS: dict[str, str] = {
     "model/problem.py Problem.from_load_parameter": "the fields of a problem",
+    "damage/spectrum.py spectrum_damage": "the choices of a count are spelt out for help and completion",
     "solver/solving.py solve": "the options are spelt out for help and completion",
     "studies/convergence.py converge": "the choices of a study are spelt out for help and completion",
     "storage/recording.py record": "the arguments of solve, and three of the file",

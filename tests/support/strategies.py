@@ -15,6 +15,8 @@ from hypothesis import strategies as st
 import fastpin
 from fastpin.cracks import Nasgro, Walker
 from fastpin.model.angles import DEGREE, angle_at
+from fastpin.model.assessment import DISTANCES, MINER_RULES
+from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.history import Block
 from fastpin.model.loads import LOADS
 from fastpin.model.options import MOST_BETWEEN, SolveOptions
@@ -205,6 +207,23 @@ def cracks(draw: st.DrawFn, radius: float) -> fastpin.model.CrackGrowth:
         draw(st.none() | angles),
         draw(degrees(-60.0, 60.0)) * DEGREE,
         residual_stress=draw(st.none() | between(-1e9, 1e9) | pairs.map(sorted)),
+    )
+
+
+@st.composite
+def assessments(draw: st.DrawFn) -> fastpin.model.FatigueAssessment:
+    """Assessments of the fatigue of whole histories."""
+    rule, method = draw(st.sampled_from(MINER_RULES)), draw(st.sampled_from(DISTANCES))
+    criteria, bodies = st.sampled_from(list(LIFE_CONSTANTS)), st.sampled_from(["plate", "pin", "seat"])
+    return fastpin.model.FatigueAssessment(
+        draw(criteria | st.lists(criteria, min_size=1, unique=True)),
+        draw(st.none() | bodies | st.lists(bodies, min_size=1, unique=True)),
+        method=method,
+        length=None if method == "edge" else draw(st.none() | scale(-8, 0)),
+        angles=draw(st.none() | st.lists(between(-360.0, 360.0), min_size=1, max_size=4)),
+        small_cycles=rule,
+        knee=None if rule == "elementary" else draw(scale(0, 18)),
+        straight=draw(st.none() | st.booleans()),
     )
 
 

@@ -1,0 +1,220 @@
+"""How the fatigue of a load spectrum is assessed: criteria, bodies, distance from the edge, and small cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.angles import angle_at
+from fastpin.model.checks import choice, items, number, positive, true_or_false
+from fastpin.model.fatigue import LIFE_CONSTANTS, FatigueConstants
+from fastpin.model.history import LoadHistory
+from fastpin.model.options import SolveOptions
+from fastpin.model.points import BODIES, Body, elastic_bodies, material_of, owner_of
+from fastpin.model.problem import Problem
+
+MinerRule = Literal["elementary", "original", "haibach"]
+
+MINER_RULES = ("elementary", "original", "haibach")
+"""The variants of Miner's rule for small cycles: the curve of lives goes on, ends, or falls off beyond its knee."""
+
+DISTANCES = ("edge", "point", "line", "area")
+"""Places of the stresses: the edge, and the methods of the theory of critical distances."""
+
+SPECTRA = ("history", "cycle")
+"""Parts of a history that are one pass of the spectrum: all of it, or its last cycle."""
+
+MOST_ANGLES = 10_000
+"""Angles, at most."""
+
+
+@dataclass(frozen=True)
+class FatigueAssessment:
+    """How the fatigue of a load spectrum is assessed. The constants belong to the materials of the bodies.
+
+    Parameters
+    ----------
+    criterion : str or sequence of str
+        Criteria with lives: "smith-watson-topper", "fatemi-socie".
+    bodies : str or sequence of str, optional
+        Of "plate", "pin" and "seat"; unless given, all elastic bodies whose own material has the constants.
+    over : {"history", "cycle"}
+        One pass of the spectrum: the whole history, or its last cycle.
+    method : {"edge", "point", "line", "area"}
+        The stresses on the edge, or those of a method of the theory of critical distances, see
+        :func:`fastpin.damage.fatigue_at_distance`.
+    length : float, optional
+        The critical distance L, m; from ``threshold_range`` and ``limit_range`` of each material unless given. Only
+        with a method of critical distances.
+    angles : float or sequence of float, optional
+        Places on the edge, degrees from the bottom of the hole. Unless given, the whole edge; a method of critical
+        distances then takes the hot spot of the edge.
+    small_cycles : {"elementary", "original", "haibach"}
+        The variant of Miner's rule, see :func:`fastpin.damage.spectrum_damage`.
+    knee : float, optional
+        Cycles at the knee of the curve of lives; needed by "original" and "haibach", and only by them.
+    straight : bool, optional
+        Whether the tractions are straight lines between the nodes. Unless given, they are for more than 500 states.
+
+    Raises
+    ------
+    InputError
+        If a field can't be used.
+    """
+
+    criterion: str | Sequence[str] = "smith-watson-topper"
+    bodies: str | Sequence[str] | None = None
+    over: str = "history"
+    method: str = "edge"
+    length: float | None = None
+    angles: float | Sequence[float] | None = None
+    small_cycles: str = "elementary"
+    knee: float | None = None
+    straight: bool | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "criterion", _words("criterion", self.criterion, tuple(LIFE_CONSTANTS)))
+        if self.bodies is not None:
+            object.__setattr__(self, "bodies", _words("bodies", self.bodies, BODIES))
+        choice("over", self.over, SPECTRA)
+        choice("method", self.method, DISTANCES)
+        if self.length is not None:
+            object.__setattr__(self, "length", positive("length", self.length))
+            if self.method == "edge":
+                raise InputError("length", 'belongs to the methods "point", "line" and "area", but method is "edge"')
+        if self.angles is not None:
+            given = [self.angles] if isinstance(self.angles, (int, float)) else self.angles
+            angles = [number("angles", each, -360.0, 360.0) for each in items("angles", given, "a list of angles")]
+            if not 1 <= len(angles) <= MOST_ANGLES:
+                raise InputError("angles", f"must be 1 to {MOST_ANGLES:,} angles, not {len(angles):,}")
+            object.__setattr__(self, "angles", tuple(angles))
+        object.__setattr__(self, "knee", checked_knee(self.small_cycles, self.knee))
+        if self.straight is not None:
+            object.__setattr__(self, "straight", true_or_false("straight", self.straight))
+
+    @property
+    def criteria(self) -> tuple[str, ...]:
+        """The criteria, in the given order."""
+        return tuple(self.criterion)
+
+    @property
+    def theta(self) -> np.ndarray | None:
+        """The angles, rad, counter-clockwise from the +x axis; None for the whole edge."""
+        return None if self.angles is None else np.array([angle_at(each) for each in np.ravel(self.angles).tolist()])
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The fields that differ from their usual values, by name. A list of one word is this word."""
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        plain = {name: value[0] if _is_single(name, value) else value for name, value in values.items()}
+        usual = {each.name: each.default for each in fields(self)}
+        return {name: value for name, value in plain.items() if value != usual[name]}
+
+    def toml(self) -> dict[str, Any]:
+        """The keys and values of the section [fatigue] of a case file."""
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in self.given.items()}
+
+    def changed(self, **given: Any) -> FatigueAssessment:
+        """Return the assessment with other values of some fields.
+
+        Raises
+        ------
+        InputError
+            If a value can't be used.
+        """
+        return replace(self, **given)
+
+
+def _words(field: str, value: str | Sequence[str], allowed: tuple[str, ...]) -> tuple[str, ...]:
+    """Check a word or a list of different words."""
+    given = [value] if isinstance(value, str) else items(field, value, "a word or a list of words")
+    words = tuple(choice(field, each, allowed) for each in given)
+    if not words or len(set(words)) < len(words):
+        raise InputError(field, f"must be at least one word, each one once, not {len(words)}")
+    return words
+
+
+def _is_single(name: str, value: object) -> bool:
+    return name in ("criterion", "bodies") and isinstance(value, tuple) and len(value) == 1
+
+
+def checked_knee(rule: str, knee: float | None) -> float | None:
+    """Check a variant of Miner's rule with the cycles at its knee, and return these.
+
+    Raises
+    ------
+    InputError
+        If the rule is unknown, or its knee is missing, too much or out of range.
+    """
+    choice("small_cycles", rule, MINER_RULES)
+    if rule == "elementary":
+        if knee is not None:
+            raise InputError("knee", 'belongs to "original" and "haibach", but small_cycles is "elementary"')
+        return None
+    if knee is None:
+        raise InputError("knee", f'must be given with small_cycles = "{rule}": the cycles at the knee, such as 1e6')
+    return number("knee", knee, 1.0, 1e18)
+
+
+def assessed_bodies(problem: Problem, how: FatigueAssessment, criterion: str) -> tuple[Body, ...]:
+    """The bodies whose fatigue is assessed by a criterion: the given ones, or all with its constants.
+
+    Raises
+    ------
+    InputError
+        If a given body is rigid or not there, or a material lacks constants. The message names them.
+    """
+    names = (*LIFE_CONSTANTS[criterion][0], *LIFE_CONSTANTS[criterion][1])
+    if how.bodies is not None:
+        bodies = tuple(body for body in BODIES if body in how.bodies)
+        for body in bodies:
+            if material_of(problem, body).is_rigid:  # type: ignore[arg-type]
+                raise InputError("bodies", f"the {owner_of(problem, body)} is rigid and has no stress")
+            _check_constants(problem, body, names, criterion)  # type: ignore[arg-type]
+        return bodies  # type: ignore[return-value]
+    elastic = elastic_bodies(problem)
+    known = tuple(body for body in elastic if not _lacks(problem, body, names))
+    if not known and elastic:
+        _check_constants(problem, elastic[0], names, criterion)
+    return known
+
+
+def check_assessment(
+    problem: Problem, how: FatigueAssessment, history: LoadHistory | None = None, options: SolveOptions | None = None
+) -> None:
+    """Raise :class:`InputError` if the fatigue of a problem under a history can't be assessed.
+
+    Materials lack constants, the history has no cycle or no turning point, or corners are not kept.
+    """
+    for criterion in how.criteria:
+        bodies = assessed_bodies(problem, how, criterion)
+        if how.method != "edge" and how.length is None:
+            for body in bodies:
+                _check_constants(problem, body, ("threshold_range", "limit_range"), f'method "{how.method}"')
+    if history is None:
+        return
+    if how.over == "cycle" and not history.longest_cycle:
+        raise InputError("over", "the history has no cycles: none of its blocks is repeated")
+    if options is not None and options.keep not in ("all", "corners"):
+        raise InputError("keep", 'must be "all" or "corners": fatigue needs the states at all corners')
+    stops = 1 if options is None or options.keep == "corners" else options.fractions.size
+    if len(history) * stops < 2:
+        raise InputError("fatigue", "needs a turning point: the history has one corner only")
+
+
+def _lacks(problem: Problem, body: Body, names: Sequence[str]) -> bool:
+    given = material_of(problem, body).fatigue
+    return given is None or any(getattr(given, name) is None for name in names)
+
+
+def _check_constants(problem: Problem, body: Body, names: Sequence[str], purpose: str) -> None:
+    given = material_of(problem, body).fatigue or FatigueConstants()
+    given.required(names, purpose, owner_of(problem, body))
+
+
+ASSESSMENT_KEYS = tuple(field.name for field in fields(FatigueAssessment))
+"""The fields of :class:`FatigueAssessment`, the keys of [fatigue] in a case file."""

@@ -1,0 +1,123 @@
+"""The fatigue of a history as the section [fatigue] of its case asks for it: text, and JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fastpin.damage import SpectrumDamage
+from fastpin.errors import InputError
+from fastpin.model.angles import from_bottom
+from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.case import Case
+from fastpin.model.units import units
+from fastpin.report.case import assessment_words, edge_body
+from fastpin.solver.result import Result
+
+MOST_CYCLES = 3
+"""Counted cycles that are printed for each body."""
+
+MOST_LISTED = 100
+"""Counted cycles of each body in JSON: those that do the most damage."""
+
+
+class Assessed(NamedTuple):
+    """An assessment of fatigue.
+
+    Attributes
+    ----------
+    how : FatigueAssessment
+    found : list of SpectrumDamage
+        Bodies by their damage, criterion by criterion.
+    reason : str
+        Why the fatigue is not known; empty if it is.
+    """
+
+    how: FatigueAssessment
+    found: list[SpectrumDamage]
+    reason: str = ""
+
+    @property
+    def is_along_edges(self) -> bool:
+        """Whether the damage of whole edges is known, not that of some places only."""
+        return self.how.method == "edge" and self.how.angles is None
+
+
+def assess(
+    case: Case, result: Result | None, progress: Callable[[float, float], None] | None = None
+) -> Assessed | None:
+    """Assess the fatigue of a whole result as its case asks for it; None if the case does not."""
+    if case.fatigue is None:
+        return None
+    if result is None or not result.complete:
+        return Assessed(case.fatigue, [], "the history has not come to its end")
+    try:
+        return Assessed(case.fatigue, result.assessed_fatigue(case.fatigue, progress))
+    except InputError as error:
+        return Assessed(case.fatigue, [], str(error))
+
+
+def assessment_lines(assessed: Assessed) -> list[str]:
+    """Return lines of text: how fatigue is assessed, then each body with its hot spot, the largest damage first."""
+    if assessed.reason:
+        return [f"fatigue: not known, {assessed.reason}"]
+    return [f"fatigue over {assessment_words(assessed.how)}", *(_line(one, assessed.how) for one in assessed.found)]
+
+
+def life_unit(how: FatigueAssessment) -> str:
+    """Return the unit of lives: "spectra" or "cycles"."""
+    return "spectra" if how.over == "history" else "cycles"
+
+
+def _line(found: SpectrumDamage, how: FatigueAssessment) -> str:
+    spot, counted = found.hot_spot, found.cycles
+    name = f"fatigue of the {edge_body(found.problem, found.body)}, {found.criterion}"
+    if math.isnan(spot.theta):
+        return f"{name}: no damage"
+    depth = "" if spot.depth == 0.0 else f", {units(found.problem)['length'].text(spot.depth, 3)} below the edge"
+    parts = [
+        f"life {spot.life:.4g} {life_unit(how)}, damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}",
+        f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x",
+    ]
+    cycles = []
+    for k in range(min(len(counted.damage), MOST_CYCLES)):
+        share, times = 100.0 * counted.damage[k] / spot.damage, int(counted.times[k])
+        if share >= 0.5:
+            ends = f"{counted.start[k]:.6g} and {counted.stop[k]:.6g}"
+            cycles.append(f"{share:.0f} % by load points {ends}" + (f" ({times:,} times)" if times > 1 else ""))
+    return f"{name}: {', '.join(parts)}; {', '.join(cycles)}"
+
+
+def document(assessed: Assessed) -> dict[str, Any]:
+    """Return an assessment as a dict: angles in degrees, from the bottom of the hole for places, from +x for planes.
+
+    A body without damage has no angle, depth, plane and life: they are None.
+    """
+    how = assessed.how
+    return {
+        "criterion": list(how.criteria),
+        "over": how.over,
+        "method": how.method,
+        "small_cycles": how.small_cycles,
+        "knee": how.knee,
+        "error": assessed.reason or None,
+        "bodies": [_body(one) for one in assessed.found],
+    }
+
+
+def _body(found: SpectrumDamage) -> dict[str, Any]:
+    spot, counted = found.hot_spot, found.cycles
+    columns = {name: getattr(counted, name)[:MOST_LISTED].tolist() for name in counted._fields}
+    return {
+        "criterion": found.criterion,
+        "body": found.body,
+        "damage": spot.damage,
+        "life": spot.life,
+        "angle": math.nan if math.isnan(spot.theta) else from_bottom(spot.theta),
+        "depth": units(found.problem)["length"].factor * spot.depth,
+        "plane": math.degrees(spot.plane),
+        "cycles": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)],
+    }
