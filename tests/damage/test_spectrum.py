@@ -319,7 +319,7 @@ def test_no_hot_spot_without_damage():
     assert math.isnan(found.hot_spot.theta)
     assert found.hot_spot.life == math.inf
     assert found.cycles.damage.size == 0
-    assert "no crack" in repr(found)
+    assert "no damage" in repr(found)
 
 
 def test_bad_input(fretting):
