@@ -239,7 +239,7 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
     if patch.beta != 0.0:
         graded += [2.0 * law.place - _graded(law) for law, _ in laws.borders]
     nodes, values = _with_ends(patch, laws.pressure)
-    theta = np.unique(np.r_[nodes, *graded])
+    theta = _apart(np.r_[nodes, *graded])
     theta = theta[(theta >= nodes[0]) & (theta <= nodes[-1])]
     pressure, shear = np.interp(theta, nodes, values[0]), np.interp(theta, nodes, values[1])
     friction = np.interp(theta, patch.theta, patch.friction)
@@ -267,6 +267,18 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
     if patch.exponents is not None:
         refined_patch[0, 1:] = 0.0
     return refined_patch
+
+
+def _apart(angles: np.ndarray) -> np.ndarray:
+    """Sorted angles without those that equal another one up to rounding. The first and the last one stay.
+
+    A piece between equal angles has no stress.
+    """
+    theta = np.unique(angles)
+    stays = np.r_[True, np.diff(theta) > 4.0 * np.spacing(np.abs(theta).max())]
+    if not stays[-1]:
+        stays[-2:] = False, True
+    return theta[stays]
 
 
 def _graded(law: Law) -> np.ndarray:

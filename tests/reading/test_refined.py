@@ -347,3 +347,13 @@ def test_an_edge_a_little_inside_the_outermost_node():
             assert np.all(np.diff(theta) > 0.0)
             # Measured: up to 5e-4 with 101 to 119 nodes, and 5e-5 with 201.
             assert np.all(np.abs(shear) <= 0.55 * pressure + 2e-3 * state.peak_pressure)
+
+
+def test_angles_that_are_equal_up_to_rounding_are_one(monkeypatch):
+    assert refined._apart(np.array([0.0, 1.0, 1.0 + 4e-16, 2.0 - 4e-16, 2.0])).tolist() == [0.0, 1.0, 2.0]
+    state = solve(problem(), FRETTING, nodes=101)[-1]
+    before = state.hoop_stress(theta=np.linspace(-3.0, 3.0, 50))
+    state.__dict__.pop("refined")
+    unique = np.unique
+    monkeypatch.setattr(refined.np, "unique", lambda angles: unique(np.r_[angles, angles[1:-1] + 4e-16]))
+    np.testing.assert_allclose(state.hoop_stress(theta=np.linspace(-3.0, 3.0, 50)), before, rtol=1e-9)
