@@ -24,7 +24,6 @@ from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.operator import DenseOperator
 from fastpin.elasticity.system import Interface, System
 from fastpin.kernels import fourier, harmonics
-from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.grid import Grid
 from fastpin.model.loads import FRICTION_CHANGE, REMOTE
 from fastpin.model.problem import Problem
@@ -190,14 +189,14 @@ class JointSystem(System):
 def seat_grid(problem: Problem, grid: Grid) -> Grid:
     """The nodes of the seat: as many as the pin's, but at least :data:`ACROSS_WALL` on a wall's length.
 
-    One of them lies at a node of the pin: at the bottom, if the pin has a node there.
+    One of them lies in the middle of the pin's arc. So a symmetric joint has symmetric nodes.
     """
     bush = problem.plate_body.bush
     assert bush is not None
     wall = bush.outer_radius / problem.hole_radius - 1.0
     least = math.ceil(ACROSS_WALL * 2.0 * math.pi * (1.0 + wall) / wall)
-    start = 0 if grid.closed else int(np.argmin(np.abs(angle_between(grid.theta, BOTTOM))))
-    return Grid.circle(max(grid.size, least), float(grid.theta[start]))
+    start = grid.theta[0] if grid.closed else 0.5 * (grid.theta[(grid.size - 1) // 2] + grid.theta[grid.size // 2])
+    return Grid.circle(max(grid.size, least), float(start))
 
 
 def _without_remote(system: System) -> System:
