@@ -20,16 +20,22 @@ _GROWN: WeakKeyDictionary[Result, dict[CrackGrowth, cracks.Growth]] = WeakKeyDic
 
 
 class CrackQuantity(NamedTuple):
-    """A number of a crack that grows, see :class:`CycleQuantity`. `of` gives its value for a growth."""
+    """A number of a crack that grows, see :class:`CycleQuantity`.
+
+    `of` gives its value for a growth. Without a kind it has a `unit`.
+    """
 
     kind: str
     of: Callable[[Any], float]
     classes: Mapping[int, str] = MappingProxyType({})
+    unit: str = ""
 
 
 CRACK_QUANTITIES: dict[str, CrackQuantity] = {
     "fate": CrackQuantity("class", lambda found: float(found.fate), CRACK_FATES),
-    "life": CrackQuantity("life", lambda found: found.life if math.isfinite(found.life) else math.nan),
+    "life": CrackQuantity(
+        "", lambda found: found.life if math.isfinite(found.life) else math.nan, unit="cycles or spectra"
+    ),
     "arrest": CrackQuantity("length", lambda found: found.arrest),
     "theta": CrackQuantity("angle", lambda found: found.crack.theta),
     "largest_K": CrackQuantity("stress intensity", lambda found: float(found.K_max.max())),

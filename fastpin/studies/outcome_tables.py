@@ -348,7 +348,8 @@ def _of_crack(source: CaseText, section: Section, default: CrackGrowth | None) -
         return None
     definition = json.dumps({"crack": quantity, "how": crack.entries()}, sort_keys=True)
     chosen = CRACK_QUANTITIES[quantity]
-    return StudyOutcome(chosen.kind, "", definition, partial(of_crack, quantity, crack), dict(chosen.classes))
+    of = partial(of_crack, quantity, crack)
+    return StudyOutcome(chosen.kind, chosen.unit, definition, of, dict(chosen.classes))
 
 
 def _of_function(section: Section, folder: Path) -> StudyOutcome | None:
