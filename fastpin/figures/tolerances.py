@@ -33,6 +33,9 @@ INNER: Any = {"color": "black", "linestyle": "none", "marker": "o", "markersize"
 ROW = 0.27
 """Height of a row of a tornado, inches. It holds a line of letters."""
 
+WIDE_RATIO = 10.0
+"""Ratio of the largest to the smallest outcome beyond which the axis of a tornado is logarithmic."""
+
 WIDE = 7.6
 """Width of a figure of samples, inches."""
 
@@ -169,8 +172,19 @@ def _draw_bars(panel: Axes, chart: ToleranceChart) -> None:
     if math.isfinite(chart.nominal):
         panel.axvline(chart.nominal, color="black", linewidth=0.9, zorder=3)
     panel.margins(x=0.16)
-    panel.xaxis.set_major_locator(MaxNLocator(7))
+    if _is_wide(chart):
+        panel.set_xscale("log")
+    else:
+        panel.xaxis.set_major_locator(MaxNLocator(7))
     panel.set_xlabel(shown_label(chart.label), parse_math=False)
+
+
+def _is_wide(chart: ToleranceChart) -> bool:
+    """Whether the outcome is positive everywhere and spans more than a decade, as lives do."""
+    drawn = [value for bar in chart.bars for value in bar.values] + [chart.nominal]
+    drawn += [*(chart.corners or ()), *chart.percentiles.values()]
+    known = np.array([value for value in drawn if math.isfinite(value)])
+    return bool(known.size and known.min() > 0.0 and known.max() > WIDE_RATIO * known.min())
 
 
 def _write_limits(panel: Axes, nominal: float, row: int, limits: tuple[str, str], ends: tuple[float, float]) -> None:

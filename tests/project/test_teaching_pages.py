@@ -18,6 +18,7 @@ from tests.support.documents import DOCS, blocks, run_page
 HOW_TO = [
     "tutorial",
     "riveted-joint",
+    "bushed-lug",
     "case-files",
     "histories",
     "sessions",
