@@ -155,15 +155,16 @@ class Valid:
             life[-1], worn, worn.crack, crack, law, grown, cracks.stress_intensity(state, crack, [length]), NASGRO,
             cracks.growth_along_edge(result, law, length, 2.0 * length, [-1.5]), planned,
             cracks.spectrum_growth(result, crack, law, length, 2.0 * length), cracks.CrackFate.STOPS,
-            cracks.GrowthLaw(),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
         bush = fastpin.Problem.from_load_parameter(pair, 0.1, 0.4, plate_body=bodies.Bushing(pair.pin, 2.0, 0.01))
         bushed = fastpin.solve(bush, [{"P": 1.0}], nodes=NODES)[-1]
         self._bushed = bushed
+        self._with_constants = fastpin.solve(steel, cycle_in_newtons, nodes=NODES)  # of the plate, for fatigue
         self.objects |= {
             "BushFit": _always(bushed.bush_fit()),
+            "GrowthLaw": _always(law),  # the class alone has no rate
             "Session": session.copy,
             "Outcome": lambda: benchmarks.Outcome([benchmarks.Row("peak", "1", "0.5", 0.5)]),
         }
@@ -201,6 +202,8 @@ class Valid:
         """A valid object of a class, for a call of one of its methods."""
         if target == "fastpin.State.bush_fit":
             return self._bushed
+        if target == "fastpin.Result.assessed_fatigue":
+            return self._with_constants
         if owner.__name__ not in self.objects:
             raise LookupError(f"scripts/valid_values.py has no object of the class {owner.__name__}")
         return self.objects[owner.__name__]()

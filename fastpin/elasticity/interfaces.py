@@ -24,6 +24,7 @@ from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.operator import DenseOperator
 from fastpin.elasticity.system import Interface, System
 from fastpin.kernels import fourier, harmonics
+from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.grid import Grid
 from fastpin.model.loads import FRICTION_CHANGE, REMOTE
 from fastpin.model.problem import Problem
@@ -36,6 +37,9 @@ AROUND = 720
 
 ACROSS_WALL = 2.0
 """Nodes of the seat, at least, on a length of the seat that is as long as the wall of the bush is thick."""
+
+ON_AXIS = 1e-9
+"""Largest distance of a node from the bottom, the right, the top or the left of the hole that is rounding, rad."""
 
 TURN = 2
 """Place of the rotation among the three motions of an interface, and of its condition."""
@@ -189,14 +193,19 @@ class JointSystem(System):
 def seat_grid(problem: Problem, grid: Grid) -> Grid:
     """The nodes of the seat: as many as the pin's, but at least :data:`ACROSS_WALL` on a wall's length.
 
-    One of them lies in the middle of the pin's arc. So a symmetric joint has symmetric nodes.
+    One of them lies at a node of the pin: at the bottom, the right, the top or the left of the hole if the pin has a
+    node there, so that a symmetric joint has symmetric nodes.
     """
     bush = problem.plate_body.bush
     assert bush is not None
     wall = bush.outer_radius / problem.hole_radius - 1.0
     least = math.ceil(ACROSS_WALL * 2.0 * math.pi * (1.0 + wall) / wall)
-    start = grid.theta[0] if grid.closed else 0.5 * (grid.theta[(grid.size - 1) // 2] + grid.theta[grid.size // 2])
-    return Grid.circle(max(grid.size, least), float(start))
+    start = 0
+    if not grid.closed:
+        away = np.abs(angle_between(grid.theta, BOTTOM + 0.5 * math.pi * np.arange(4)[:, None]))
+        axis = int(np.argmax(away.min(axis=1) < ON_AXIS))  # the bottom if the pin has no node on any axis
+        start = int(np.argmin(away[axis]))
+    return Grid.circle(max(grid.size, least), float(grid.theta[start]))
 
 
 def _without_remote(system: System) -> System:

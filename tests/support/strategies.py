@@ -188,7 +188,7 @@ def cases(draw: st.DrawFn) -> fastpin.Case:
     chosen = draw(options(problem.is_gripped))
     crack = st.none() if problem.pair.plate.is_rigid else st.none() | cracks(problem.hole_radius)
     about = fastpin.model.About(*(draw(words) for _ in range(4)))
-    return fastpin.Case(problem, history, chosen, draw(words), about, draw(st.none() | wears()), draw(crack))
+    return fastpin.Case(problem, history, chosen, draw(words), about, draw(st.none() | wears()), crack=draw(crack))
 
 
 @st.composite
