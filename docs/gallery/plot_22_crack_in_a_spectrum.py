@@ -28,4 +28,4 @@ for degrees in (40.0, 55.0, 80.0):
 
 lives = [found.life for found in grown]
 assert lives[1] == min(lives)
-figures.plot_crack_growth(grown, title="Cracks under random forces Q")
+figure = figures.plot_crack_growth(grown, title="Cracks under random forces Q")
