@@ -70,6 +70,9 @@ DEPENDENT = 1e-10
 SMALLEST = 1e-15
 """A singular value below this part of the largest one counts as zero, as in ``numpy.linalg.pinv``."""
 
+NO_TURN = 1e150
+"""Ratio from which on a rotation is far below rounding. Its square would overflow."""
+
 ORTHOGONAL = 1e-14
 """Cosine of the angle of two vectors that counts as zero: the rounding of a product of ten to twenty numbers."""
 
@@ -194,6 +197,8 @@ def _rotate(a, b, also_a, also_b):
     if abs(part) <= ORTHOGONAL * math.sqrt(size_a * size_b):
         return True
     ratio = 0.5 * (size_b - size_a) / part
+    if abs(ratio) > NO_TURN:
+        return True
     tangent = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + math.sqrt(1.0 + ratio**2))
     cosine = 1.0 / math.sqrt(1.0 + tangent**2)
     sine = cosine * tangent

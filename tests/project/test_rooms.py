@@ -18,7 +18,7 @@ MOST = {
     "drive is None, or not": 0,
     "classes defined twice": 0,
     "small private functions used once": 75,
-    "constants of modules": 1_288,
+    "constants of modules": 1_289,
     "hidden imports": 0,
     "lines of code": 43_840,
 }
