@@ -71,6 +71,16 @@ heat = { cycle = "dissipation" }
 largest_Q = { quantity = "Q", take = "largest" }
 """
 
+LIMITS = """
+case = "case.toml"
+samples = 4
+[tolerances]
+contact.friction = { from = 0.3, to = 0.5 }
+loads = { from = 0.9, to = 1.1 }
+[outcomes]
+heat = { cycle = "dissipation" }
+"""
+
 PER_METRE = re.compile(r"(?<![\w/])[GMkmunpµ]?(N/m|J/m(?![\^²])|N/rad)(?!\w)")
 """Units per thickness. J/m^2 of the friction energy at a place is none."""
 
@@ -113,6 +123,7 @@ class Walk:
         case, plan = words(thick)
         (folder / "case.toml").write_text(case)
         (folder / "plan.toml").write_text(plan)
+        (folder / "limits.toml").write_text(LIMITS)
 
     def files(self, suffix: str) -> dict[str, str]:
         paths = sorted(self.folder.rglob(f"*{suffix}"))
@@ -159,6 +170,8 @@ def walk(found: Walk, monkeypatch: pytest.MonkeyPatch) -> None:
     command("sweep", "plan.toml", "--table", "--plot", "heat.svg", "--value", "heat")
     command("sweep", "plan.toml", "--table", "sweep.csv", "--plot", "curves.svg", "--value", "dissipation")
     command("report", "plan", "--plan", "plan.toml", "-o", "sweep.html")
+    command("tolerances", "limits.toml", "--plot", "tornado.svg", "--scatter", "samples.svg", "--json", "limits.json")
+    command("report", "limits", "-o", "limits.html")
     command("compliance", "--example")
     known = set(re.findall(r"^    (\w+)(?:  |$)", options.parser().format_help(), re.MULTILINE))
     assert {name.split()[0] for name in found.commands} | WITHOUT_UNITS.keys() == known
