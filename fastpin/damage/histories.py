@@ -82,7 +82,7 @@ def different_states(states: Sequence[State], straight: bool) -> tuple[list[Stat
 
 
 def _digest(parts: Sequence[State], straight: bool) -> bytes:
-    """Return a digest of the tractions of a state and its seat, which tell its stresses but for the remote ones."""
+    """Return a digest of the tractions of a state and its seat. Remote stress is no part of it."""
     key = hashlib.blake2b(digest_size=16)
     for part in parts:
         arrays = [part.theta, part.pressure, part.shear, part.status]
