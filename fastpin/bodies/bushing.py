@@ -92,6 +92,8 @@ class Bushing(PlateBody):
 
     def __post_init__(self) -> None:
         instance("material", self.material, Material, "a Material")
+        if not self.material.is_isotropic:
+            raise InputError("material", "must be isotropic: a laminate can only be the material of the plate")
         if self.material.is_rigid:
             raise InputError("material", "a rigid bush is a rigid plate: leave the bush out")
         object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))

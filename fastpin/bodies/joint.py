@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from fastpin.bodies.body import PinBody, PinLoad, PlateBody, Rim, Uniform
-from fastpin.bodies.kinds import PINS, PLATES
+from fastpin.bodies.kinds import INFINITE_PLATE, PINS, PLATES
 from fastpin.errors import InputError
 from fastpin.kernels.harmonics import First
 from fastpin.model.materials import Material, MaterialPair
@@ -124,6 +124,8 @@ def check_bodies(
         raise InputError("plate_body", f"must be {_names(PLATES)}")
     plate_body.check(radius, dimensionless)
     pin_body.check_load(pin_load)
+    if not pair.plate.is_isotropic and plate_body != INFINITE_PLATE:
+        raise InputError("plate_body", "must be an infinite plate if it is a laminate, without bush and reaction")
     plate_body.check_pair(pair, radius, dimensionless)
 
 

@@ -5,6 +5,7 @@ from .crack import CrackGrowth as CrackGrowth
 from .fatigue import FatigueConstants as FatigueConstants
 from .grid import Grid as Grid
 from .history import LoadHistory as LoadHistory
+from .laminate import Laminate as Laminate
 from .loads import LOADS as LOADS
 from .lug import Hole as Hole
 from .lug import Lug as Lug

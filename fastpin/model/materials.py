@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -72,12 +72,19 @@ class Material:
     growth : Walker or Nasgro, optional
         Law of crack growth with its constants, see :mod:`fastpin.cracks`. It changes no state.
 
+    Attributes
+    ----------
+    is_isotropic : bool
+        False for a :class:`fastpin.model.Laminate`.
+
     Raises
     ------
     InputError
         If `E` is not positive or beyond its limits, `nu` is outside [0, 0.5], `name` is no text, `fatigue` is of
         another class, a strength is not positive, or `growth` is no law of fastpin.
     """
+
+    is_isotropic: ClassVar[bool] = True
 
     E: float
     nu: float
@@ -251,8 +258,9 @@ class MaterialPair:
     Parameters
     ----------
     pin, plate : Material
-        At most one of the two is rigid.
+        At most one of the two is rigid. The plate may be a :class:`fastpin.model.Laminate`.
     plane : {"strain", "stress"}
+        A laminate is in plane stress whatever the `plane`, which is then that of the pin.
 
     Raises
     ------
@@ -268,6 +276,8 @@ class MaterialPair:
         object.__setattr__(self, "plane", choice("plane", self.plane, PLANES))
         for field, body in (("pin", self.pin), ("plate", self.plate)):
             instance(field, body, Material, "a Material")
+        if not self.pin.is_isotropic:
+            raise InputError("pin", "must be isotropic: a laminate can only be the material of the plate")
         if self.pin.is_rigid and self.plate.is_rigid:
             raise InputError("plate", "pin and plate can't both be rigid")
         check_moduli("plate", "pin and plate", self.pin, self.plate)

@@ -1,0 +1,252 @@
+"""Laminates: the material of an anisotropic plate in plane stress, and its constants at the edge of a round hole.
+
+At the edge of a round hole a symmetric tensor Lambda and a number s hold the whole elastic response, docs/theory.md
+(T60). The contact is that of an isotropic plate with the same lambda0 = tr Lambda / 2 and s, and of one term with the
+rest of Lambda, the number delta.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.checks import number, number_array, positive, string
+from fastpin.model.materials import Material, Plane
+from fastpin.model.synonyms import explains_keywords
+
+ALONG_LOAD = -0.5 * math.pi
+"""The axis of a laminate unless it is given: the direction of the load P, rad."""
+
+LEAST_COMPLIANCE, MOST_COMPLIANCE = 1e-60, 1e60
+"""Limits of the compliances a11, a22 and a66, 1/Pa: those of the modulus of a material."""
+
+LEAST_EIGENVALUE = 1e-9
+"""Least eigenvalue of the scaled compliance matrix. A smaller one is rounding: the laminate is not stable."""
+
+ROUND = 1e-12
+"""Size of delta over lambda0 that is rounding: the contact is that of an isotropic plate."""
+
+ORDER = ("a11", "a12", "a22", "a16", "a26", "a66")
+"""Names of the compliances, in their order."""
+
+
+@explains_keywords
+@dataclass(frozen=True, repr=False, kw_only=True)
+class Laminate(Material):
+    """A symmetric laminate in plane stress, as the material of a plate.
+
+    The membrane response alone matters: (e_x, e_y, g_xy) = a (s_x, s_y, s_xy) with the compliances a of the whole, and
+    stresses as means through the thickness. There is no bending and no delamination.
+
+    Parameters
+    ----------
+    compliance : sequence of 6 floats
+        a11, a12, a22, a16, a26 and a66, 1/Pa, in the axes of the laminate.
+    axis : float
+        Direction of axis 1 of the laminate, rad from +x. The default is the direction of the load P.
+    name : str, optional
+        Name in tables and plots.
+
+    Attributes
+    ----------
+    E, nu : float
+        Constants of the isotropic plate with the same lambda0 and s, in plane stress: Pa, and -1 to 1. The contact is
+        that of such a plate if `delta` is 0. The stresses away from the edge are others.
+
+    Raises
+    ------
+    InputError
+        If a value is no number or beyond its limits, or the compliances are not positive definite.
+    """
+
+    is_isotropic: ClassVar[bool] = False
+
+    E: float = field(init=False)
+    nu: float = field(init=False)
+    compliance: tuple[float, ...]
+    axis: float = ALONG_LOAD
+
+    def __post_init__(self) -> None:
+        values = number_array("compliance", self.compliance)
+        if values.shape != (len(ORDER),):
+            raise InputError("compliance", f"must be six numbers, {', '.join(ORDER)}")
+        given = tuple(number("compliance", value, -MOST_COMPLIANCE, MOST_COMPLIANCE) for value in values.tolist())
+        for place in (0, 2, 5):
+            if given[place] <= 0.0:
+                raise InputError("compliance", f"{ORDER[place]} must be positive, not {given[place]:g}")
+            number("compliance", given[place], LEAST_COMPLIANCE, MOST_COMPLIANCE)
+        object.__setattr__(self, "compliance", given)
+        object.__setattr__(self, "axis", number("axis", self.axis))
+        object.__setattr__(self, "name", string("name", self.name))
+        own = _matrix(given)
+        size = 1.0 / np.sqrt(np.diag(own))
+        if np.linalg.eigvalsh(own * np.outer(size, size))[0] < LEAST_EIGENVALUE:
+            raise InputError("compliance", "must be positive definite: no stable material has these values")
+        lambda0, s = self.lambda0, self.s
+        object.__setattr__(self, "E", 2.0 / lambda0)
+        object.__setattr__(self, "nu", 1.0 - 2.0 * s / lambda0)
+        for name in ("fatigue", "yield_strength", "ultimate_strength", "growth"):
+            if getattr(self, name) is not None:
+                raise InputError(name, "has no meaning for a laminate")
+
+    @classmethod
+    @explains_keywords
+    def from_moduli(
+        cls, E1: float, E2: float, G12: float, nu12: float, axis: float = ALONG_LOAD, name: str = ""
+    ) -> Laminate:
+        """A laminate with given moduli of the whole, orthotropic in its axes.
+
+        Parameters
+        ----------
+        E1, E2, G12 : float
+            Young's moduli along axis 1 and axis 2, and the shear modulus, Pa.
+        nu12 : float
+            Poisson's ratio of a stress along axis 1.
+        axis, name
+            See :class:`Laminate`.
+
+        Raises
+        ------
+        InputError
+            If a modulus is not positive, or no stable material has these constants.
+        """
+        first, second, shear = (
+            number(field_, positive(field_, value), 1e-60, 1e60)
+            for field_, value in (("E1", E1), ("E2", E2), ("G12", G12))
+        )
+        ratio = number("nu12", nu12)
+        if ratio * ratio * second >= first * (1.0 - LEAST_EIGENVALUE):
+            raise InputError("nu12", f"must lie within +-sqrt(E1/E2) = {math.sqrt(first / second):g}, not {ratio:g}")
+        return cls(compliance=(1 / first, -ratio / first, 1 / second, 0.0, 0.0, 1 / shear), axis=axis, name=name)
+
+    @property
+    def elastic_form(self) -> str:
+        name = f"{self.name!r}, " if self.name else ""
+        E1, E2, G12, nu12 = self.moduli
+        return f"Laminate({name}E1={E1:g}, E2={E2:g}, G12={G12:g}, nu12={nu12:g}, axis={self.axis:g})"
+
+    def scaled(self, factor: float) -> Laminate:
+        """The same laminate with all moduli times `factor`. A `factor` that is not positive raises InputError."""
+        softer = 1.0 / positive("factor", factor)
+        return Laminate(compliance=tuple(softer * value for value in self.compliance), axis=self.axis, name=self.name)
+
+    def turned(self, angle: float) -> Laminate:
+        """The same laminate, turned counter-clockwise by `angle`, rad. No finite number raises InputError."""
+        return replace(self, axis=self.axis + number("angle", angle))
+
+    def kolosov(self, plane: Plane) -> float:
+        """Kolosov's constant of the isotropic plate with the same lambda0 and s: in plane stress, for any `plane`."""
+        return (self.lambda0 + self.s) / (self.lambda0 - self.s)
+
+    @property
+    def shear_modulus(self) -> float:
+        """G of the isotropic plate with the same lambda0 and s, Pa."""
+        return 0.5 / (self.lambda0 - self.s)
+
+    @property
+    def moduli(self) -> tuple[float, float, float, float]:
+        """E1, E2 and G12 of the whole, Pa, and nu12, in the axes of the laminate."""
+        a11, a12, a22, _, _, a66 = self.compliance
+        return 1.0 / a11, 1.0 / a22, 1.0 / a66, -a12 / a11
+
+    @cached_property
+    def matrix(self) -> np.ndarray:
+        """Compliances a of the whole in x and y, 1/Pa, shape (3, 3): strains (e_x, e_y, g_xy) per stress."""
+        return in_axes(_matrix(self.compliance), -self.axis)
+
+    @cached_property
+    def roots(self) -> tuple[complex, complex]:
+        """The roots mu1 and mu2, with positive imaginary parts, of Lekhnitskii's equation in x and y."""
+        return stroh_roots(self.matrix)
+
+    @cached_property
+    def _edge(self) -> tuple[np.ndarray, float]:
+        """Lambda in the axes of the laminate, and s, (T61)."""
+        own = _matrix(self.compliance)
+        one, two = stroh_roots(own)
+        a11, a12, a22 = own[0, 0], own[0, 1], own[1, 1]
+        across = a11 * (one * two).imag
+        tensor = np.array([[a11 * (one + two).imag, across], [across, -a22 * (1.0 / one + 1.0 / two).imag]])
+        return tensor, a12 - a11 * (one * two).real
+
+    @property
+    def lambda0(self) -> float:
+        """Half the trace of Lambda, 1/Pa: (kappa + 1)/4G of an isotropic plate."""
+        return 0.5 * float(np.trace(self._edge[0]))
+
+    @property
+    def s(self) -> float:
+        """The number s, 1/Pa: (kappa - 1)/4G of an isotropic plate."""
+        return float(self._edge[1])
+
+    @cached_property
+    def delta(self) -> complex:
+        """The rest of Lambda, 1/Pa: (Lambda_xx - Lambda_yy)/2 + i Lambda_xy; 0 for an isotropic plate.
+
+        It turns with the laminate: half its argument is the direction of the larger eigenvalue of Lambda.
+        """
+        tensor = self._edge[0]
+        own = complex(0.5 * (tensor[0, 0] - tensor[1, 1]), tensor[0, 1])
+        return 0j if abs(own) <= ROUND * self.lambda0 else own * cmath.exp(2j * self.axis)
+
+    @property
+    def is_isotropic_contact(self) -> bool:
+        """Whether the contact is that of an isotropic plate for all directions of the load."""
+        return self.delta == 0.0
+
+    @cached_property
+    def edge_tensor(self) -> np.ndarray:
+        """Lambda in x and y, 1/Pa, shape (2, 2)."""
+        return self.lambda0 * np.eye(2) + np.array(
+            [[self.delta.real, self.delta.imag], [self.delta.imag, -self.delta.real]]
+        )
+
+    def hole_displacement(self, remote: Any) -> tuple[complex, complex]:
+        """The coefficients c0 and c2 of v/R = c0 + c2 exp(-2i theta) at the hole under a remote stress, (T64).
+
+        v = v_r + i v_theta is the displacement of the edge relative to the far plate, which does not turn. `remote` is
+        (sxx, syy, sxy), shape (3,), Pa.
+        """
+        sxx, syy, sxy = remote
+        e_xx, e_yy, g_xy = self.matrix @ np.array([sxx, syy, sxy])
+        strain, stress = (np.array([[a, b], [b, c]]) for a, b, c in ((e_xx, 0.5 * g_xy, e_yy), (sxx, sxy, syy)))
+        turn = np.array([[0.0, -1.0], [1.0, 0.0]])
+        w = strain + self.edge_tensor @ stress + self.s * turn @ stress @ turn
+        mean = 0.5 * complex(w[0, 0] + w[1, 1], w[1, 0] - w[0, 1])
+        return mean, 0.5 * complex(w[0, 0] - w[1, 1], w[1, 0] + w[0, 1])
+
+
+def _matrix(values: tuple[float, ...]) -> np.ndarray:
+    """The compliance matrix (3, 3) of a11, a12, a22, a16, a26 and a66."""
+    a11, a12, a22, a16, a26, a66 = values
+    return np.array([[a11, a12, a16], [a12, a22, a26], [a16, a26, a66]])
+
+
+def in_axes(compliance: np.ndarray, angle: float) -> np.ndarray:
+    """A compliance matrix (..., 3, 3) in axes that are turned counter-clockwise by `angle` (...), rad.
+
+    The shear strain is the engineering one.
+    """
+    cos, sin = np.cos(angle), np.sin(angle)
+    c2, s2, cs = cos * cos, sin * sin, cos * sin
+    # stresses in the old axes from those in the new ones
+    back = np.moveaxis(np.array([[c2, s2, -2.0 * cs], [s2, c2, 2.0 * cs], [cs, -cs, c2 - s2]]), (0, 1), (-2, -1))
+    turned: np.ndarray = np.swapaxes(back, -1, -2) @ compliance @ back
+    return turned
+
+
+def stroh_roots(compliance: np.ndarray) -> tuple[complex, complex]:
+    """The roots with positive imaginary parts of a11 m^4 - 2 a16 m^3 + (2 a12 + a66) m^2 - 2 a26 m + a22 = 0.
+
+    `compliance` is the matrix of (e_x, e_y, g_xy), shape (3, 3).
+    """
+    (a11, a12, a16), (_, a22, a26), (_, _, a66) = compliance
+    upper = [root for root in np.roots([a11, -2.0 * a16, 2.0 * a12 + a66, -2.0 * a26, a22]) if root.imag > 0.0]
+    one, two = sorted(upper, key=lambda root: (root.imag, root.real))
+    return complex(one), complex(two)
