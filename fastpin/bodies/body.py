@@ -19,6 +19,7 @@ from fastpin.bodies.walls import Amplitudes, Displacements, Other, PlateWalls, W
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.kernels.harmonics import FREE, HELD, First
+from fastpin.model.laminate import Laminate
 from fastpin.model.materials import Material, MaterialPair, Plane
 
 PinLoad = Literal["centre", "body"]
@@ -75,6 +76,11 @@ class Rim(NamedTuple):
     def compliance(self) -> float:
         """1/G of the material, 1/Pa; 0 if it is rigid."""
         return 1.0 / self.material.shear_modulus
+
+    @property
+    def laminate(self) -> Laminate | None:
+        """The material if it is a laminate; else None."""
+        return self.material if isinstance(self.material, Laminate) else None
 
 
 class Uniform(NamedTuple):

@@ -14,6 +14,7 @@ from fastpin.bodies.walls import UNIT_FORCE, UNIT_STRESS, Amplitudes, Displaceme
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.model.checks import number
+from fastpin.model.loads import REMOTE
 from fastpin.model.synonyms import explains_keywords
 
 NEAREST = 1.05
@@ -70,6 +71,9 @@ class Plate(PlateBody):
         return () if self.reaction is None else (complex(*self.reaction),)
 
     def displacements(self, rim: Rim) -> Displacements:
+        if rim.laminate is not None:
+            moved = zip(REMOTE, map(rim.laminate.hole_displacement, np.eye(len(REMOTE))), strict=True)
+            return {place: np.array([oval, 0.0, mean, 0.0, 0.0]) for place, (mean, oval) in moved}
         size = 0.25 * (rim.kolosov + 1.0) * rim.compliance
         # (T16)
         found = {place: size * np.array([D, 0.0, 0.5 * A, 0.0, 0.0]) for place, (A, D) in UNIT_STRESS.items()}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fastpin.elasticity.anisotropy import AnisotropicTerm
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.interfaces import JointSystem, seat_grid
 from fastpin.elasticity.operator import Operator, uniform_part
@@ -35,6 +36,8 @@ class ColumnsOperator(Operator):
     def __init__(self, problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> None:
         super().__init__(2 * grid.size)
         self._problem, self._grid, self._bodies, self._drive = problem, grid, bodies, drive
+        factor = 0.0 if bodies is None else bodies.anisotropy
+        self._term = AnisotropicTerm(grid, factor) if factor else None
 
     def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
         grid, pair = self._grid, self._problem.surfaces
@@ -54,6 +57,10 @@ class ColumnsOperator(Operator):
             )  # fmt: skip
             gap += direct @ pressure[nodes] + cross @ shear[nodes]
             slip += direct @ shear[nodes] - cross @ pressure[nodes]
+            if self._term is not None:
+                moved = self._term.columns(nodes) @ (pressure[nodes] + 1j * shear[nodes])
+                gap += moved.real
+                slip -= moved.imag
         found = np.r_[gap, slip]
         if self._bodies is not None:
             given = np.array([pressure, shear])

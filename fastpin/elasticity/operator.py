@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.elasticity.anisotropy import AnisotropicTerm
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels import influence, toeplitz
@@ -211,6 +212,38 @@ class ToeplitzOperator(Operator):
         return found + np.einsum("ij,ji->i", self._left, self._right) if self._right.size else found
 
 
+class AnisotropicOperator(Operator):
+    """An operator of equally spaced nodes whose entries are not stored, and the term of a laminate.
+
+    Parameters
+    ----------
+    base : Operator
+    term : AnisotropicTerm
+    """
+
+    by_distance = False
+
+    def __init__(self, base: Operator, term: AnisotropicTerm) -> None:
+        super().__init__(base.size)
+        self._base, self._term = base, term
+
+    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
+        product: np.ndarray = self._base @ tractions + self._term.product(tractions)
+        return product
+
+    def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        self._base.fill(rows, columns, out)
+        n = self.size // 2
+        nodes, of_shear = columns % n, columns >= n
+        found = self._term.columns(nodes)[rows % n]
+        found[:, of_shear] *= 1j
+        out += np.where((rows >= n)[:, None], -found.imag, found.real)
+
+    def diagonal(self) -> np.ndarray:
+        own = np.array([self._term.columns(np.array([node]))[node, 0].real for node in range(self.size // 2)])
+        return self._base.diagonal() + np.r_[own, -own]
+
+
 def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> Operator:
     """The operator of `problem` on `grid`, dimensionless.
 
@@ -220,12 +253,16 @@ def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive:
     left, right = grid.knots()
     hats = grid.theta, left, right, grid.uniform, grid.closed, pair.alpha_star / pair.beta_star, uniform_part(problem)
     smooth = None if bodies is None else bodies.coefficients
+    term = None if bodies is None or not bodies.anisotropy else AnisotropicTerm(grid, bodies.anisotropy)
     if grid.uniform and n > LARGEST_DENSE:
-        return ToeplitzOperator(influence.uniform_columns(*hats, smooth), grid.closed, *_added(grid, bodies, drive))
+        base = ToeplitzOperator(influence.uniform_columns(*hats, smooth), grid.closed, *_added(grid, bodies, drive))
+        return base if term is None else AnisotropicOperator(base, term)
     matrix = np.empty((2 * n, 2 * n), order="F")
     influence.fill_operator(*hats, matrix, smooth)
     if bodies is not None:
         bodies.add_matrix(grid, matrix)
+    if term is not None:
+        term.add_to(matrix)
     moved, coupling = drive.factors
     if coupling.size:
         matrix += moved @ coupling

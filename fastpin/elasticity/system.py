@@ -188,7 +188,10 @@ class System:
     @property
     def is_toeplitz(self) -> bool:
         """Whether entries of the operator depend on the distance of two nodes only, up to the half hats of an arc."""
-        has_matrix = self.drive.has_displacements or (self.bodies is not None and bool(self.bodies.matrix.size))
+        bodies = self.bodies
+        has_matrix = self.drive.has_displacements or (
+            bodies is not None and bool(bodies.matrix.size or bodies.anisotropy)
+        )
         return self.grid.uniform and self.operator.by_distance and not has_matrix
 
     @property

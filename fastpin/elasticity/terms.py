@@ -38,12 +38,15 @@ class BodyTerms:
     columns : dict of int to ndarray of complex, shape (2 K + 1,)
         Fourier coefficients of v_r + i v_theta per unit of a load, n = -K to K, by the place of the load: of P and Q
         beyond ``force_factor``, and of the remote stresses.
+    anisotropy : complex
+        The factor of :class:`fastpin.elasticity.anisotropy.AnisotropicTerm`; 0 in an isotropic plate.
     """
 
     coefficients: np.ndarray
     matrix: np.ndarray
     force_factor: float
     columns: Displacements = field(default_factory=dict)
+    anisotropy: complex = 0.0
 
     def add_matrix(self, grid: Grid, operator: np.ndarray) -> None:
         """Add the matrix of a compliance to the `operator`, shape (2n, 2n). Without one nothing changes."""
@@ -87,8 +90,9 @@ class BodyTerms:
 
 @lru_cache(maxsize=16)
 def body_terms(problem: Problem) -> BodyTerms | None:
-    """The terms of the bodies of a problem; None for a solid pin in an infinite plate."""
-    if not problem.has_bodies:
+    """The terms of the bodies of a problem; None for a solid pin in an infinite, isotropic plate."""
+    laminate = problem.joint.hole.laminate
+    if laminate is None and not problem.has_bodies:
         return None
     joint, surfaces, beta = problem.joint, problem.surfaces, problem.surfaces.beta_star
     (pin_rim, hole), pin_body, plate_body = (joint.pin_rim, joint.hole), joint.pin_body, joint.plate_body
@@ -104,4 +108,5 @@ def body_terms(problem: Problem) -> BodyTerms | None:
     coefficients[1, 0] = -2.0 * plate_body.twist(hole) - plate
     scale = 1.0 / (4.0 * math.pi * beta)
     columns, matrix = plate_body.load_columns(hole, beta), plate_body.matrix_in(hole, beta)
-    return BodyTerms(scale * coefficients, matrix, -scale * float(of_pin[1] - of_plate[1]), columns)
+    factor = 0.0 if laminate is None else -2.0 * laminate.delta / beta
+    return BodyTerms(scale * coefficients, matrix, -scale * float(of_pin[1] - of_plate[1]), columns, factor)

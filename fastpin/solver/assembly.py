@@ -67,8 +67,9 @@ def unloaded_configuration(system: System) -> Configuration:
     configuration.status[:] = np.where(overlaps, resting_status(system), OPEN)
     configuration.origin = np.zeros(2)
     configuration.gap = zeros.copy()
-    # In a plate that is not symmetric, or with a gap.
-    is_uneven = bool(system.problem.gap) or (system.bodies is not None and bool(system.bodies.matrix.size))
+    # In a plate that is not symmetric or not isotropic, or with a gap.
+    bodies = system.bodies
+    is_uneven = bool(system.problem.gap) or (bodies is not None and bool(bodies.matrix.size or bodies.anisotropy))
     found = (_uneven if is_uneven else _uniform)(system, configuration)
     found.work = elastic_energy(system, found)  # the work of the assembly, without that of its friction
     return found

@@ -1,0 +1,107 @@
+"""The term by which the hole in a laminate differs from the hole in an isotropic plate, in dimensionless form; (T62).
+
+With p = N + iT the term adds D p to h - i s of the nodes:
+
+    D_ij = f exp(-2i theta_i) K_ij,    f = -2 delta/beta*,    4 pi K_ij = int (C + iS) L(theta_i - xi) hat_j(xi) dxi.
+
+On equally spaced nodes the symmetric form f exp(-i (theta_i + theta_j)) k_ij takes its place, with the even k = Re
+exp(-i (theta_i - theta_j)) K of the distance of two nodes. The error stays of the second order in their spacing, and
+the operator stays symmetric.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from fastpin.kernels import influence
+from fastpin.model.grid import Grid
+from fastpin.runtime.extensions import fft
+
+
+class AnisotropicTerm:
+    """The matrix of the term on the nodes of a grid, of which parts and products can be asked for.
+
+    Parameters
+    ----------
+    grid : Grid
+        n nodes.
+    factor : complex
+        The number f = -2 delta/beta*.
+    """
+
+    def __init__(self, grid: Grid, factor: complex) -> None:
+        self.grid, self._factor = grid, factor
+        self._turn = np.exp(-1j * grid.theta)
+
+    @cached_property
+    def by_distance(self) -> np.ndarray:
+        """The numbers k of whole hats by the distance of two nodes, for equally spaced nodes; shape (n,)."""
+        grid = self.grid
+        n = grid.size
+        spacing = 2.0 * math.pi / n if grid.closed else float(grid.theta[-1] - grid.theta[0]) / (n - 1)
+        away, width = spacing * np.arange(n), np.array([spacing])
+        return np.ascontiguousarray((np.exp(-1j * away) * _hats(away, np.zeros(1), width, width)[:, 0]).real)
+
+    def columns(self, nodes: np.ndarray) -> np.ndarray:
+        """The columns D of the `nodes` (k,), complex, shape (n, k)."""
+        theta = self.grid.theta
+        if not self.grid.uniform:
+            return self._plain(nodes)
+        n = theta.size
+        found: np.ndarray = self._factor * np.outer(self._turn, self._turn[nodes])
+        found *= self.by_distance[np.abs(np.arange(n)[:, None] - nodes)]
+        if not self.grid.closed:  # the half hats at the ends
+            ends = np.flatnonzero((nodes == 0) | (nodes == n - 1))
+            if ends.size:
+                found[:, ends] = self._plain(nodes[ends])
+        return found
+
+    def _plain(self, nodes: np.ndarray) -> np.ndarray:
+        """The columns D of the `nodes` (k,) in the form that takes any spacing, complex, shape (n, k)."""
+        theta, (left, right) = self.grid.theta, self.grid.knots()
+        hats = _hats(theta, theta[nodes], theta[nodes] - left[nodes], right[nodes] - theta[nodes])
+        return self._factor * (self._turn**2)[:, None] * hats
+
+    def product(self, tractions: np.ndarray) -> np.ndarray:
+        """Gap and slip, shape (2n,) or (2n, k), of tractions (N, T) of the same shape, on equally spaced nodes."""
+        n = self.grid.size
+        both = (tractions[:n] + 1j * tractions[n:]).T
+        whole = both * self._turn
+        if not self.grid.closed:
+            whole[..., [0, -1]] = 0.0
+        moved = self._factor * self._turn * self._convolved(whole)
+        if not self.grid.closed and both[..., [0, -1]].any():
+            moved = moved + both[..., [0, -1]] @ self.columns(np.array([0, n - 1])).T
+        return np.concatenate([moved.real, -moved.imag], axis=-1).T
+
+    def _convolved(self, values: np.ndarray) -> np.ndarray:
+        """The convolution of k and `values` (..., n), complex."""
+        n, k = self.grid.size, self.by_distance
+        period = n if self.grid.closed else fft.next_fast_len(2 * n - 1, real=True)
+        kernel = np.zeros(period)
+        kernel[:n] = k
+        if not self.grid.closed:
+            kernel[period - n + 1 :] = k[:0:-1]
+        spectrum = fft.rfft(kernel, workers=1).real
+        parts = fft.rfft(np.stack([values.real, values.imag]), period, workers=1) * spectrum
+        real, imag = fft.irfft(parts, period, workers=1)[..., :n]
+        return np.asarray(real + 1j * imag)
+
+    def add_to(self, matrix: np.ndarray) -> None:
+        """Add the term to a matrix of all entries, shape (2n, 2n)."""
+        n = self.grid.size
+        found = self.columns(np.arange(n))
+        matrix[:n, :n] += found.real
+        matrix[:n, n:] -= found.imag
+        matrix[n:, :n] -= found.imag
+        matrix[n:, n:] -= found.real
+
+
+def _hats(seen: np.ndarray, nodes: np.ndarray, h_left: np.ndarray, h_right: np.ndarray) -> np.ndarray:
+    """The integrals K of hats, complex, one column for each hat; see :func:`fastpin.kernels.influence.log_columns`."""
+    direct, cross = (np.empty((seen.size, nodes.size), order="F") for _ in range(2))
+    influence.log_columns(seen, nodes, h_left, h_right, 0.0, 1.0 / (4.0 * math.pi), direct, cross)
+    return np.asarray(1j * cross - direct)
