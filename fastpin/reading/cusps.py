@@ -19,6 +19,7 @@ import numpy as np
 
 from fastpin.model.grid import Grid
 from fastpin.reading.ends import end_place
+from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import End, Fit, Tries, Try, half_line
 from fastpin.reading.old_borders import OldBorder, old_borders
 from fastpin.reading.zones import runs, unrolled
@@ -184,10 +185,9 @@ class ShearNodes:
     sticking : ndarray of bool, shape (n,)
     marks, places : ndarray, shape (n,)
         Old borders, see :mod:`fastpin.reading.old_borders`.
-    friction, tilt : ndarray, shape (n,)
-        mu, and arctan(mu beta_D)/pi of (T26).
-    coupling : float
-        beta_D.
+    friction : ndarray, shape (n,)
+        mu.
+    coupling : Coupling
     """
 
     grid: Grid
@@ -197,8 +197,7 @@ class ShearNodes:
     marks: np.ndarray
     places: np.ndarray
     friction: np.ndarray
-    tilt: np.ndarray
-    coupling: float
+    coupling: Coupling
 
     @cached_property
     def _patches(self) -> list[_Patch]:
@@ -216,7 +215,8 @@ class ShearNodes:
             at = (node - int(nodes[0])) % self.grid.size
             if at < nodes.size:
                 end = self._end(border._replace(at=at), node, 0, CUSP_TERMS, border.sign)
-                cusps.append(end._replace(parts=(1.0, -1.0)))
+                share = float(self.coupling.share[border.sign, node])
+                cusps.append(end._replace(parts=(1.0, -share)))
         return _Patch(nodes, np.concatenate([[0.0], np.cumsum(areas)]), margins, cusps)
 
     def old_cusps(self, least: float) -> Iterator[Cusp]:
@@ -249,7 +249,7 @@ class ShearNodes:
             sign, borders = self._end_sign(run, inwards), self.old_borders(run)
             inside = borders if inwards > 0 else [border.mirrored(run.size) for border in borders]
             reserve = self.friction[nodes] * self.pressure[nodes] - sign * self.shear[nodes]
-            line = half_line(0.5 - float(self.tilt[key[0]]) * sign * inwards, self.coupling)
+            line = half_line(self._exponent(key[0], sign, inwards), float(self.coupling.beta[key[0]]))
             self._border_places[key] = end_place(reserve, line, inside)
         return self._border_places[key]
 
@@ -274,13 +274,13 @@ class ShearNodes:
     @cached_property
     def _beyond(self) -> np.ndarray:
         """Distances from a border, outwards, at which the largest shear may lie, in node distances."""
-        return np.zeros(1) if not self.tilt.any() else BEYOND * np.linspace(0.0, 1.0, TRIED) ** 2
+        return np.zeros(1) if self.coupling.is_smooth else BEYOND * np.linspace(0.0, 1.0, TRIED) ** 2
 
     @cached_property
     def _coupled_borders(self) -> list[tuple[int, OldBorder]]:
         """The node and the rest of all borders of unlike bodies, old ones and present ones: N has a cusp at each."""
         found = []
-        for run in runs(self.grid, self.sticking) if self.tilt.any() else []:
+        for run in runs(self.grid, self.sticking) if not self.coupling.is_smooth else []:
             inside = [border for border in self.old_borders(run) if border.sign and not border.is_end(run.size)]
             found += [(int(run[border.at]), border) for border in inside]
             for inwards, at in ((1, 0), (-1, run.size - 1)):
@@ -378,12 +378,11 @@ class ShearNodes:
 
         Its outermost node is the `node` of the grid.
         """
-        tilt = float(self.tilt[node])
-        exponent = 0.5 - tilt * border.sign * border.inwards
-        line = half_line(exponent, self.coupling if border.sign else None)
-        parts = 1.0, 0.0
-        if tilt and border.sign not in (0, sign):
-            parts = (1.0, -2.0) if sign else (0.0, 1.0)
+        exponent = self._exponent(node, border.sign, border.inwards)
+        line = half_line(exponent, float(self.coupling.beta[node]) if border.sign else None)
+        parts, share = (1.0, 0.0), float(self.coupling.share[border.sign, node])
+        if not self.coupling.is_smooth and border.sign not in (0, sign):
+            parts = (1.0, -2.0 * share) if sign else (0.0, share)
         return End(line, border.at - first, border.inwards, terms, border.place, parts)
 
     def _pressure_at(self, node: int, offsets: np.ndarray, inwards: int) -> tuple[np.ndarray, float] | None:
@@ -420,6 +419,10 @@ class ShearNodes:
         change = shear - float(self.shear[patch.nodes[before]]) if first <= before < last else 0.0
         steps, spacing = inwards * offsets + 1.0, float(self.grid.weights[patch.nodes[outer]])
         return np.asarray(turned[outer - first] + inwards * spacing * (shear * steps + 0.5 * change * steps**2))
+
+    def _exponent(self, node: int, sign: int, inwards: int) -> float:
+        """Exponent (T26) of the reserve at a border with its outermost `node`, and shear of this `sign` beyond."""
+        return 0.5 - float(self.coupling.tilt[sign, node]) * sign * inwards
 
     def _index(self, node: int, angle: float) -> float:
         """Distance of an angle from a node, in node distances."""

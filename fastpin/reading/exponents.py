@@ -1,39 +1,88 @@
-"""Exponents of the tractions at edges of the contact and at borders of stick zones, (T21), (T26)."""
+"""Exponents of the tractions at edges of the contact and at borders of stick zones, (T21), (T26), (T63)."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
+from fastpin.model.problem import Problem
 
-def tilts(friction: np.ndarray, coupling: float) -> np.ndarray:
-    """Shift of the exponents of edges and borders away from 1/2, arctan(mu beta_D)/pi, (T26), shape (n,).
 
-    `friction`, shape (n,), is mu at the nodes, and `coupling` is beta_D.
+@dataclass(frozen=True, eq=False)
+class Coupling:
+    """How the two surfaces couple pressure and shear at each node. Like bodies couple them nowhere.
+
+    Arrays of the shape (3, n) have a row for the sign 0, 1 and -1 of the shear in the slip zone at an edge or border.
+    So the sign is their first index.
+
+    Attributes
+    ----------
+    tilt : ndarray, shape (3, n)
+        Shift of the exponents away from 1/2: arctan(mu beta_D)/pi, (T26), or that of a laminate, (T63).
+    beta : ndarray, shape (n,)
+        beta_D, or s/sqrt(det Lambda) of a laminate: the coupling where both bodies stick.
+    share : ndarray, shape (3, n)
+        The number rho of (T63): at a border mu N is the reserve less rho times the shear's part; 1 if isotropic.
+    cusp : ndarray, shape (3, n)
+        The number that takes the place of beta_D in the cusp of the pressure beside a border.
     """
-    values, places = np.unique(friction, return_inverse=True)
-    return np.array([math.atan(value * coupling) / math.pi for value in values.tolist()])[places]
+
+    tilt: np.ndarray
+    beta: np.ndarray
+    share: np.ndarray
+    cusp: np.ndarray
+
+    @classmethod
+    def of(cls, problem: Problem, friction: np.ndarray, theta: np.ndarray) -> Coupling:
+        """The coupling of the surfaces of a problem at the angles `theta` (n,), with the `friction` (n,) there."""
+        laminate, ones = problem.joint.hole.laminate, np.ones((3, theta.size))
+        if laminate is None or laminate.is_isotropic_contact:
+            return cls.of_isotropic(friction, problem.surfaces.dundurs()[1])
+        surfaces, turned = problem.surfaces, laminate.delta * np.exp(-2j * theta)
+        mean, s = 0.5 * surfaces.beta_star, 0.25 * surfaces.alpha_star
+        pressed = mean + turned.real  # Lambda_rr of both bodies; Lambda_rt is that of the plate
+        held = pressed - np.outer([0.0, 1.0, -1.0], friction * turned.imag)
+        tilt = np.arctan2(friction * s, held) / math.pi * np.array([[0.0], [1.0], [1.0]])
+        beta = s / np.sqrt(mean * mean - abs(laminate.delta) ** 2)
+        share = pressed / held
+        return cls(tilt, np.full(theta.size, beta), share, ones * share * s / held)
+
+    @classmethod
+    def of_isotropic(cls, friction: np.ndarray, beta: float) -> Coupling:
+        """The coupling of isotropic bodies with Dundurs' parameter `beta`, with the `friction` (n,) at the nodes."""
+        values, places = np.unique(friction, return_inverse=True)
+        tilt = np.array([math.atan(value * beta) / math.pi for value in values.tolist()])[places]
+        ones = np.ones((3, friction.size))
+        return cls(np.array([np.zeros_like(tilt), tilt, tilt]), np.full(tilt.size, beta), ones, beta * ones)
+
+    def at(self, nodes: np.ndarray) -> Coupling:
+        """The coupling at some `nodes` (k,)."""
+        return Coupling(self.tilt[:, nodes], self.beta[nodes], self.share[:, nodes], self.cusp[:, nodes])
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether the pressure is smooth at borders, as of like bodies."""
+        return not self.tilt.any() and bool(np.all(self.share == 1.0))
 
 
 def contact_exponents(status: np.ndarray, tilt: np.ndarray, run: np.ndarray) -> tuple[float, float]:
     """Exponents of the pressure at both ends of the contact of the nodes `run`, (T21).
 
-    `status` and `tilt`, shape (n,), are those of the state.
+    `status` (n,) is that of the state, and `tilt` (3, n) that of its :class:`Coupling`.
     """
-    first, last = status[run[[0, -1]]]
-    at_first, at_last = tilt[run[[0, -1]]].tolist()
-    return 0.5 - at_first * float(first), 0.5 + at_last * float(last)
+    first, last = (int(sign) for sign in status[run[[0, -1]]])
+    return 0.5 - float(tilt[-first, run[0]]) * first, 0.5 + float(tilt[-last, run[-1]]) * last
 
 
 def stick_exponents(shear: np.ndarray, tilt: np.ndarray, run: np.ndarray) -> tuple[float, float]:
     """Exponents of mu N - |T| at both ends of the stick zone of the nodes `run`, (T26).
 
-    `shear` and `tilt`, shape (n,), are those of the state.
+    `shear` (n,) is that of the state, and `tilt` (3, n) that of its :class:`Coupling`.
     """
     before, after = signs_beside(shear, run)
-    at_first, at_last = tilt[run[[0, -1]]].tolist()
-    return 0.5 - at_first * before, 0.5 + at_last * after
+    return 0.5 - float(tilt[before, run[0]]) * before, 0.5 + float(tilt[after, run[-1]]) * after
 
 
 def signs_beside(shear: np.ndarray, run: np.ndarray) -> tuple[int, int]:

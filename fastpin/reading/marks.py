@@ -16,6 +16,7 @@ from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.reading.ends import MOST_VALUES, end_place
+from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import half_line
 from fastpin.reading.old_borders import BITS, OldBorder, is_ambiguous, present_borders, truly_sticking
 
@@ -128,7 +129,7 @@ class Marks:
         for node, inwards, sign in present_borders(status, grid.closed):
             fresh[node] = fresh.get(node, 0) | BITS[inwards, sign]
             if sign:
-                corner = corner or _Corner(problem, grid.closed, friction, tractions, status, self)
+                corner = corner or _Corner(problem, grid, friction, tractions, status, self)
                 place = MarkedPlace(corner, node, inwards)
                 places[node] = place.read() if corner.depth > DEEPEST else place
         if not fresh:
@@ -177,8 +178,7 @@ class _Corner:
     Parameters
     ----------
     problem : Problem
-    closed : bool
-        Whether the last node is joined to the first node.
+    grid : Grid
     friction : ndarray, shape (n,)
         Coefficient of friction at each node.
     tractions : (ndarray, ndarray)
@@ -188,33 +188,34 @@ class _Corner:
         The old borders.
     """
 
-    __slots__ = ("_closed", "_friction", "_older", "_problem", "_status", "_tractions", "depth")
+    __slots__ = ("_friction", "_grid", "_older", "_problem", "_status", "_tractions", "depth")
 
     def __init__(
         self,
         problem: Problem,
-        closed: bool,
+        grid: Grid,
         friction: np.ndarray,
         tractions: tuple[np.ndarray, np.ndarray],
         status: np.ndarray,
         older: Marks,
     ) -> None:
-        self._problem, self._closed, self._friction, self._tractions = problem, closed, friction, tractions
+        self._problem, self._grid, self._friction, self._tractions = problem, grid, friction, tractions
         self._status, self._older = status, older
         self.depth: int = 1 + older.depth
 
     def place(self, node: int, inwards: int) -> float:
         """The place of the border at a sticking `node`; NaN if the node or the one beyond it carries no shear."""
         (pressure, shear), n = self._tractions, self._status.size
-        bound, coupling = self._friction * pressure, self._problem.surfaces.dundurs()[1]
-        tilt = math.atan(float(self._friction[node]) * coupling) / math.pi
+        bound = self._friction * pressure
         sticking = truly_sticking(self._status, bound - np.abs(shear))
         sign = float(np.sign(shear[(node - inwards) % n])) if sticking[node] else 0.0
         if sign == 0.0:
             return math.nan
         nodes = node + inwards * np.arange(min(MOST_VALUES, n))
-        nodes = nodes % n if self._closed else nodes[(nodes >= 0) & (nodes < n)]
+        nodes = nodes % n if self._grid.closed else nodes[(nodes >= 0) & (nodes < n)]
         slipping = np.flatnonzero(~sticking[nodes])
         zone = nodes[: slipping[0]] if slipping.size else nodes
         cusps = self._older.near(zone[: MOST_VALUES // 2].tolist(), inwards)
-        return end_place(bound[zone] - sign * shear[zone], half_line(0.5 - tilt * sign * inwards, coupling), cusps)
+        coupling = Coupling.of(self._problem, self._friction[[node]], self._grid.theta[[node]])
+        line = half_line(0.5 - float(coupling.tilt[int(sign), 0]) * sign * inwards, float(coupling.beta[0]))
+        return end_place(bound[zone] - sign * shear[zone], line, cusps)

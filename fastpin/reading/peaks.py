@@ -119,15 +119,18 @@ def _peaks_at_borders(
     peaks, fitted_here = [], False
     bound = contact.friction * pressure
     for border, outwards, nodes in _borders(grid, sticking, stick):
-        tilt, offsets = float(contact.tilt[nodes[0]]), outwards * angle_between(grid.theta, border)
+        offsets = outwards * angle_between(grid.theta, border)
         spacing = float(grid.weights[np.argmin(np.abs(offsets))])
         if not slipping[(offsets >= 0.0) & (offsets <= 1.5 * spacing)].any():
             continue  # no slip beside this end of the stick zone: it is the end of the contact
-        beside = np.flatnonzero((offsets >= -2.0 * spacing) & (offsets <= (NEAR if tilt else 2.0) * spacing))
+        beside = np.flatnonzero(
+            (offsets >= -2.0 * spacing) & (offsets <= (2.0 if contact.coupling.is_smooth else NEAR) * spacing)
+        )
         highest = int(beside[np.argmax(magnitude[beside])])
         if magnitude[highest] < RIVAL * magnitude[top]:
             continue
-        exponent = 0.5 + (outwards * tilt if shear[highest] >= 0.0 else -outwards * tilt)
+        sign = 1 if shear[highest] >= 0.0 else -1
+        exponent = 0.5 + outwards * sign * float(contact.coupling.tilt[sign, nodes[0]])
         read = contact.border_cusp(nodes, outwards, border)
         fits_nodes = read is not None and _likely(grid, magnitude, highest, read.value)
         if read is not None and fits_nodes and read.error <= CUSP_ERROR * read.value:

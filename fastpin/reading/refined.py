@@ -17,6 +17,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from fastpin.elasticity.tractions import RefinedTractions, Tractions
 from fastpin.kernels.status import OPEN
 from fastpin.reading.cusps import ShearLaw, ShearNodes
 from fastpin.reading.ends import end_angle
-from fastpin.reading.exponents import contact_exponents, signs_beside, stick_exponents
+from fastpin.reading.exponents import Coupling, contact_exponents, signs_beside, stick_exponents
 from fastpin.reading.half_line import half_line
 from fastpin.reading.old_borders import OldBorder
 from fastpin.reading.power_laws import Law, fit_law, law_of_nodes
@@ -82,6 +83,28 @@ class StickZone:
     shear_laws: tuple[ShearLaw, ...]
 
 
+class PressureCusp(NamedTuple):
+    """The cusp of N at a border of unlike bodies, if mu N - s T begins with c0 x^a there; (T26), (T63).
+
+    Attributes
+    ----------
+    law : Law
+        Of mu N - s T on the stick side.
+    outside, inside : float
+        Coefficients of x^a on the slip side and on the stick side, for the distance x in node distances. Of isotropic
+        bodies they are -+ s beta c0 sin(pi a), with the upper sign where the stick zone lies at larger angles, and 0.
+    """
+
+    law: Law
+    outside: float
+    inside: float
+
+    def values(self, theta: np.ndarray) -> np.ndarray:
+        """The cusp at some angles, rad, shape (m,)."""
+        x = self.law.inwards * (theta - self.law.place) / self.law.spacing
+        return np.where(x < 0.0, self.outside, self.inside) * np.abs(x) ** self.law.exponent.real
+
+
 @dataclass(frozen=True, eq=False)
 class Patch:
     """One contact interval. Pairs belong to its start and its stop.
@@ -100,8 +123,8 @@ class Patch:
         Its stick zones, in order.
     friction : ndarray, shape (n,)
         Coefficient of friction at its nodes.
-    beta : float
-        Dundurs' second parameter in the usual sign.
+    coupling : Coupling
+        How the surfaces couple pressure and shear at its nodes.
     """
 
     theta: np.ndarray
@@ -112,7 +135,15 @@ class Patch:
     exponents: tuple[float, float] | None
     stick: tuple[StickZone, ...]
     friction: np.ndarray
-    beta: float
+    coupling: Coupling
+
+    def cusp(self, law: Law, sign: int) -> PressureCusp:
+        """The cusp of the pressure at a border with the `law` of mu N - s T, and this sign s."""
+        node = int(np.argmin(np.abs(self.theta - law.place)))
+        first = float(law.coefficients[0].real)
+        outside = -law.inwards * (sign * float(self.coupling.cusp[sign, node]))
+        inside = (1.0 - float(self.coupling.share[sign, node])) / float(self.friction[node])
+        return PressureCusp(law, outside * first * math.sin(math.pi * law.exponent.real), inside * first)
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +222,7 @@ def _with_hidden_slip(patch: Patch, zone: StickZone, pressure: tuple[Law | None,
     """
     for k, order in enumerate(BOTH_ENDS):
         of_pressure = pressure[k] if pressure else None
-        if zone.signs[k] == 0 and of_pressure is not None and patch.beta == 0.0:
+        if zone.signs[k] == 0 and of_pressure is not None and not patch.coupling.beta.any():
             nodes = zone.nodes[order]
             theta, shear = patch.theta[nodes], patch.shear[nodes]
             of_shear = fit_law(of_pressure.place, of_pressure.exponent, theta, shear)
@@ -215,13 +246,13 @@ def _laws(patch: Patch, pressure: tuple[Law | None, ...]) -> Laws:
             nodes, place, sign = zone.nodes[order], zone.ends[k], zone.signs[k]
             if sign != 0:
                 reserve = patch.friction[nodes] * patch.pressure[nodes] - sign * patch.shear[nodes]
-                line, cusps = half_line(zone.exponents[k], patch.beta), zone.cusps
+                line, cusps = half_line(zone.exponents[k], float(patch.coupling.beta[nodes[0]])), zone.cusps
                 inside = cusps if k == 0 else [cusp.mirrored(nodes.size) for cusp in cusps]
                 found = law_of_nodes(place, line, patch.theta[nodes], reserve, inside)
                 if found is not None:
                     laws.borders.append((found, sign))
             elif patch.exponents is not None:
-                exponent = patch.exponents[k] + 1j * math.atanh(patch.beta) / math.pi
+                exponent = patch.exponents[k] + 1j * math.atanh(patch.coupling.beta[nodes[0]]) / math.pi
                 found = fit_law(place, exponent, patch.theta[nodes], patch.shear[nodes])
                 if found is not None:
                     laws.sticking.append(found)
@@ -236,7 +267,7 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
     """Angle, pressure and shear of the refined patch, shape (m, 3)."""
     graded = [_graded(law) for law in laws.all]
     graded += [cusp.place + cusp.inwards * REACH * cusp.spacing * GRADED for cusp in cusps]
-    if patch.beta != 0.0:
+    if not patch.coupling.is_smooth:
         graded += [2.0 * law.place - _graded(law) for law, _ in laws.borders]
     nodes, values = _with_ends(patch, laws.pressure)
     theta = _apart(np.r_[nodes, *graded])
@@ -244,7 +275,7 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
     pressure, shear = np.interp(theta, nodes, values[0]), np.interp(theta, nodes, values[1])
     friction = np.interp(theta, patch.theta, patch.friction)
     for law, sign in laws.borders:
-        pressure += _pressure_cusp(law, sign * patch.beta, theta, nodes)
+        pressure += _missed(patch.cusp(law, sign), theta, nodes)
     for edge_law in laws.pressure:
         if edge_law is not None:
             near = edge_law.applies(theta)
@@ -310,7 +341,7 @@ def _pressure_at_borders(patch: Patch, laws: Laws) -> np.ndarray:
     beyond: a cubic, the cusp of (T26) and its next power.
     """
     pressure = patch.pressure.copy()
-    for law, sign in laws.borders if patch.beta != 0.0 else ():
+    for law, sign in () if patch.coupling.is_smooth else laws.borders:
         x = law.inwards * (patch.theta - law.place) / law.spacing
         others = [other.place for other in laws.all if other is not law] + laws.unresolved + list(patch.edges)
         room = min(abs(place - law.place) for place in others) / law.spacing - BORDER_NEAR
@@ -318,7 +349,7 @@ def _pressure_at_borders(patch: Patch, laws: Laws) -> np.ndarray:
         if min(np.count_nonzero(used & (x < 0.0)), np.count_nonzero(used & (x > 0.0))) < BORDER_LEAST:
             continue
         beyond = np.maximum(-x, 0.0)
-        cusp = _cusp_height(law, sign * patch.beta) * beyond**law.exponent.real
+        cusp = patch.cusp(law, sign).values(patch.theta)
         columns = np.column_stack([np.vander(x / BORDER_FAR, 4), (beyond / BORDER_FAR) ** (law.exponent.real + 1.0)])
         coefficients = np.linalg.lstsq(columns[used], (patch.pressure - cusp)[used], rcond=None)[0]
         near = np.abs(x) <= BORDER_NEAR
@@ -326,25 +357,10 @@ def _pressure_at_borders(patch: Patch, laws: Laws) -> np.ndarray:
     return pressure
 
 
-def _cusp_height(law: Law, coupling: float) -> float:
-    """Coefficient of the power x^a in N on the slip side of a border, with x in node distances, see _pressure_cusp."""
-    return -law.inwards * coupling * float(law.coefficients[0].real) * math.sin(math.pi * law.exponent.real)
-
-
-def _pressure_cusp(law: Law, coupling: float, theta: np.ndarray, nodes: np.ndarray) -> np.ndarray:
-    """The part of a cusp of N that straight lines between the `nodes` miss, on the slip side of a border.
-
-    Of unlike bodies N has the cusp -+ s beta c0 sin(pi a) x^a there, if mu N - s T begins with c0 x^a (T26). The
-    `coupling` is s beta. The upper sign holds where the stick zone lies at larger angles.
-    """
-    exponent, height = law.exponent.real, _cusp_height(law, coupling)
-
-    def cusp(angles: np.ndarray) -> np.ndarray:
-        beyond = np.maximum(-law.inwards * (angles - law.place), 0.0) / law.spacing
-        return np.asarray(height * beyond**exponent)
-
-    missed = cusp(theta) - np.interp(theta, nodes, cusp(nodes))
-    return np.where(np.abs(theta - law.place) < 2.0 * law.reach, missed, 0.0)
+def _missed(cusp: PressureCusp, theta: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """The part of a cusp of N that straight lines between the `nodes` miss, at the angles `theta` (m,)."""
+    missed = cusp.values(theta) - np.interp(theta, nodes, cusp.values(nodes))
+    return np.where(np.abs(theta - cusp.law.place) < 2.0 * cusp.law.reach, missed, 0.0)
 
 
 def _slip_zones(patch: Patch) -> Iterator[tuple[float, float, int]]:
@@ -375,7 +391,7 @@ def _patches(
     left, right = grid.knots()
     for run, edges in zip(runs(grid, status != OPEN), contact, strict=True):
         whole = is_all_round(edges[1] - edges[0])
-        exponents = None if whole else contact_exponents(status, nodes.tilt, run)
+        exponents = None if whole else contact_exponents(status, nodes.coupling.tilt, run)
         if whole and stick:
             run = np.roll(run, -int(np.flatnonzero(run == stick[0][0][0])[0]))
         theta = unrolled(grid, run)
@@ -384,7 +400,7 @@ def _patches(
         before, after = grid.theta[run[0]] - left[run[0]], right[run[-1]] - grid.theta[run[-1]]
         yield Patch(
             theta, nodes.pressure[run], nodes.shear[run], edges, (theta[0] - before, theta[-1] + after), exponents,
-            _zones(nodes, stick, run), nodes.friction[run], nodes.coupling,
+            _zones(nodes, stick, run), nodes.friction[run], nodes.coupling.at(run),
         )  # fmt: skip
 
 
@@ -395,7 +411,10 @@ def _zones(nodes: ShearNodes, stick: list[tuple[np.ndarray, Interval]], run: np.
     zones, most = [], RIVAL * float(nodes.pressure[run].max())
     for inside, ends in stick:
         if places[inside[0]] >= 0:
-            signs, exponents = signs_beside(nodes.shear, inside), stick_exponents(nodes.shear, nodes.tilt, inside)
+            signs, exponents = (
+                signs_beside(nodes.shear, inside),
+                stick_exponents(nodes.shear, nodes.coupling.tilt, inside),
+            )
             shear_laws = tuple(nodes.shear_laws(inside, most))
             zones.append(StickZone(ends, places[inside], signs, exponents, nodes.old_borders(inside), shear_laws))
     return tuple(sorted(zones, key=lambda zone: int(zone.nodes[0])))

@@ -21,6 +21,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.loads import FRICTION_CHANGE, LOADS, REMOTE
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
+from fastpin.reading.exponents import Coupling
 from fastpin.reading.hoop import AROUND
 from fastpin.reading.joint import AROUND as AROUND_BUSH
 from fastpin.reading.peaks import DROP_NODES, LARGEST_FALL, STEEPEST_RISE
@@ -135,7 +136,7 @@ class Bounds:
     def add(self, block: StateBlock, rows: list[int]) -> None:
         """Take these rows of a block."""
         pressure, shear, status = block.nodal(rows)
-        coupled = self._problem.most_friction * self._problem.surfaces.dundurs()[1] != 0.0
+        coupled = not Coupling.of(self._problem, self._friction, self._grid.theta).is_smooth
         peaks = pressure_bounds(self._grid, pressure, coupled)
         factor = 1.0 + block.loads[rows][:, FRICTION_CHANGE]
         friction, most = factor[:, None] * self._friction, factor * self._problem.most_friction

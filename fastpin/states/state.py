@@ -22,7 +22,7 @@ from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import named_loads, units
 from fastpin.reading import peaks, zones
 from fastpin.reading.cusps import ShearNodes
-from fastpin.reading.exponents import contact_exponents, signs_beside, stick_exponents, tilts
+from fastpin.reading.exponents import Coupling, contact_exponents, signs_beside, stick_exponents
 from fastpin.reading.half_line import HalfLine, half_line
 from fastpin.reading.marks import Marks
 from fastpin.reading.old_borders import truly_sticking
@@ -297,22 +297,18 @@ class State(ReadOnly):
         return 1.0 + self.load.get("friction_change", 0.0)
 
     @cached_property
-    def tilt(self) -> np.ndarray:
-        """Shift of the exponents of edges and borders away from 1/2, (T26), shape (n,); 0 for like bodies."""
-        return tilts(self.friction, self.coupling)
-
-    @cached_property
-    def coupling(self) -> float:
-        """Dundurs' parameter beta_D of the surfaces."""
-        return self.problem.surfaces.dundurs()[1]
+    def coupling(self) -> Coupling:
+        """How the surfaces couple pressure and shear at the nodes."""
+        return Coupling.of(self.problem, self.friction, self.theta)
 
     def _contact_lines(self, run: np.ndarray) -> tuple[HalfLine, HalfLine]:
-        start, stop = contact_exponents(self.status, self.tilt, run)
+        start, stop = contact_exponents(self.status, self.coupling.tilt, run)
         return half_line(start), half_line(stop)
 
     def _stick_lines(self, run: np.ndarray) -> tuple[HalfLine, HalfLine]:
-        start, stop = stick_exponents(self.shear, self.tilt, run)
-        return half_line(start, self.coupling), half_line(stop, self.coupling)
+        start, stop = stick_exponents(self.shear, self.coupling.tilt, run)
+        beta = self.coupling.beta
+        return half_line(start, float(beta[run[0]])), half_line(stop, float(beta[run[-1]]))
 
     @cached_property
     def _reserve(self) -> np.ndarray:
@@ -353,7 +349,7 @@ class State(ReadOnly):
         """The nodal tractions with the marks of old borders."""
         borders = (self.marks or Marks()).arrays(self.grid.size)
         tractions = self.grid, self.pressure, self.shear, self._sticking
-        return ShearNodes(*tractions, *borders, self.friction, self.tilt, self.coupling)
+        return ShearNodes(*tractions, *borders, self.friction, self.coupling)
 
     @cached_property
     def resultants(self) -> dict[str, float]:

@@ -111,11 +111,12 @@ def test_exponents_of_edges_and_borders_of_unlike_bodies():
     for name in ("contact", "stick"):
         assert getattr(coarse, name)[0] == pytest.approx(getattr(fine, name)[0], abs=0.005 * spacing)
     tilt = math.atan(0.6 * 0.25) / math.pi
-    assert coarse.tilt == pytest.approx(np.full(201, tilt))
+    assert coarse.coupling.tilt[1:] == pytest.approx(np.full((2, 201), tilt))
     for other in (0.0, -tilt):
         wrong = [dataclasses.replace(state) for state in (coarse, fine)]
         for state in wrong:
-            state.__dict__["tilt"] = np.full(state.theta.size, other)
+            changed = dataclasses.replace(state.coupling, tilt=np.full((3, state.theta.size), other))
+            state.__dict__["coupling"] = changed
         assert wrong[0].contact[0][1] != pytest.approx(wrong[1].contact[0][1], abs=0.01 * spacing)
         assert wrong[0].stick[0][1] != pytest.approx(fine.stick[0][1], abs=0.01 * spacing)
 
