@@ -13,6 +13,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from fastpin.bodies.walls import PlateWalls, Wall
+from fastpin.elasticity.laminate_stress import laminate_stress
 from fastpin.elasticity.tractions import CHUNK, Tractions, cauchy_integrals
 from fastpin.kernels import fourier, laurent
 from fastpin.model.points import ROUNDING, Body
@@ -39,6 +40,9 @@ def plate_stress(
     depth : ndarray, shape (m,)
         Distances of the points from the edge of the hole, in units of R; at least 0. All are 0 for a compliance.
     """
+    laminate = problem.joint.hole.laminate
+    if laminate is not None and not laminate.is_quasi_isotropic:
+        return laminate_stress(laminate, tractions, remote, theta, depth)
     kolosov, none = problem.surfaces.plate_kolosov, np.zeros(3)
     far = remote if problem.plate_body.is_infinite else none
     walls = plate_walls(problem, tractions, tuple(float(value) for value in remote))

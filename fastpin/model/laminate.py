@@ -30,7 +30,7 @@ LEAST_EIGENVALUE = 1e-9
 """Least eigenvalue of the scaled compliance matrix. A smaller one is rounding: the laminate is not stable."""
 
 ROUND = 1e-12
-"""Size of delta over lambda0 that is rounding: the contact is that of an isotropic plate."""
+"""Parts of lambda0, and of the sum and the product of the roots, that are rounding: the response is isotropic."""
 
 ORDER = ("a11", "a12", "a22", "a16", "a26", "a66")
 """Names of the compliances, in their order."""
@@ -164,6 +164,12 @@ class Laminate(Material):
     def roots(self) -> tuple[complex, complex]:
         """The roots mu1 and mu2, with positive imaginary parts, of Lekhnitskii's equation in x and y."""
         return stroh_roots(self.matrix)
+
+    @property
+    def is_quasi_isotropic(self) -> bool:
+        """Whether the membrane response is that of an isotropic plate: both roots are i."""
+        one, two = self.roots
+        return max(abs(one + two - 2j), abs(one * two + 1.0)) < ROUND
 
     @cached_property
     def _edge(self) -> tuple[np.ndarray, float]:

@@ -38,7 +38,7 @@ class Stress:
         Polar components srr, stt and srt.
     axial : ndarray
         Component szz along the pin: nu (srr + stt) in plane strain, 0 in plane stress. nu is that of the material at
-        the point: beyond a bush that of the plate round it.
+        the point: beyond a bush that of the plate round it. It is 0 in a laminate.
     """
 
     theta: np.ndarray
@@ -217,7 +217,7 @@ def stress_at(
     depth, theta = points.depths(problem, body).ravel(), points.theta.ravel()
     if body == "pin" and problem.pin_load == "centre" and not problem.pin_body.bore_radius and np.any(depth == 1.0):
         raise InputError("points", "the force acts at the centre of the pin: the stress there is infinite")
-    ratio: float | np.ndarray = material.nu
+    ratio: float | np.ndarray = material.nu if material.is_isotropic else 0.0
     if body == "pin":
         components = pin_stress(problem, tractions, theta, depth)
     else:
@@ -225,7 +225,7 @@ def stress_at(
             away = np.abs((near_rim(problem, body) + depth) * np.exp(1j * theta) - place)
             if np.any(away < ROUNDING * abs(place)):
                 raise InputError("points", "the reaction acts at one of the points: the stress there is infinite")
-        ratio = ratio if body == "seat" else _ratios_in_plate(problem, depth)
+        ratio = _ratios_in_plate(problem, depth) if body != "seat" and material.is_isotropic else ratio
         remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])
         if seat is not None:
             components = _of_joint(problem, (tractions, seat), remote, (theta, depth), body)
@@ -275,7 +275,7 @@ def open_hole_hoop(problem: Problem, remote: np.ndarray, angle: float, body: Bod
 
     It is that on the edge of the `body` "plate" or "seat".
     """
-    if problem.plate_body.is_infinite:
+    if problem.plate_body.is_infinite and problem.pair.plate.is_isotropic:
         sxx, syy, sxy = (float(value) for value in remote)
         return (sxx + syy) - 2.0 * ((sxx - syy) * math.cos(2.0 * angle) + 2.0 * sxy * math.sin(2.0 * angle))
     stress, place = seat_stress if body == "seat" else plate_stress, (np.array([angle]), np.zeros(1))
