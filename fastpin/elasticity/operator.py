@@ -221,8 +221,6 @@ class AnisotropicOperator(Operator):
     term : AnisotropicTerm
     """
 
-    by_distance = False
-
     def __init__(self, base: Operator, term: AnisotropicTerm) -> None:
         super().__init__(base.size)
         self._base, self._term = base, term

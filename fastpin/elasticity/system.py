@@ -187,12 +187,14 @@ class System:
 
     @property
     def is_toeplitz(self) -> bool:
-        """Whether entries of the operator depend on the distance of two nodes only, up to the half hats of an arc."""
+        """Whether entries of the operator depend on the distance of two nodes only, up to the half hats of an arc.
+
+        Those of a solid pin in a laminate do for tractions along fixed axes, up to the expansion of the pin.
+        """
         bodies = self.bodies
-        has_matrix = self.drive.has_displacements or (
-            bodies is not None and bool(bodies.matrix.size or bodies.anisotropy)
-        )
-        return self.grid.uniform and self.operator.by_distance and not has_matrix
+        if bodies is not None and (bodies.matrix.size or (bodies.anisotropy and self.problem.pin_body.bore_radius)):
+            return False
+        return self.grid.uniform and self.operator.by_distance and not self.drive.has_displacements
 
     @property
     def motions(self) -> int:

@@ -16,13 +16,14 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.kernels import exchange, toeplitz
+from fastpin.kernels import exchange
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
+from fastpin.solver.neighbours import Neighbours
 from fastpin.solver.tableau import TableauMemory, expected_ties, has_turned
-from fastpin.solver.unknowns import DenseUnknowns, entries_by_distance, have_toeplitz_matrix
+from fastpin.solver.unknowns import DenseUnknowns, have_toeplitz_matrix
 
 FEW_NODES = 512
 """Most nodes of a grid whose steps begin with a held contact. Above, columns on demand take less time."""
@@ -135,14 +136,15 @@ def _fill_by_distances(system: System, rows: np.ndarray, others: np.ndarray, mat
 
     Returns whether the nodes hold the pin so well that few digits are lost.
     """
-    count, end, entries = rows.size, rows.size + others.size, entries_by_distance(system)
-    core = toeplitz.inverse(*entries[:, : count // 2])
+    count, end = rows.size, rows.size + others.size
+    neighbours = Neighbours.of(system, int(rows[0]), count // 2)
+    core = neighbours.core
     motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
     moved = core @ motion
     small = _motion_by_forces(system, equilibrium, moved)
     if small is None:
         return False
-    free, tied, acting = _responses(system, rows, others, core, entries)
+    free, tied, acting = _responses(system, rows, others, neighbours)
     moving = np.empty((len(small), len(matrix)))
     moving[:, :count] = -small @ (equilibrium @ core)
     moving[:, count:end] = -small @ (system.equilibrium[:, others] + equilibrium @ free)
@@ -169,20 +171,19 @@ def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray
 
 
 def _responses(
-    system: System, rows: np.ndarray, others: np.ndarray, core: np.ndarray, entries: np.ndarray
+    system: System, rows: np.ndarray, others: np.ndarray, neighbours: Neighbours
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Responses without motion of the pin: of `rows` to `others`, of `others` to `rows`, and of `others` to themselves.
 
-    `entries` are those of :func:`entries_by_distance`; with many nodes recurrences take their place for products.
+    With many nodes recurrences take the place of products.
     """
     if rows.size >= 2 * LEAST_RECURRENCES:
-        neighbours = toeplitz.NeighbourResponses(entries, core, int(rows[0]))
         responses = neighbours.responses()
         return -responses, responses.T, neighbours.complement()
     operator = np.asarray(system.operator)
     beside = operator[others]
     from_held = beside[:, rows]
-    tied = from_held @ core
+    tied = from_held @ neighbours.core
     return -tied.T, tied, beside[:, others] - from_held @ tied.T
 
 

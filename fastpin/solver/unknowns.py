@@ -11,10 +11,10 @@ from functools import cached_property
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.kernels import toeplitz
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import lapack
 from fastpin.runtime.products import add_product
+from fastpin.solver.neighbours import Neighbours
 
 SINGULAR = 1e-13
 """Smallest reciprocal condition number. A system below it is a mechanism."""
@@ -187,8 +187,8 @@ class StickingRun(Unknowns):
 
     def __init__(self, system: System, status: np.ndarray) -> None:
         super().__init__(system, status)
-        self._entries = entries_by_distance(system)
-        self._core = toeplitz.inverse(*self._entries[:, : self.normal.size])
+        self._neighbours = Neighbours.of(system, int(self.normal[0]), self.normal.size)
+        self._core = self._neighbours.core
         motion, self._equilibrium = system.motion[self.rows], system.equilibrium[:, self.rows]
         self._moved = self._core @ motion
         complement = system.motion_rows - self._equilibrium @ self._moved
@@ -221,21 +221,14 @@ class StickingRun(Unknowns):
         return None if unknowns.singular else unknowns
 
     @cached_property
-    def _beside(self) -> toeplitz.NeighbourResponses:
-        return toeplitz.NeighbourResponses(self._entries, self._core, int(self.normal[0]))
-
-    @cached_property
     def _responses(self) -> np.ndarray:
-        """The inverse ``_core`` times the columns of the others, shape (count, 2n-count).
-
-        At the ends of an arc the hats are halves, but the columns are computed for whole hats: these nodes never close.
-        """
-        return self._beside.responses()
+        """The inverse ``_core`` times the columns of the others, shape (count, 2n-count)."""
+        return self._neighbours.responses()
 
     @cached_property
     def _complement(self) -> np.ndarray:
         """Displacement of the others for unit tractions on them, while the sticking nodes are held."""
-        return self._beside.complement()
+        return self._neighbours.complement()
 
     @cached_property
     def _tied_motion(self) -> np.ndarray:
@@ -294,18 +287,6 @@ def have_toeplitz_matrix(system: System, nodes: np.ndarray, least: int) -> bool:
     if not system.is_toeplitz or not least <= nodes.size < n or nodes[-1] - nodes[0] + 1 != nodes.size:
         return False
     return bool(system.grid.closed or (nodes[0] > 0 and nodes[-1] < n - 1))
-
-
-def entries_by_distance(system: System) -> np.ndarray:
-    """Entries of the operator of equally spaced nodes by their distance, shape (3, n).
-
-    The rows are gap of N, slip of T and gap of T. The largest distance of an arc is not needed, and 0.
-    """
-    n, end = system.grid.size, 0 if system.grid.closed else 1  # the hats at the ends of an arc are halves
-    nodes, first, entries = np.arange(end, n), np.array([end]), np.zeros((3, n))
-    for place, (rows, column) in enumerate([(nodes, first), (n + nodes, n + first), (nodes, n + first)]):
-        entries[place, : n - end] = system.operator.entries(rows, column)[:, 0]
-    return entries
 
 
 class LatestUnknowns:
