@@ -16,7 +16,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fastpin.kernels import influence
+from fastpin.kernels import influence, toeplitz
 from fastpin.model.grid import Grid
 from fastpin.runtime.extensions import fft
 
@@ -33,7 +33,7 @@ class AnisotropicTerm:
     """
 
     def __init__(self, grid: Grid, factor: complex) -> None:
-        self.grid, self._factor = grid, factor
+        self.grid, self._factor = grid, complex(factor)
         self._turn = np.exp(-1j * grid.theta)
 
     @cached_property
@@ -76,6 +76,19 @@ class AnisotropicTerm:
         if not self.grid.closed and both[..., [0, -1]].any():
             moved = moved + both[..., [0, -1]] @ self.columns(np.array([0, n - 1])).T
         return np.concatenate([moved.real, -moved.imag], axis=-1).T
+
+    def add_entries(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        """Add the entries in `rows` (r,) among (h, s) and `columns` (k,) among (N, T) to `out` (r, k).
+
+        The nodes are equally spaced. `out` is stored column by column.
+        """
+        n = self.grid.size
+        for place, column in enumerate(columns.tolist()):
+            if not self.grid.closed and column % n in (0, n - 1):  # a half hat
+                moved = self.columns(np.array([column % n]))[rows % n, 0] * (1j if column >= n else 1.0)
+                out[:, place] += np.where(rows >= n, -moved.imag, moved.real)
+            else:
+                toeplitz.add_turned_column(self.by_distance, self._turn, self._factor, rows, column, out[:, place])
 
     def _convolved(self, values: np.ndarray) -> np.ndarray:
         """The convolution of k and `values` (..., n), complex."""

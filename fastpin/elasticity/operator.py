@@ -231,11 +231,7 @@ class AnisotropicOperator(Operator):
 
     def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
         self._base.fill(rows, columns, out)
-        n = self.size // 2
-        nodes, of_shear = columns % n, columns >= n
-        found = self._term.columns(nodes)[rows % n]
-        found[:, of_shear] *= 1j
-        out += np.where((rows >= n)[:, None], -found.imag, found.real)
+        self._term.add_entries(rows, columns, out)
 
     def diagonal(self) -> np.ndarray:
         own = np.array([self._term.columns(np.array([node]))[node, 0].real for node in range(self.size // 2)])

@@ -98,6 +98,26 @@ def fill_column(first, second, cross, half_hat, closed, rows, column, out):
             out[i] = -value if node != 0 and of_slip != of_shear else value
 
 
+@compiled
+def add_turned_column(by_distance, turn, factor, rows, column, out):
+    """Add one `column` of the term of a laminate, (T62), at `rows` (r,) to `out` (r,).
+
+    Rows belong to (gap, slip), columns to (N, T). The term of two nodes is k `factor` turn_i turn_j, with the number k
+    of their distance in `by_distance` (n,), and `turn` (n,) complex.
+    """
+    n = turn.size
+    of_shear = column >= n
+    node = column - n if of_shear else column
+    weight = factor * turn[node]
+    real, imag = (-weight.imag, weight.real) if of_shear else (weight.real, weight.imag)
+    for i in range(rows.size):
+        of_slip = rows[i] >= n
+        row = rows[i] - n if of_slip else rows[i]
+        u, v = turn[row].real, turn[row].imag
+        moved = -(real * v + imag * u) if of_slip else real * u - imag * v
+        out[i] += by_distance[abs(row - node)] * moved
+
+
 def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndarray:
     """Inverse of the symmetric matrix [[first, cross], [-cross, second]] of three Toeplitz matrices, shape (2m, 2m).
 
