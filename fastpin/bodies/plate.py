@@ -83,6 +83,15 @@ class Plate(PlateBody):
                 found[place] = _point_force(complex(x, y), -force / rim.ratio, rim.kolosov, rim.compliance)
         return found
 
+    def translation(self, rim: Rim, gauge: float | None) -> tuple[float, float]:
+        return super().translation(rim, gauge) if rim.laminate is None else (0.0, 0.0)
+
+    def over_gauge(self, moved: complex, rim: Rim, force: complex, gauge: float | None) -> complex:
+        if rim.laminate is None or gauge is None:
+            return moved
+        along = rim.laminate.gauge_tensor @ np.array([force.real, force.imag])
+        return moved + math.log(gauge) / (2.0 * math.pi) * complex(*along)
+
     def add_fields(self, rim: Rim, t: np.ndarray, remote: Remote, found: Amplitudes) -> tuple[Other, ...]:
         if self.reaction is None:
             return ()

@@ -213,6 +213,15 @@ class Laminate(Material):
             [[self.delta.real, self.delta.imag], [self.delta.imag, -self.delta.real]]
         )
 
+    @cached_property
+    def gauge_tensor(self) -> np.ndarray:
+        """The tensor H of (T68) in x and y, 1/Pa, shape (2, 2).
+
+        A force F on the hole moves the mean of the hole over that of a circle r in the plate by H F ln(r/R)/(2 pi).
+        """
+        tensor = self.edge_tensor
+        return tensor * (1.0 - self.s**2 / float(np.linalg.det(tensor)))
+
     def hole_displacement(self, remote: Any) -> tuple[complex, complex]:
         """The coefficients c0 and c2 of v/R = c0 + c2 exp(-2i theta) at the hole under a remote stress, (T64).
 

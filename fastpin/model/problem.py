@@ -250,6 +250,8 @@ class Problem:
             number("gauge_radius", gauge, radius, MOST_GAUGE * radius)
             if why := self.plate_body.lug.without_gauge(gauge):
                 raise InputError("gauge_radius", why)
+            if not self.pair.plate.is_isotropic and gauge > radius:
+                raise InputError("gauge_radius", f"must be the hole radius {radius:g} in a laminate, not {gauge:g}")
             object.__setattr__(self, "gauge_radius", gauge)
 
     def __repr__(self) -> str:

@@ -37,6 +37,7 @@ def joint_displacement(
     (cos, sin), (pressure, shear) = grid.trig_moments(), tractions
     moved += unit * own * force
     moved -= unit * coupling * radius * complex(cos @ pressure - sin @ shear, sin @ pressure + cos @ shear)
+    moved = problem.plate_body.over_gauge(moved, problem.joint.hole, force, gauge)
     moved = problem.plate_body.over_supports(
         moved, problem.joint.hole, lambda matrix: basis(matrix, grid)[1] @ np.r_[pressure, shear], load
     )
