@@ -19,6 +19,7 @@ from fastpin.bodies import Tube
 from fastpin.elasticity.terms import body_terms
 from fastpin.errors import FastpinError
 from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap
@@ -72,13 +73,17 @@ class Integrals:
 
     def __init__(self, problem: Problem, theta: np.ndarray, closed: bool, loaded: np.ndarray) -> None:
         self.problem, self.theta, self.loaded = problem, theta, np.flatnonzero(loaded)
+        self.is_uniform = Grid(theta, closed).uniform
         pair, n = problem.surfaces, theta.size
         # 1/G and Kolosov's constant of pin and plate; the constants of (32).
         soft = [2.0 * (1.0 + body.nu) / body.E for body in (pair.pin, pair.plate)]
         strain = pair.plane == "strain"
         kappas = [
-            3.0 - 4.0 * body.nu if strain else (3.0 - body.nu) / (1.0 + body.nu) for body in (pair.pin, pair.plate)
+            3.0 - 4.0 * body.nu if strain and body.is_isotropic else (3.0 - body.nu) / (1.0 + body.nu)
+            for body in (pair.pin, pair.plate)
         ]
+        laminate = problem.joint.hole.laminate
+        self.delta = 0.0 if laminate is None else laminate.delta
         self.pin, self.kappa_pin = soft[0], kappas[0]
         self.alpha = (kappas[1] - 1.0) * soft[1] - (kappas[0] - 1.0) * soft[0]
         self.beta = 0.5 * ((kappas[1] + 1.0) * soft[1] + (kappas[0] + 1.0) * soft[0])
@@ -102,7 +107,7 @@ class Integrals:
                 np.add.at(row, nodes, length * (values @ (WEIGHTS * share)))
             for k, row in enumerate(self.waves):
                 np.add.at(row, nodes, length * (np.exp(-1j * k * places) @ (WEIGHTS * share)))
-        self.direct, self.cross = np.zeros((2, n, self.loaded.size))
+        self.direct, self.cross, *self.logs = np.zeros((4 if self.delta else 2, n, self.loaded.size))
         column = np.full(n, -1)
         column[self.loaded] = np.arange(self.loaded.size)
         for k in first[(column[first] >= 0) | (column[second] >= 0)]:
@@ -121,7 +126,8 @@ class Integrals:
             C, S = np.cos(phi), np.sin(phi)
             L, A = 2.0 * np.log(2.0 * np.abs(np.sin(0.5 * phi))), 0.5 * phi - 0.5 * math.pi * np.sign(phi)
             kernels = self.alpha * S * A - self.beta * C * L, self.alpha * C * A + self.beta * S * L
-            for matrix, values in zip((self.direct, self.cross), kernels, strict=True):
+            kernels += (C * L, S * L) if self.delta else ()
+            for matrix, values in zip((self.direct, self.cross, *self.logs), kernels, strict=True):
                 near_hat, far_hat = length * (values @ np.column_stack([weights * (1.0 - points), weights * points])).T
                 hats = np.where(from_start[rows], near_hat, far_hat), np.where(from_start[rows], far_hat, near_hat)
                 for place, hat in zip(columns, hats, strict=True):
@@ -135,7 +141,20 @@ class Integrals:
         swelling = 0.5 * (self.kappa_pin + 1.0) * self.pin * float(self.moments[0] @ state.pressure)
         gap = scale * (self.direct @ N + self.cross @ T - swelling)
         slip = scale * (self.direct @ T - self.cross @ N)
+        if self.delta:
+            moved = self.anisotropic @ (N + 1j * T)
+            gap, slip = gap + moved.real, slip - moved.imag
         return (gap, slip) if self.bodies is None else self._with_bodies(state, gap, slip)
+
+    @cached_property
+    def anisotropic(self) -> np.ndarray:
+        """The term of a laminate between N + iT and v_r + i v_theta, shape (n, loaded); symmetric on equal spacings."""
+        turn, logs = np.exp(-1j * self.theta), self.logs[0] + 1j * self.logs[1]
+        factor = -self.problem.hole_radius * self.delta / (2.0 * math.pi)
+        if not self.is_uniform:
+            return np.asarray(factor * (turn**2)[:, None] * logs)
+        across = np.outer(turn, turn[self.loaded].conj())
+        return np.asarray(factor * np.outer(turn, turn[self.loaded]) * (across * logs).real)
 
     def _with_bodies(self, state: State, gap: np.ndarray, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Gap and slip with the smooth terms of the bodies."""

@@ -22,6 +22,7 @@ from fastpin.bodies.ring import SUPPORTS
 from fastpin.bodies.tube import TUBE_LOADS
 from fastpin.elasticity.plates import plate_compliance
 from fastpin.model.history import LoadHistory
+from fastpin.model.laminate import Laminate, in_axes
 from fastpin.model.loads import LOADS, Corner
 from fastpin.model.lug import Lug, Part, PartLoad
 from fastpin.model.materials import Material, MaterialPair, Plane
@@ -484,11 +485,53 @@ def bush(rng: np.random.Generator, seed: int) -> RandomCase:
     return RandomCase(found, LoadHistory(corners), {"nodes": int(rng.integers(41, 102))})
 
 
+def laminates(rng: np.random.Generator, seed: int) -> RandomCase:
+    """A pin in a laminate of one to four ply angles, E1/E2 to 150, any axis; all fits, solid and hollow pins.
+
+    One pin of eight is rigid. In plane strain the pin alone is.
+    """
+    del seed
+    along, shear = 10.0 ** rng.uniform(0.0, math.log10(150.0)), 10.0 ** rng.uniform(-0.7, 0.3)
+    ratio = rng.uniform(0.0, 0.45)
+    ply = np.array([[1.0 / along, -ratio / along, 0.0], [-ratio / along, 1.0, 0.0], [0.0, 0.0, 1.0 / shear]])
+    stiffness = np.mean(
+        [np.linalg.inv(in_axes(ply, angle)) for angle in rng.uniform(0.0, math.pi, rng.integers(1, 5))], axis=0
+    )
+    (a11, a12, a16), (_, a22, a26), (_, _, a66) = np.linalg.inv(stiffness)
+    laminate = Laminate(compliance=(a11, a12, a22, a16, a26, a66), axis=rng.uniform(-math.pi, math.pi))
+    pin = Material.rigid() if rng.random() < 0.125 else Material(10.0 ** rng.uniform(-1.0, 2.0), rng.uniform(0.0, 0.49))
+    load_parameter = 10.0 ** rng.uniform(-3.0, 1.5) * rng.choice([1.0, 1.0, 1.0, 0.0, -0.3])
+    support, chosen = _support(rng), {}
+    if rng.random() < 0.15 and not pin.is_rigid:
+        chosen = {"pin_body": Tube(rng.uniform(0.1, 0.9))}
+        support |= {"pin_load": "centre", "hub_radius": None}
+    elif rng.random() < 0.1:
+        chosen = {"drive": rng.choice(["ux", "uy", "both"]).item()}
+    plane: Plane = "strain" if rng.random() < 0.3 else "stress"
+    friction = float(rng.choice([0.0, 10.0 ** rng.uniform(-2.0, 0.0)], p=[0.12, 0.88]))
+    problem = Problem.from_load_parameter(
+        MaterialPair(pin, laminate, plane), load_parameter, friction, **support, **chosen
+    )
+    size = max(abs(load_parameter), 0.1)
+    stress = rng.uniform(0.1, 2.0) * size if rng.random() < 0.4 else 0.0
+    corners = _extreme_loads(rng, problem, int(rng.integers(1, 7)), 0.0)
+    for corner in corners:
+        if stress:
+            corner |= {name: stress * rng.uniform(-1.0, 1.0) for name in ("sxx", "syy", "sxy")}
+        for name, force, driven in zip(("ux", "uy"), ("Q", "P"), problem.driven, strict=True):
+            if driven:
+                del corner[force]
+                corner[name] = 3.0 * size * rng.uniform(-1.0, 1.0)
+    if problem.drive != "force":
+        corners = [{name: value for name, value in corner.items() if name != "M"} for corner in corners]
+    return RandomCase(problem, LoadHistory(corners), _nodes(rng))
+
+
 GENERATORS: dict[str, Callable[[np.random.Generator, int], RandomCase]] = {
     function.__name__: function
     for function in (
         general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering, bodies, gap, drift,
-        wear, bush,
+        wear, bush, laminates,
     )
 }  # fmt: skip
 """The classes of random cases, by name."""

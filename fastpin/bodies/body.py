@@ -457,7 +457,7 @@ class PlateBody(BodyBase):
 
     def assembly_stresses(self, rim: Rim, contact: float, edge: str = "hole") -> dict[str, float]:
         """Von Mises stresses under the pressure `contact`, Pa, and press fits, by edges; a rigid body has none."""
-        if rim.material.is_rigid:
+        if rim.material.is_rigid or not rim.material.is_isotropic:
             return {}
         around = Uniform.of_rim(-contact, self.pressed_share(rim), rim.kolosov)
         return {edge: around.von_mises(1.0, rim.material.nu, rim.plane)}

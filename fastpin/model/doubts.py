@@ -125,7 +125,7 @@ def doubts(
     problem: Problem, history: LoadHistory | None = None, options: SolveOptions | None = None
 ) -> list[InputWarning]:
     """Return a warning for each doubtful value of a problem, its loads and the options of the solver."""
-    found, has_units = [*_of_contact(problem)], _has_units(problem)
+    found, has_units = [*_of_contact(problem), *_of_laminate(problem)], _has_units(problem)
     for name, material in problem.joint.materials.items():
         found += _of_material(name, material, has_units)
     if options is not None and options.arc is not None:
@@ -281,8 +281,21 @@ def _of_contact(problem: Problem) -> Iterator[InputWarning]:
         )
 
 
+def _of_laminate(problem: Problem) -> Iterator[InputWarning]:
+    """A doubt about friction that is so large that slip may have several solutions; (T63)."""
+    laminate = problem.joint.hole.laminate
+    if laminate is None or laminate.is_isotropic_contact:
+        return
+    most = math.sqrt(max((0.5 * problem.surfaces.beta_star / abs(laminate.delta)) ** 2 - 1.0, 0.0))
+    if problem.most_friction > most:
+        words = f"{problem.most_friction:g} is above {most:.3g}, beyond which slip in this laminate"
+        yield InputWarning("friction", f"{words} may have several solutions; fastpin follows one of them")
+
+
 def _of_material(name: str, material: Material, has_units: bool) -> Iterator[InputWarning]:
     if material.is_rigid:
+        return
+    if not material.is_isotropic:
         return
     nu = material.nu
     if 0.0 < nu < LEAST_NU:

@@ -29,6 +29,7 @@ from fastpin.verification import (
     crack_rows,
     friction_rows,
     gap_rows,
+    laminate_rows,
     seat_rows,
     wear_rows,
 )
@@ -498,6 +499,16 @@ TOPICS = {
             "torque": seat_rows.torque,
         },
         {"N, T": 4.5e-6, "dissipated": 2e-5, "peak N": 2.5e-5, "ux": 1.3e-6, "uy": 2.8e-6, "torque": 1.5e-9},
+    ),
+    "laminates, elements": Topic(
+        "A steel pin in a laminate: finite elements",
+        {name: partial(laminate_rows.finite_elements, name) for name in laminate_rows.ELEMENTS},
+        {"peak N": 4.5e-4},  # a finer mesh takes 1.8e-4 off the first one
+    ),
+    "laminates": Topic(
+        "Laminates: the open hole, fits that stick all round, and Fourier collocation",
+        laminate_rows.CASES,
+        {"hoop stress": 4e-15, "N, T": 3e-5, "peak N": 4.5e-4, "least N": 6.5e-5},
     ),
     "gaps": Topic(
         "Initial gaps: interference fits with waves, and full sliding by Eq. (58)",

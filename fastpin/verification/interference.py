@@ -332,6 +332,12 @@ def _deviator(loads: Mapping[str, float]) -> complex:
     return complex(loads["sxx"] - loads["syy"], 2.0 * loads["sxy"])
 
 
+def check_isotropic(problem: Problem) -> None:
+    """Raise :class:`InputError` for a laminate, for which there is no closed form."""
+    if not problem.pair.plate.is_isotropic:
+        raise InputError("plate", "has no closed form: it must be isotropic, not a laminate")
+
+
 def _checked_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, float]:
     """All of :data:`HARMONIC_LOADS`, or an error where they or the bodies have no closed form."""
     instance("problem", problem, Problem, "a Problem")
@@ -343,6 +349,7 @@ def _checked_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, flo
             raise InputError(name, "has a closed form for a solid pin in an infinite plate only")
     if given:
         check_loads(problem, LoadHistory([given]))
+    check_isotropic(problem)
     if not problem.plate_body.lug.is_symmetric:
         raise InputError("plate_body", "has no closed form: it must carry the force symmetrically about the axis")
     return {**dict.fromkeys(HARMONIC_LOADS, 0.0), **given}

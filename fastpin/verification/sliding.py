@@ -38,6 +38,7 @@ from fastpin.model.checks import as_toml, number, whole_number
 from fastpin.model.loads import SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError
+from fastpin.verification.interference import check_isotropic
 
 SLIDING_LOADS = ("P", "Q", "sxx", "syy", "sxy")
 """Loads of a sliding contact, as in :data:`fastpin.model.loads.LOADS`. Its moment and rotation are results."""
@@ -165,6 +166,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
     """
     if not isinstance(problem, Problem):
         raise InputError("problem", f"must be a Problem, not {as_toml(problem)}")
+    check_isotropic(problem)
     given = _checked_load(load)
     if isinstance(slip, bool) or not isinstance(slip, (int, np.integer)) or slip not in (1, -1):
         raise InputError("slip", f"must be 1 (counter-clockwise) or -1, not {as_toml(slip)}")
