@@ -36,7 +36,7 @@ class ColumnsOperator(Operator):
     def __init__(self, problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> None:
         super().__init__(2 * grid.size)
         self._problem, self._grid, self._bodies, self._drive = problem, grid, bodies, drive
-        factor = 0.0 if bodies is None else bodies.anisotropy
+        factor = None if bodies is None else bodies.anisotropy
         self._term = AnisotropicTerm(grid, factor) if factor else None
 
     def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
@@ -62,7 +62,7 @@ class ColumnsOperator(Operator):
                 gap += moved.real
                 slip -= moved.imag
         found = np.r_[gap, slip]
-        if self._bodies is not None:
+        if self._bodies is not None and self._bodies.coefficients.any():
             given = np.array([pressure, shear])
             found += fourier.product(grid.theta, grid.theta, h_left, h_right, self._bodies.coefficients, given).ravel()
             if self._bodies.matrix.size:

@@ -246,7 +246,7 @@ def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive:
     n, pair = grid.size, problem.surfaces
     left, right = grid.knots()
     hats = grid.theta, left, right, grid.uniform, grid.closed, pair.alpha_star / pair.beta_star, uniform_part(problem)
-    smooth = None if bodies is None else bodies.coefficients
+    smooth = None if bodies is None or not bodies.coefficients.any() else bodies.coefficients
     term = None if bodies is None or not bodies.anisotropy else AnisotropicTerm(grid, bodies.anisotropy)
     if grid.uniform and n > LARGEST_DENSE:
         base = ToeplitzOperator(influence.uniform_columns(*hats, smooth), grid.closed, *_added(grid, bodies, drive))

@@ -38,15 +38,15 @@ class BodyTerms:
     columns : dict of int to ndarray of complex, shape (2 K + 1,)
         Fourier coefficients of v_r + i v_theta per unit of a load, n = -K to K, by the place of the load: of P and Q
         beyond ``force_factor``, and of the remote stresses.
-    anisotropy : complex
-        The factor of :class:`fastpin.elasticity.anisotropy.AnisotropicTerm`; 0 in an isotropic plate.
+    anisotropy : complex or None
+        The factor of :class:`fastpin.elasticity.anisotropy.AnisotropicTerm`; None in a plate that is no laminate.
     """
 
     coefficients: np.ndarray
     matrix: np.ndarray
     force_factor: float
     columns: Displacements = field(default_factory=dict)
-    anisotropy: complex = 0.0
+    anisotropy: complex | None = None
 
     def add_matrix(self, grid: Grid, operator: np.ndarray) -> None:
         """Add the matrix of a compliance to the `operator`, shape (2n, 2n). Without one nothing changes."""
@@ -64,6 +64,11 @@ class BodyTerms:
         waves, integrals = basis(self.matrix, grid)
         found: np.ndarray = waves @ (self.matrix @ (integrals @ tractions))
         return found
+
+    def ellipse(self, load: np.ndarray) -> tuple[float, float, float]:
+        """Mean, cosine and sine of 2 theta of v_r under the remote stresses of a `load` (loads,), in a laminate."""
+        mean, oval = (sum(load[place] * self.columns[place][order] for place in REMOTE) for order in (2, 0))
+        return float(mean.real), float(oval.real), float(oval.imag)
 
     def radial(self, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
         """v_r under the remote stresses of a `load` (loads,), and two derivatives, at `theta`; shape (3, ...)."""
@@ -106,7 +111,9 @@ def body_terms(problem: Problem) -> BodyTerms | None:
     coefficients[0, 0] = 2.0 * joint.uniform_compliance - (plate + 0.5 * pin * (surfaces.pin_kolosov - 1.0))
     coefficients[0, 0] -= plate_body.pressed_by_matrix(hole)
     coefficients[1, 0] = -2.0 * plate_body.twist(hole) - plate
+    if not problem.has_bodies:  # the rest is rounding
+        coefficients[:] = 0.0
     scale = 1.0 / (4.0 * math.pi * beta)
     columns, matrix = plate_body.load_columns(hole, beta), plate_body.matrix_in(hole, beta)
-    factor = 0.0 if laminate is None else -2.0 * laminate.delta / beta
+    factor = None if laminate is None else -2.0 * laminate.delta / beta
     return BodyTerms(scale * coefficients, matrix, -scale * float(of_pin[1] - of_plate[1]), columns, factor)

@@ -43,8 +43,8 @@ class Neighbours:
     @staticmethod
     def of(system: System, low: int, count: int) -> Neighbours:
         """The neighbours for any system whose ``is_toeplitz`` is true."""
-        turned = system.bodies is not None and bool(system.bodies.anisotropy)
-        return (TurnedNeighbours if turned else Neighbours)(system, low, count)
+        anisotropy = None if system.bodies is None else system.bodies.anisotropy
+        return TurnedNeighbours(system, low, count, anisotropy) if anisotropy else Neighbours(system, low, count)
 
     def responses(self) -> np.ndarray:
         """The inverse times the columns of all n-m other nodes, shape (2m, 2(n-m)).
@@ -74,11 +74,13 @@ class Neighbours:
 
 
 class TurnedNeighbours(Neighbours):
-    """The neighbours in a laminate: block Toeplitz along fixed axes, up to the expansion of the pin."""
+    """The neighbours in a laminate: block Toeplitz along fixed axes, up to the expansion of the pin.
 
-    def __init__(self, system: System, low: int, count: int) -> None:
-        assert system.bodies is not None
-        axes = 0.5 * cmath.phase(system.bodies.anisotropy)
+    `anisotropy` is that of the system's :class:`fastpin.elasticity.terms.BodyTerms`.
+    """
+
+    def __init__(self, system: System, low: int, count: int, anisotropy: complex) -> None:
+        axes = 0.5 * cmath.phase(anisotropy)
         turn = np.exp(1j * (system.grid.theta - axes))
         run = np.arange(low, low + count)
         self._turn, self._inside, self._outside = turn, turn[run], np.delete(turn, run)

@@ -299,12 +299,15 @@ def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.
 
     Returns the gap and its first and second derivative at the angles `theta`, rad, dimensionless, shape (3, ...).
     """
-    if system.bodies is not None:
+    if system.bodies is None:
+        sxx, syy, sxy = load[[SXX, SYY, SXY]]
+        mean, oval, diagonal = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy), 2.0 * system.plate * sxy
+    elif system.bodies.anisotropy is not None:
+        mean, oval, diagonal = system.bodies.ellipse(load)
+    else:
         moved = system.bodies.radial(load, theta)
         moved[0] += system.rest_clearance
         return moved + _initial_gap(system, theta)
-    sxx, syy, sxy = load[[SXX, SYY, SXY]]
-    mean, oval, diagonal = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy), 2.0 * system.plate * sxy
     cos, sin = np.cos(2.0 * np.asarray(theta)), np.sin(2.0 * np.asarray(theta))
     widened = np.array(
         [

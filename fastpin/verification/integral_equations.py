@@ -124,7 +124,8 @@ def residuals(
         remote |= {Q: float(N_cos + T_sin), P: float(T_cos - N_sin)}
         added = _traction_terms(bodies, grid, np.array([N, T])) + _load_terms(problem, bodies, theta, remote)
         resultant = complex(float(N_cos + T_sin), float(T_cos - N_sin))
-        added += _laminate_terms(bodies, theta, cot_N + 1j * cot_T, complex(N_total, T_total), resultant)
+        if bodies.anisotropy:
+            added += _laminate_terms(bodies.anisotropy, theta, cot_N + 1j * cot_T, complex(N_total, T_total), resultant)
     return left_46 - right_46 / (4.0 * math.pi) + added[0], left_47 - right_47 / (4.0 * math.pi) + added[1]
 
 
@@ -172,14 +173,14 @@ def _traction_terms(bodies: BodyTerms, grid: Grid, tractions: np.ndarray) -> np.
 
 
 def _laminate_terms(
-    bodies: BodyTerms, theta: np.ndarray, principal: np.ndarray, total: complex, force: complex
+    anisotropy: complex, theta: np.ndarray, principal: np.ndarray, total: complex, force: complex
 ) -> np.ndarray:
     """Terms of (46) and (47), shape (2, n), of the anisotropy of a laminate, (T69).
 
     `principal` (n,) is the principal value of int cot(phi/2) (N + iT), `total` is int (N + iT), and `force` Q + iP.
     """
     turn = np.exp(1j * theta)
-    moved = bodies.anisotropy / (4j * math.pi) / turn**2 * (principal + 1j * total + 1j * turn * force)
+    moved = anisotropy / (4j * math.pi) / turn**2 * (principal + 1j * total + 1j * turn * force)
     return -np.array([moved.real, moved.imag])
 
 

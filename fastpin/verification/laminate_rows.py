@@ -7,6 +7,7 @@ The finite-element models have a steel pin in plane strain under a body force, L
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -147,7 +148,7 @@ def _collocated(problem: Problem, load: float) -> np.ndarray:
     return np.asarray(np.linalg.solve(matrix, right)[:n])
 
 
-CASES = {
+CASES: dict[str, Callable[[Solving], Checks]] = {
     "open hole": open_hole,
     "stuck": partial(stuck, 0.0),
     "stuck, remote stress": partial(stuck, 1.0),
