@@ -65,8 +65,8 @@ class ColumnsOperator(Operator):
         if self._bodies is not None and self._bodies.coefficients.any():
             given = np.array([pressure, shear])
             found += fourier.product(grid.theta, grid.theta, h_left, h_right, self._bodies.coefficients, given).ravel()
-            if self._bodies.matrix.size:
-                found += self._bodies.matrix_product(grid, tractions)
+        if self._bodies is not None and self._bodies.matrix.size:
+            found += self._bodies.matrix_product(grid, tractions)
         moved, coupling = self._drive.factors
         return found + moved @ (coupling @ tractions) if coupling.size else found
 

@@ -53,6 +53,22 @@ def test_a_singular_leading_block_is_not_hidden():
     assert not np.all(np.isfinite(found))
 
 
+@pytest.mark.parametrize("version", ["compiled", "python"])
+def test_a_column_of_a_laminate(version):
+    """Against the definition, k factor turn_i turn_j (N + iT) = gap - i slip."""
+    add = toeplitz.add_turned_column if version == "compiled" else python(toeplitz.add_turned_column)
+    rng, n = np.random.default_rng(1), 7
+    by_distance, turn, factor = rng.normal(size=n), np.exp(1j * rng.normal(size=n)), 0.3 - 0.7j
+    away = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    term = factor * by_distance[away] * np.outer(turn, turn)
+    whole = np.block([[term.real, -term.imag], [-term.imag, -term.real]])
+    rows, before = rng.permutation(2 * n)[:9], rng.normal(size=9)
+    for column in range(2 * n):
+        out = before.copy()
+        add(by_distance, turn, factor, rows, column, out)
+        assert out == pytest.approx(before + whole[rows, column], abs=1e-15)
+
+
 @pytest.fixture
 def small_sets(monkeypatch):
     """Small sets too are inverted in the fast way."""
