@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from fastpin.errors import FastpinError, InputError, printable
+from fastpin.errors import FastpinError, InputError, UnknownNameError, printable
 from fastpin.model.inputs import SpecialFileError
 from fastpin.model.synonyms import closest
 
@@ -99,6 +99,14 @@ def choice(field: str, value: object, allowed: Sequence[str]) -> str:
         return str.__str__(value)  # a plain word, also for words of NumPy and of enumerations
     hint = closest(value, allowed) if isinstance(value, str) else ""
     raise InputError(field, f"must be {alternatives(allowed)}, not {as_toml(value)}{hint}")
+
+
+def known_name(field: str, name: object, known: Iterable[str]) -> None:
+    """Check a name of a library. An unknown one raises :class:`UnknownNameError`, which says which name is meant."""
+    try:
+        choice(field, name, tuple(known))
+    except InputError as error:
+        raise UnknownNameError(error.field, error.reason) from None
 
 
 def alternatives(words: Sequence[str]) -> str:

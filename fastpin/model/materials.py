@@ -19,8 +19,8 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from fastpin.errors import InputError, UnknownNameError
-from fastpin.model.checks import choice, instance, number, positive, string
+from fastpin.errors import InputError
+from fastpin.model.checks import choice, instance, known_name, number, positive, string
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import KnownLaw, known_law
 from fastpin.model.synonyms import explains_keywords
@@ -175,10 +175,7 @@ class Materials(dict[str, Material]):
     """Materials by name. An unknown name raises :class:`UnknownNameError`, which says which name is meant."""
 
     def __missing__(self, name: object) -> Material:
-        try:
-            choice("material", name, tuple(self))
-        except InputError as error:
-            raise UnknownNameError(error.field, error.reason) from None
+        known_name("material", name, self)
         raise KeyError(name)
 
 
