@@ -259,6 +259,14 @@ def number_array(field: str, values: ArrayLike) -> np.ndarray:
     raise InputError(field, f"must be a number, not {as_toml(values)}")
 
 
+def triples(field: str, values: ArrayLike) -> np.ndarray:
+    """Check an array of numbers with three components along its last axis, and return it as a float array."""
+    array = number_array(field, values)
+    if not array.ndim or array.shape[-1] != 3:
+        raise InputError(field, f"must have the shape (..., 3), not {array.shape}")
+    return array
+
+
 def as_toml(value: object) -> str:
     """A value as text, in the notation of case files. Long values are cut short."""
     return _as_toml(value, 0)
