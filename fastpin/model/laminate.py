@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -17,11 +17,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import instance, number, number_array, positive, string
+from fastpin.model.angles import degrees_at, from_bottom
+from fastpin.model.checks import instance, number, number_array, positive, string, triples, whole_number
 from fastpin.model.lamination import Stack, checked_stack, ply_strains, ply_stresses, stress_turn, whole_compliance
 from fastpin.model.layup import checked_angles, layup_text
 from fastpin.model.materials import Material, Plane
-from fastpin.model.ply import PLIES, Ply, checked_ratio
+from fastpin.model.ply import PLIES, Ply, checked_ratio, ply_from
 from fastpin.model.synonyms import explains_keywords
 
 ALONG_LOAD = -0.5 * math.pi
@@ -38,6 +39,12 @@ ROUND = 1e-12
 
 CONSISTENT = 1e-9
 """Largest difference of given compliances from those of given plies, in parts of the largest: it is rounding."""
+
+MODULI = ("E1", "E2", "G12", "nu12")
+"""Names of the moduli of the whole and of Poisson's ratio, in their order."""
+
+LAMINATE_KEYS = ("layup", "ply", *MODULI, "compliance", "axis")
+"""Keys of a laminate in [plate] of a case file, beside those of an isotropic material."""
 
 ORDER = ("a11", "a12", "a22", "a16", "a26", "a66")
 """Names of the compliances, in their order."""
@@ -201,8 +208,8 @@ class Laminate(Material):
     def elastic_form(self) -> str:
         name = f"{self.name!r}, " if self.name else ""
         name += f"{self.layup} of {self.ply_names}, " if self.plies else ""
-        E1, E2, G12, nu12 = self.moduli
-        return f"Laminate({name}E1={E1:g}, E2={E2:g}, G12={G12:g}, nu12={nu12:g}, axis={self.axis:g})"
+        moduli = ", ".join(f"{field}={value:g}" for field, value in self.shown_moduli.items())
+        return f"Laminate({name}{moduli}, axis={self.axis:g})"
 
     def scaled(self, factor: float) -> Laminate:
         """The same laminate with all moduli times `factor`. The strengths of its plies are then unknown.
@@ -233,6 +240,69 @@ class Laminate(Material):
         """E1, E2 and G12 of the whole, Pa, and nu12, in the axes of the laminate."""
         a11, a12, a22, _, _, a66 = self.compliance
         return 1.0 / a11, 1.0 / a22, 1.0 / a66, -a12 / a11
+
+    @property
+    def label(self) -> str:
+        """The name, the layup and the names of the plies, as far as they are known; else "laminate"."""
+        layup = f"{self.layup} of {self.ply_names}" if self.plies else "laminate"
+        return f"{self.name}, {layup}" if self.name else layup
+
+    @property
+    def shown_moduli(self) -> dict[str, float]:
+        """E1, E2 and G12 of the whole, Pa, and nu12, by name."""
+        return dict(zip(MODULI, self.moduli, strict=True))
+
+    @property
+    def direction_words(self) -> str:
+        """The direction of axis 1, deg from the bottom of the hole: 0 lies along the load P."""
+        return f"axis 1 at {from_bottom(self.axis):.4g} deg from the bottom"
+
+    def constants(self) -> dict[str, Any]:
+        """The axis, and the compliances or the plies without their names: all that stresses depend on."""
+        return self._described(lambda ply: ply.constants())
+
+    def entries(self) -> dict[str, Any]:
+        """The laminate as a JSON-ready dict. :func:`laminate_from` reads it back.
+
+        Different plies are listed once, under `plies`. The stack has the places of its plies in this list under
+        `which`, and their angles, deg, under `angles`.
+        """
+        return {"name": self.name, **self._described(lambda ply: ply.entries())}
+
+    def _described(self, entries: Callable[[Ply], dict[str, Any]]) -> dict[str, Any]:
+        if not self.plies:
+            return {"axis": self.axis, "compliance": list(self.compliance)}
+        known = list(dict.fromkeys(ply for ply, _ in self.plies))
+        return {
+            "axis": self.axis,
+            "angles": [angle for _, angle in self.plies],
+            "which": [known.index(ply) for ply, _ in self.plies],
+            "plies": [entries(ply) for ply in known],
+        }
+
+    def summary(self) -> dict[str, Any]:
+        """The entry `laminate` of the JSON of a result. The axis is in deg from the bottom of the hole."""
+        given = {"layup": None, "ply": None, **self.toml()}
+        return {
+            "laminate": {
+                "layup": given["layup"],
+                "ply": given["ply"],
+                "axis": given["axis"],
+                "moduli": self.shown_moduli,
+                "compliance": list(self.compliance),
+                "is_isotropic_contact": self.is_isotropic_contact,
+            }
+        }
+
+    def toml(self) -> dict[str, Any]:
+        """The keys and values of [plate] in a case file: a layup with its plies, or the compliances, and the axis."""
+        axis = {"axis": degrees_at(self.axis)}
+        if not self.plies:
+            return {"compliance": list(self.compliance), **axis}
+        each = [ply for ply, _ in self.plies]
+        are_named = all(PLIES.get(ply.name) == ply for ply in each)
+        plies = [ply.name if are_named else ply.entries() for ply in each]
+        return {"layup": self.layup, "ply": plies if len(set(each)) > 1 else plies[0], **axis}
 
     @property
     def layup(self) -> str:
@@ -280,10 +350,7 @@ class Laminate(Material):
 
     def _own_strain(self, stress: Any) -> np.ndarray:
         """The strains of the whole in its own axes, shape (..., 3)."""
-        values = number_array("stress", stress)
-        if not values.ndim or values.shape[-1] != 3:
-            raise InputError("stress", f"must have the shape (..., 3), not {values.shape}")
-        own: np.ndarray = values @ stress_turn(self.axis).T @ _matrix(self.compliance)
+        own: np.ndarray = triples("stress", stress) @ stress_turn(self.axis).T @ _matrix(self.compliance)
         return own
 
     @cached_property
@@ -351,6 +418,22 @@ class Laminate(Material):
         w = strain + self.edge_tensor @ stress + self.s * turn @ stress @ turn
         mean = 0.5 * complex(w[0, 0] + w[1, 1], w[1, 0] - w[0, 1])
         return mean, 0.5 * complex(w[0, 0] - w[1, 1], w[1, 0] + w[0, 1])
+
+
+def laminate_from(**given: Any) -> Laminate:
+    """Return the laminate of such entries, see :meth:`Laminate.entries`.
+
+    Raises
+    ------
+    InputError
+        If an entry can't be used.
+    """
+    if "plies" not in given:
+        return Laminate(**given)
+    known, which, angles = (given.pop(name) for name in ("plies", "which", "angles"))
+    plies = [ply_from(**each) for each in known]
+    places = [whole_number("which", place, 0, len(plies) - 1) for place in which]
+    return Laminate.from_plies([(plies[place], angle) for place, angle in zip(places, angles, strict=True)], **given)
 
 
 def _matrix(values: tuple[float, ...]) -> np.ndarray:
