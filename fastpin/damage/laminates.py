@@ -24,7 +24,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Literal, NamedTuple
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -43,7 +44,8 @@ GAUSS_POINTS = 48
 """Points of the mean stress. It is exact for polynomials of degree 95: the stress at a hole falls smoothly."""
 
 
-class PlyFailure(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class PlyFailure:
     """The failure of plies, arrays of one shape.
 
     Attributes
@@ -62,7 +64,8 @@ class PlyFailure(NamedTuple):
     mode: np.ndarray
 
 
-class FirstPly(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class FirstPly:
     """The first failure of a ply of a laminate, arrays of the shape of the stresses without their last axis.
 
     Attributes
@@ -241,7 +244,7 @@ def ply_failure(laminate: Laminate, stress: ArrayLike, criterion: PlyCriterion =
     evaluate = PLY_CRITERIA[choice("criterion", criterion, tuple(PLY_CRITERIA))]
     known = instance("laminate", laminate, Laminate, "a fastpin.model.Laminate")
     found = [evaluate(each, ply) for each, (ply, _) in zip(known.ply_stresses(stress), known.plies, strict=True)]
-    return PlyFailure(*(np.array(parts) for parts in zip(*found, strict=True)))
+    return PlyFailure(*(np.array([getattr(each, name) for each in found]) for name in ("index", "ratio", "mode")))
 
 
 def first_ply_failure(laminate: Laminate, stress: ArrayLike, criterion: PlyCriterion = "hashin") -> FirstPly:
