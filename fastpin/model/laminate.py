@@ -218,7 +218,8 @@ class Laminate(Material):
         """
         softer = 1.0 / positive("factor", factor)
         if self.plies:
-            plies = tuple((ply.scaled(factor), angle) for ply, angle in self.plies)
+            scaled = {ply: ply.scaled(factor) for ply in dict.fromkeys(ply for ply, _ in self.plies)}
+            plies = tuple((scaled[ply], angle) for ply, angle in self.plies)
             return Laminate(plies=plies, axis=self.axis, name=self.name)
         return Laminate(compliance=tuple(softer * value for value in self.compliance), axis=self.axis, name=self.name)
 

@@ -81,7 +81,8 @@ def whole_compliance(stack: Stack) -> tuple[float, ...]:
     angles = [angle for _, angle in stack]
     thickness = np.array([ply.thickness for ply, _ in stack])
     turns = _ply_turns([-angle for angle in angles])
-    own = np.array([ply.stiffness for ply, _ in stack])
+    known = {ply: ply.stiffness for ply in dict.fromkeys(ply for ply, _ in stack)}
+    own = np.array([known[ply] for ply, _ in stack])
     stiffness = turns @ own @ np.swapaxes(turns, -1, -2)
     whole = float(thickness.sum())
     part = thickness / whole

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import jsonschema
 import pytest
+from hypothesis import given
 
 import fastpin
 from fastpin import cracks, damage
@@ -22,6 +23,7 @@ from fastpin.model.laminate import ALONG_LOAD
 from fastpin.report import json_schema
 from fastpin.report.case import describe
 from fastpin.report.summary import document
+from tests.support.strategies import laminates
 
 OWN = "{ E1 = 135e9, E2 = 9e9, G12 = 5e9, nu12 = 0.3, thickness = 0.2e-3"
 LAYUP = 'layup = "[0/45/-45/90]2s"\nply = "T300/5208"\n'
@@ -85,6 +87,17 @@ def test_a_written_laminate_is_read_back(keys: str) -> None:
     again = parse_case(case_text(case))
     assert again.problem == case.problem
     assert case_text(again) == case_text(case)
+
+
+@given(laminates())
+def test_any_laminate_is_written_and_read_back(plate: Laminate) -> None:
+    case = parse_case(text(LAYUP))
+    pair = fastpin.MaterialPair(case.problem.pair.pin, plate, "stress")
+    problem = dataclasses.replace(case.problem, pair=pair)
+    again = parse_case(case_text(dataclasses.replace(case, problem=problem))).problem.pair.plate
+    assert isinstance(again, Laminate)
+    assert again == plate
+    assert (again.compliance, again.axis) == (plate.compliance, plate.axis)
 
 
 def test_a_dimensionless_laminate_is_read_back() -> None:
