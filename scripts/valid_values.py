@@ -71,6 +71,13 @@ PLATE = fastpin.Material(72e9, 0.33, "aluminium", STRENGTHS, 4e8, 5e8, cracks.Wa
 """A plate with constants of fatigue and of crack growth."""
 
 
+PLY = model.PLIES["AS4/3501-6"]
+"""A ply with strengths."""
+
+LAMINATE = model.Laminate.from_layup("[0/45/-45/90]s", PLY)
+"""A laminate of plies."""
+
+
 class Enough(FastpinError):  # noqa: N818 - no fault
     """The end of a call that would take long."""
 
@@ -155,6 +162,8 @@ class Valid:
             life[-1], worn, worn.crack, crack, law, grown, cracks.stress_intensity(state, crack, [length]), NASGRO,
             cracks.growth_along_edge(result, law, length, 2.0 * length, [-1.5]), planned,
             cracks.spectrum_growth(result, crack, law, length, 2.0 * length), cracks.CrackFate.STOPS,
+            LAMINATE, PLY, PLY.strengths, damage.ply_failure(LAMINATE, [1e8, 1e7, 1e7]),
+            damage.first_ply_failure(LAMINATE, [1e8, 1e7, 1e7]),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
@@ -342,28 +351,37 @@ class Valid:
             "wear.cycles": 2,
             "wear.history": result.history,
             "wear.nodes": NODES,
+            "Laminate.compliance": LAMINATE.compliance,
+            "Laminate.plies": LAMINATE.plies,
+            "point_stress_ratio.profile": np.exp,
+            "average_stress_ratio.profile": np.exp,
+            "characteristic_radius.theta": [0.0, 0.5],
+            "characteristic_radius.tension": 0.1,
+            "characteristic_radius.compression": 0.2,
             "benchmarks.Outcome.rows": [benchmarks.Row("peak", "1", "0.5", 0.5)],
         }
         return {name: _always(value) for name, value in values.items()}
 
 
 BY_NAME: dict[str, Any] = {
-    "E": 2e11, "K_max": [2e6], "K_min": [1e6], "R": [0.1],
-    "a": 0.3, "alpha": 0.25, "amplitude": 1e8, "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0,
-    "body": "plate", "centre": -1.5, "corners": [[1.0] * 10], "count": 3, "counts": [1.0, 2.0],
-    "criterion": "smith-watson-topper", "depth": 0.01, "directory": "sweep", "ductility_exponent": -0.6, "factor": 2.0,
-    "fatigue_ductility": 0.5, "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0,
-    "half_width": 1.0, "height": 1e-5, "high": 0.5, "history": HISTORY, "host": "127.0.0.1", "index": 1, "k": 0.3,
-    "knee_amplitude": 1e8, "knee_cycles": 1e6, "last": 3, "length": 0.01, "limit_range": 2e8, "lives": [1e5, 1e6],
+    "E": 2e11, "E1": 1e11, "E2": 1e10, "G12": 5e9, "K_max": [2e6], "K_min": [1e6], "R": [0.1], "a": 0.3, "alpha": 0.25,
+    "amplitude": 1e8, "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0, "body": "plate", "centre": -1.5,
+    "corners": [[1.0] * 10], "count": 3, "counts": [1.0, 2.0], "criterion": "smith-watson-topper", "depth": 0.01,
+    "directory": "sweep", "distance": 0.01, "ductility_exponent": -0.6, "factor": 2.0, "fatigue_ductility": 0.5,
+    "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0, "half_width": 1.0,
+    "height": 1e-5, "high": 0.5, "history": HISTORY, "host": "127.0.0.1", "index": 1, "k": 0.3, "knee_amplitude": 1e8,
+    "knee_cycles": 1e6, "last": 3, "layup": "[0/90]s", "length": 0.01, "limit_range": 2e8, "lives": [1e5, 1e6],
     "load_parameter": 0.1, "load_ratio": 0.5, "low": -0.5, "mu_over_beta": 2.0, "name": "sxx", "nodes": NODES,
-    "nu": 0.3, "nu_pin": 0.3, "order": 2, "parameter": [1e6], "path": "result.h5", "paths": [[[0.0, 1.0], [1.0, 0.0]]],
-    "peak_pressure": 2.0, "phi": [0.0, 0.5], "place": "gap", "places": [(-3.0, 0.1), (-1.5, 0.05), (0.0, 0.1)],
-    "plane": "strain", "purpose": "fatigue", "radius": 2.0, "share": np.array([0.0, 0.5]),
-    "shear_ductility_exponent": -0.6, "shear_fatigue_ductility": 0.5, "shear_fatigue_strength": 5e8,
-    "shear_modulus": 8e10, "shear_strength_exponent": -0.1, "size": 1e-5, "slip_range": [1e-6], "slope": 5.0,
-    "sources": ["part"], "start": -3.0, "stop": 0.0, "strength_exponent": -0.1, "sxx": 1.0, "sxy": 0.1, "syy": 0.0,
-    "theta": [-1.5, -1.0], "thickness": 0.01, "threshold_range": 5e6, "torsion_limit": 1.2e8, "ultimate_strength": 5e8,
-    "values": [0.0, 1.0, -1.0], "wear_coefficient": 1e-14, "x": [0.0, 0.5], "y": [0.0, 0.5], "yield_strength": 4e8,
+    "nu": 0.3, "nu12": 0.3, "nu_pin": 0.3, "order": 2, "parameter": [1e6], "path": "result.h5",
+    "paths": [[[0.0, 1.0], [1.0, 0.0]]], "peak_pressure": 2.0, "phi": [0.0, 0.5], "place": "gap",
+    "places": [(-3.0, 0.1), (-1.5, 0.05), (0.0, 0.1)], "plane": "strain", "purpose": "fatigue", "radius": 2.0,
+    "remote": [1e7, 0.0, 1e6], "share": np.array([0.0, 0.5]), "shear_ductility_exponent": -0.6,
+    "shear_fatigue_ductility": 0.5, "shear_fatigue_strength": 5e8, "shear_modulus": 8e10,
+    "shear_strength_exponent": -0.1, "size": 1e-5, "slip_range": [1e-6], "slope": 5.0, "sources": ["part"],
+    "start": -3.0, "stop": 0.0, "strength": 1e8, "stress": [1e8, 1e7, 1e7], "strength_exponent": -0.1, "sxx": 1.0,
+    "sxy": 0.1, "syy": 0.0, "theta": [-1.5, -1.0], "thickness": 0.01, "threshold_range": 5e6, "torsion_limit": 1.2e8,
+    "ultimate_strength": 5e8, "values": [0.0, 1.0, -1.0], "wear_coefficient": 1e-14, "x": [0.0, 0.5], "y": [0.0, 0.5],
+    "yield_strength": 4e8,
 }  # fmt: skip
 """Valid values by the name of a parameter."""
 

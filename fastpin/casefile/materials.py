@@ -12,6 +12,8 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from fastpin.casefile.laminates import is_laminate, read_laminate
+from fastpin.casefile.sections import Inside
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, true_or_false
@@ -41,7 +43,10 @@ def read_pair(source: CaseText, materials: Mapping[str, Material]) -> MaterialPa
             if name in source.root:
                 source.report(f"[{name}]: give either [dundurs] or [pin] and [plate]", name)
         return _dundurs(source.section("dundurs"), contact, plane)
-    pin, plate = (read_material(source, source.section(name, required=True), materials) for name in ("pin", "plate"))
+    pin = read_material(source, source.section("pin", required=True), materials)
+    section = source.section("plate", required=True)
+    given = is_laminate(section)
+    plate = read_laminate(source, section) if given else read_material(source, section, materials)
     if pin is None or plate is None:
         return None
     return source.root.build(MaterialPair, {"pin": pin, "plate": plate, "plane": plane}, {})
@@ -83,25 +88,13 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
     return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
 
 
-class _Inside(Section):
-    """The table of a key of a section. The section reports its faults."""
-
-    def __init__(self, source: CaseText, section: Section, key: str, table: dict[str, Any]) -> None:
-        super().__init__(source, (section.name, key), table)
-        self._section, self._key = section, key
-
-    def report(self, message: str, *key: str) -> None:
-        """Add a fault of a key, or of the whole table if no key is given."""
-        self._section.report(message, self._key, *key)
-
-
 def read_law(source: CaseText, section: Section, key: str) -> KnownLaw | None:
     """The law of crack growth in the table of a key; None if it can't be used (reported)."""
     table = section.value(key)
     if not isinstance(table, dict):
         section.report(f'{key}: must be a table such as {{ law = "walker", ... }}, not {as_toml(table)}', key)
         return None
-    inner = _Inside(source, section, key, table)
+    inner = Inside(source, section, key, table)
     if "law" not in inner:
         section.report(f"{key}: law is missing; it is one of {', '.join(LAWS)}", key)
     name = inner.checked("law", choice, tuple(LAWS))

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from fastpin.casefile.toml_text import Section
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.angles import DEGREE, angle_at
+from fastpin.model.angles import DEGREE, angle_at, meant_degrees
 from fastpin.model.checks import any_text, as_toml, number, whole_number
 from fastpin.model.load_units import Basis
 from fastpin.model.problem import checked_gap
@@ -29,12 +29,6 @@ GAP_KEYS = ("hole", "pin")
 
 PROFILES = (("contact", "friction"), ("gap", "hole"), ("gap", "pin"))
 """Section and key of each profile."""
-
-IN_RADIANS = 2e-4
-"""Relative distance from a multiple of pi/12 within which an angle is in rad by mistake: 1.5708 is meant as 90.
-
-It must also have three digits after the point, and its last digit less than one off. Hardly any other angle has both.
-"""
 
 
 class Word(NamedTuple):
@@ -55,7 +49,7 @@ class Word(NamedTuple):
     make: Callable[..., Profile]
 
 
-def _angle(field: str, value: object) -> float:
+def checked_angle(field: str, value: object) -> float:
     """Check an angle in degrees from the bottom of the hole, and return it in rad from +x."""
     return float(angle_at(_degrees(field, value)))
 
@@ -63,12 +57,9 @@ def _angle(field: str, value: object) -> float:
 def _degrees(field: str, value: object) -> float:
     """Check an angle in degrees."""
     degrees = number(field, value, -360.0, 360.0)
-    parts = degrees / (15.0 * DEGREE)
-    away = abs(parts - round(parts))
-    digits = len(repr(degrees).partition(".")[2])
-    rounded = away <= min(IN_RADIANS * abs(parts), max(10.0**-digits, 1e-14) / (15.0 * DEGREE))
-    if 1.0 <= abs(round(parts)) <= 24 and digits > 2 and rounded:
-        words = f"{degrees:g} is {15 * round(parts)} degrees in rad"
+    meant = meant_degrees(degrees)
+    if meant:
+        words = f"{degrees:g} is {meant} degrees in rad"
         raise InputError(field, f"must be in degrees from the bottom of the hole; {words}")
     return degrees
 
@@ -107,16 +98,18 @@ WORDS = {
         ("lobes", "size", "axis"), {"axis": 0.0}, lambda count, size, axis: _lobes(count, size, _degrees("axis", axis))
     ),
     "harmonic": Word(("harmonic", "cosine", "sine"), {"cosine": 0.0, "sine": 0.0}, _harmonic),
-    "flat": Word(("flat", "centre"), {}, lambda depth, at: Profile((Flat(depth, _angle("centre", at)),))),
+    "flat": Word(("flat", "centre"), {}, lambda depth, at: Profile((Flat(depth, checked_angle("centre", at)),))),
     "crown": Word(
         ("crown", "centre", "half_width"),
         {},
-        lambda height, at, wide: Profile((Crown(height, _angle("centre", at), DEGREE * _degrees("half_width", wide)),)),
+        lambda height, at, wide: Profile(
+            (Crown(height, checked_angle("centre", at), DEGREE * _degrees("half_width", wide)),)
+        ),
     ),
     "zone": Word(
         ("zone", "start", "stop"),
         {},
-        lambda value, start, stop: Profile((Zone(value, _angle("start", start), _angle("stop", stop)),)),
+        lambda value, start, stop: Profile((Zone(value, checked_angle("start", start), checked_angle("stop", stop)),)),
     ),
     "angles": Word(("angles", "values"), {}, _samples),
 }

@@ -29,6 +29,7 @@ from fastpin.model.checks import file_path, string
 from fastpin.model.crack import CRACK_KEYS, check_crack
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory
+from fastpin.model.laminate import LAMINATE_KEYS
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
@@ -43,7 +44,7 @@ EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 KEYS: dict[str, tuple[str, ...]] = {
     "about": tuple(field.name for field in fields(About)),
     "pin": MATERIAL_KEYS,
-    "plate": MATERIAL_KEYS,
+    "plate": (*MATERIAL_KEYS, *LAMINATE_KEYS),
     "dundurs": DUNDURS_KEYS,
     "contact": (
         *("plane", "hole_radius", "clearance", "load_parameter"),

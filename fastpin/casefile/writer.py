@@ -19,10 +19,9 @@ from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.fields import FIELDS
-from fastpin.model.growth import law_entries
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.materials import MATERIALS, Material
+from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
@@ -69,21 +68,7 @@ def _fatigue(how: FatigueAssessment) -> list[str]:
 
 
 def _material(material: Material) -> Iterator[str]:
-    if material.is_rigid:
-        yield "rigid = true"
-        return
-    if MATERIALS.get(material.name) == material:
-        yield f"material = {_value(material.name)}"
-        return
-    yield f"E = {material.E!r}"
-    yield f"nu = {material.nu!r}"
-    for name, strength in material.strengths.items():
-        yield f"{name} = {strength!r}"
-    if material.fatigue is not None:
-        constants = ", ".join(f"{name} = {_value(value)}" for name, value in material.fatigue.given().items())
-        yield f"fatigue = {{ {constants} }}"
-    if material.growth is not None:
-        yield f"growth = {_value([law_entries(material.growth)])}"
+    yield from (f"{name} = {_value(value)}" for name, value in material.toml().items())
 
 
 def _contact(problem: Problem) -> Iterator[str]:

@@ -22,7 +22,7 @@ from fastpin.model.checks import check_callable, choice, instances, number, numb
 from fastpin.model.crack import MOST_INCLINATION, NO_INSIDE, check_length, depth_of, wall_of
 from fastpin.model.doubts import warn_of
 from fastpin.model.loads import LOADS, REMOTE
-from fastpin.model.points import EDGES, MOST_ANGLE, Points, near_rim
+from fastpin.model.points import EDGES, MOST_ANGLE, Points, isotropic_material, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
@@ -193,6 +193,7 @@ class CrackedEdge(NamedTuple):
     def of(cls, problem: Problem, body: CrackedBody) -> CrackedEdge:
         """The edge of a body. Raise :class:`InputError` if its stress is unknown."""
         check_body(problem, body)
+        isotropic_material("body", problem, body, "a stress intensity")
         near, bush, lug = near_rim(problem, body), problem.joint.bush, problem.plate_body.lug
         in_bush, wall = body == "plate" and bush is not None, wall_of(problem, body)
         if not in_bush and lug.edge_only:

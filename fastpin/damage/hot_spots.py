@@ -19,7 +19,7 @@ from fastpin.model.angles import near_bottom
 from fastpin.model.checks import choice, instance, instances, items, whole_number
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
-from fastpin.model.points import Body, Points, material_of, owner_of
+from fastpin.model.points import CRITERION, Body, Points, isotropic_material, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
@@ -272,7 +272,7 @@ def evaluated(
     depth = np.broadcast_to(place[1], place[0].shape).ravel() / problem.hole_radius
     parts: list[tuple[np.ndarray, CriterionValues]] = []
     for chosen, part in bodies_at(problem, body, depth):
-        material = material_of(problem, part)
+        material = isotropic_material("body", problem, part, CRITERION)
         given = (material.fatigue if constants is None else constants) or FatigueConstants()
         parts.append((chosen, _values(history[:, chosen], criterion, material, given, owner_of(problem, part))))
     shape, limit = place[0].shape, parts[0][1].limit

@@ -18,7 +18,7 @@ from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_angles
 from fastpin.errors import InputError
 from fastpin.model.checks import check_callable, choice, instance, true_or_false
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.points import Body, Points, elastic_bodies, material_of, owner_of
+from fastpin.model.points import CRITERION, Body, Points, isotropic_bodies, isotropic_material, material_of, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.reading.stress import check_body
@@ -197,7 +197,12 @@ def spectrum_damage(
         (
             chosen,
             CountedMaterial.of(
-                criterion, material_of(problem, one), constants, owner_of(problem, one), small_cycles, knee
+                criterion,
+                isotropic_material("body", problem, one, CRITERION),
+                constants,
+                owner_of(problem, one),
+                small_cycles,
+                knee,
             ),
         )
         for chosen, one in bodies_at(problem, body, below.ravel())
@@ -274,7 +279,7 @@ def damage_ranking(
         See :func:`spectrum_damage`; also if no body has the constants.
     """
     problem = stops_of_one_problem(states)[0].problem
-    bodies = bodies_with_lives(problem, choice("criterion", criterion, CRITERIA)) or elastic_bodies(problem)[:1]
+    bodies = bodies_with_lives(problem, choice("criterion", criterion, CRITERIA)) or isotropic_bodies(problem)[:1]
     how: dict[str, Any] = {"depth": depth, "straight": straight, "small_cycles": small_cycles, "knee": knee}
     found = [spectrum_damage(states, criterion, body, progress=progress, **how) for body in bodies]
     return sorted((one for one in found if one.damage.any()), key=lambda one: -one.hot_spot.damage)
@@ -283,7 +288,7 @@ def damage_ranking(
 def bodies_with_lives(problem: Problem, criterion: str) -> list[Body]:
     """The elastic bodies whose material has the constants of a criterion and of its life; none without a life."""
     needs = FATIGUE_CRITERIA[criterion].needs + FATIGUE_CRITERIA[criterion].life_needs
-    known = {body: material_of(problem, body).fatigue for body in elastic_bodies(problem)}
+    known = {body: material_of(problem, body).fatigue for body in isotropic_bodies(problem)}
     return [
         body
         for body, given in known.items()

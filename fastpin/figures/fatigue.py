@@ -79,7 +79,7 @@ def fatigue_plot(
         return _spectrum_plot(subject, criterion, body, depth)
     result = subject.part(with_cycles(subject).cycles[-1])
     cycle = cycle_states(result, result.cycles[-1])
-    bodies = fatigue_bodies(cycle[0].problem, criterion) if body is None else [body]
+    bodies = (fatigue_bodies(cycle[0].problem, criterion) or ["plate"]) if body is None else [body]
     return fatigue_of([fatigue(cycle, criterion, one, depth=depth) for one in bodies])
 
 
@@ -102,7 +102,7 @@ def _spectrum_plot(subject: Subject, criterion: Criterion, body: Body | None, de
     known = bodies_with_lives(result.problem, criterion)
     bodies = [one for one in known if one in EDGES] if body is None else [one for one in known if one == body]
     if not bodies:
-        others = fatigue_bodies(result.problem, criterion) if body is None else [body]
+        others = (fatigue_bodies(result.problem, criterion) or ["plate"]) if body is None else [body]
         return fatigue_of([fatigue(result.states, criterion, one, depth=depth) for one in others])
     straight = len(result) > MOST_REFINED
     how: dict[str, Any] = {"depth": depth, "straight": straight, "progress": subject.progress}

@@ -167,7 +167,7 @@ def short(value: float, unit: Unit, digits: int = DIGITS) -> str:
 def _material(material: Material, problem: Problem) -> str:
     if material.is_rigid:
         return "rigid"
-    if material.name:
-        return shortened(material.name)
+    if material.label:
+        return shortened(material.label)
     modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, PASCAL)
     return f"E = {modulus}, ν = {material.nu:.{DIGITS}g}"

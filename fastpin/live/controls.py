@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 from fastpin.bodies.body import Control, PlateBody
@@ -15,6 +15,7 @@ from fastpin.model.angles import angle_at, degrees_from_bottom
 from fastpin.model.checks import choice, not_negative, number
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.laminate import Laminate
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
 from fastpin.model.problem import Problem
@@ -123,7 +124,7 @@ def problem_controls(problem: Problem, scales: ControlScales) -> list[dict[str, 
         *(control for body in GAPS for control in _gap(problem, body, unit["displacement"], MISFITS * scales.gap)),
         *_material("pin", problem.pair.pin, unit["modulus"]),
         *_pin(problem, unit),
-        *_material("plate", problem.pair.plate, unit["modulus"]),
+        *_plate_material(problem, unit),
         *_plate(problem, unit),
     ]
 
@@ -163,10 +164,10 @@ def changed_fields(problem: Problem, changes: Mapping[str, Any], scales: Control
         fields["gap"] = InitialGap(
             **{body: _changed_profile(getattr(problem.gap, body), body, changes, 0.5 * scales.gap) for body in GAPS}
         )
-    if changes.keys() & {"plane", *_names_of_material("pin"), *_names_of_material("plate")}:
+    if changes.keys() & {"plane", AXIS, *_names_of_material("pin"), *_names_of_material("plate")}:
         fields["pair"] = MaterialPair(
             _changed_material(problem.pair.pin, "pin", changes),
-            _changed_material(problem.pair.plate, "plate", changes),
+            _changed_plate_material(problem.pair.plate, changes),
             changes.get("plane", problem.pair.plane),
         )
     if changes.keys() & PIN_CONTROLS:
@@ -185,6 +186,9 @@ def _names_of_material(body: str) -> tuple[str, ...]:
 GAP_CONTROLS = tuple(f"{body}_{name}" for body in GAPS for name in ("lobes", "amplitude", "axis"))
 """Names of the controls of initial gaps."""
 
+AXIS = "plate_axis"
+"""Name of the control of the axis of a laminate."""
+
 NAMES = (
     "friction",
     "most_friction",
@@ -197,6 +201,7 @@ NAMES = (
     *PIN_CONTROLS,
     "plate_body",
     *PLATE_CONTROLS,
+    AXIS,
     *(name for body in ("pin", "plate", "bush") for name in _names_of_material(body)),
 )
 """Names of all controls of problems."""
@@ -288,6 +293,27 @@ def _changed_material(material: Material, body: str, changes: Mapping[str, Any])
     return Material(changes.get(modulus, material.E), changes.get(ratio, material.nu))
 
 
+def _plate_material(problem: Problem, unit: Mapping[str, Unit]) -> list[dict[str, Any]]:
+    """The controls of the material of the plate. Of a laminate it is the axis, from -90 to 90 deg from the bottom."""
+    plate = problem.pair.plate
+    if plate.is_isotropic:
+        return _material("plate", plate, unit["modulus"])
+    angle = math.remainder(plate.toml()["axis"], 180.0)  # half a turn gives the same plate
+    return [_slider("plate", AXIS, angle, DEGREE, -90.0, 90.0)]
+
+
+def _changed_plate_material(plate: Material, changes: Mapping[str, Any]) -> Material:
+    """The material of the plate after changes."""
+    if not isinstance(plate, Laminate):
+        if AXIS in changes:
+            raise InputError(AXIS, "belongs to a laminate, and the plate is isotropic")
+        return _changed_material(plate, "plate", changes)
+    for name in _names_of_material("plate"):
+        if name in changes:
+            raise InputError(name, "can't be changed: the plate is a laminate")
+    return replace(plate, axis=angle_at(number(AXIS, changes[AXIS], -360.0, 360.0))) if AXIS in changes else plate
+
+
 def _of_body(group: str, controls: Sequence[Control], unit: Mapping[str, Unit]) -> list[dict[str, Any]]:
     """The controls of a body."""
     found = []
@@ -312,7 +338,7 @@ def _pin(problem: Problem, unit: Mapping[str, Unit]) -> list[dict[str, Any]]:
 
 def _plate(problem: Problem, unit: Mapping[str, Unit]) -> list[dict[str, Any]]:
     body = problem.plate_body
-    if body.kind not in TITLES:
+    if body.kind not in TITLES or not problem.pair.plate.is_isotropic:
         return []
     controls = body.page_controls(problem.hole_radius, problem.clearance, problem.dimensionless)
     return [_chooser("plate", "plate_body", body.kind, TITLES), *_of_body("plate", controls, unit)]

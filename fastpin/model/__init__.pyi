@@ -15,6 +15,9 @@ from .materials import MATERIALS as MATERIALS
 from .materials import Material as Material
 from .materials import MaterialPair as MaterialPair
 from .options import SolveOptions as SolveOptions
+from .ply import PLIES as PLIES
+from .ply import Ply as Ply
+from .ply import PlyStrengths as PlyStrengths
 from .points import Points as Points
 from .problem import Problem as Problem
 from .profile import InitialGap as InitialGap

@@ -14,7 +14,16 @@ from fastpin.model.checks import choice, items, number, positive, true_or_false
 from fastpin.model.fatigue import LIFE_CONSTANTS, FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
-from fastpin.model.points import BODIES, Body, elastic_bodies, material_of, owner_of
+from fastpin.model.points import (
+    BODIES,
+    CRITERION,
+    Body,
+    elastic_bodies,
+    isotropic_bodies,
+    isotropic_material,
+    material_of,
+    owner_of,
+)
 from fastpin.model.problem import Problem
 
 MinerRule = Literal["elementary", "original", "haibach"]
@@ -174,9 +183,12 @@ def assessed_bodies(problem: Problem, how: FatigueAssessment, criterion: str) ->
         for body in bodies:
             if material_of(problem, body).is_rigid:  # type: ignore[arg-type]
                 raise InputError("bodies", f"the {owner_of(problem, body)} is rigid and has no stress")
+            isotropic_material("bodies", problem, body, CRITERION)  # type: ignore[arg-type]
             _check_constants(problem, body, names, criterion)  # type: ignore[arg-type]
         return bodies  # type: ignore[return-value]
-    elastic = elastic_bodies(problem)
+    elastic = isotropic_bodies(problem)
+    if not elastic and elastic_bodies(problem):
+        isotropic_material("bodies", problem, elastic_bodies(problem)[0], CRITERION)
     known = tuple(body for body in elastic if not _lacks(problem, body, names))
     if not known and elastic:
         _check_constants(problem, elastic[0], names, criterion)

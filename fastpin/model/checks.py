@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from fastpin.errors import FastpinError, InputError, printable
+from fastpin.errors import FastpinError, InputError, UnknownNameError, printable
 from fastpin.model.inputs import SpecialFileError
 from fastpin.model.synonyms import closest
 
@@ -99,6 +99,14 @@ def choice(field: str, value: object, allowed: Sequence[str]) -> str:
         return str.__str__(value)  # a plain word, also for words of NumPy and of enumerations
     hint = closest(value, allowed) if isinstance(value, str) else ""
     raise InputError(field, f"must be {alternatives(allowed)}, not {as_toml(value)}{hint}")
+
+
+def known_name(field: str, name: object, known: Iterable[str]) -> None:
+    """Check a name of a library. An unknown one raises :class:`UnknownNameError`, which says which name is meant."""
+    try:
+        choice(field, name, tuple(known))
+    except InputError as error:
+        raise UnknownNameError(error.field, error.reason) from None
 
 
 def alternatives(words: Sequence[str]) -> str:
@@ -249,6 +257,14 @@ def number_array(field: str, values: ArrayLike) -> np.ndarray:
         if array.dtype.kind in _NUMBER_KINDS + "O" and not isinstance(values, np.ma.MaskedArray):
             return array.astype(float)
     raise InputError(field, f"must be a number, not {as_toml(values)}")
+
+
+def triples(field: str, values: ArrayLike) -> np.ndarray:
+    """Check an array of numbers with three components along its last axis, and return it as a float array."""
+    array = number_array(field, values)
+    if not array.ndim or array.shape[-1] != 3:
+        raise InputError(field, f"must have the shape (..., 3), not {array.shape}")
+    return array
 
 
 def as_toml(value: object) -> str:

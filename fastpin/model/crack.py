@@ -14,7 +14,7 @@ from fastpin.errors import InputError
 from fastpin.model.angles import DEGREE, angle_at, degrees_at, degrees_of
 from fastpin.model.checks import as_toml, choice, instance, items, number, numbers, positive
 from fastpin.model.growth import KnownLaw, known_law, law_entries, law_from
-from fastpin.model.points import EDGES, MOST_ANGLE, far_rim, material_of, near_rim, owner_of
+from fastpin.model.points import EDGES, MOST_ANGLE, far_rim, isotropic_material, material_of, near_rim, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 
@@ -141,6 +141,7 @@ def check_crack(problem: Problem, crack: CrackGrowth) -> None:
     body = edge_of(crack.body)
     if material_of(problem, body).is_rigid:
         raise InputError("body", f"the {owner_of(problem, body)} is rigid: no crack grows in it")
+    isotropic_material("body", problem, body, "a stress intensity")
     if problem.plate_body.lug.edge_only and (body == "seat" or problem.joint.bush is None):
         raise InputError("body", NO_INSIDE)
     check_length("last", problem, body, crack.angle, crack.last)

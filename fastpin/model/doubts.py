@@ -20,8 +20,10 @@ from contextvars import ContextVar
 import numpy as np
 
 from fastpin.errors import InputWarning
+from fastpin.model.angles import meant_degrees
 from fastpin.model.growth import KnownLaw, Nasgro
 from fastpin.model.history import LoadHistory
+from fastpin.model.laminate import Laminate
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.options import SolveOptions
@@ -90,6 +92,9 @@ MOST_ANGLE = 4.0 * math.pi
 LEAST_STRENGTH = 1e-5
 """Strength in parts of Young's modulus, below which it is probably in MPa: a pure soft metal yields at 1e-4."""
 
+SAME_THICKNESS = 0.01
+"""Relative difference of the thickness of a joint and of its stack of plies that is rounding of the plies."""
+
 MOST_WEAR = 1.0
 """Wear coefficient in parts of beta*, above which it is in another unit.
 
@@ -125,9 +130,11 @@ def doubts(
     problem: Problem, history: LoadHistory | None = None, options: SolveOptions | None = None
 ) -> list[InputWarning]:
     """Return a warning for each doubtful value of a problem, its loads and the options of the solver."""
-    found, has_units = [*_of_contact(problem), *_of_laminate(problem)], _has_units(problem)
+    found, has_units = [*_of_contact(problem), *_of_slip(problem)], _has_units(problem)
     for name, material in problem.joint.materials.items():
         found += _of_material(name, material, has_units)
+        if isinstance(material, Laminate):
+            found += _of_laminate(material, problem)
     if options is not None and options.arc is not None:
         angle = max(options.arc, key=abs)
         if abs(angle) > MOST_ANGLE:
@@ -281,7 +288,7 @@ def _of_contact(problem: Problem) -> Iterator[InputWarning]:
         )
 
 
-def _of_laminate(problem: Problem) -> Iterator[InputWarning]:
+def _of_slip(problem: Problem) -> Iterator[InputWarning]:
     """A doubt about friction that is so large that slip may have several solutions; (T63)."""
     laminate = problem.joint.hole.laminate
     if laminate is None or laminate.is_isotropic_contact:
@@ -292,10 +299,28 @@ def _of_laminate(problem: Problem) -> Iterator[InputWarning]:
         yield InputWarning("friction", f"{words} may have several solutions; fastpin follows one of them")
 
 
+def _of_laminate(laminate: Laminate, problem: Problem) -> Iterator[InputWarning]:
+    """Doubts about angles in rad, the thickness of the stack, and strengths of plies in MPa."""
+    angles = {angle for _, angle in laminate.plies if angle}
+    if angles and all(map(meant_degrees, angles)):
+        first = min(angles, key=abs)
+        words = f"the angles look like rad: {first:g} is {meant_degrees(first)} degrees in rad"
+        yield InputWarning("layup", f"{words}; angles of plies are in degrees")
+    thickness = problem.thickness
+    if thickness is not None and laminate.plies and abs(laminate.thickness - thickness) > SAME_THICKNESS * thickness:
+        words = (
+            f"{_short(thickness)} m is not that of the stack of plies, {_short(float(f'{laminate.thickness:.6g}'))} m"
+        )
+        yield InputWarning("thickness", f"{words}; loads are divided by the first")
+    for ply in dict.fromkeys(ply for ply, _ in laminate.plies):
+        for field, value in {} if ply.strengths is None else ply.strengths.entries().items():
+            if _has_units(problem) and value < LEAST_STRENGTH * ply.E2:
+                words = f"{_short(value)} Pa of a ply is very small; stresses are in Pa; {_meant(value, 'MPa', 1e6)}"
+                yield InputWarning(field, words)
+
+
 def _of_material(name: str, material: Material, has_units: bool) -> Iterator[InputWarning]:
-    if material.is_rigid:
-        return
-    if not material.is_isotropic:
+    if material.is_rigid or not material.is_isotropic:
         return
     nu = material.nu
     if 0.0 < nu < LEAST_NU:

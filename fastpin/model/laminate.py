@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -16,8 +17,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import number, number_array, positive, string
+from fastpin.model.angles import degrees_at, from_bottom
+from fastpin.model.checks import instance, number, number_array, positive, string, triples, whole_number
+from fastpin.model.lamination import Stack, checked_stack, ply_strains, ply_stresses, stress_turn, whole_compliance
+from fastpin.model.layup import checked_angles, layup_text
 from fastpin.model.materials import Material, Plane
+from fastpin.model.ply import PLIES, Ply, checked_ratio, ply_from
 from fastpin.model.synonyms import explains_keywords
 
 ALONG_LOAD = -0.5 * math.pi
@@ -31,6 +36,15 @@ LEAST_EIGENVALUE = 1e-9
 
 ROUND = 1e-12
 """Parts of lambda0, and of the sum and the product of the roots, that are rounding: the response is isotropic."""
+
+CONSISTENT = 1e-9
+"""Largest difference of given compliances from those of given plies, in parts of the largest: it is rounding."""
+
+MODULI = ("E1", "E2", "G12", "nu12")
+"""Names of the moduli of the whole and of Poisson's ratio, in their order."""
+
+LAMINATE_KEYS = ("layup", "ply", *MODULI, "compliance", "axis")
+"""Keys of a laminate in [plate] of a case file, beside those of an isotropic material."""
 
 ORDER = ("a11", "a12", "a22", "a16", "a26", "a66")
 """Names of the compliances, in their order."""
@@ -47,7 +61,10 @@ class Laminate(Material):
     Parameters
     ----------
     compliance : sequence of 6 floats
-        a11, a12, a22, a16, a26 and a66, 1/Pa, in the axes of the laminate.
+        a11, a12, a22, a16, a26 and a66, 1/Pa, in the axes of the laminate. They may be left out if `plies` are given.
+    plies : sequence of (Ply, float), optional
+        The whole stack from the lowest ply to the uppermost: each ply with the angle of its fibres, deg, from axis 1
+        of the laminate, counter-clockwise. See :meth:`from_layup` for a shorter notation.
     axis : float
         Direction of axis 1 of the laminate, rad from +x. The default is the direction of the load P.
     name : str, optional
@@ -62,20 +79,23 @@ class Laminate(Material):
     Raises
     ------
     InputError
-        If a value is no number or beyond its limits, or the compliances are not positive definite.
+        If a value is no number or beyond its limits, the compliances are not positive definite or not those of the
+        plies, or the stack bends when it is stretched: it is not symmetric.
     """
 
     is_isotropic: ClassVar[bool] = False
 
     E: float = field(init=False)
     nu: float = field(init=False)
-    compliance: tuple[float, ...]
+    compliance: tuple[float, ...] = ()
     axis: float = ALONG_LOAD
+    plies: Stack = ()
 
     def __post_init__(self) -> None:
+        self._check_plies()
         values = number_array("compliance", self.compliance)
         if values.shape != (len(ORDER),):
-            raise InputError("compliance", f"must be six numbers, {', '.join(ORDER)}")
+            raise InputError("compliance", f"must be six numbers, {', '.join(ORDER)}, or be left out with plies")
         given = tuple(number("compliance", value, -MOST_COMPLIANCE, MOST_COMPLIANCE) for value in values.tolist())
         for place in (0, 2, 5):
             if given[place] <= 0.0:
@@ -94,6 +114,67 @@ class Laminate(Material):
         for name in ("fatigue", "yield_strength", "ultimate_strength", "growth"):
             if getattr(self, name) is not None:
                 raise InputError(name, "has no meaning for a laminate")
+
+    def _check_plies(self) -> None:
+        """Check the plies, if there are any, and take the compliances from them."""
+        if isinstance(self.plies, tuple) and not self.plies:
+            return
+        object.__setattr__(self, "plies", checked_stack("plies", self.plies))
+        known = whole_compliance(self.plies)
+        if not isinstance(self.compliance, tuple) or self.compliance:
+            given = number_array("compliance", self.compliance)
+            size = CONSISTENT * max(map(abs, known))
+            if given.shape != (len(ORDER),) or not np.all(np.abs(given - known) <= size):
+                raise InputError("compliance", "must be left out or be that of the plies, if these are given")
+        object.__setattr__(self, "compliance", known)
+
+    @classmethod
+    @explains_keywords
+    def from_layup(
+        cls, layup: str | Sequence[float], ply: Ply | str, axis: float = ALONG_LOAD, name: str = ""
+    ) -> Laminate:
+        """A laminate of equal plies.
+
+        Parameters
+        ----------
+        layup : str or sequence of float
+            The angles of all plies, deg, as a text such as "[0/45/-45/90]2s" or one by one, see
+            :mod:`fastpin.model.layup`.
+        ply : Ply or str
+            The ply, or its name in :data:`fastpin.model.PLIES`.
+        axis, name
+            See :class:`Laminate`.
+
+        Raises
+        ------
+        InputError
+            If the layup or the ply can't be used, or the stack is not symmetric.
+        """
+        angles = checked_angles("layup", layup)
+        each = PLIES[ply] if isinstance(ply, str) else instance("ply", ply, Ply, "a fastpin.model.Ply or its name")
+        try:
+            return cls(plies=tuple((each, angle) for angle in angles), axis=axis, name=name)
+        except InputError as error:
+            raise InputError("layup" if error.field == "plies" else error.field, error.reason) from None
+
+    @classmethod
+    @explains_keywords
+    def from_plies(cls, plies: Iterable[tuple[Ply, float]], axis: float = ALONG_LOAD, name: str = "") -> Laminate:
+        """A laminate of any plies.
+
+        Parameters
+        ----------
+        plies : iterable of (Ply, float)
+            Each ply with its angle, deg, from the lowest to the uppermost.
+        axis, name
+            See :class:`Laminate`.
+
+        Raises
+        ------
+        InputError
+            If there is no ply, one can't be used, or the stack is not symmetric.
+        """
+        return cls(plies=checked_stack("plies", plies), axis=axis, name=name)
 
     @classmethod
     @explains_keywords
@@ -120,20 +201,26 @@ class Laminate(Material):
             number(field_, positive(field_, value), 1e-60, 1e60)
             for field_, value in (("E1", E1), ("E2", E2), ("G12", G12))
         )
-        ratio = number("nu12", nu12)
-        if ratio * ratio * second >= first * (1.0 - LEAST_EIGENVALUE):
-            raise InputError("nu12", f"must lie within +-sqrt(E1/E2) = {math.sqrt(first / second):g}, not {ratio:g}")
+        ratio = checked_ratio(first, second, nu12)
         return cls(compliance=(1 / first, -ratio / first, 1 / second, 0.0, 0.0, 1 / shear), axis=axis, name=name)
 
     @property
     def elastic_form(self) -> str:
         name = f"{self.name!r}, " if self.name else ""
-        E1, E2, G12, nu12 = self.moduli
-        return f"Laminate({name}E1={E1:g}, E2={E2:g}, G12={G12:g}, nu12={nu12:g}, axis={self.axis:g})"
+        name += f"{self.layup} of {self.ply_names}, " if self.plies else ""
+        moduli = ", ".join(f"{field}={value:g}" for field, value in self.shown_moduli.items())
+        return f"Laminate({name}{moduli}, axis={self.axis:g})"
 
     def scaled(self, factor: float) -> Laminate:
-        """The same laminate with all moduli times `factor`. A `factor` that is not positive raises InputError."""
+        """The same laminate with all moduli times `factor`. The strengths of its plies are then unknown.
+
+        A `factor` that is not positive raises InputError.
+        """
         softer = 1.0 / positive("factor", factor)
+        if self.plies:
+            scaled = {ply: ply.scaled(factor) for ply in dict.fromkeys(ply for ply, _ in self.plies)}
+            plies = tuple((scaled[ply], angle) for ply, angle in self.plies)
+            return Laminate(plies=plies, axis=self.axis, name=self.name)
         return Laminate(compliance=tuple(softer * value for value in self.compliance), axis=self.axis, name=self.name)
 
     def turned(self, angle: float) -> Laminate:
@@ -154,6 +241,118 @@ class Laminate(Material):
         """E1, E2 and G12 of the whole, Pa, and nu12, in the axes of the laminate."""
         a11, a12, a22, _, _, a66 = self.compliance
         return 1.0 / a11, 1.0 / a22, 1.0 / a66, -a12 / a11
+
+    @property
+    def label(self) -> str:
+        """The name, the layup and the names of the plies, as far as they are known; else "laminate"."""
+        layup = f"{self.layup} of {self.ply_names}" if self.plies else "laminate"
+        return f"{self.name}, {layup}" if self.name else layup
+
+    @property
+    def shown_moduli(self) -> dict[str, float]:
+        """E1, E2 and G12 of the whole, Pa, and nu12, by name."""
+        return dict(zip(MODULI, self.moduli, strict=True))
+
+    @property
+    def direction_words(self) -> str:
+        """The direction of axis 1, deg from the bottom of the hole: 0 lies along the load P."""
+        return f"axis 1 at {from_bottom(self.axis):.4g} deg from the bottom"
+
+    def constants(self) -> dict[str, Any]:
+        """The axis, and the compliances or the plies without their names: all that stresses depend on."""
+        return self._described(lambda ply: ply.constants())
+
+    def entries(self) -> dict[str, Any]:
+        """The laminate as a JSON-ready dict. :func:`laminate_from` reads it back.
+
+        Different plies are listed once, under `plies`. The stack has the places of its plies in this list under
+        `which`, and their angles, deg, under `angles`.
+        """
+        return {"name": self.name, **self._described(lambda ply: ply.entries())}
+
+    def _described(self, entries: Callable[[Ply], dict[str, Any]]) -> dict[str, Any]:
+        if not self.plies:
+            return {"axis": self.axis, "compliance": list(self.compliance)}
+        known = list(dict.fromkeys(ply for ply, _ in self.plies))
+        return {
+            "axis": self.axis,
+            "angles": [angle for _, angle in self.plies],
+            "which": [known.index(ply) for ply, _ in self.plies],
+            "plies": [entries(ply) for ply in known],
+        }
+
+    def summary(self) -> dict[str, Any]:
+        """The entry `laminate` of the JSON of a result. The axis is in deg from the bottom of the hole."""
+        given = {"layup": None, "ply": None, **self.toml()}
+        return {
+            "laminate": {
+                "layup": given["layup"],
+                "ply": given["ply"],
+                "axis": given["axis"],
+                "moduli": self.shown_moduli,
+                "compliance": list(self.compliance),
+                "is_isotropic_contact": self.is_isotropic_contact,
+            }
+        }
+
+    def toml(self) -> dict[str, Any]:
+        """The keys and values of [plate] in a case file: a layup with its plies, or the compliances, and the axis."""
+        axis = {"axis": degrees_at(self.axis)}
+        if not self.plies:
+            return {"compliance": list(self.compliance), **axis}
+        each = [ply for ply, _ in self.plies]
+        are_named = all(PLIES.get(ply.name) == ply for ply in each)
+        plies = [ply.name if are_named else ply.entries() for ply in each]
+        return {"layup": self.layup, "ply": plies if len(set(each)) > 1 else plies[0], **axis}
+
+    @property
+    def layup(self) -> str:
+        """The angles of the plies as a text, such as "[0/45/-45/90]2s"; empty without plies."""
+        return layup_text([angle for _, angle in self.plies]) if self.plies else ""
+
+    @property
+    def ply_names(self) -> str:
+        """The names of the plies, each one once; "plies" stands for plies without a name."""
+        return ", ".join(dict.fromkeys(ply.name or "plies" for ply, _ in self.plies))
+
+    @property
+    def thickness(self) -> float:
+        """Thickness of the stack, m; NaN without plies."""
+        return sum(ply.thickness for ply, _ in self.plies) if self.plies else math.nan
+
+    def ply_strains(self, stress: Any) -> np.ndarray:
+        """The strains of all plies in their own axes, from the stress of the whole: see :meth:`ply_stresses`."""
+        return ply_strains(self._stack(), self._own_strain(stress))
+
+    def ply_stresses(self, stress: Any) -> np.ndarray:
+        """The stresses of all plies in their own axes, from the stress of the whole.
+
+        Parameters
+        ----------
+        stress : array, shape (..., 3)
+            (s_x, s_y, s_xy) of the whole, Pa: means through the thickness.
+
+        Returns
+        -------
+        array, shape (plies, ..., 3)
+            (s_1, s_2, t_12) along and across the fibres of each ply, Pa.
+
+        Raises
+        ------
+        InputError
+            If the laminate has no plies, or `stress` is of another shape.
+        """
+        return ply_stresses(self._stack(), self._own_strain(stress))
+
+    def _stack(self) -> Stack:
+        if not self.plies:
+            raise InputError("plies", "are unknown: the laminate was given by its compliances or moduli")
+        return self.plies
+
+    def _own_strain(self, stress: Any) -> np.ndarray:
+        """The strains of the whole in its own axes, shape (..., 3)."""
+        own: np.ndarray = triples("stress", stress) @ stress_turn(self.axis).T @ _matrix(self.compliance)
+        return own
 
     @cached_property
     def matrix(self) -> np.ndarray:
@@ -237,6 +436,22 @@ class Laminate(Material):
         return mean, 0.5 * complex(w[0, 0] - w[1, 1], w[1, 0] + w[0, 1])
 
 
+def laminate_from(**given: Any) -> Laminate:
+    """Return the laminate of such entries, see :meth:`Laminate.entries`.
+
+    Raises
+    ------
+    InputError
+        If an entry can't be used.
+    """
+    if "plies" not in given:
+        return Laminate(**given)
+    known, which, angles = (given.pop(name) for name in ("plies", "which", "angles"))
+    plies = [ply_from(**each) for each in known]
+    places = [whole_number("which", place, 0, len(plies) - 1) for place in which]
+    return Laminate.from_plies([(plies[place], angle) for place, angle in zip(places, angles, strict=True)], **given)
+
+
 def _matrix(values: tuple[float, ...]) -> np.ndarray:
     """The compliance matrix (3, 3) of a11, a12, a22, a16, a26 and a66."""
     a11, a12, a22, a16, a26, a66 = values
@@ -248,10 +463,7 @@ def in_axes(compliance: np.ndarray, angle: float) -> np.ndarray:
 
     The shear strain is the engineering one.
     """
-    cos, sin = np.cos(angle), np.sin(angle)
-    c2, s2, cs = cos * cos, sin * sin, cos * sin
-    # stresses in the old axes from those in the new ones
-    back = np.moveaxis(np.array([[c2, s2, -2.0 * cs], [s2, c2, 2.0 * cs], [cs, -cs, c2 - s2]]), (0, 1), (-2, -1))
+    back = stress_turn(-np.asarray(angle))  # stresses in the old axes from those in the new ones
     turned: np.ndarray = np.swapaxes(back, -1, -2) @ compliance @ back
     return turned
 

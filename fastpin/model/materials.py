@@ -15,14 +15,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from fastpin.errors import InputError, UnknownNameError
-from fastpin.model.checks import choice, instance, number, positive, string
+from fastpin.errors import InputError
+from fastpin.model.checks import choice, instance, known_name, number, positive, string
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.growth import KnownLaw, known_law
+from fastpin.model.growth import KnownLaw, known_law, law_entries
 from fastpin.model.synonyms import explains_keywords
 
 Plane = Literal["strain", "stress"]
@@ -127,6 +127,43 @@ class Material:
         name = f", {self.name!r}" if self.name else ""
         return f"Material({self.E:g}, {self.nu:g}{name})"
 
+    @property
+    def label(self) -> str:
+        """Words that name the material; empty if it has no name."""
+        return self.name
+
+    @property
+    def shown_moduli(self) -> dict[str, float]:
+        """The elastic constants by the names that they have in text: moduli in Pa, and Poisson's ratio."""
+        return {"E": self.E, "nu": self.nu}
+
+    @property
+    def direction_words(self) -> str:
+        """Words for the direction of the material; empty for an isotropic one."""
+        return ""
+
+    def constants(self) -> dict[str, Any]:
+        """The numbers that the elastic response depends on, by name. A modulus may be infinite."""
+        return {"E": self.E, "nu": self.nu}
+
+    def entries(self) -> dict[str, Any]:
+        """The elastic constants and the name as a JSON-ready dict. A modulus may be infinite."""
+        return {"name": self.name, **self.constants()}
+
+    def summary(self) -> dict[str, Any]:
+        """What the JSON of a result has beside E, nu and the strengths; empty for an isotropic material."""
+        return {}
+
+    def toml(self) -> dict[str, Any]:
+        """The keys and values of the section of a case file. A name that fastpin does not know is left out."""
+        if self.is_rigid:
+            return {"rigid": True}
+        if MATERIALS.get(self.name) == self:
+            return {"material": self.name}
+        fatigue = {} if self.fatigue is None else {"fatigue": self.fatigue.given()}
+        growth = {} if self.growth is None else {"growth": law_entries(self.growth)}
+        return {"E": self.E, "nu": self.nu, **self.strengths, **fatigue, **growth}
+
     @classmethod
     def rigid(cls) -> Material:
         """A rigid material: the exact limit of an infinite modulus."""
@@ -175,10 +212,7 @@ class Materials(dict[str, Material]):
     """Materials by name. An unknown name raises :class:`UnknownNameError`, which says which name is meant."""
 
     def __missing__(self, name: object) -> Material:
-        try:
-            choice("material", name, tuple(self))
-        except InputError as error:
-            raise UnknownNameError(error.field, error.reason) from None
+        known_name("material", name, self)
         raise KeyError(name)
 
 

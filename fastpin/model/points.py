@@ -165,6 +165,31 @@ def elastic_bodies(problem: Problem) -> tuple[Body, ...]:
     return tuple(body for body in bodies_of(problem) if not material_of(problem, body).is_rigid)
 
 
+CRITERION = "a criterion of fatigue"
+"""Words for the criteria that have no meaning for a laminate."""
+
+
+def isotropic_bodies(problem: Problem) -> tuple[Body, ...]:
+    """The elastic bodies of a problem that are no laminates: criteria of metals have a meaning for them only."""
+    return tuple(body for body in elastic_bodies(problem) if material_of(problem, body).is_isotropic)
+
+
+def isotropic_material(field: str, problem: Problem, body: Body, subject: str) -> Material:
+    """The material of a body, see :func:`material_of`.
+
+    Raises
+    ------
+    InputError
+        If there is no such body, or it is a laminate. The message says that the `subject` is one of isotropic bodies.
+    """
+    material = material_of(problem, body)
+    if not material.is_isotropic:
+        raise InputError(
+            field, f"the {owner_of(problem, body)} is a laminate, and {subject} is that of isotropic bodies"
+        )
+    return material
+
+
 def near_rim(problem: Problem, body: Body) -> float:
     """Radius of a body's edge over the hole's radius: above 1 at the seat of a bush."""
     return problem.joint.bush or 1.0 if body == "seat" else 1.0

@@ -288,6 +288,8 @@ class Source:
         bodies = fatigue_bodies(self.case.problem, CRITERION)
         if self.case.problem.surfaces.plate.is_rigid:
             return f"The {body} is rigid: it has no stress and no fatigue."
+        if not bodies:
+            return f"The {body} is a laminate: the criteria of fatigue are those of isotropic bodies."
         if self.cycle is None:
             return f"Fatigue needs a cycle: {self.why_no_cycle}."
         count = len(self.cycle.states)

@@ -241,8 +241,12 @@ def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list
 def _material(material: Material, dimensionless: bool) -> str:
     if material.is_rigid:
         return "rigid"
-    name = f"{material.name}, " if material.name else ""
-    modulus = f"E = {material.E:.4g} / beta*" if dimensionless else f"E = {PASCAL.text(material.E)}"
+    pressures = [name for name in material.shown_moduli if not name.startswith("nu")]
+    unit = "{:.4g} / beta*".format if dimensionless else PASCAL.text
+    moduli = [
+        f"{name} = {unit(value) if name in pressures else f'{value:.4g}'}"
+        for name, value in material.shown_moduli.items()
+    ]
     strength = material.known_yield_strength
-    yields = "" if strength is None else f", yields at {PASCAL.text(strength, 4)}"
-    return f"{name}{modulus}, nu = {material.nu:.4g}{yields}"
+    yields = "" if strength is None else f"yields at {PASCAL.text(strength, 4)}"
+    return ", ".join(filter(None, [material.label, *moduli, material.direction_words, yields]))

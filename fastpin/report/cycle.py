@@ -96,8 +96,10 @@ def spectrum_line(found: SpectrumDamage) -> str:
 def fatigue_bodies(problem: Problem, criterion: str) -> list[Body]:
     """The edges of holes whose fatigue is reported by a criterion: those with constants; else the pin's hole.
 
-    By Smith, Watson and Topper the parameter needs no constants.
+    By Smith, Watson and Topper the parameter needs no constants. A laminate has no fatigue.
     """
+    if not material_of(problem, "plate").is_isotropic:
+        return []
     elastic = [body for body in EDGES if body in elastic_bodies(problem)]
     known = [body for body in elastic if criterion == SWT or material_of(problem, body).fatigue]
     return known or ["plate"]

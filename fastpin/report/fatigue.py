@@ -12,7 +12,7 @@ from fastpin.damage import Fatigue, SpectrumDamage, cycle_states
 from fastpin.damage import fatigue as fatigue_of
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
-from fastpin.model.points import elastic_bodies, owner_of
+from fastpin.model.points import isotropic_bodies, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.case import edge_body
@@ -72,7 +72,7 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
         The states of the last cycle.
     """
     rows = []
-    for body in (body for body in elastic_bodies(problem) if body != "pin"):
+    for body in (body for body in isotropic_bodies(problem) if body != "pin"):
         subject = f"last cycle only: {edge_body(problem, body)}, fatigue"
         limited = None
         if states and not isinstance(known, str):

@@ -16,6 +16,7 @@ from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA
 from fastpin.model.checks import choice
 from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.fields import FIELDS, Field
+from fastpin.model.laminate import MODULI, ORDER
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import METHODS, SolveOptions
@@ -111,20 +112,19 @@ def _crack() -> Schema:
 
 
 def _problem() -> Schema:
-    material = _object(
-        {
-            "name": _TEXT,
-            "rigid": _TRUTH,
-            "E": _UNKNOWN | {"description": "Pa; null: rigid"},
-            "nu": _NUMBER,
-            **dict.fromkeys(STRENGTHS, _UNKNOWN | {"description": "Pa; null: unknown"}),
-        }
-    )
+    material = {
+        "name": _TEXT,
+        "rigid": _TRUTH,
+        "E": _UNKNOWN | {"description": "Pa; null: rigid; of a laminate: that of the isotropic plate with its contact"},
+        "nu": _NUMBER,
+        **dict.fromkeys(STRENGTHS, _UNKNOWN | {"description": "Pa; null: unknown"}),
+    }
+    plate = _object(material | {"laminate": _laminate()}, without=["laminate"])
     body = {"type": "object", "properties": {"kind": _TEXT}, "required": ["kind"]}
     return _object(
         {
-            "pin": material,
-            "plate": material,
+            "pin": _object(material),
+            "plate": plate,
             "plane": {"enum": ["strain", "stress"]},
             "dundurs": _object({"alpha": _NUMBER, "beta": _NUMBER, "convention": _TEXT}),
             "beta_star": _NUMBER,
@@ -146,6 +146,23 @@ def _field(field: Field) -> Schema:
     if field.is_profile:
         return {"anyOf": [_NUMBER, profile]}
     return _TEXT if field.choices else _UNKNOWN if field.is_optional else _NUMBER
+
+
+def _laminate() -> Schema:
+    ply = {
+        "description": "name or numbers of the ply; a list: of each ply",
+        "type": ["string", "object", "array", "null"],
+    }
+    return _object(
+        {
+            "layup": _or_null(_TEXT),
+            "ply": ply,
+            "axis": _NUMBER | {"description": "deg from the bottom of the hole"},
+            "moduli": _object(dict.fromkeys(MODULI, _NUMBER)),
+            "compliance": _list_of(_NUMBER, len(ORDER)) | {"description": f"{', '.join(ORDER)}, 1/Pa"},
+            "is_isotropic_contact": _TRUTH,
+        }
+    )
 
 
 def _state(seat: Schema | None = None) -> Schema:

@@ -127,7 +127,7 @@ def unit_names(problem: Problem) -> dict[str, str]:
 def _material_summary(material: Material) -> dict[str, Any]:
     modulus = None if material.is_rigid else material.E
     known = {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
-    return known | {name: getattr(material, name) for name in STRENGTHS}
+    return known | {name: getattr(material, name) for name in STRENGTHS} | material.summary()
 
 
 def _body_summary(body: BodyBase) -> dict[str, Any]:

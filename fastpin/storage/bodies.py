@@ -17,15 +17,21 @@ from fastpin.bodies.kinds import KINDS
 from fastpin.model.checks import as_toml
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import law_entries, law_from
+from fastpin.model.laminate import laminate_from
 from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.problem import Problem
 from fastpin.storage.damage import as_python, dataset_of, text_of
+
+LAMINATE = "laminate"
+"""Group of a material that is a laminate: its axis, and its compliances or its plies."""
 
 
 def write_material(group: h5py.Group, name: str, material: Material) -> None:
     """Write a material into a new group of this name."""
     body = group.create_group(name)
     body.attrs.update(E=material.E, nu=material.nu, name=material.name, **material.strengths)
+    if not material.is_isotropic:
+        _write(body, LAMINATE, material.entries())
     if material.fatigue is not None:
         body.create_group("fatigue").attrs.update(material.fatigue.given())
     if material.growth is not None:
@@ -35,6 +41,8 @@ def write_material(group: h5py.Group, name: str, material: Material) -> None:
 def read_material(group: h5py.Group) -> Material:
     """Read a material from its group."""
     attributes, fatigue = group.attrs, None
+    if LAMINATE in group:
+        return laminate_from(**_read_entries(group[LAMINATE]))
     if "fatigue" in group:
         stored = group["fatigue"].attrs.items()
         fatigue = FatigueConstants(**{str(constant): as_python(value) for constant, value in stored})
@@ -44,6 +52,15 @@ def read_material(group: h5py.Group) -> Material:
     strengths = {name: float(attributes[name]) for name in STRENGTHS if name in attributes}
     elastic = float(attributes["E"]), float(attributes["nu"])
     return Material(*elastic, text_of(attributes["name"]), fatigue, **strengths, growth=growth)
+
+
+def _read_entries(group: h5py.Group) -> dict[str, Any]:
+    """Read the entries of a laminate. The plies are a list of tables."""
+    found = {str(name): as_python(value) for name, value in group.attrs.items()}
+    for name, array in group.items():
+        tables = [_read_entries(array[place]) for place in sorted(array, key=int)] if name == "plies" else None
+        found[name] = array[()].tolist() if tables is None else tables
+    return found
 
 
 def write_bodies(group: h5py.Group, problem: Problem) -> None:
@@ -73,10 +90,20 @@ def _write(parent: h5py.Group, name: str, entries: Mapping[str, Any]) -> None:
             write_material(group, key, value)
         elif isinstance(value, Mapping):
             _write(group, key, value)
+        elif isinstance(value, list):
+            _write_list(group, key, value)
         elif isinstance(value, np.ndarray):
             group[key] = value
         elif value is not None:
             group.attrs[key] = value
+
+
+def _write_list(group: h5py.Group, key: str, value: list[Any]) -> None:
+    """Write a list of numbers as an array, and a list of tables as groups with their places for names."""
+    if all(isinstance(each, Mapping) for each in value):
+        _write(group, key, {str(place): each for place, each in enumerate(value)})
+    else:
+        group[key] = np.array(value)
 
 
 def _read_body(group: h5py.Group) -> BodyBase:

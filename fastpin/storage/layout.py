@@ -75,6 +75,12 @@ WITH_PROFILES = 4
 WITH_SEAT = 5
 """Version with a bush that slips in its seat, for the same reason."""
 
+WITH_LAMINATE = 6
+"""Version with a plate that is a laminate, for the same reason."""
+
+VERSIONS = (FORMAT_VERSION, WITH_BODIES, WITH_PROFILES, WITH_SEAT, WITH_LAMINATE)
+"""Versions that this program reads."""
+
 # Each dict below maps a stored field to its kind of quantity: a key of fastpin.model.units.units, or "" for a plain
 # number. The other fields of State are written and read one by one. Error bars come from the states in ``/coarse``.
 # A test checks that every field of State is in one of the three tables.
@@ -186,7 +192,8 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     file.attrs["format"] = FORMAT
     with_bodies = WITH_BODIES if problem.has_bodies else FORMAT_VERSION
     with_profiles = WITH_PROFILES if problem.profiles else with_bodies
-    file.attrs["format_version"] = with_profiles if problem.seat is None else WITH_SEAT
+    with_seat = with_profiles if problem.seat is None else WITH_SEAT
+    file.attrs["format_version"] = with_seat if problem.pair.plate.is_isotropic else WITH_LAMINATE
     file.attrs["complete"] = False
     file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
     file.attrs["platform"] = platform.platform()
@@ -566,7 +573,7 @@ def check_format(file: h5py.File, path: str) -> None:
     """Raise :class:`InputError` if a file is no result, or has another version of the format."""
     if file.attrs.get("format") != FORMAT:
         raise InputError(path, "is an HDF5 file, but not a result of fastpin")
-    if file.attrs.get("format_version") not in (FORMAT_VERSION, WITH_BODIES, WITH_PROFILES, WITH_SEAT):
+    if file.attrs.get("format_version") not in VERSIONS:
         made_by = file.attrs.get("version_fastpin")
         origin = "" if made_by is None else f"; it was written by fastpin {made_by}"
         raise InputError(path, f"has a format that this version of fastpin can't read{origin}")

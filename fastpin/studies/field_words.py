@@ -16,6 +16,9 @@ _KEYS = {
     "reaction": "distance of the reaction",
     "interference": "interference of the bush",
     "nodes": "number of nodes",
+    "axis": "axis (deg)",
+    **{name: f"modulus {name}" for name in ("E1", "E2", "G12")},
+    "nu12": "Poisson's ratio nu12",
 }
 """Words for keys whose names are no words."""
 
@@ -23,7 +26,7 @@ _KEYS = {
 _KIND = {
     **{f"contact.{name}": field.kind for name, field in FIELDS.items()},
     "pin.E": "traction",
-    "plate.E": "traction",
+    **dict.fromkeys(("plate.E", "plate.E1", "plate.E2", "plate.G12"), "traction"),
     "pin_body.bore_radius": "length",
     "plate_body.E": "traction",
     "plate_body.outer_radius": "length",

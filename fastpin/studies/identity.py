@@ -81,7 +81,10 @@ def _number(value: float) -> float:
 
 
 def _material(material: Material) -> dict[str, Any]:
-    elastic = {"E": "inf" if math.isinf(material.E) else material.E, "nu": _number(material.nu)}
+    elastic = {
+        name: "inf" if value == math.inf else _without_negative_zero(value)
+        for name, value in material.constants().items()
+    }
     constants = {} if material.fatigue is None else material.fatigue.given()
     constants.pop("source", None)
     growth = {} if material.growth is None else law_entries(material.growth)

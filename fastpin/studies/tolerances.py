@@ -317,7 +317,8 @@ def _nominal(base: BaseCase, case: Case, name: str) -> float | None:
     }  # fmt: skip
     if value is None and section in owners and len(keys) == 1:
         owner = owners[section]
-        value = getattr(owner, keys[0], getattr(getattr(owner, "material", None), keys[0], None))
+        written = owner.toml() if section == "plate" else {}  # the axis of a laminate is in degrees there
+        value = written.get(keys[0], getattr(owner, keys[0], getattr(getattr(owner, "material", None), keys[0], None)))
     is_number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     return value if is_number else None
 

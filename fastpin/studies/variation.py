@@ -25,6 +25,7 @@ from fastpin.model.checks import number
 from fastpin.model.crack import CrackGrowth
 from fastpin.model.growth import law_entries
 from fastpin.model.history import check_loads
+from fastpin.model.laminate import LAMINATE_KEYS, MODULI
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.materials import MATERIALS, STRENGTHS, Material
 from fastpin.model.wear import Wear
@@ -130,11 +131,16 @@ def _scaled(text: CaseText, case: Case, factors: Mapping[str, Any]) -> Case:
     return replace(case, history=history)
 
 
+_ISOTROPIC = ("material", "E", "nu", "rigid", "fatigue", "growth", *STRENGTHS)
+
 _REPLACED: dict[str, tuple[str, ...]] = {
-    "material": ("E", "nu", "rigid", "fatigue", "growth", *STRENGTHS),
-    "E": ("material", "rigid"),
-    "nu": ("material", "rigid"),
-    "rigid": ("material", "E", "nu", "fatigue", "growth", *STRENGTHS),
+    "material": ("E", "nu", "rigid", "fatigue", "growth", *STRENGTHS, *LAMINATE_KEYS),
+    "E": ("material", "rigid", *LAMINATE_KEYS),
+    "nu": ("material", "rigid", *LAMINATE_KEYS),
+    "rigid": ("material", "E", "nu", "fatigue", "growth", *STRENGTHS, *LAMINATE_KEYS),
+    **dict.fromkeys(("layup", "ply"), (*_ISOTROPIC, *MODULI, "compliance")),
+    **dict.fromkeys(MODULI, (*_ISOTROPIC, "layup", "ply", "compliance")),
+    "compliance": (*_ISOTROPIC, "layup", "ply", *MODULI),
     "ring_outer_radius": ("reaction",),
     "reaction": ("ring_outer_radius", "support"),
 }

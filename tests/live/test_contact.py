@@ -19,6 +19,7 @@ from fastpin.live.contact import LiveContact
 from fastpin.live.pictures import CURVE_ERROR
 from fastpin.live.protocol import ALONE, CLASS, Limits
 from fastpin.model import About, InitialGap, Profile, Wear
+from fastpin.model.angles import angle_at
 from fastpin.states.curves import traction_patches
 from fastpin.states.state import State
 from fastpin.verification.body_cases import ring_compliance
@@ -601,3 +602,37 @@ def test_a_class_has_fewer_nodes() -> None:
     assert page.latest["case"]["most_nodes"] == CLASS.nodes
     assert page.tell("nodes", nodes=CLASS.nodes + 1)["sentence"] == "nodes: must be at most 400 on this page, not 401"
     assert page.live.session.grid.size <= CLASS.nodes
+
+
+LAMINATE = """
+[pin]
+material = "steel"
+[plate]
+layup = "[0/45/-45/90]2s"
+ply = "T300/5208"
+axis = 120
+[contact]
+plane = "stress"
+hole_radius = 10e-3
+clearance = 20e-6
+friction = 0.4
+[[load]]
+P = 2.42e6
+"""
+
+
+def test_a_laminate_has_a_control_of_its_axis_only() -> None:
+    page = Page(contact(LAMINATE, nodes=21))
+    controls = {control["name"]: control for control in page.latest["case"]["controls"]}
+    assert controls["plate_axis"]["value"] == -60.0
+    assert not {"plate_material", "plate_E", "plate_nu", "plate_body"} & set(controls)
+    page.tell("change", changes={"plate_axis": 30.0})
+    plate = page.live.session.problem.pair.plate
+    assert plate.axis == angle_at(30.0)
+    assert plate.layup == "[0/45/-45/90]2s"
+    page.tell("change", changes={"plane": "strain"})
+    assert page.live.session.problem.pair.plate == plate
+    for changes, words in [({"plate_E": 1e9}, "the plate is a laminate"), ({"plate_axis": "x"}, "must be a number")]:
+        assert words in page.tell("change", changes=changes)["sentence"]
+    other = Page(contact(nodes=21))
+    assert "belongs to a laminate" in other.tell("change", changes={"plate_axis": 30.0})["sentence"]

@@ -25,7 +25,7 @@ from fastpin.storage.layout import (
     NUMBER_FIELDS,
     OTHER_FIELDS,
     SLIP_FIELDS,
-    WITH_SEAT,
+    WITH_LAMINATE,
 )
 from fastpin.storage.store import load, load_points, save
 from tests.support.samples import PAIR, sample_result
@@ -137,7 +137,7 @@ def test_newer_formats_and_missing_parts_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.h5"
     save(sample_result(), path)
     with h5py.File(path, "a") as file:
-        file.attrs["format_version"] = WITH_SEAT + 1
+        file.attrs["format_version"] = WITH_LAMINATE + 1
     with pytest.raises(InputError, match="format that this version of fastpin can't read; it was written by fastpin"):
         load(path)
     for part in ("states/gap", "problem/pin", "grid/theta", "solver/statistics"):

@@ -47,6 +47,30 @@ materials = st.builds(fastpin.Material, moduli, ratios, words) | st.just(fastpin
 
 
 @st.composite
+def plies(draw: st.DrawFn) -> fastpin.model.Ply:
+    """Plies of any stable constants, some with strengths."""
+    first, second, shear = (draw(scale(8, 12)) for _ in range(3))
+    ratio = draw(between(-0.9, 0.9)) * math.sqrt(first / second)
+    strengths = draw(st.none() | st.builds(fastpin.model.PlyStrengths, *[scale(6, 10)] * 5))
+    texts = draw(words), draw(words)
+    return fastpin.model.Ply(first, second, shear, ratio, draw(scale(-5, -2)), strengths, *texts)
+
+
+@st.composite
+def laminates(draw: st.DrawFn) -> fastpin.model.Laminate:
+    """Laminates of named plies, of other plies or of moduli, with axes that degrees give exactly."""
+    axis = draw(angles)
+    if draw(st.booleans()):
+        ply = draw(plies())
+        return fastpin.model.Laminate.from_moduli(ply.E1, ply.E2, ply.G12, ply.nu12, axis)
+    one = st.sampled_from(list(fastpin.model.PLIES.values())) | plies()
+    kinds = draw(st.lists(one, min_size=1, max_size=3))
+    turns = st.sampled_from([0.0, 45.0, -45.0, 90.0]) | between(-90.0, 90.0)
+    half = draw(st.lists(st.tuples(st.sampled_from(kinds), turns), min_size=1, max_size=6))
+    return fastpin.model.Laminate.from_plies(half + half[::-1], axis)
+
+
+@st.composite
 def pairs(draw: st.DrawFn) -> fastpin.MaterialPair:
     """Two materials. At most one of them is rigid."""
     pin, plate = draw(materials), draw(materials)
