@@ -22,6 +22,11 @@ from .hot_spots import HotSpot as HotSpot
 from .hot_spots import cycle_states as cycle_states
 from .hot_spots import damage_sum as damage_sum
 from .hot_spots import fatigue as fatigue
+from .joint_strength import FailureLoad as FailureLoad
+from .joint_strength import JointStrength as JointStrength
+from .joint_strength import failure_load as failure_load
+from .joint_strength import joint_strength as joint_strength
+from .joint_strength import ply_stresses as ply_stresses
 from .laminates import MODES as MODES
 from .laminates import PLY_CRITERIA as PLY_CRITERIA
 from .laminates import FirstPly as FirstPly
