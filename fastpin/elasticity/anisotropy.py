@@ -1,4 +1,4 @@
-"""The term by which the hole in a laminate differs from the hole in an isotropic plate, in dimensionless form; (T62).
+"""The term by which the hole in a laminate differs from the hole in an isotropic plate, in dimensionless form; (T51).
 
 With p = N + iT the term adds D p to h - i s of the nodes:
 

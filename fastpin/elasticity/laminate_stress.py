@@ -1,4 +1,4 @@
-"""Stresses in a laminate with a hole, from the tractions on the hole and a remote stress; (T65)-(T67).
+"""Stresses in a laminate with a hole, from the tractions on the hole and a remote stress; (T54)-(T56).
 
 The plane is mapped twice, z_k = x + mu_k y with the roots mu_k of the material, and the hole of each plane on the
 circle |zeta_k| = 1. There the potentials are Cauchy integrals of the tractions. Lengths are in units of the radius R,

@@ -100,7 +100,7 @@ def fill_column(first, second, cross, half_hat, closed, rows, column, out):
 
 @compiled
 def add_turned_column(by_distance, turn, factor, rows, column, out):
-    """Add one `column` of the term of a laminate, (T62), at `rows` (r,) to `out` (r,).
+    """Add one `column` of the term of a laminate, (T51), at `rows` (r,) to `out` (r,).
 
     Rows belong to (gap, slip), columns to (N, T). The term of two nodes is k `factor` turn_i turn_j, with the number k
     of their distance in `by_distance` (n,), and `turn` (n,) complex.

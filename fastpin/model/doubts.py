@@ -289,7 +289,7 @@ def _of_contact(problem: Problem) -> Iterator[InputWarning]:
 
 
 def _of_slip(problem: Problem) -> Iterator[InputWarning]:
-    """A doubt about friction that is so large that slip may have several solutions; (T63)."""
+    """A doubt about friction that is so large that slip may have several solutions; (T52)."""
     laminate = problem.joint.hole.laminate
     if laminate is None or laminate.is_isotropic_contact:
         return

@@ -1,7 +1,7 @@
 """Laminates: the material of an anisotropic plate in plane stress, and its constants at the edge of a round hole.
 
 At the edge of a round hole a symmetric tensor Lambda and a number s hold the whole elastic response, docs/theory.md
-(T60). The contact is that of an isotropic plate with the same lambda0 = tr Lambda / 2 and s, and of one term with the
+(T49). The contact is that of an isotropic plate with the same lambda0 = tr Lambda / 2 and s, and of one term with the
 rest of Lambda, the number delta.
 """
 
@@ -372,7 +372,7 @@ class Laminate(Material):
 
     @cached_property
     def _edge(self) -> tuple[np.ndarray, float]:
-        """Lambda in the axes of the laminate, and s, (T61)."""
+        """Lambda in the axes of the laminate, and s, (T50)."""
         own = _matrix(self.compliance)
         one, two = stroh_roots(own)
         a11, a12, a22 = own[0, 0], own[0, 1], own[1, 1]
@@ -414,7 +414,7 @@ class Laminate(Material):
 
     @cached_property
     def gauge_tensor(self) -> np.ndarray:
-        """The tensor H of (T68) in x and y, 1/Pa, shape (2, 2).
+        """The tensor H of (T57) in x and y, 1/Pa, shape (2, 2).
 
         A force F on the hole moves the mean of the hole over that of a circle r in the plate by H F ln(r/R)/(2 pi).
         """
@@ -422,7 +422,7 @@ class Laminate(Material):
         return tensor * (1.0 - self.s**2 / float(np.linalg.det(tensor)))
 
     def hole_displacement(self, remote: Any) -> tuple[complex, complex]:
-        """The coefficients c0 and c2 of v/R = c0 + c2 exp(-2i theta) at the hole under a remote stress, (T64).
+        """The coefficients c0 and c2 of v/R = c0 + c2 exp(-2i theta) at the hole under a remote stress, (T53).
 
         v = v_r + i v_theta is the displacement of the edge relative to the far plate, which does not turn. `remote` is
         (sxx, syy, sxy), shape (3,), Pa.

@@ -1,4 +1,4 @@
-"""Exponents of the tractions at edges of the contact and at borders of stick zones, (T21), (T26), (T63)."""
+"""Exponents of the tractions at edges of the contact and at borders of stick zones, (T21), (T26), (T52)."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Coupling:
     Attributes
     ----------
     tilt : ndarray, shape (3, n)
-        Shift of the exponents away from 1/2: arctan(mu beta_D)/pi, (T26), or that of a laminate, (T63).
+        Shift of the exponents away from 1/2: arctan(mu beta_D)/pi, (T26), or that of a laminate, (T52).
     beta : ndarray, shape (n,)
         beta_D, or s/sqrt(det Lambda) of a laminate: the coupling where both bodies stick.
     share : ndarray, shape (3, n)
-        The number rho of (T63): at a border mu N is the reserve less rho times the shear's part; 1 if isotropic.
+        The number rho of (T52): at a border mu N is the reserve less rho times the shear's part; 1 if isotropic.
     cusp : ndarray, shape (3, n)
         The number that takes the place of beta_D in the cusp of the pressure beside a border.
     """

@@ -84,7 +84,7 @@ class StickZone:
 
 
 class PressureCusp(NamedTuple):
-    """The cusp of N at a border of unlike bodies, if mu N - s T begins with c0 x^a there; (T26), (T63).
+    """The cusp of N at a border of unlike bodies, if mu N - s T begins with c0 x^a there; (T26), (T52).
 
     Attributes
     ----------

@@ -1,7 +1,7 @@
 """The inverse of the operator at neighbouring, equally spaced nodes, and the responses of all other nodes.
 
 The operator is block Toeplitz there, so the inverse takes O(n^2) operations (:mod:`fastpin.kernels.toeplitz`). In a
-laminate it is block Toeplitz for tractions along fixed axes, (T62): those in which Lambda is diagonal. The expansion of
+laminate it is block Toeplitz for tractions along fixed axes, (T51): those in which Lambda is diagonal. The expansion of
 the pin under a uniform pressure is then an update of rank one, by the formula of Sherman and Morrison.
 """
 

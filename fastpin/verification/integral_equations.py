@@ -175,7 +175,7 @@ def _traction_terms(bodies: BodyTerms, grid: Grid, tractions: np.ndarray) -> np.
 def _laminate_terms(
     anisotropy: complex, theta: np.ndarray, principal: np.ndarray, total: complex, force: complex
 ) -> np.ndarray:
-    """Terms of (46) and (47), shape (2, n), of the anisotropy of a laminate, (T69).
+    """Terms of (46) and (47), shape (2, n), of the anisotropy of a laminate, (T58).
 
     `principal` (n,) is the principal value of int cot(phi/2) (N + iT), `total` is int (N + iT), and `force` Q + iP.
     """

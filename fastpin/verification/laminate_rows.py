@@ -119,7 +119,7 @@ def rigid_force(solving: Solving) -> Checks:
 
 
 def frictionless(solving: Solving) -> Checks:
-    """A rigid pin in an interference fit without friction: the pressure by Fourier collocation of (T60)."""
+    """A rigid pin in an interference fit without friction: the pressure by Fourier collocation of (T49)."""
     plate = laminate((0.0, 0.0, 45.0, -45.0), math.degrees(0.5))
     problem = Problem.from_load_parameter(MaterialPair(Material.rigid(), plate, "stress"), INTERFERENCE, 0.0)
     for load in (0.0, 0.5):
@@ -135,7 +135,7 @@ def _collocated(problem: Problem, load: float) -> np.ndarray:
     assert plate is not None
     theta, order = 2.0 * math.pi * np.arange(n) / n, np.fft.fftfreq(n, 1.0 / n)
     normal = np.array([np.cos(theta), np.sin(theta)])
-    # the displacement (T60) of t_n exp(i n theta) is (Lambda/|n| + i s sign(n) J) t_n R; none of n = 0
+    # the displacement (T49) of t_n exp(i n theta) is (Lambda/|n| + i s sign(n) J) t_n R; none of n = 0
     size = np.divide(1.0, np.abs(order), where=order != 0.0, out=np.zeros(n))
     turn = np.array([[0.0, -1.0], [1.0, 0.0]])
     response = plate.edge_tensor[:, :, None] * size + 1j * plate.s * turn[:, :, None] * (np.sign(order) * size)

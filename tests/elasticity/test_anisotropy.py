@@ -1,4 +1,4 @@
-"""The term of a laminate in the operator, (T62): its forms agree, and it has the limits of the theory."""
+"""The term of a laminate in the operator, (T51): its forms agree, and it has the limits of the theory."""
 
 from __future__ import annotations
 
