@@ -46,8 +46,11 @@ KIND_OPTIONS = {
     "component": KindOption("map: von_mises (default), largest, hoop, radial, shear, sxx, ..."),
     "extent": KindOption("map: outer radius (default 2)", "RADII", "number"),
     "angle": KindOption("profile: place (default: the largest hoop stress)", "DEG", "number"),
-    "depth": KindOption("profile: largest depth, in radii; fatigue: depth of the points, m", "D", "number"),
-    "criterion": KindOption("fatigue, damage: smith-watson-topper (default), fatemi-socie, findley, ..."),
+    "depth": KindOption("profile: largest depth, in radii; fatigue, strength: depth of the points, m", "D", "number"),
+    "criterion": KindOption(
+        "fatigue, damage: smith-watson-topper (default), fatemi-socie, findley, ...; "
+        "strength: hashin (default), tsai-wu, yamada-sun, ..."
+    ),
 }
 """Options of figures, in the order of the help. Each is a keyword of the functions of the kinds that have it."""
 
@@ -93,6 +96,10 @@ KINDS = {
     "profile": Kind("stress", "stresses below the edge", ("states", "csv", "body", "angle", "depth")),
     "map": Kind(
         "stress", "one component of the stress in both bodies", ("states", "csv", "body", "component", "extent")
+    ),
+    "stiffness": Kind("laminates", "moduli of a laminate by direction", ("csv",), sources=("result", "life", "case")),
+    "strength": Kind(
+        "laminates", "strength ratio of a laminate round the hole", ("states", "csv", "criterion", "depth")
     ),
     "cycles": Kind("cycles", "changes in each cycle", ("csv",), sources=("result",)),
     "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv",)),

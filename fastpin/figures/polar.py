@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Sequence
 from functools import partial
@@ -20,6 +21,7 @@ from fastpin.figures.states import DrawnStates, name_states, state_lines
 from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.tractions import traction_curves
 from fastpin.figures.words import quantity, shown_unit
+from fastpin.model.laminate import Laminate
 from fastpin.model.units import units
 from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
@@ -27,6 +29,9 @@ from fastpin.states.state import State
 
 HEIGHT = 0.9
 """Height of the largest traction over the circle, in radii of the hole."""
+
+INSIDE, PLIES = 0.4, "0.6"
+"""Half the length of a line in the direction of a ply, in radii of the hole, and its colour."""
 
 RINGS = 2
 """Circles of round values, about."""
@@ -80,11 +85,25 @@ def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
             panel.plot(x, y, **style)
         panel.set_xlabel(quantity(words[kind], label))
     styles: list[Artist] = [Line2D([], [], color="0.2", linewidth=1.0, label="edge of the hole")]
+    laminate = problem.joint.hole.laminate
+    if laminate is not None and laminate.plies:
+        for panel in sheet.axes[0]:
+            _draw_plies(panel, laminate)
+        styles.append(Line2D([], [], color=PLIES, linewidth=0.8, label="directions of the plies"))
     if columns == 2:
         styles.append(Line2D([], [], linestyle="none", marker=r"$↑$", markersize=7.0, color="0.3",
                              label="T outwards: counter-clockwise"))  # fmt: skip
     name_states(sheet, states, [look.title], styles)
     return sheet
+
+
+def _draw_plies(panel: Axes, laminate: Laminate) -> None:
+    """Draw lines in the directions of the plies, and the angles of the plies beside them."""
+    for angle in sorted({angle for _, angle in laminate.plies}):
+        along = cmath.rect(INSIDE, laminate.axis + math.radians(angle))
+        panel.plot([-along.real, along.real], [-along.imag, along.imag], color=PLIES, linewidth=0.8)
+        text = f"{angle:g}°".replace("-", "−")
+        panel.text(1.2 * along.real, 1.2 * along.imag, text, color="0.3", fontsize=6.0, ha="center", va="center")
 
 
 def _over_circle(angle: np.ndarray, height: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

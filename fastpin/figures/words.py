@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from fastpin.model.checks import shortened
+from fastpin.model.laminate import Laminate
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.points import owner_of
@@ -167,6 +168,8 @@ def short(value: float, unit: Unit, digits: int = DIGITS) -> str:
 def _material(material: Material, problem: Problem) -> str:
     if material.is_rigid:
         return "rigid"
+    if isinstance(material, Laminate):
+        return shortened(material.label)
     if material.label:
         return shortened(material.label)
     modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, PASCAL)

@@ -458,7 +458,7 @@ def _matrix(values: tuple[float, ...]) -> np.ndarray:
     return np.array([[a11, a12, a16], [a12, a22, a26], [a16, a26, a66]])
 
 
-def in_axes(compliance: np.ndarray, angle: float) -> np.ndarray:
+def in_axes(compliance: np.ndarray, angle: np.ndarray | float) -> np.ndarray:
     """A compliance matrix (..., 3, 3) in axes that are turned counter-clockwise by `angle` (...), rad.
 
     The shear strain is the engineering one.

@@ -1,0 +1,181 @@
+"""Figures of laminates: the stiffness of the plate in all directions, and the strength round the hole."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fastpin.damage.joint_strength import JointStrength, joint_strength, laminate_of
+from fastpin.damage.laminates import PlyCriterion
+from fastpin.errors import InputError
+from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.states import DrawnStates, name_states, state_lines
+from fastpin.figures.style import angle_axis, line
+from fastpin.figures.subjects import InMemory, Subject
+from fastpin.figures.words import ANGLE, quantity, short
+from fastpin.model.angles import from_bottom
+from fastpin.model.case import Case
+from fastpin.model.checks import as_toml
+from fastpin.model.laminate import Laminate, in_axes
+from fastpin.model.problem import Problem
+from fastpin.model.units import PASCAL, units
+from fastpin.report.curves import Curve, write_csv
+from fastpin.solver.result import Result
+from fastpin.states.choice import StateChoice
+from fastpin.states.state import State
+
+DIRECTIONS = 361
+"""Directions of the stiffness: one each degree."""
+
+MOST_RATIO = 5.0
+"""Largest strength ratio that is shown, in parts of the least one: beyond, plies are far from failure."""
+
+
+def plot_stiffness(
+    joint: Problem | Case | Result,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 300.0,
+    *,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw Young's modulus and the shear modulus of a laminate in all directions, and the directions of its plies.
+
+    The bottom of the hole is at the bottom of the figure. An isotropic plate raises :class:`InputError`.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
+    """
+    return Look(path, title, width, dpi, ax).drawn(stiffness_of(joint))
+
+
+def stiffness_plot(subject: Subject) -> Plot:
+    """Return the stiffness of the laminate of a result."""
+    return stiffness_of(subject.result())
+
+
+def stiffness_of(joint: Problem | Case | Result) -> Plot:
+    """Return the stiffness of a laminate in all directions, see :func:`plot_stiffness`."""
+    if not isinstance(joint, (Problem, Case, Result)):
+        raise InputError("joint", f"must be a Problem, Case or Result, not {as_toml(joint)}")
+    problem = joint if isinstance(joint, Problem) else joint.problem
+    plate = laminate_of(problem)
+    curve = stiffness_curve(plate)
+    words = "Young's modulus and shear modulus of the laminate by direction"
+    return Plot(
+        lambda look: _draw_stiffness(look, problem, plate, curve),
+        partial(write_csv, [curve]),
+        f"Polar charts of {words}.",
+        f"{words}. Thin lines show the directions of the plies.",
+    )
+
+
+def stiffness_curve(plate: Laminate) -> Curve:
+    """Young's modulus and the shear modulus by the direction, deg from the bottom; Pa, or in units of 1/beta*."""
+    degrees = np.linspace(-180.0, 180.0, DIRECTIONS)
+    turned = in_axes(plate.matrix, np.radians(degrees - 90.0))
+    return Curve({}, {"direction [deg]": degrees, "E": 1.0 / turned[:, 0, 0], "G": 1.0 / turned[:, 2, 2]})
+
+
+def _draw_stiffness(look: Look, problem: Problem, plate: Laminate, curve: Curve) -> Sheet:
+    sheet = look.sheet([0.5 * look.width], columns=2, extra=1.1, subplot_kw={"projection": "polar"})
+    along = np.radians(curve["direction [deg]"])
+    directions = plate.axis + np.radians(sorted({angle for _, angle in plate.plies}))
+    for place, (name, panel) in enumerate(zip(("E", "G"), sheet.axes[0], strict=True)):
+        values = curve[name]
+        factor, label = (1.0, "1/β*") if problem.dimensionless else PASCAL.scale([float(values.max())])
+        panel.set_theta_zero_location("S")
+        panel.plot(along, factor * values, **line(place))
+        panel.set_ylim(0.0, 1.05 * factor * float(values.max()))
+        for direction in directions:
+            for turn in (0.5 * math.pi, 1.5 * math.pi):
+                panel.plot(
+                    [direction + turn] * 2, [0.0, 1.05 * factor * float(values.max())], color="0.6", linewidth=0.8
+                )
+        panel.set_thetagrids(range(0, 360, 45), [f"{from_label(angle)}°" for angle in range(0, 360, 45)], fontsize=7.0)
+        panel.tick_params(axis="y", labelsize=6.5)
+        panel.grid(color="0.88", linewidth=0.6)
+        panel.set_xlabel(quantity({"E": "Young's modulus E", "G": "shear modulus G"}[name], label))
+    if directions.size:
+        sheet.legend([Line2D([], [], color="0.6", linewidth=0.8, label="directions of the plies")], 1)
+    sheet.head(look.title, caption=f"{plate.label}, {plate.direction_words}")
+    return sheet
+
+
+def from_label(angle: int) -> str:
+    """The text of a multiple of 45 deg from 0 to 315 as one from -135 to 180."""
+    return f"{angle if angle <= 180 else angle - 360}".replace("-", "−")
+
+
+def plot_strength(
+    result: Sequence[State] | State,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 300.0,
+    *,
+    states: StateChoice = None,
+    criterion: PlyCriterion = "hashin",
+    depth: float = 0.0,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw the strength ratio of the first ply round the hole, at a `depth` below its edge, m.
+
+    A ply fails where the ratio is 1 or less. See :func:`fastpin.damage.joint_strength` for the criteria, and
+    :func:`fastpin.plot_tractions` for the other arguments.
+    """
+    return Look(path, title, width, dpi, ax).drawn(strength_plot(InMemory(result), states, criterion, depth))
+
+
+def strength_plot(
+    subject: Subject, states: StateChoice = None, criterion: PlyCriterion = "hashin", depth: float = 0.0
+) -> Plot:
+    """Return the strength ratio round the hole of some states, see :func:`plot_strength`."""
+    drawn = subject.states(states)
+    found = [joint_strength(state, criterion, distance=depth) for state in drawn]
+    curves = [_strength_curve(each) for each in found]
+    place = f"{short(depth, units(drawn[0].problem)['length'])} from the edge" if depth else "at the edge"
+    words = f"first ply by {criterion}, {place}"
+    return Plot(
+        lambda look: _draw_strength(look, drawn, found, curves, words),
+        partial(write_csv, curves),
+        "Line chart of the strength ratio over the angle round the hole.",
+        f"Strength ratio of the {words}.",
+        notes=drawn.notes,
+    )
+
+
+def _strength_curve(found: JointStrength) -> Curve:
+    angle = np.array([from_bottom(each) for each in found.theta.tolist()])
+    order, plies = np.argsort(angle), np.array([each for _, each in found.laminate.plies])
+    columns = {"angle [deg]": angle, "strength ratio": found.ratio, "ply [deg]": plies[found.ply]}
+    return Curve({}, {name: values[order] for name, values in columns.items()})
+
+
+def _draw_strength(
+    look: Look, states: DrawnStates, found: Sequence[JointStrength], curves: Sequence[Curve], words: str
+) -> Sheet:
+    sheet = look.sheet([0.55 * look.width], extra=1.1)
+    (panel,) = sheet.axes[0]
+    for curve, style in zip(curves, state_lines(states), strict=True):
+        panel.plot(curve["angle [deg]"], curve["strength ratio"], **style)
+    least = min(each.least_ratio for each in found)
+    if math.isfinite(least):
+        panel.set_ylim(0.0, MOST_RATIO * max(least, 0.2))
+    panel.axhline(1.0, color="0.4", linewidth=0.8, linestyle=(0, (4.0, 2.0)))
+    angle_axis(panel)
+    panel.set_xlabel(ANGLE)
+    panel.set_ylabel("strength ratio")
+    panel.annotate(
+        "a ply fails", (0.01, 1.0), xycoords=("axes fraction", "data"), va="bottom", fontsize=7.0, color="0.3"
+    )
+    name_states(sheet, states, [look.title, words], [])
+    sheet.grid()
+    return sheet

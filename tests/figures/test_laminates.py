@@ -1,0 +1,92 @@
+"""Figures of laminates: stiffness by direction, strength round the hole, directions of plies."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fastpin.cli.main import main
+from fastpin.damage import joint_strength
+from fastpin.errors import InputError
+from fastpin.figures import plot_polar, plot_stiffness, plot_strength
+from fastpin.model.laminate import Laminate
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.storage import save
+from tests.support.once import solve_once
+
+PLATE = Laminate.from_layup("[0_2/45/-45/90]s", "T300/914", axis=-0.5 * math.pi + 0.3)
+JOINT = Problem(MaterialPair(MATERIALS["steel"], PLATE, "stress"), 3e-3, 20e-6, 0.2)
+HISTORY = [{"P": 1e6}, {"P": 1e6, "Q": 3e5}]
+
+
+def result():
+    return solve_once(JOINT, HISTORY, nodes=61)
+
+
+def test_stiffness_by_direction_from_the_bottom() -> None:
+    young, shear = plot_stiffness(JOINT, title="Stack").axes
+    E1, E2, G12, _ = PLATE.moduli
+    for panel, values in ((young, (E1, E2)), (shear, (G12, G12))):
+        angle, modulus = panel.lines[0].get_xydata().T
+        for turn, value in zip((0.3, 0.3 + 0.5 * math.pi), values, strict=True):
+            assert np.interp(turn, angle, 1e9 * modulus) == pytest.approx(value, rel=2e-4)
+        assert panel.get_theta_offset() == pytest.approx(1.5 * math.pi)  # 0 is at the bottom
+        assert len(panel.lines) == 1 + 2 * 4  # two halves of a line for each direction of plies
+    assert young.get_xlabel() == "Young's modulus E (GPa)"
+
+
+def test_a_dimensionless_laminate_has_moduli_over_beta() -> None:
+    problem = Problem.from_load_parameter(MaterialPair(MATERIALS["steel"], PLATE, "stress"), 0.1, 0.2)
+    assert plot_stiffness(problem).axes[0].get_xlabel() == "Young's modulus E (1/β*)"
+
+
+def test_strength_round_the_hole() -> None:
+    (panel,) = plot_strength(result(), criterion="tsai-wu", depth=0.5e-3).axes
+    for state, drawn in zip(result(), panel.lines, strict=False):
+        angle, ratio = drawn.get_xydata().T
+        found = joint_strength(state, "tsai-wu", distance=0.5e-3)
+        assert ratio.min() == pytest.approx(found.least_ratio)
+        assert math.radians(angle[np.argmin(ratio)] - 90.0) == pytest.approx(found.angle)
+    assert "first ply by tsai-wu, 500\xa0µm from the edge" in panel.get_title() + panel.figure.get_suptitle()
+
+
+def test_directions_of_the_plies_in_the_hole() -> None:
+    panel = plot_polar(result()).axes[0]
+    labels = [text.get_text() for text in panel.texts]
+    assert {"0°", "45°", "−45°", "90°"} <= set(labels)
+    along = [
+        line.get_xydata()
+        for line in panel.lines
+        if len(line.get_xydata()) == 2 and np.abs(line.get_xydata()).max() < 0.41
+    ]
+    angles = sorted(
+        round(math.degrees(math.atan2(*(ends[1] - ends[0])[::-1]) - PLATE.axis) % 180.0, 6) for ends in along
+    )
+    assert angles == pytest.approx([0.0, 45.0, 90.0, 135.0])
+
+
+def test_kinds_on_the_command_line(tmp_path: Path, capsys) -> None:
+    stored, numbers = tmp_path / "run.h5", tmp_path / "strength.csv"
+    save(result(), stored)
+    assert main(["plot", str(stored), "stiffness", "-o", str(tmp_path / "stiffness.svg")]) == 0
+    options = ["--criterion", "yamada-sun", "--depth", "5e-4", "--states", "2", "--csv", str(numbers)]
+    assert main(["plot", str(stored), "strength", "-o", str(tmp_path / "strength.svg"), *options]) == 0
+    rows = list(csv.DictReader(numbers.read_text().splitlines()))
+    found = joint_strength(result()[1], "yamada-sun", distance=5e-4)
+    assert min(float(row["strength ratio"]) for row in rows) == pytest.approx(found.least_ratio, rel=1e-6)
+    assert main(["plot", str(stored), "strength", "-o", str(tmp_path / "no.svg"), "--criterion", "hill"]) != 0
+    assert "tsai-hill" in capsys.readouterr().err
+
+
+def test_an_isotropic_plate_has_neither() -> None:
+    isotropic = Problem(MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"], "stress"), 3e-3, 20e-6, 0.2)
+    with pytest.raises(InputError, match="plate: must be a laminate"):
+        plot_stiffness(isotropic)
+    with pytest.raises(InputError, match="plate: must be a laminate"):
+        plot_strength(solve(isotropic, [{"P": 1e6}], nodes=41))
