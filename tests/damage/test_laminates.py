@@ -253,6 +253,13 @@ def test_the_characteristic_curve_goes_from_bearing_to_tension() -> None:
         (lambda: ply_failure(Laminate.from_layup("[0]", PLY), [1.0, 2.0, 3.0], "puck"), 'criterion: must be "maximum'),
         (lambda: first_ply_failure(Laminate.from_moduli(1e9, 1e9, 1e9, 0.1), [1.0, 2.0, 3.0]), "plies: are unknown"),
         (lambda: point_stress_ratio(3.0, 1.0, 1.0), "profile: must be a callable"),
+        (lambda: point_stress_ratio(None, 1.0, 1.0), "profile: must be a callable, not None"),
+        (
+            lambda: average_stress_ratio(float, 1.0, 1.0),
+            "profile: must take an array of distances, it raised a TypeError",
+        ),
+        (lambda: average_stress_ratio(lambda _: "x", 1.0, 1.0), "profile: must be a number"),
+        (lambda: hashin([1.0, 2.0, 3.0], KNOWN, 1e-300), "transverse_shear: must lie between"),
         (lambda: point_stress_ratio(hole(1.0), 0.0, 1.0), "strength: must be positive"),
         (lambda: point_stress_ratio(lambda _: np.ones(2), 1.0, 1.0), "profile: must return finite numbers"),
         (lambda: average_stress_ratio(hole(1.0), 1.0, -1.0), "length: must be positive"),
