@@ -35,7 +35,7 @@ from fastpin.model.checks import check_callable, choice, instance, not_negative,
 from fastpin.model.laminate import Laminate
 from fastpin.model.ply import LEAST_MODULUS, MOST_MODULUS, Ply, PlyStrengths
 
-PlyCriterion = Literal["maximum-stress", "maximum-strain", "tsai-hill", "tsai-wu", "hashin"]
+PlyCriterion = Literal["maximum-stress", "maximum-strain", "tsai-hill", "tsai-wu", "hashin", "yamada-sun"]
 
 MODES = ("fibre tension", "fibre compression", "matrix tension", "matrix compression", "shear")
 """Modes of ply failure, in the order of the places in :attr:`PlyFailure.mode`."""
@@ -218,6 +218,7 @@ PLY_CRITERIA: dict[str, Callable[[np.ndarray, Ply], PlyFailure]] = {
     "tsai-hill": lambda stress, ply: tsai_hill(stress, _strengths_of(ply)),
     "tsai-wu": lambda stress, ply: tsai_wu(stress, _strengths_of(ply)),
     "hashin": lambda stress, ply: hashin(stress, _strengths_of(ply)),
+    "yamada-sun": lambda stress, ply: yamada_sun(stress, _strengths_of(ply)),
 }
 """The criteria of ply failure by name."""
 
@@ -231,7 +232,7 @@ def ply_failure(laminate: Laminate, stress: ArrayLike, criterion: PlyCriterion =
         A laminate with plies that have strengths.
     stress : array, shape (..., 3)
         (s_x, s_y, s_xy) of the whole, Pa: means through the thickness.
-    criterion : {"hashin", "tsai-wu", "tsai-hill", "maximum-stress", "maximum-strain"}
+    criterion : {"hashin", "tsai-wu", "tsai-hill", "maximum-stress", "maximum-strain", "yamada-sun"}
         The criterion, with the usual values of its constants.
 
     Returns

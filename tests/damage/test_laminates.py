@@ -32,6 +32,9 @@ from fastpin.model import PLIES, Laminate, Ply, PlyStrengths
 PLY = PLIES["AS4/3501-6"]
 assert PLY.strengths is not None
 KNOWN = PLY.strengths
+CRITERIA = [name for name in PLY_CRITERIA if name != "yamada-sun"]
+"""Criteria that know each strength of a ply."""
+
 ALONE = {
     "fibre tension": (KNOWN.Xt, 0.0, 0.0),
     "fibre compression": (-KNOWN.Xc, 0.0, 0.0),
@@ -62,11 +65,13 @@ def naive(name: str, stress: tuple[float, float, float], ply: Ply) -> float:
         both = 2.0 * -0.5 * math.sqrt(f11 * f22) * s1 * s2
         linear = (1.0 / k.Xt - 1.0 / k.Xc) * s1 + (1.0 / k.Yt - 1.0 / k.Yc) * s2
         return linear + f11 * s1**2 + f22 * s2**2 + (t / k.S) ** 2 + both
+    if name == "yamada-sun":
+        return (s1 / x) ** 2 + (t / k.S) ** 2
     fibre = (s1 / k.Xt) ** 2 + (t / k.S) ** 2 if s1 > 0 else (s1 / k.Xc) ** 2
     return max(fibre, (s2 / y) ** 2 + (t / k.S) ** 2)
 
 
-@pytest.mark.parametrize("name", PLY_CRITERIA)
+@pytest.mark.parametrize("name", CRITERIA)
 @pytest.mark.parametrize("mode", MODES)
 def test_a_ply_breaks_at_each_of_its_strengths(name: str, mode: str) -> None:
     found = PLY_CRITERIA[name](np.array(ALONE[mode]), PLY)
