@@ -353,6 +353,8 @@ class Valid:
             "wear.nodes": NODES,
             "Laminate.compliance": LAMINATE.compliance,
             "Laminate.plies": LAMINATE.plies,
+            "from_plies.plies": LAMINATE.plies,
+            "turned.angle": 0.3,
             "point_stress_ratio.profile": np.exp,
             "average_stress_ratio.profile": np.exp,
             "characteristic_radius.theta": [0.0, 0.5],

@@ -24,11 +24,6 @@ NO_MEANING = ("fatigue", "growth", *STRENGTHS)
 _HARMLESS = {**dict.fromkeys(PLY_KEYS, 1.0), "nu12": 0.0, "name": "", "source": ""}
 
 
-def is_laminate(section: Section) -> bool:
-    """Whether [plate] gives a laminate, perhaps a wrong one."""
-    return any(key in section for key in LAMINATE_KEYS)
-
-
 def read_laminate(source: CaseText, section: Section) -> Laminate | None:
     """The laminate of [plate]; None if it can't be used (reported)."""
     axis = section.checked("axis", checked_angle)

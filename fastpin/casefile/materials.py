@@ -12,13 +12,14 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from fastpin.casefile.laminates import is_laminate, read_laminate
+from fastpin.casefile.laminates import read_laminate
 from fastpin.casefile.sections import Inside
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, true_or_false
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import LAWS, KnownLaw, known_law
+from fastpin.model.laminate import LAMINATE_KEYS
 from fastpin.model.materials import MATERIALS, STRENGTHS, Material, MaterialPair
 from fastpin.model.synonyms import closest
 
@@ -45,8 +46,8 @@ def read_pair(source: CaseText, materials: Mapping[str, Material]) -> MaterialPa
         return _dundurs(source.section("dundurs"), contact, plane)
     pin = read_material(source, source.section("pin", required=True), materials)
     section = source.section("plate", required=True)
-    given = is_laminate(section)
-    plate = read_laminate(source, section) if given else read_material(source, section, materials)
+    is_laminate = any(key in section for key in LAMINATE_KEYS)
+    plate = read_laminate(source, section) if is_laminate else read_material(source, section, materials)
     if pin is None or plate is None:
         return None
     return source.root.build(MaterialPair, {"pin": pin, "plate": plate, "plane": plane}, {})

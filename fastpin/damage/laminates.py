@@ -30,10 +30,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.errors import InputError
+from fastpin.errors import FastpinError, InputError
 from fastpin.model.checks import check_callable, choice, instance, not_negative, number, number_array, positive, triples
 from fastpin.model.laminate import Laminate
-from fastpin.model.ply import Ply, PlyStrengths
+from fastpin.model.ply import LEAST_MODULUS, MOST_MODULUS, Ply, PlyStrengths
 
 PlyCriterion = Literal["maximum-stress", "maximum-strain", "tsai-hill", "tsai-wu", "hashin", "yamada-sun"]
 
@@ -196,7 +196,10 @@ def hashin(stress: ArrayLike, strengths: PlyStrengths, transverse_shear: float |
         If an argument can't be used.
     """
     values, known = triples("stress", stress), _checked(strengths)
-    shear_strength = 0.5 * known.Yc if transverse_shear is None else positive("transverse_shear", transverse_shear)
+    shear_strength = 0.5 * known.Yc
+    if transverse_shear is not None:
+        strength = positive("transverse_shear", transverse_shear)
+        shear_strength = number("transverse_shear", strength, LEAST_MODULUS, MOST_MODULUS)
     s1, s2, t12 = np.moveaxis(values, -1, 0)
     none, shear = np.zeros_like(s1), (t12 / known.S) ** 2
     is_pressed, is_squeezed = s1 <= 0.0, s2 < 0.0
@@ -416,7 +419,16 @@ def _ratio(square: np.ndarray, linear: np.ndarray) -> np.ndarray:
 
 def _values(profile: Callable[[np.ndarray], np.ndarray], distances: np.ndarray) -> np.ndarray:
     """The stresses of a profile at distances ahead of the edge."""
-    found = number_array("profile", profile(distances))
+    if profile is None:
+        raise InputError("profile", "must be a callable, not None")
+    try:
+        values = profile(distances)
+    except FastpinError:
+        raise
+    except Exception as error:  # The function is anyone's.
+        words = f"must take an array of distances, it raised a {type(error).__name__}"
+        raise InputError("profile", words) from error
+    found = number_array("profile", values)
     if found.shape != distances.shape or not np.all(np.isfinite(found)):
         raise InputError("profile", f"must return finite numbers of the shape {distances.shape}")
     return found

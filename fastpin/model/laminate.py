@@ -425,9 +425,12 @@ class Laminate(Material):
         """The coefficients c0 and c2 of v/R = c0 + c2 exp(-2i theta) at the hole under a remote stress, (T53).
 
         v = v_r + i v_theta is the displacement of the edge relative to the far plate, which does not turn. `remote` is
-        (sxx, syy, sxy), shape (3,), Pa.
+        (sxx, syy, sxy), shape (3,), Pa; anything else raises InputError.
         """
-        sxx, syy, sxy = remote
+        values = triples("remote", remote)
+        if values.shape != (3,):
+            raise InputError("remote", f"must have the shape (3,), not {values.shape}")
+        sxx, syy, sxy = values.tolist()
         e_xx, e_yy, g_xy = self.matrix @ np.array([sxx, syy, sxy])
         strain, stress = (np.array([[a, b], [b, c]]) for a, b, c in ((e_xx, 0.5 * g_xy, e_yy), (sxx, sxy, syy)))
         turn = np.array([[0.0, -1.0], [1.0, 0.0]])

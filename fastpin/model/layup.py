@@ -154,13 +154,9 @@ class _LayupReader:
     def _refuse(self, words: str, by: int = 0) -> NoReturn:
         at = self._at + by
         place = self._places[at] if at < len(self._places) else len(self._given)
-        raise InputError(self._field, f"{words} at position {place + 1} of {_quoted(self._given, place)}")
-
-
-def _quoted(text: str, place: int) -> str:
-    """The text near a place, in quotes; dots stand for parts that are left out."""
-    first, last = max(place - SHOWN, 0), min(place + SHOWN, len(text))
-    return f'"{"..." * (first > 0)}{printable(text[first:last])}{"..." * (last < len(text))}"'
+        first, last = max(place - SHOWN, 0), min(place + SHOWN, len(self._given))
+        shown = f"{'...' * (first > 0)}{printable(self._given[first:last])}{'...' * (last < len(self._given))}"
+        raise InputError(self._field, f'{words} at position {place + 1} of "{shown}"')
 
 
 def checked_angles(field: str, layup: object) -> tuple[float, ...]:

@@ -167,7 +167,7 @@ class Material:
     @classmethod
     def rigid(cls) -> Material:
         """A rigid material: the exact limit of an infinite modulus."""
-        return cls(math.inf, 0.3, "rigid")
+        return Material(math.inf, 0.3, "rigid")
 
     @property
     def is_rigid(self) -> bool:

@@ -83,27 +83,24 @@ def read_bodies(group: h5py.Group) -> dict[str, Any]:
 
 
 def _write(parent: h5py.Group, name: str, entries: Mapping[str, Any]) -> None:
-    """Write the entries of a body, or the columns of a compliance, into a new group."""
+    """Write the entries of a body or a laminate, or the columns of a compliance, into a new group.
+
+    A list of tables becomes groups with their places for names.
+    """
     group = parent.create_group(name)
     for key, value in entries.items():
         if isinstance(value, Material):
             write_material(group, key, value)
         elif isinstance(value, Mapping):
             _write(group, key, value)
+        elif isinstance(value, list) and isinstance(value[0], Mapping):
+            _write(group, key, {str(place): each for place, each in enumerate(value)})
         elif isinstance(value, list):
-            _write_list(group, key, value)
+            group[key] = np.array(value)
         elif isinstance(value, np.ndarray):
             group[key] = value
         elif value is not None:
             group.attrs[key] = value
-
-
-def _write_list(group: h5py.Group, key: str, value: list[Any]) -> None:
-    """Write a list of numbers as an array, and a list of tables as groups with their places for names."""
-    if all(isinstance(each, Mapping) for each in value):
-        _write(group, key, {str(place): each for place, each in enumerate(value)})
-    else:
-        group[key] = np.array(value)
 
 
 def _read_body(group: h5py.Group) -> BodyBase:

@@ -76,10 +76,6 @@ def canonical_json(document: dict[str, Any]) -> str:
     return _ENCODER.encode(document)
 
 
-def _number(value: float) -> float:
-    return float(value) + 0.0  # -0 becomes 0.
-
-
 def _material(material: Material) -> dict[str, Any]:
     elastic = {
         name: "inf" if value == math.inf else _without_negative_zero(value)
@@ -108,7 +104,7 @@ def _without_negative_zero(value: Any) -> Any:
         return {name: _without_negative_zero(item) for name, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [_without_negative_zero(item) for item in value]
-    return _number(value) if isinstance(value, float) else value
+    return float(value) + 0.0 if isinstance(value, float) else value  # -0 becomes 0.
 
 
 def _digested(history: LoadHistory) -> dict[str, Any]:

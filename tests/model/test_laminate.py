@@ -183,3 +183,9 @@ def test_a_scaled_laminate_has_other_moduli_and_the_same_axes() -> None:
     assert double.delta == pytest.approx(0.5 * laminate.delta)
     assert pickle.loads(pickle.dumps(double)) == double
     assert repr(double) == "Laminate('wood', E1=1e+11, E2=4e+10, G12=2e+10, nu12=0.3, axis=0.4)"
+
+
+@pytest.mark.parametrize("remote", [3.0, [1.0, 2.0], [[1.0, 2.0, 3.0]], "x"])
+def test_a_wrong_remote_stress_gets_one_sentence(remote: Any) -> None:
+    with pytest.raises(InputError, match=r"^remote: must "):
+        Laminate.from_moduli(50e9, 50e9, 20e9, 0.3).hole_displacement(remote)

