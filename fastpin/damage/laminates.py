@@ -16,8 +16,8 @@ first ply has failed. A hole makes the stress at its edge so uneven that the fir
 Sources. No paper itself was at hand. The formulas of Tsai and Hill (in the form of Azzi and Tsai), Tsai and Wu, and
 Yamada and Sun were read in public notes on composites. Those of Hashin (1980) were read in the manual of HyperView and
 in public programs, which have the paper's figure 6 among their tests. The point stress and the average stress of
-Whitney and Nuismer (1974) were read in public programs. The characteristic curve of Chang, Scott and Springer (1982) was
-seen by name only: compare its formula with the paper.
+Whitney and Nuismer (1974) were read in public programs. The characteristic curve of Chang, Scott and Springer (1982)
+was seen by name only: compare its formula with the paper.
 """
 
 from __future__ import annotations
