@@ -20,7 +20,7 @@ from scripts.random_histories import Outcome, examine, table
 from tests.support.potentials import displacement_kernels
 from tests.support.slip_cases import UNLIKE
 
-FEW, MANY = range(1, 4), range(300, 314)
+FEW, MANY = range(1, 4), range(300, 310)
 
 
 def assert_right(outcome: Outcome) -> None:
