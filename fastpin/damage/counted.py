@@ -7,6 +7,7 @@ cycles is the damage of the plane (Palmgren 1924, Miner 1945). The worst plane c
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
@@ -14,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, PlaneCount
-from fastpin.damage.lives import curve_with_knee
+from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve
 from fastpin.errors import InputError
 from fastpin.kernels import rainflow
 from fastpin.model.checks import alternatives, choice
@@ -93,6 +94,8 @@ class CountedMaterial(NamedTuple):
 
     Attributes
     ----------
+    name : str
+        The criterion.
     counting : PlaneCount
     material : Material
     constants : tuple of float
@@ -101,6 +104,7 @@ class CountedMaterial(NamedTuple):
         The curve of lives with its knee, see :func:`fastpin.damage.lives.curve_with_knee`.
     """
 
+    name: str
     counting: PlaneCount
     material: Material
     constants: tuple[float, ...]
@@ -127,7 +131,7 @@ class CountedMaterial(NamedTuple):
         needs = len(criterion.needs)
         curve = criterion.counting.curve(material, *known[needs:])
         life = curve_with_knee(curve, criterion.counting.degree, rule, knee)
-        return cls(criterion.counting, material, known[:needs], life)
+        return cls(name, criterion.counting, material, known[:needs], life)
 
     def worst(
         self, history: np.ndarray, spectrum: Spectrum, progress: Callable[[float], None] | None = None
@@ -163,6 +167,18 @@ class CountedMaterial(NamedTuple):
         given = self.counting.form, self._least(history), self.life
         count = rainflow.cycles_on_plane(self._paths(history)[0], plane, *spectrum, *given, places, values)
         return places[:count], values[:count]
+
+    def largest(self, history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the largest parameter of a cycle of each point on any plane, and this plane, both (points,), rad."""
+        found = FATIGUE_CRITERIA[self.name].values(history, self.material, *self.constants)
+        assert found.plane is not None
+        return found.parameter, found.plane
+
+    def most_damage(self, parameter: np.ndarray) -> np.ndarray:
+        """Return the damage 1/N of cycles without a rule of small cycles, which is no less than with one."""
+        curve = LifeCurve((math.exp(self.life[0]), math.exp(self.life[1])), (self.life[2], self.life[3]))
+        with np.errstate(divide="ignore"):
+            return 1.0 / cycles_on_curve(parameter, curve)
 
     def _least(self, history: np.ndarray) -> float:
         """The parameter that is rounding beside the stresses."""

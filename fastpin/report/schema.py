@@ -61,7 +61,7 @@ def json_schema(command: str) -> Schema:
 def _summary() -> Schema:
     extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
     sides = _object({"smallest": extreme, "largest": extreme})
-    texts, numbers = ("subject", "unit", "remark"), ("value", "allowable", "margin", "load_point")
+    texts, numbers = ("subject", "name", "body", "unit", "remark"), ("value", "allowable", "margin", "load_point")
     governing = {"smallest": _TRUTH, "loads": _map_of(_NUMBER, "loads of the state that governs")}
     of_cycle = dict.fromkeys(Cycle._fields, _UNKNOWN)
     of_cycle |= {"corner": _WHOLE, "length": _WHOLE, "number": _WHOLE, "solved": _TRUTH}
@@ -217,6 +217,7 @@ def _fatigue() -> Schema:
             "method": {"enum": list(DISTANCES)},
             "small_cycles": {"enum": list(MINER_RULES)},
             "knee": _UNKNOWN,
+            "life_asked": _UNKNOWN,
             "error": _OPTIONAL_TEXT,
             "bodies": _list_of(body),
         }
