@@ -9,7 +9,6 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from fastpin.cracks.fates import CrackFate
 from fastpin.cracks.intensity import Crack, CrackedBody, CrackedEdge, Residual, histories, sliding_doubt
@@ -23,6 +22,7 @@ from fastpin.model.growth import GrowthLaw, checked_law
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
+from fastpin.runtime.extensions import interpolate
 from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
@@ -438,7 +438,7 @@ class _Following(NamedTuple):
         lengths = self.lengths
         count = max(math.ceil(DRAWN * math.log10(lengths[-1] / lengths[0])) + 1, 20)
         fine = np.geomspace(lengths[0], lengths[-1], count)
-        spline = CubicSpline(np.log(lengths), K / np.sqrt(lengths)[:, None], axis=1)
+        spline = interpolate.CubicSpline(np.log(lengths), K / np.sqrt(lengths)[:, None], axis=1)
         opening, sliding = np.moveaxis(spline(np.log(fine)) * np.sqrt(fine)[:, None], -1, 0)
         top = np.argmax(opening, axis=0)
         K_II = np.take_along_axis(sliding, top[None], axis=0)[0]

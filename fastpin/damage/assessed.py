@@ -127,10 +127,8 @@ def _is_straight(stops: Sequence[State], how: FatigueAssessment) -> bool:
 def _edge_count(stops: Sequence[State], how: FatigueAssessment, criterion: str, body: Body) -> SpectrumCount:
     """Return the count at the given angles of an edge, or all along it."""
     points = None if how.theta is None else Points.at_depth(0.0, how.theta)
-    straight = _is_straight(stops, how)
-    return spectrum_count(
-        stops, criterion, body, points, straight=straight, small_cycles=how.small_cycles, knee=how.knee
-    )
+    rule = how.small_cycles, how.knee
+    return spectrum_count(stops, criterion, body, points, straight=_is_straight(stops, how), rule=rule)
 
 
 def _count_of_means(

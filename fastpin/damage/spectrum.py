@@ -182,7 +182,7 @@ def spectrum_damage(
     if progress is not None:
         check_callable("progress", progress)
     tell_read, tell_counted = halves(progress)
-    return spectrum_count(states, criterion, body, points, depth, constants, straight, small_cycles, knee).damage(
+    return spectrum_count(states, criterion, body, points, depth, constants, straight, (small_cycles, knee)).damage(
         tell_read, tell_counted
     )
 
@@ -244,10 +244,12 @@ def spectrum_count(
     depth: ArrayLike | None = None,
     constants: FatigueConstants | None = None,
     straight: bool = False,
-    small_cycles: str = "elementary",
-    knee: float | None = None,
+    rule: tuple[str, float | None] = ("elementary", None),
 ) -> SpectrumCount:
-    """Check the arguments of :func:`spectrum_damage`, and return the count that they ask for."""
+    """Check the arguments of :func:`spectrum_damage`, and return the count that they ask for.
+
+    `rule` is that of small cycles with its knee.
+    """
     stops = stops_of_one_problem(states)
     problem = stops[0].problem
     check_body(problem, body)
@@ -263,9 +265,7 @@ def spectrum_count(
     parts = [
         (
             chosen,
-            CountedMaterial.of(
-                criterion, material_of(problem, one), constants, owner_of(problem, one), small_cycles, knee
-            ),
+            CountedMaterial.of(criterion, material_of(problem, one), constants, owner_of(problem, one), *rule),
         )
         for chosen, one in bodies_at(problem, body, below.ravel())
     ]

@@ -183,8 +183,11 @@ def _extremes_summary(result: Result) -> dict[str, Any]:
 
 def _margins_summary(result: Result, fatigue: Assessed | None, crack: cracks.Growth | None) -> list[dict[str, Any]]:
     """Return the margins over all states, and those of fatigue and of a crack where they are known."""
-    found = marked_extremes(KeptStates(result.states)) if len(result) else {}
-    rows = static_margins(result.problem, found, lambda places: [result.states[place] for place in places])
+    if len(result):
+        kept = KeptStates(result.states)
+        rows = static_margins(result.problem, marked_extremes(kept), kept.read)
+    else:
+        rows = static_margins(result.problem, {}, lambda places: [])
     rows += life_margins(result.problem, result.states, result.cycles, fatigue, crack)
     return margins_document(result.problem, rows)
 
