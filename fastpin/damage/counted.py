@@ -8,7 +8,7 @@ cycles is the damage of the plane (Palmgren 1924, Miner 1945). The worst plane c
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
@@ -28,6 +28,9 @@ SPECTRUM_CRITERIA = tuple(name for name, criterion in FATIGUE_CRITERIA.items() i
 
 CHUNK, COUNTED = 8, 64
 """Points that one thread counts at a time, and points that are counted between two calls of the progress."""
+
+MOST_PATHS = 2**20
+"""Most states of the points that are counted at a time: their paths fill 50 MB, and as much again while made."""
 
 TRIED = 16
 """Places at which a block of repeated stops may end."""
@@ -89,6 +92,14 @@ def _repeated(order: np.ndarray, begin: int, places: list[int]) -> tuple[int, in
     return 0, 0
 
 
+def _together(history: np.ndarray) -> Iterator[slice]:
+    """Yield the points that are counted at a time, from stresses (states, points, 4): few of a long history."""
+    states, points = history.shape[:2]
+    step = min(COUNTED, max(MOST_PATHS // max(states, 1), 1))
+    for begin in range(0, points, step):
+        yield slice(begin, min(begin + step, points))
+
+
 class CountedMaterial(NamedTuple):
     """A criterion with the constants of one material.
 
@@ -142,11 +153,11 @@ class CountedMaterial(NamedTuple):
         """
         points, least = history.shape[1], self._least(history)
         out = np.empty((points, 2))
-        for begin in range(0, points, COUNTED):
-            paths, rows = self._paths(history[:, begin : begin + COUNTED]), out[begin : begin + COUNTED]
+        for part in _together(history):
+            paths, rows = self._paths(history[:, part]), out[part]
             in_chunks(len(paths), CHUNK, partial(self._count, spectrum, least, paths, rows))
             if progress is not None:
-                progress(min(begin + COUNTED, points) / points)
+                progress(part.stop / points)
         return out[:, 0], out[:, 1]
 
     def _count(self, spectrum: Spectrum, least: float, paths: np.ndarray, rows: np.ndarray, part: slice) -> None:
@@ -170,9 +181,12 @@ class CountedMaterial(NamedTuple):
 
     def largest(self, history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the largest parameter of a cycle of each point on any plane, and this plane, both (points,), rad."""
-        found = FATIGUE_CRITERIA[self.name].values(history, self.material, *self.constants)
-        assert found.plane is not None
-        return found.parameter, found.plane
+        out = np.empty((2, history.shape[1]))
+        for part in _together(history):
+            found = FATIGUE_CRITERIA[self.name].values(history[:, part], self.material, *self.constants)
+            assert found.plane is not None
+            out[0, part], out[1, part] = found.parameter, found.plane
+        return out[0], out[1]
 
     def most_damage(self, parameter: np.ndarray) -> np.ndarray:
         """Return the damage 1/N of cycles without a rule of small cycles, which is no less than with one."""

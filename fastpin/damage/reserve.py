@@ -29,6 +29,10 @@ ENOUGH = 700.0
 """Largest size of the logarithm of a damage: beyond it doubles end. No damage counts as so little."""
 
 
+MOST_SCALED = 2**20
+"""Most states of the points whose stresses are scaled at a time: 32 MB."""
+
+
 class Goal(NamedTuple):
     """What must not be missed.
 
@@ -131,7 +135,12 @@ class _Search:
         if self.best is None and left.size:  # the point with the largest cycle is a good first guess
             self._try(counted, history, places, int(np.argmax(counted.largest(history)[0])))
         while left.size:
-            used = self._used(counted, self.factor * history[:, left])
+            used = np.concatenate(
+                [
+                    self._used(counted, self.factor * history[:, some])
+                    for some in np.array_split(left, math.ceil(left.size * len(history) / MOST_SCALED))
+                ]
+            )
             worst = int(left[np.argmax(used)])
             if used.max() > 1.0:
                 self._try(counted, history, places, worst)
