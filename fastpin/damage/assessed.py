@@ -10,16 +10,24 @@ import numpy as np
 from fastpin.damage.counted import CountedMaterial
 from fastpin.damage.distance import checked_length, mean_depth, points_of_means
 from fastpin.damage.histories import Progress, different_states, history_blocks
+from fastpin.damage.hot_spots import edge_angles
 from fastpin.damage.reserve import Goal, StressReserve, stress_reserve
 from fastpin.damage.spectrum import SpectrumCount, SpectrumDamage, halves, spectrum_count
+from fastpin.errors import InputWarning
 from fastpin.model.assessment import FatigueAssessment, assessed_bodies, check_assessment
 from fastpin.model.checks import check_callable, instance
-from fastpin.model.points import Body, Points, material_of, owner_of
+from fastpin.model.doubts import warn_of
+from fastpin.model.points import Body, Points, edge_body, material_of, owner_of
 from fastpin.states.choice import stops_of_one_problem
+from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
 MOST_REFINED = 500
 """States of a spectrum up to which refined tractions are read unasked: some ten seconds."""
+
+
+MOST_STRAIGHT = 1.25
+"""Largest ratio of damages without and with straight lines that is not told: some 4 % of the stress."""
 
 
 def assessed_fatigue(
@@ -113,11 +121,31 @@ def _of_body(
 
     if how.method == "edge" or theta is None:
         edge = _edge_count(stops, how, criterion, body).damage(*halves(lambda done, total: tell(share * done / total)))
+        if how.straight is None and _is_straight(stops, how):
+            _doubt_straight(stops, edge)
         if how.method == "edge" or math.isnan(edge.hot_spot.theta):
             return edge
         theta = np.array([edge.hot_spot.theta])
     count = _count_of_means(stops, how, criterion, body, theta)
     return count.damage(*halves(lambda done, total: tell(1.0 - share + share * done / total)))
+
+
+def _doubt_straight(stops: Sequence[State], edge: SpectrumDamage) -> None:
+    """Warn if the worst cycle of a body does another damage with refined tractions: the grid is too coarse."""
+    if not edge.cycles.damage.size:
+        return
+    wanted = {float(each[0]) for each in (edge.cycles.start, edge.cycles.stop, edge.cycles.largest)}
+    few = list({load_point(state): state for state in stops if load_point(state) in wanted}.values())
+    points = Points.at_depth(0.0, edge_angles(few, 0))
+    straight, refined = (
+        spectrum_count(few, edge.criterion, edge.body, points, straight=each).damage(*halves(None)).hot_spot.damage  # type: ignore[arg-type]
+        for each in (True, False)
+    )
+    if not straight / MOST_STRAIGHT <= refined <= straight * MOST_STRAIGHT:
+        where = f"at the edge of the {edge_body(edge.problem, edge.body)}"
+        words = f"with refined tractions the worst cycle {where} does {refined / straight:.2g} times the damage"
+        words += "; straight = false takes them, and more nodes bring both closer"
+        warn_of([InputWarning("straight", words)], 4)
 
 
 def _is_straight(stops: Sequence[State], how: FatigueAssessment) -> bool:

@@ -155,7 +155,8 @@ class CountedMaterial(NamedTuple):
         out = np.empty((points, 2))
         for part in _together(history):
             paths, rows = self._paths(history[:, part]), out[part]
-            in_chunks(len(paths), CHUNK, partial(self._count, spectrum, least, paths, rows))
+            chunk = CHUNK if len(history) * COUNTED <= MOST_PATHS else 1  # few points at a time are for all threads
+            in_chunks(len(paths), chunk, partial(self._count, spectrum, least, paths, rows))
             if progress is not None:
                 progress(part.stop / points)
         return out[:, 0], out[:, 1]

@@ -10,6 +10,7 @@ import numpy as np
 
 from fastpin import cracks
 from fastpin.bodies.body import BodyBase
+from fastpin.cracks.margins import crack_margins
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
@@ -190,6 +191,21 @@ def _margins_summary(result: Result, fatigue: Assessed | None, crack: cracks.Gro
         rows = static_margins(result.problem, {}, lambda places: [])
     rows += life_margins(result.problem, result.states, result.cycles, fatigue, crack)
     return margins_document(result.problem, rows)
+
+
+def crack_document(case: Case, found: cracks.Growth) -> dict[str, Any]:
+    """Return the growth of a crack with its numbers at all lengths and its margins as a JSON-ready dict."""
+    columns = {name: values.tolist() for name, values in crack_growth.growth_curve(found).columns.items()}
+    return json_ready(
+        {
+            "fastpin": __version__,
+            "title": case.title,
+            "units": unit_names(found.problem),
+            "crack": crack_growth.document(found),
+            "lengths": columns,
+            "margins": margins_document(found.problem, crack_margins(found)),
+        }
+    )
 
 
 def json_ready(value: Any) -> Any:

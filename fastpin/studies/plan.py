@@ -188,9 +188,8 @@ class Plan:
         """Return the case of a point from the text of the base case, see :meth:`case`."""
         text, case = self._base.vary(point.values)
         if case is None or text.placed or run_id(canonical(case, strengths)) != point.id:
-            raise InputError(
-                f"run {point.id}", "files of its loads, bodies or materials have changed since the plan was read"
-            )
+            changed = "files of its loads, bodies or materials have changed since the plan was read"
+            raise InputError(f"run {point.id}", changed)
         return case
 
     def case(self, point: Point) -> Case:

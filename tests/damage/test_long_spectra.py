@@ -8,6 +8,7 @@ import pytest
 
 import fastpin
 from fastpin import damage
+from fastpin.damage.counted import MOST_PATHS, _together
 from fastpin.model import FatigueAssessment, FatigueConstants
 
 MATERIAL = fastpin.Material(70e9, 0.33, "aluminium", FatigueConstants(1100e6, -0.124, 0.22, -0.59))
@@ -39,8 +40,6 @@ def peak(count):
 def test_the_memory_of_a_count_does_not_grow_with_the_points(states, what, monkeypatch):
     """Each block has a few points. All points at once would need 5 MB for the stresses, and 14 MB beside them."""
     monkeypatch.setattr("fastpin.damage.histories.ROOM", FEW * (8 * 41 + 4 * STATES))
-    monkeypatch.setattr("fastpin.damage.counted.MOST_PATHS", FEW * STATES)
-    monkeypatch.setattr("fastpin.damage.reserve.MOST_SCALED", FEW * STATES)
 
     def count(points):
         angles = np.linspace(-170.0, 170.0, points).tolist()
@@ -63,3 +62,9 @@ def test_blocks_change_no_damage(states, monkeypatch):
     np.testing.assert_allclose(parts.damage, whole.damage, rtol=1e-9)
     assert one_by_one.factor == pytest.approx(all_at_once.factor, rel=1e-6)
     assert one_by_one.theta == all_at_once.theta
+
+
+def test_few_points_of_a_long_history_are_counted_at_a_time():
+    for states, steps in ((100, [64, 6]), (MOST_PATHS // 30, [30, 30, 10]), (2 * MOST_PATHS, [1] * 70)):
+        history = np.broadcast_to(0.0, (states, 70, 4))
+        assert [part.stop - part.start for part in _together(history)] == steps
