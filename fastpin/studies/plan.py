@@ -167,18 +167,14 @@ class Plan:
         for fault in bar_faults(self.outcomes | new).values():
             raise InputError("outcomes", fault)
         more = replace(self, outcomes=self.outcomes | new)
-        return more if more.has_strengths == self.has_strengths else more._with_ids(self.has_strengths)
-
-    @property
-    def has_strengths(self) -> bool:
-        """Whether strengths are a part of the ids: an outcome depends on them."""
-        return has_strengths(self.outcomes)
+        known_strengths = has_strengths(self.outcomes)
+        return more if has_strengths(more.outcomes) == known_strengths else more._with_ids(known_strengths)
 
     def _with_ids(self, known: bool) -> Plan:
         """Return this plan with the ids that its outcomes ask for; its ids hold strengths if `known`."""
         points, cases = [], {}
         for point, case in ((point, self._varied(point, known)) for point in self.points):
-            text = canonical_json(canonical(case, self.has_strengths))
+            text = canonical_json(canonical(case, has_strengths(self.outcomes)))
             points.append(Point(id_of_json(text), point.values, text))
             if point.id in self._cases:
                 cases[points[-1].id] = case
@@ -203,7 +199,7 @@ class Plan:
         instance("point", point, Point, "a Point of this plan")
         if point.id in self._cases:
             return self._cases[point.id]
-        return self._varied(point, self.has_strengths)
+        return self._varied(point, has_strengths(self.outcomes))
 
 
 def read_plan(path: str | Path, progress: SweepProgress | None = None) -> Plan:
