@@ -206,3 +206,14 @@ def test_a_wrong_life_names_its_line(tmp_path, capsys):
     path.write_text(CASE.replace("knee = 1e6", "knee = 1e6\nlife = 0.5"), encoding="utf-8")
     assert main(["check", str(path)]) != 0
     assert "line 18: life: must lie between 1 and 1e+18, not 0.5" in capsys.readouterr().err
+
+
+def test_a_result_in_memory_is_judged_by_the_case_file(asked):
+    """A page of a result in memory has the sections of the case file that is given with it."""
+    result = fastpin.load(asked / "one.h5")
+    result.report(asked / "plain.html")
+    result.report(asked / "judged.html", case=asked / "case.toml")
+    plain, judged = ((asked / f"{name}.html").read_text(encoding="utf-8") for name in ("plain", "judged"))
+    for words in ("plate: crack, fracture at its first length", "factor on all stresses", "Crack at 81.00 deg"):
+        assert words in judged
+        assert words not in plain
