@@ -22,9 +22,8 @@ from fastpin.figures.style import angle_axis, draw_zero, line
 from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.words import ANGLE, caption, loads_text, point_text, points_text, quantity
 from fastpin.model.checks import choice, instance
-from fastpin.model.points import BODIES, Body, bodies_of
+from fastpin.model.points import BODIES, Body, bodies_of, edge_body
 from fastpin.model.units import named_loads, units
-from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve, write_csv
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
 from fastpin.solver.result import Result

@@ -327,6 +327,11 @@ def read_assessment(file: h5py.File) -> FatigueAssessment | None:
     return None if text is None else FatigueAssessment(**json.loads(text_of(text)))
 
 
+def crack_attributes(crack: CrackGrowth | None) -> dict[str, str]:
+    """Return the attribute of the solver that says how a crack grows: JSON of the section [crack]."""
+    return {} if crack is None else {"crack": json.dumps(crack.entries())}
+
+
 def read_crack(file: h5py.File) -> CrackGrowth | None:
     """Read how a crack grows in the case of a result; None unless the case said so."""
     text = text_of(file["solver"].attrs.get("crack", ""))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import os
 import time
@@ -38,6 +37,7 @@ from fastpin.storage.layout import (
     check_format,
     check_growing,
     count,
+    crack_attributes,
     cycle_rows,
     node_fields,
     option_attributes,
@@ -219,7 +219,7 @@ class FileRecorder:
             "title": self._title,
             **self._about.given(),
             **assessment_attributes(self._fatigue),
-            **({} if self._crack is None else {"crack": json.dumps(self._crack.entries())}),
+            **crack_attributes(self._crack),
             "arc_chosen": self.chosen_arc,
             "save_after": sorted(task.stops),
         }
