@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field, fields
 
 from fastpin.errors import InputError
 from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.beside import BESIDE, beside_of
 from fastpin.model.checks import instance, string
 from fastpin.model.crack import CrackGrowth
 from fastpin.model.history import LoadHistory
@@ -85,12 +86,10 @@ class Case:
     crack: CrackGrowth | None = None
 
     def __post_init__(self) -> None:
-        if self.fatigue is not None:
-            instance("fatigue", self.fatigue, FatigueAssessment, "a FatigueAssessment")
         if self.wear is not None:
             instance("wear", self.wear, Wear, "a Wear")
-        if self.crack is not None:
-            instance("crack", self.crack, CrackGrowth, "a CrackGrowth")
+        for name, value in beside_of(self).items():
+            instance(name, value, BESIDE[name].kind, BESIDE[name].words)
         instance("about", self.about, About, "an About")
         instance("problem", self.problem, Problem, "a Problem")
         instance("history", self.history, LoadHistory, "a LoadHistory")

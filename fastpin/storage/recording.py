@@ -11,6 +11,7 @@ import numpy as np
 
 from fastpin.errors import InputError, InputWarning
 from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.beside import checked_beside
 from fastpin.model.case import About, Case
 from fastpin.model.checks import (
     as_toml,
@@ -22,7 +23,7 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
-from fastpin.model.crack import CrackGrowth, checked_crack
+from fastpin.model.crack import CrackGrowth
 from fastpin.model.doubts import doubts, pressure_doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
@@ -40,8 +41,7 @@ from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.journal import check_beside, is_empty
 from fastpin.storage.layout import (
     read_about,
-    read_assessment,
-    read_crack,
+    read_beside,
     read_history,
     read_options,
     read_problem,
@@ -111,8 +111,6 @@ def record(
     check_writable(path, result=True)
     string("title", title)
     about = About() if about is None else instance("about", about, About, "an About")
-    if fatigue is not None:
-        instance("fatigue", fatigue, FatigueAssessment, "a FatigueAssessment")
     true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
@@ -126,7 +124,8 @@ def record(
     if solve_options.error_bars:
         check_halves(task, start)
     warn_of(doubts(problem, task.history, solve_options), 2)
-    writer = FileRecorder(path, task, title, about, fatigue, checked_crack(problem, crack))
+    beside = checked_beside(problem, {"fatigue": fatigue, "crack": crack})
+    writer = FileRecorder(path, task, title, about, beside)
     writer.overwrite = overwrite
     writer.check_overwriting()
     writer.chosen_arc &= start is None
@@ -278,7 +277,7 @@ def stored_case(path: str | Path) -> Case:
     with open_result(file_path("path", path)) as file:
         title = text_of(file["solver"].attrs.get("title", ""))
         parts = read_problem(file), read_history(file), read_options(file), title, read_about(file)
-        return Case(*parts, fatigue=read_assessment(file), crack=read_crack(file))
+        return Case(*parts, **read_beside(file))
 
 
 def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:

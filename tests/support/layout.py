@@ -17,6 +17,7 @@ ABOVE_BODIES = tuple(
     for name in (
         "__init__",
         "assessment",
+        "beside",
         "case",
         "crack",
         "doubts",
