@@ -22,6 +22,7 @@ def scrape(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any])
     paths = []
     for value in block_vars["example_globals"].values():
         if isinstance(value, Figure) and value.canvas.manager is None and not hasattr(value, "in_gallery"):
+            assert any(axes.has_data() for axes in value.axes), "the figure of an example is empty"
             path = next(block_vars["image_path_iterator"])
             value.savefig(path, dpi=DPI)
             value.in_gallery = True  # type: ignore[attr-defined]

@@ -13,11 +13,11 @@ stresses through the thickness, of residual stresses from curing, nor of the loa
 first ply has failed. A hole makes the stress at its edge so uneven that the first ply fails long before the laminate:
 :func:`point_stress_ratio`, :func:`average_stress_ratio` and :func:`yamada_sun` at a measured distance are meant for it.
 
-Sources. The formulas of Tsai and Hill (in the form of Azzi and Tsai), Tsai and Wu, and Yamada and Sun were read in
-public notes on composites, those of Hashin (1980) in manuals of Abaqus and HyperView and in public programs with the
-paper's figures as tests. The point stress of Whitney and Nuismer (1974) was read in public programs. The average stress
-and the characteristic curve of Chang, Scott and Springer (1982) are known from secondary literature only: the papers
-were not at hand.
+Sources. No paper itself was at hand. The formulas of Tsai and Hill (in the form of Azzi and Tsai), Tsai and Wu, and
+Yamada and Sun were read in public notes on composites. Those of Hashin (1980) were read in the manual of HyperView and
+in public programs, which have the paper's figure 6 among their tests. The point stress and the average stress of
+Whitney and Nuismer (1974) were read in public programs. The characteristic curve of Chang, Scott and Springer (1982)
+was seen by name only: compare its formula with the paper.
 """
 
 from __future__ import annotations

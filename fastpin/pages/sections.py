@@ -203,6 +203,9 @@ def materials(page: PageParts) -> PageSection:
     columns: list[Column] = [("constant", "", names)]
     columns += [(name, "", _constants(material, modulus)) for name, material in found.items()]
     parts: list[SectionPart] = [Table("Elastic constants and yield strength", columns)]
+    for name, material in found.items():
+        if not material.is_isotropic:
+            parts += _laminate(name, material, modulus)
     fatigue = {
         name: material.fatigue.given() for name, material in found.items() if material.fatigue and not material.is_rigid
     }
@@ -226,10 +229,31 @@ def materials(page: PageParts) -> PageSection:
 def _constants(material: Material, unit: Unit) -> list[str]:
     if material.is_rigid:
         return [material.name or "rigid", "infinite", "-", "infinite", "-"]
+    if not material.is_isotropic:
+        return [material.label, "-", "-", "-", "-"]
     moduli = [unit.text(value, 5) for value in (material.E, material.shear_modulus)]
     strength = material.known_yield_strength
     yields = "not known" if strength is None else PASCAL.text(strength, 5)
     return [material.name or "no name", moduli[0], f"{material.nu:.5g}", moduli[1], yields]
+
+
+def _laminate(name: str, material: Material, unit: Unit) -> list[SectionPart]:
+    """Return the moduli of a laminate, and the constants and sources of its plies."""
+    moduli = material.shown_moduli.items()
+    whole = [f"{value:.5g}" if field.startswith("nu") else unit.text(value, 5) for field, value in moduli]
+    rows: list[Column] = [("constant", "", [*material.shown_moduli, "direction"])]
+    rows.append((name, "", [*whole, material.direction_words]))
+    parts: list[SectionPart] = [Table(f"Laminate of the {name}: moduli of the whole", rows)]
+    plies = material.entries().get("plies", [])
+    names = list(dict.fromkeys(field for ply in plies for field in ply if field not in ("name", "source")))
+    if plies:
+        columns: list[Column] = [("constant", "", names)]
+        for ply in plies:
+            values = [f"{ply[field]:.6g}" if field in ply else "-" for field in names]
+            columns.append((ply.get("name", "no name"), "", values))
+        parts.append(Table("Plies, in SI units" if unit is PASCAL else "Plies, moduli in 1/beta*", columns))
+    sources = {ply.get("name", "a ply"): ply["source"] for ply in plies if "source" in ply}
+    return parts + [Text(f"Source of the constants of {ply}: {text}.") for ply, text in sources.items()]
 
 
 def loads(page: PageParts) -> PageSection:

@@ -118,7 +118,8 @@ def _uneven(system: System, start: Configuration) -> Configuration:
     gap the pin may touch in some places only.
     """
     found = implicit_step(system, start, start.load) or FiniteStep(system, start, everywhere=True).to(start.load)
-    if found is not None and system.problem.gap:
+    is_laminate = system.bodies is not None and system.bodies.anisotropy is not None
+    if found is not None and (system.problem.gap or is_laminate):
         found = _corrected(system, start, found)
     if found is None or not found.closed.any() or worst_residual(system, found) > MAX_RESIDUAL:
         raise ConvergenceError(NOT_FOUND)

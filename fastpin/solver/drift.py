@@ -254,7 +254,7 @@ class DriftPath:
         """
         if self._here is None:
             self._here = self._settled(self._moment(self.fraction), np.zeros((4, self.now.status.size), dtype=bool))
-        idle = 0
+        tried = {self._here.status.tobytes()}  # at this fraction
         while self.fraction < stop:
             before = self.fraction
             end, broken = self._stretch(self._here, stop)
@@ -263,9 +263,13 @@ class DriftPath:
             if broken.any() or end.ending.any():
                 self.events += 1
                 self._here = self._settled(end, broken)
-            idle = 0 if self.fraction > before else idle + 1
-            if idle > self.now.status.size:
+            if self.fraction > before:
+                tried.clear()
+            status = self._here.status.tobytes()
+            # What follows depends on the time and the statuses alone: statuses that come back come back for ever.
+            if status in tried or len(tried) > self.now.status.size:
                 raise StepLostError(exchange.CYCLING, self.fraction)
+            tried.add(status)
             if self.events > MOST_EVENTS * self.now.status.size:
                 raise StepLostError(exchange.ENDLESS, self.fraction)
             if report is not None:

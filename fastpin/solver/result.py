@@ -322,7 +322,8 @@ class Result(Sequence[State]):
         """
         from fastpin.damage import assessed_fatigue, cycle_states
 
-        if instance("how", how or FatigueAssessment(), FatigueAssessment, "a FatigueAssessment").over == "history":
+        chosen = FatigueAssessment() if how is None else how
+        if instance("how", chosen, FatigueAssessment, "a FatigueAssessment").over == "history":
             self._check_corners()
             return assessed_fatigue(self.states, how, progress)
         if not self.cycles:

@@ -17,8 +17,9 @@ from fastpin.bodies.kinds import KINDS
 from fastpin.model.checks import as_toml
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import law_entries, law_from
-from fastpin.model.laminate import laminate_from
+from fastpin.model.laminate import Laminate, laminate_from
 from fastpin.model.materials import STRENGTHS, Material
+from fastpin.model.ply import PLY_KEYS
 from fastpin.model.problem import Problem
 from fastpin.storage.damage import as_python, dataset_of, text_of
 
@@ -42,7 +43,7 @@ def read_material(group: h5py.Group) -> Material:
     """Read a material from its group."""
     attributes, fatigue = group.attrs, None
     if LAMINATE in group:
-        return laminate_from(**_read_entries(group[LAMINATE]))
+        return _read_laminate(group[LAMINATE])
     if "fatigue" in group:
         stored = group["fatigue"].attrs.items()
         fatigue = FatigueConstants(**{str(constant): as_python(value) for constant, value in stored})
@@ -54,13 +55,15 @@ def read_material(group: h5py.Group) -> Material:
     return Material(*elastic, text_of(attributes["name"]), fatigue, **strengths, growth=growth)
 
 
-def _read_entries(group: h5py.Group) -> dict[str, Any]:
-    """Read the entries of a laminate. The plies are a list of tables."""
-    found = {str(name): as_python(value) for name, value in group.attrs.items()}
-    for name, array in group.items():
-        tables = [_read_entries(array[place]) for place in sorted(array, key=int)] if name == "plies" else None
-        found[name] = array[()].tolist() if tables is None else tables
-    return found
+def _read_laminate(group: h5py.Group) -> Laminate:
+    """Read a laminate from its group. Names that later versions may add are skipped."""
+    given: dict[str, Any] = {name: as_python(group.attrs[name]) for name in ("axis", "name")}
+    if "plies" not in group:
+        return laminate_from(**given, compliance=dataset_of(group, "compliance", float)[()].tolist())
+    tables = [group["plies"][str(place)].attrs for place in range(len(group["plies"]))]
+    plies = [{key: as_python(table[key]) for key in PLY_KEYS if key in table} for table in tables]
+    arrays = {name: dataset_of(group, name, kind)[()].tolist() for name, kind in (("angles", float), ("which", int))}
+    return laminate_from(**given, plies=plies, **arrays)
 
 
 def write_bodies(group: h5py.Group, problem: Problem) -> None:

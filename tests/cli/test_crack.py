@@ -132,6 +132,7 @@ def planned(case: fastpin.Case, spectrum: bool = False) -> cracks.Growth:
     return cracks.planned_growth(states, case.crack, spectrum)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_case_with_a_crack_is_told_by_every_command(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(CASE)

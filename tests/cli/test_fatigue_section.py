@@ -31,7 +31,7 @@ repeat = 3
 small_cycles = "haibach"
 knee = 1e6
 [solve]
-nodes = 61
+nodes = 31
 """
 HEAD = "fatigue over the whole history as a spectrum, Miner's rule modified by Haibach below the knee at 1e+06 cycles"
 
@@ -98,6 +98,7 @@ def test_the_figure_follows_the_section(folder, capsys, tmp_path):
     assert max(float(row["damage by smith-watson-topper"]) for row in rows) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("source", ["case.toml", "one.h5"])
 def test_the_report_has_the_hot_spots(folder, source, capsys, tmp_path):
     page = tmp_path / "page.html"

@@ -92,6 +92,7 @@ def test_a_figure_and_its_numbers_with_units(of_kind, kind, tmp_path, capsys):
             assert is_text or name in BARE or (name.endswith("]") and " [" in name), (name, cell)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("coarse")
 def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, of_kind, tmp_path):
     result = load(stored)

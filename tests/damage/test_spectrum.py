@@ -94,14 +94,14 @@ def test_the_product_gives_the_stresses_of_each_state(name):
 
 
 def test_blocks_of_points_and_points_deep_in_the_pin(monkeypatch):
-    states = list(fastpin.solve(problem_of(), random_loads(45), nodes=61))
+    states = list(fastpin.solve(problem_of(), random_loads(45), nodes=31))
     points = fastpin.Points.at_depth(np.array([[0.0], [9e-3]]), np.linspace(-3.0, 1.0, 5))
     whole = damage.stress_history(states, points, "plate", True)
     deep = damage.stress_history(states, points, "pin", True)
     np.testing.assert_array_equal(
         deep[7, :, 0], states[7].stress(points, "pin", True).sxx.ravel()
     )  # read state by state
-    monkeypatch.setattr("fastpin.damage.histories.ROOM", 3 * (8 * 61 + 4 * 45))
+    monkeypatch.setattr("fastpin.damage.histories.ROOM", 3 * (8 * 31 + 4 * 45))
     blocks = list(history_blocks(states, points, "plate", True))
     assert [block.stop - block.start for block, _ in blocks] == [3, 3, 3, 1]
     found = np.concatenate([history for _, history in blocks], axis=1)

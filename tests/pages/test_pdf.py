@@ -143,7 +143,7 @@ def test_every_kind_of_part_is_printed(tmp_path: Path) -> None:
 def test_a_long_history_has_a_short_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     draw_roughly(monkeypatch)
     problem = sample_result().problem
-    many = fastpin.solve(problem, [{"P": 1e6}, *({"Q": 1e5 * (-1) ** k * (1 + k % 7)} for k in range(70))], nodes=61)
+    many = fastpin.solve(problem, [{"P": 1e6}, *({"Q": 1e5 * (-1) ** k * (1 + k % 7)} for k in range(70))], nodes=31)
     many.report(tmp_path / "many.pdf")
     texts, _ = read(tmp_path / "many.pdf")
     assert len(texts) <= 10

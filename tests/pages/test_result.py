@@ -17,7 +17,7 @@ from fastpin.bodies import Bushing
 from fastpin.errors import InputError, OutputError
 from fastpin.figures.stick_slip import stick_slip_plot
 from fastpin.figures.subjects import InMemory
-from fastpin.model import Material, MaterialPair
+from fastpin.model import Laminate, Material, MaterialPair
 from fastpin.model.loads import LOAD, LOADS
 from fastpin.model.options import OPTIONS, SolveOptions
 from fastpin.pages import album, write_report
@@ -361,6 +361,21 @@ def test_doubtful_values_and_notes_stand_in_the_overview(only: Callable[..., Non
     assert re.search(r"Warning: friction: 4 is above 2[^\n]*\.", words)
     assert "Note: the pin snapped 2 times; work does not balance there." in words
     assert "828 MPa" in words  # the yield strength of the pin
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_materials_show_a_laminate_with_its_plies_and_sources(only: Callable[..., None], tmp_path: Path) -> None:
+    only(materials, fatigue)
+    plate = Laminate.from_layup("[0/45/-45/90]2s", "T300/5208")
+    problem = fastpin.Problem(MaterialPair(Material(210e9, 0.3), plate, "stress"), 10e-3, 2e-5, 0.2)
+    history = fastpin.LoadHistory([{"P": 1e6}, {"P": 5e5}]).repeated(2)
+    fastpin.solve(problem, history, nodes=31).report(tmp_path / "page.html")
+    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    assert "[0/45/-45/90]2s of T300/5208" in words
+    assert "69.676 GPa" in words
+    assert "axis 1 at 0 deg from the bottom" in words
+    assert "Source of the constants of T300/5208: Jones, Mechanics of Composite Materials" in words
+    assert "The plate is a laminate: the criteria of fatigue are those of isotropic bodies." in words
 
 
 @pytest.mark.usefixtures("undrawn")

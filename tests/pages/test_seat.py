@@ -28,6 +28,7 @@ def sentence() -> str:
     return f"{line[0].upper()}{line[1:]}."
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_roughly")
 def test_the_page_has_a_section_on_the_seat(tmp_path: Path) -> None:
     pages = []

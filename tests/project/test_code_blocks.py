@@ -36,6 +36,7 @@ from fastpin.elasticity import plate_compliance
 from fastpin.studies import parse_plan, sweep
 from fastpin.studies.tolerances import KEYS as TOLERANCE_KEYS
 from scripts.inline import Inline
+from tests.support.drawing import draw_roughly
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -139,7 +140,8 @@ def names(
 
 
 @pytest.mark.parametrize("page", here())
-def test_python_runs(page: Path, names: dict[str, Any]) -> None:
+def test_python_runs(page: Path, names: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    draw_roughly(monkeypatch)
     if page.name == "compliance.md":
         Path("lug.json").write_text(plate_compliance(parse_lug(LUG_EXAMPLE).lug).compliance.to_text(), encoding="utf-8")
     if page.name == "sweeps.md":

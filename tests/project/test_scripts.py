@@ -123,6 +123,14 @@ def test_the_site_needs_its_own_tools(project: Path) -> None:
     assert not (project / "docs" / "examples").exists()
 
 
+def test_the_environment_of_the_site_can_be_made_alone(project: Path) -> None:
+    done = run(project, "docs", "--prepare")
+    assert (done.returncode, done.stdout) == (0, "")
+    assert f"pip {project}[docs]" in log(project)
+    assert run(project, "docs", "--prepare").returncode == 0
+    assert log(project) == []
+
+
 def test_without_arguments_the_built_in_case_with_its_figure(project: Path) -> None:
     done = run(project, "run")
     assert log(project)[-1].endswith(f"--plot {project}/out/tractions.png --json {project}/out/summary.json")

@@ -62,6 +62,8 @@ def test_there_are_enough_examples_and_each_explains_and_checks_itself() -> None
         assert len(line) == len(title), path.name
         assert len(" ".join(words).split()) > 15, path.name
         assert any(isinstance(node, ast.Assert) for node in ast.walk(tree)), path.name
+        stored = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+        assert "figure" in stored, path.name
         assert len(text.splitlines()) <= LONGEST_EXAMPLE, path.name
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import cycle
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -12,7 +13,8 @@ import pytest
 from fastpin.casefile.reader import parse_case
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
-from fastpin.kernels.status import STICK
+from fastpin.kernels import exchange
+from fastpin.kernels.status import SLIP_POSITIVE, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import FRICTION_CHANGE, Corner
@@ -24,7 +26,7 @@ from fastpin.solver.configuration import Configuration, worst_residual
 from fastpin.solver.drift import DriftPath, Moment, _dip
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.increment import implicit_step
-from fastpin.solver.path import PathStep
+from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Run
 from fastpin.solver.session import Session
@@ -322,6 +324,22 @@ def test_two_zeros_between_two_moments_are_noticed() -> None:
     assert _dip(begin, moment(0.1, 0.1, 1.0), 0.0) is None  # falls to 0.075
     assert _dip(begin, moment(0.1, 0.1, 1.0), 0.08) == pytest.approx(0.05, abs=0.01)  # a wide margin
     assert _dip(begin, moment(1.0, 0.1, -1.0), 0.0) is None  # it does not turn
+
+
+def test_statuses_that_come_back_end_the_path_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
+    start, end = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
+    path = DriftPath(system, start, end.load, system.under(end.load).friction)
+    path.follow(0.4)
+    moments = cycle([SimpleNamespace(status=np.full(31, status, dtype=np.int8)) for status in (SLIP_POSITIVE, STICK)])
+    ends = np.ones((4, 31), dtype=bool)
+    monkeypatch.setattr(path, "_stretch", lambda here, stop: (here, ends))
+    monkeypatch.setattr(path, "_settled", lambda moment, broken: next(moments))
+    before = path.events
+    with pytest.raises(StepLostError) as lost:
+        path.follow(1.0)
+    assert (lost.value.code, lost.value.fraction) == (exchange.CYCLING, 0.4)
+    assert path.events - before == 3
 
 
 # -- sessions: any friction at the nodes, followed at constant load ----------------------------------------------------
