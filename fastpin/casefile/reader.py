@@ -16,8 +16,8 @@ from typing import Any, TypeVar
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.casefile.assessment import read_assessment
-from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.beside import READERS
+from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.materials import DUNDURS_KEYS, known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear

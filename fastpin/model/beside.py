@@ -14,6 +14,7 @@ from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import instance
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth, check_crack, crack_from
 from fastpin.model.problem import Problem
+from fastpin.model.strength import STRENGTH_KEYS, StrengthAssessment, check_strength
 
 
 class Beside(NamedTuple):
@@ -68,6 +69,10 @@ BESIDE = {
     "crack": Beside(
         CrackGrowth, "a fastpin.model.CrackGrowth", CrackGrowth.entries, crack_from, CrackGrowth.entries, check_crack,
         CRACK_KEYS,
+    ),
+    "strength": Beside(
+        StrengthAssessment, "a fastpin.model.StrengthAssessment", StrengthAssessment.entries, StrengthAssessment,
+        StrengthAssessment.entries, check_strength, STRENGTH_KEYS,
     ),
 }  # fmt: skip
 """The sections by their names in case files, which are fields of :class:`fastpin.model.Case`."""

@@ -12,6 +12,7 @@ from fastpin.model.crack import CrackGrowth
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.strength import StrengthAssessment
 from fastpin.model.wear import Wear
 
 
@@ -69,6 +70,8 @@ class Case:
         How the fatigue of the history is assessed.
     crack : CrackGrowth or None
         How a crack grows from the hole.
+    strength : StrengthAssessment or None
+        How the strength of a laminate is assessed.
 
     Raises
     ------
@@ -84,6 +87,7 @@ class Case:
     wear: Wear | None = None
     fatigue: FatigueAssessment | None = None
     crack: CrackGrowth | None = None
+    strength: StrengthAssessment | None = None
 
     def __post_init__(self) -> None:
         if self.wear is not None:

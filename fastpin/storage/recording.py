@@ -29,6 +29,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OPTIONS, OptionValues, SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.strength import StrengthAssessment
 from fastpin.model.synonyms import unknown_keyword
 from fastpin.solver.attempts import Unfit
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
@@ -60,6 +61,7 @@ def record(
     about: About | None = None,
     fatigue: FatigueAssessment | None = None,
     crack: CrackGrowth | None = None,
+    strength: StrengthAssessment | None = None,
     save_after: Sequence[int] = (),
     overwrite: bool = False,
     grid: Grid | None = None,
@@ -87,6 +89,8 @@ def record(
         How the fatigue is assessed, stored in the file for its text, figures and report.
     crack : CrackGrowth, optional
         How a crack grows from the hole, stored in the file for ``fastpin crack`` and its report.
+    strength : StrengthAssessment, optional
+        How the strength of a laminate is assessed, stored in the file for its text, figures and report.
     save_after : sequence of int
         Corners, counted from 1, with a restart in the file. ``load(path, after=corner)`` is quick at these corners.
     overwrite : bool
@@ -124,7 +128,7 @@ def record(
     if solve_options.error_bars:
         check_halves(task, start)
     warn_of(doubts(problem, task.history, solve_options), 2)
-    beside = checked_beside(problem, {"fatigue": fatigue, "crack": crack})
+    beside = checked_beside(problem, {"fatigue": fatigue, "crack": crack, "strength": strength})
     writer = FileRecorder(path, task, title, about, beside)
     writer.overwrite = overwrite
     writer.check_overwriting()

@@ -14,6 +14,7 @@ import os
 import pickle
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -22,6 +23,7 @@ from typing import Any
 from fastpin.casefile.assessment import read_assessment
 from fastpin.casefile.cracks import read_crack
 from fastpin.casefile.profiles import read_wear
+from fastpin.casefile.strength import read_strength
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
@@ -30,6 +32,7 @@ from fastpin.model.checks import alternatives, as_toml, choice, file_path, strin
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth
 from fastpin.model.points import BODIES
 from fastpin.model.profile import Profile
+from fastpin.model.strength import STRENGTH_KEYS, StrengthAssessment
 from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.quantities import QUANTITIES
@@ -50,6 +53,7 @@ from fastpin.studies.outcomes import (
     taken,
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
+from fastpin.studies.strength_outcomes import STRENGTH_QUANTITIES, of_strength
 
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 """The sections of no case."""
@@ -63,6 +67,7 @@ KEYS = {
     "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
     "fatigue": ("fatigue", *ASSESSMENT_KEYS),
     "crack": ("crack", *CRACK_KEYS),
+    "strength": ("strength", *STRENGTH_KEYS[:-1]),
     "function": ("function", "classes"),
 }
 """The first key of an outcome says what is read. The others may stand beside it."""
@@ -244,6 +249,8 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
         return _of_fatigue(section, beside.get("fatigue"))
     if first[0] == "crack":
         return _of_crack(source, section, beside.get("crack"))
+    if first[0] == "strength":
+        return _of_strength(source, section, beside.get("strength"))
     if first[0] == "function":
         return _of_function(section, folder)
     return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
@@ -334,6 +341,17 @@ def _of_crack(source: CaseText, section: Section, default: CrackGrowth | None) -
     chosen = CRACK_QUANTITIES[quantity]
     of = partial(of_crack, quantity, crack)
     return StudyOutcome(chosen.kind, chosen.unit, definition, of, dict(chosen.classes))
+
+
+def _of_strength(source: CaseText, section: Section, default: StrengthAssessment | None) -> StudyOutcome | None:
+    """Read a number of the strength of a laminate: as the case says, unless the table does."""
+    quantity = _choice(section, "strength", tuple(STRENGTH_QUANTITIES))
+    how = read_strength(source, section, {} if default is None else default.entries())
+    if quantity is None or how is None:
+        return None
+    how = replace(how, failure=False)  # the outcome says whether the load at failure is looked for
+    definition = json.dumps({"strength": quantity, "how": how.entries()}, sort_keys=True)
+    return StudyOutcome(STRENGTH_QUANTITIES[quantity].kind, "", definition, partial(of_strength, quantity, how))
 
 
 def _of_function(section: Section, folder: Path) -> StudyOutcome | None:

@@ -74,6 +74,7 @@ UNVARIED = {
     "wear": ("no run of a sweep wears", "depth"),
     "fatigue": ("changes no run of a sweep", "life"),
     "crack": ("no run of a sweep grows a crack", "fate"),
+    "strength": ("changes no run of a sweep", "ratio"),
 }
 """Sections whose keys no plan varies: the reason, and an outcome that has the keys."""
 
