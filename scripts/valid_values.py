@@ -180,6 +180,7 @@ class Valid:
         self._by_target = self._targets(result) | {"worn_fatigue.cycles": _always(life), "after.cycles": _always(1)}
         self._by_target["damage_ranking.states"] = _always(list(life[0].states))
         self._by_target["assessed_fatigue.states"] = _always(list(life[0].states))
+        self._by_target["assessed_reserves.states"] = _always(list(life[0].states))
         self._by_annotation = self._annotations(result)
 
     def _write_files(self, result: fastpin.Result, case: fastpin.Case) -> None:
@@ -211,7 +212,7 @@ class Valid:
         """A valid object of a class, for a call of one of its methods."""
         if target == "fastpin.State.bush_fit":
             return self._bushed
-        if target == "fastpin.Result.assessed_fatigue":
+        if target in ("fastpin.Result.assessed_fatigue", "fastpin.Result.assessed_reserves"):
             return self._with_constants
         if owner.__name__ not in self.objects:
             raise LookupError(f"scripts/valid_values.py has no object of the class {owner.__name__}")

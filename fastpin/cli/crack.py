@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from fastpin import casefile, cracks, damage, figures, storage
+from fastpin import casefile, cracks, damage, figures, report, storage
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import check_outputs, flag, say, write_files
+from fastpin.cli.terminal import check_outputs, flag, say, write_files, write_text
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
@@ -28,21 +29,27 @@ def run(options: argparse.Namespace) -> int:
     """Print the growth of a crack, at one place or where a crack grows fastest, and draw it."""
     path, case = options.result, storage.stored_case(options.result)
     states, corners = stored_stops(path, case, options.spectrum)
-    check_outputs({"--output": options.output, "--csv": options.csv}, figures=("--output",))
+    outputs = {"--output": options.output, "--csv": options.csv, "--json": options.json}
+    check_outputs(outputs, figures=("--output",))
     try:
         with Bar(1, PLACES) as bar:
             found = cracks.planned_growth(states, _how(options, case), not corners, progress_to(bar))
     except InputError as error:
         name = "at" if error.field == "theta" else error.field
         raise InputError(flag(name) if hasattr(options, name) else name, error.reason) from None
-    say(growth_line(found), "")
-    say(*growth_table(found).split("\n"))
+    text = json.dumps(report.summary.crack_document(case, found), indent=2, allow_nan=False) + "\n"
     code = write_files(
         [
             (options.output, lambda path: figures.plot_crack_growth(found, path, case.title)),
             (options.csv, lambda path: write_csv([growth_curve(found)], path)),
+            (None if options.json == "-" else options.json, lambda path: write_text(path, text)),
         ]
     )
+    if options.json == "-":
+        sys.stdout.write(text)
+    else:
+        say(growth_line(found), "")
+        say(*growth_table(found).split("\n"))
     if len(states) == corners:
         words = "K between the corners is unknown: run --between 10 keeps states there"
         say(f"note: the cycle has only its {len(states)} corners; {words}", file=sys.stderr)

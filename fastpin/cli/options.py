@@ -29,7 +29,7 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""
 
-SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances")
+SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack")
 """Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
 
 
@@ -286,6 +286,7 @@ def add_crack(commands: Any) -> None:
         crack.add_argument(f"--{name.replace('_', '-')}", metavar="X", type=literal, help=words)
     crack.add_argument("-o", "--output", metavar="FIGURE", type=Path, help="draw the growth (png, pdf, svg)")
     crack.add_argument("--csv", metavar="FILE", type=Path, help="write the numbers at all lengths")
+    _add_json(crack, "write the growth and its margins as JSON")
 
 
 def _add_interface(command: argparse.ArgumentParser) -> None:

@@ -38,7 +38,7 @@ from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
 from fastpin.report.crack_growth import growth_line
-from fastpin.report.margins import margin_lines, static_margins
+from fastpin.report.margins import margin_lines
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import (
     TableRows,
@@ -53,6 +53,7 @@ from fastpin.report.states import (
 from fastpin.report.strength import StrengthFound, assess_strength, strength_lines
 from fastpin.states.choice import check_choice, span_of
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
+from fastpin.states.margins import static_margins
 from fastpin.states.quantities import load_point
 
 if TYPE_CHECKING:  # they import compiled code
@@ -463,8 +464,8 @@ class RunReport:
             say(report.cycle.cycle_line(cycle))
         states = result.states if cycle is None else cycle.states
         margins = static_margins(case.problem, extremes, lambda places: [found[place] for place in places])
-        if result.cycles:
-            margins += report.fatigue.last_cycle_margins(case.problem, states, result.cycles)
+        if result.cycles or fatigue is not None or grown is not None:
+            margins += report.fatigue.life_margins(case.problem, states, result.cycles, fatigue, grown)
         say(*margin_lines(case.problem, margins))
         if fatigue is not None:
             say(*report.assessment.assessment_lines(fatigue))

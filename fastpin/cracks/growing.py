@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from fastpin.cracks.fates import CrackFate
 from fastpin.cracks.intensity import Crack, CrackedBody, CrackedEdge, Residual, histories, sliding_doubt
@@ -23,7 +22,9 @@ from fastpin.model.growth import GrowthLaw, checked_law
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
+from fastpin.runtime.extensions import interpolate
 from fastpin.states.choice import stops_of_one_problem
+from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
 COMPUTED, DRAWN = 8, 100
@@ -54,6 +55,10 @@ class Growth(ReadOnly):
         Largest and smallest K_I of the cycle, Pa sqrt(m). A negative one counts faces that overlap.
     K_II : ndarray
         K_II at the largest K_I, Pa sqrt(m).
+    largest_at : ndarray
+        Load point of the state with the largest K_I.
+    loads : mapping of float to mapping
+        The loads at these load points, by name.
     doubts : tuple of InputWarning
         Reasons to doubt the numbers.
     """
@@ -65,6 +70,8 @@ class Growth(ReadOnly):
     K_max: np.ndarray
     K_min: np.ndarray
     K_II: np.ndarray
+    largest_at: np.ndarray
+    loads: Mapping[float, Mapping[str, float]]
     doubts: tuple[InputWarning, ...] = ()
 
     per: ClassVar[str] = "cycle"
@@ -106,6 +113,13 @@ class Growth(ReadOnly):
     def arrest(self) -> float:
         """The first length at which the range is at most the threshold, m; NaN if the crack grows to the last one."""
         return self._first(self.threshold - self.delta_K)
+
+    @property
+    def reached(self) -> int:
+        """The place of the longest length that the crack reaches before an arrest."""
+        if math.isnan(self.arrest):
+            return int(self.length.size) - 1
+        return max(int(np.searchsorted(self.length, self.arrest)) - 1, 0)
 
     @property
     def fracture(self) -> float:
@@ -424,10 +438,15 @@ class _Following(NamedTuple):
         lengths = self.lengths
         count = max(math.ceil(DRAWN * math.log10(lengths[-1] / lengths[0])) + 1, 20)
         fine = np.geomspace(lengths[0], lengths[-1], count)
-        spline = CubicSpline(np.log(lengths), K / np.sqrt(lengths)[:, None], axis=1)
+        spline = interpolate.CubicSpline(np.log(lengths), K / np.sqrt(lengths)[:, None], axis=1)
         opening, sliding = np.moveaxis(spline(np.log(fine)) * np.sqrt(fine)[:, None], -1, 0)
-        K_II = np.take_along_axis(sliding, np.argmax(opening, axis=0)[None], axis=0)[0]
-        known = (self.edge.problem, crack, self.law, fine, opening.max(axis=0), opening.min(axis=0), K_II, doubts)
+        top = np.argmax(opening, axis=0)
+        K_II = np.take_along_axis(sliding, top[None], axis=0)[0]
+        at = np.array([load_point(self.stops[place]) for place in top.tolist()])
+        loads = {load_point(state): state.load for state in (self.stops[place] for place in np.unique(top).tolist())}
+        known = (
+            self.edge.problem, crack, self.law, fine, opening.max(axis=0), opening.min(axis=0), K_II, at, loads, doubts
+        )  # fmt: skip
         if not self.counted:
             return Growth(*known)
         sums = _sums(self.law, fine, opening)

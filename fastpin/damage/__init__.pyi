@@ -1,4 +1,5 @@
 from .assessed import assessed_fatigue as assessed_fatigue
+from .assessed import assessed_reserves as assessed_reserves
 from .counted import SPECTRUM_CRITERIA as SPECTRUM_CRITERIA
 from .counting import rainflow as rainflow
 from .counting import stress_life as stress_life
@@ -45,6 +46,7 @@ from .lives import fatemi_socie_life as fatemi_socie_life
 from .lives import miner as miner
 from .lives import smith_watson_topper_life as smith_watson_topper_life
 from .race import Race as Race
+from .reserve import StressReserve as StressReserve
 from .spectrum import SpectrumCycles as SpectrumCycles
 from .spectrum import SpectrumDamage as SpectrumDamage
 from .spectrum import SpectrumSpot as SpectrumSpot

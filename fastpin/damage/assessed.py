@@ -4,22 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
 from fastpin.damage.counted import CountedMaterial
 from fastpin.damage.distance import checked_length, mean_depth, points_of_means
 from fastpin.damage.histories import Progress, different_states, history_blocks
-from fastpin.damage.spectrum import SpectrumDamage, counted_damage, halves, spectrum_damage
+from fastpin.damage.hot_spots import edge_angles
+from fastpin.damage.reserve import Goal, StressReserve, stress_reserve
+from fastpin.damage.spectrum import SpectrumCount, SpectrumDamage, halves, spectrum_count
+from fastpin.errors import InputWarning
 from fastpin.model.assessment import FatigueAssessment, assessed_bodies, check_assessment
 from fastpin.model.checks import check_callable, instance
-from fastpin.model.points import Body, Points, material_of, owner_of
+from fastpin.model.doubts import warn_of
+from fastpin.model.points import Body, Points, edge_body, material_of, owner_of
 from fastpin.states.choice import stops_of_one_problem
+from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
 MOST_REFINED = 500
 """States of a spectrum up to which refined tractions are read unasked: some ten seconds."""
+
+
+MOST_STRAIGHT = 1.25
+"""Largest ratio of damages without and with straight lines that is not told: some 4 % of the stress."""
 
 
 def assessed_fatigue(
@@ -47,58 +55,123 @@ def assessed_fatigue(
         See :func:`spectrum_damage` and :func:`fatigue_at_distance`; also if a body of the assessment is rigid or not
         there.
     """
-    stops = stops_of_one_problem(states)
-    how = FatigueAssessment() if how is None else instance("how", how, FatigueAssessment, "a FatigueAssessment")
-    if progress is not None:
-        check_callable("progress", progress)
-    problem = stops[0].problem
-    check_assessment(problem, how)
-    jobs = [(criterion, body) for criterion in how.criteria for body in assessed_bodies(problem, how, criterion)]
-
-    def tell(job: int) -> Progress:
-        return lambda part: None if progress is None else progress(job + part, len(jobs))
-
+    stops, how, jobs, tell = _jobs(states, how, progress)
     found = [_of_body(stops, how, criterion, body, tell(job)) for job, (criterion, body) in enumerate(jobs)]
     return sorted(found, key=lambda one: (how.criteria.index(one.criterion), -one.hot_spot.damage))
 
 
+def assessed_reserves(
+    states: Sequence[State],
+    how: FatigueAssessment | None = None,
+    progress: Callable[[float, float], None] | None = None,
+) -> list[StressReserve]:
+    """By what factor all stresses may grow, body by body as :func:`assessed_fatigue`: the smallest factor first.
+
+    The goal is the life that the assessment asks for. Without a life the largest cycle may reach the knee, and without
+    a knee one pass of the spectrum must do no more damage than 1.
+
+    Parameters
+    ----------
+    states, how, progress
+        See :func:`assessed_fatigue`. A method of critical distances without angles takes the place of the edge whose
+        stresses may grow least.
+
+    Raises
+    ------
+    InputError
+        See :func:`assessed_fatigue`.
+    """
+    stops, how, jobs, tell = _jobs(states, how, progress)
+    goal = Goal.of(how.life, how.knee)
+    found = []
+    for number, (criterion, body) in enumerate(jobs):
+        told = tell(number)
+        reserve = stress_reserve(_edge_count(stops, how, criterion, body), goal, told)
+        if how.method != "edge" and (how.theta is not None or reserve.is_finite):
+            theta = np.array([reserve.theta]) if how.theta is None else how.theta
+            reserve = stress_reserve(_count_of_means(stops, how, criterion, body, theta), goal, told)
+        found.append(reserve)
+    return sorted(found, key=lambda one: (how.criteria.index(one.criterion), one.factor))
+
+
+def _jobs(
+    states: Sequence[State], how: FatigueAssessment | None, progress: Callable[[float, float], None] | None
+) -> tuple[Sequence[State], FatigueAssessment, list[tuple[str, Body]], Callable[[int], Progress]]:
+    """Check the arguments, and return states, assessment, pairs of criterion and body, and the progress of each."""
+    stops = stops_of_one_problem(states)
+    how = FatigueAssessment() if how is None else instance("how", how, FatigueAssessment, "a FatigueAssessment")
+    if progress is not None:
+        check_callable("progress", progress)
+    check_assessment(stops[0].problem, how)
+    jobs = [
+        (criterion, body) for criterion in how.criteria for body in assessed_bodies(stops[0].problem, how, criterion)
+    ]
+
+    def tell(job: int) -> Progress:
+        return lambda part: None if progress is None else progress(job + part, len(jobs))
+
+    return stops, how, jobs, tell
+
+
 def _of_body(
-    stops: Sequence[State], how: FatigueAssessment, criterion: Any, body: Body, tell: Progress
+    stops: Sequence[State], how: FatigueAssessment, criterion: str, body: Body, tell: Progress
 ) -> SpectrumDamage:
     """Return the damage of one body by one criterion."""
-    straight = len(stops) > MOST_REFINED if how.straight is None else how.straight
     theta, share = how.theta, 1.0 if how.method == "edge" else 0.5
 
     if how.method == "edge" or theta is None:
-        edge = spectrum_damage(
-            stops, criterion, body, points=None if theta is None else Points.at_depth(0.0, theta), straight=straight,
-            small_cycles=how.small_cycles, knee=how.knee, progress=lambda done, total: tell(share * done / total),
-        )  # fmt: skip
+        edge = _edge_count(stops, how, criterion, body).damage(*halves(lambda done, total: tell(share * done / total)))
+        if how.straight is None and _is_straight(stops, how):
+            _doubt_straight(stops, edge)
         if how.method == "edge" or math.isnan(edge.hot_spot.theta):
             return edge
         theta = np.array([edge.hot_spot.theta])
-    return _of_means(stops, how, (criterion, body), theta, straight, lambda part: tell(1.0 - share + share * part))
+    count = _count_of_means(stops, how, criterion, body, theta)
+    return count.damage(*halves(lambda done, total: tell(1.0 - share + share * done / total)))
 
 
-def _of_means(
-    stops: Sequence[State],
-    how: FatigueAssessment,
-    which: tuple[str, Body],
-    theta: np.ndarray,
-    straight: bool,
-    tell: Progress,
-) -> SpectrumDamage:
-    """Return the damage of the means of the stresses at angles of the edge, by the theory of critical distances."""
-    (criterion, body), problem, method = which, stops[0].problem, how.method
+def _doubt_straight(stops: Sequence[State], edge: SpectrumDamage) -> None:
+    """Warn if the worst cycle of a body does another damage with refined tractions: the grid is too coarse."""
+    if not edge.cycles.damage.size:
+        return
+    wanted = {float(each[0]) for each in (edge.cycles.start, edge.cycles.stop, edge.cycles.largest)}
+    few = list({load_point(state): state for state in stops if load_point(state) in wanted}.values())
+    points = Points.at_depth(0.0, edge_angles(few, 0))
+    straight, refined = (
+        spectrum_count(few, edge.criterion, edge.body, points, straight=each).damage(*halves(None)).hot_spot.damage  # type: ignore[arg-type]
+        for each in (True, False)
+    )
+    if not straight / MOST_STRAIGHT <= refined <= straight * MOST_STRAIGHT:
+        where = f"at the edge of the {edge_body(edge.problem, edge.body)}"
+        words = f"with refined tractions the worst cycle {where} does {refined / straight:.2g} times the damage"
+        words += "; straight = false takes them, and more nodes bring both closer"
+        warn_of([InputWarning("straight", words)], 4)
+
+
+def _is_straight(stops: Sequence[State], how: FatigueAssessment) -> bool:
+    return len(stops) > MOST_REFINED if how.straight is None else how.straight
+
+
+def _edge_count(stops: Sequence[State], how: FatigueAssessment, criterion: str, body: Body) -> SpectrumCount:
+    """Return the count at the given angles of an edge, or all along it."""
+    points = None if how.theta is None else Points.at_depth(0.0, how.theta)
+    rule = how.small_cycles, how.knee
+    return spectrum_count(stops, criterion, body, points, straight=_is_straight(stops, how), rule=rule)
+
+
+def _count_of_means(
+    stops: Sequence[State], how: FatigueAssessment, criterion: str, body: Body, theta: np.ndarray
+) -> SpectrumCount:
+    """Return the count of the means of the stresses at angles of the edge, by the theory of critical distances."""
+    problem, method, straight = stops[0].problem, how.method, _is_straight(stops, how)
     length = checked_length(problem, method, body, how.length)
     points, weights = points_of_means(problem, method, body, length, theta)  # type: ignore[arg-type]
     counted = CountedMaterial.of(
         criterion, material_of(problem, body), None, owner_of(problem, body), how.small_cycles, how.knee
     )
     different, order = different_states(stops, straight)
-    tell_read, tell_counted = halves(lambda done, total: tell(done / total))
 
-    def means() -> Iterator[tuple[slice, np.ndarray]]:
+    def means(progress: Progress) -> Iterator[tuple[slice, np.ndarray]]:
         """Yield the mean stresses, angle by angle."""
         assert points.depth is not None
         for k in range(theta.size):
@@ -106,10 +179,9 @@ def _of_means(
             mean = np.zeros((len(different), 1, 4))
             for part, history in history_blocks(different, some, body, straight):
                 mean[:, 0] += np.einsum("tqc,q->tc", history, weights[part])
-            tell_read((k + 1) / theta.size)
+            progress((k + 1) / theta.size)
             yield slice(k, k + 1), mean
 
-    where = body, theta, np.full(theta.shape, mean_depth(method, length))
-    return counted_damage(
-        criterion, where, (different, order), [(np.ones(theta.size, bool), counted)], means(), tell_counted
-    )
+    depth = np.full(theta.shape, mean_depth(method, length))
+    parts = [(np.ones(theta.size, bool), counted)]
+    return SpectrumCount(criterion, body, theta, depth, different, order, parts, means)

@@ -7,14 +7,15 @@ cycles is the damage of the plane (Palmgren 1924, Miner 1945). The worst plane c
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, PlaneCount
-from fastpin.damage.lives import curve_with_knee
+from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve
 from fastpin.errors import InputError
 from fastpin.kernels import rainflow
 from fastpin.model.checks import alternatives, choice
@@ -27,6 +28,9 @@ SPECTRUM_CRITERIA = tuple(name for name, criterion in FATIGUE_CRITERIA.items() i
 
 CHUNK, COUNTED = 8, 64
 """Points that one thread counts at a time, and points that are counted between two calls of the progress."""
+
+MOST_PATHS = 2**20
+"""Most states of the points that are counted at a time: their paths fill 50 MB, and as much again while made."""
 
 TRIED = 16
 """Places at which a block of repeated stops may end."""
@@ -88,11 +92,21 @@ def _repeated(order: np.ndarray, begin: int, places: list[int]) -> tuple[int, in
     return 0, 0
 
 
+def _together(history: np.ndarray) -> Iterator[slice]:
+    """Yield the points that are counted at a time, from stresses (states, points, 4): few of a long history."""
+    states, points = history.shape[:2]
+    step = min(COUNTED, max(MOST_PATHS // max(states, 1), 1))
+    for begin in range(0, points, step):
+        yield slice(begin, min(begin + step, points))
+
+
 class CountedMaterial(NamedTuple):
     """A criterion with the constants of one material.
 
     Attributes
     ----------
+    name : str
+        The criterion.
     counting : PlaneCount
     material : Material
     constants : tuple of float
@@ -101,6 +115,7 @@ class CountedMaterial(NamedTuple):
         The curve of lives with its knee, see :func:`fastpin.damage.lives.curve_with_knee`.
     """
 
+    name: str
     counting: PlaneCount
     material: Material
     constants: tuple[float, ...]
@@ -127,7 +142,7 @@ class CountedMaterial(NamedTuple):
         needs = len(criterion.needs)
         curve = criterion.counting.curve(material, *known[needs:])
         life = curve_with_knee(curve, criterion.counting.degree, rule, knee)
-        return cls(criterion.counting, material, known[:needs], life)
+        return cls(name, criterion.counting, material, known[:needs], life)
 
     def worst(
         self, history: np.ndarray, spectrum: Spectrum, progress: Callable[[float], None] | None = None
@@ -138,11 +153,12 @@ class CountedMaterial(NamedTuple):
         """
         points, least = history.shape[1], self._least(history)
         out = np.empty((points, 2))
-        for begin in range(0, points, COUNTED):
-            paths, rows = self._paths(history[:, begin : begin + COUNTED]), out[begin : begin + COUNTED]
-            in_chunks(len(paths), CHUNK, partial(self._count, spectrum, least, paths, rows))
+        for part in _together(history):
+            paths, rows = self._paths(history[:, part]), out[part]
+            chunk = CHUNK if len(history) * COUNTED <= MOST_PATHS else 1  # few points at a time are for all threads
+            in_chunks(len(paths), chunk, partial(self._count, spectrum, least, paths, rows))
             if progress is not None:
-                progress(min(begin + COUNTED, points) / points)
+                progress(part.stop / points)
         return out[:, 0], out[:, 1]
 
     def _count(self, spectrum: Spectrum, least: float, paths: np.ndarray, rows: np.ndarray, part: slice) -> None:
@@ -163,6 +179,21 @@ class CountedMaterial(NamedTuple):
         given = self.counting.form, self._least(history), self.life
         count = rainflow.cycles_on_plane(self._paths(history)[0], plane, *spectrum, *given, places, values)
         return places[:count], values[:count]
+
+    def largest(self, history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the largest parameter of a cycle of each point on any plane, and this plane, both (points,), rad."""
+        out = np.empty((2, history.shape[1]))
+        for part in _together(history):
+            found = FATIGUE_CRITERIA[self.name].values(history[:, part], self.material, *self.constants)
+            assert found.plane is not None
+            out[0, part], out[1, part] = found.parameter, found.plane
+        return out[0], out[1]
+
+    def most_damage(self, parameter: np.ndarray) -> np.ndarray:
+        """Return the damage 1/N of cycles without a rule of small cycles, which is no less than with one."""
+        curve = LifeCurve((math.exp(self.life[0]), math.exp(self.life[1])), (self.life[2], self.life[3]))
+        with np.errstate(divide="ignore"):
+            return 1.0 / cycles_on_curve(parameter, curve)
 
     def _least(self, history: np.ndarray) -> float:
         """The parameter that is rounding beside the stresses."""

@@ -17,8 +17,8 @@ from fastpin.states.reading_bounds import MAPPED
 from fastpin.states.state import State
 from fastpin.states.stress_map import mapped, share_grids
 
-ROOM = 2**24
-"""Numbers that a block of points may hold: 128 MB."""
+ROOM = 2**23
+"""Numbers that a block of points may hold: 64 MB. While a block is counted, twice as much is in use beside it."""
 
 TOGETHER = 64
 """States that are read between two calls of the progress."""

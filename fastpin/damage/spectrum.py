@@ -179,10 +179,79 @@ def spectrum_damage(
         See :func:`fatigue`; also if the criterion has no life, the material lacks one of its constants, the stresses do
         not change, or the rule of small cycles can't be used.
     """
-    stops = stops_of_one_problem(states)
-    problem = stops[0].problem
     if progress is not None:
         check_callable("progress", progress)
+    tell_read, tell_counted = halves(progress)
+    return spectrum_count(states, criterion, body, points, depth, constants, straight, (small_cycles, knee)).damage(
+        tell_read, tell_counted
+    )
+
+
+class SpectrumCount(NamedTuple):
+    """All that a count of cycles needs: points of a body, their materials, and their stresses over the states.
+
+    Attributes
+    ----------
+    criterion, body : str
+    theta, depth : ndarray
+        Angles of the points, rad, and distances from the edge, m.
+    different : sequence of State
+        The different states.
+    order : ndarray of int64, shape (stops,)
+        The place of each stop among them.
+    parts : sequence of (ndarray of bool, CountedMaterial)
+        The points of each material, in a row.
+    blocks : callable
+        ``blocks(progress)`` yields blocks of points, with their stresses (states, points of the block, 4).
+    """
+
+    criterion: str
+    body: str
+    theta: np.ndarray
+    depth: np.ndarray
+    different: Sequence[State]
+    order: np.ndarray
+    parts: Sequence[tuple[np.ndarray, CountedMaterial]]
+    blocks: Callable[[Callable[[float], None]], Iterable[tuple[slice, np.ndarray]]]
+
+    def damage(self, tell_read: Callable[[float], None], tell_counted: Callable[[float], None]) -> SpectrumDamage:
+        """Count the cycles at all points.
+
+        Raises
+        ------
+        InputError
+            If the stresses do not change.
+        """
+        spectrum, found, changes = Spectrum.of(self.order), _Found(self.theta.size), False
+        for block, history in self.blocks(tell_read):
+            changes = changes or bool(np.ptp(history, axis=0).max() > ROUNDING * np.abs(history).max())
+            for chosen, counted in self.parts:
+                places = block.start + np.flatnonzero(chosen[block])
+                found.take(counted, history[:, chosen[block]], spectrum, places, tell_counted)
+        if not changes:
+            raise InputError("states", "must have a turning point: their stresses do not change")
+        damage, plane = found.damage.reshape(self.theta.shape), found.plane.reshape(self.theta.shape)
+        cycles = found.cycles(spectrum, np.array([load_point(state) for state in self.different]))
+        where = self.criterion, self.body, self.theta, self.depth
+        return SpectrumDamage(self.different[0].problem, *where, damage, plane, cycles)
+
+
+def spectrum_count(
+    states: Sequence[State],
+    criterion: str,
+    body: Body,
+    points: Points | None = None,
+    depth: ArrayLike | None = None,
+    constants: FatigueConstants | None = None,
+    straight: bool = False,
+    rule: tuple[str, float | None] = ("elementary", None),
+) -> SpectrumCount:
+    """Check the arguments of :func:`spectrum_damage`, and return the count that they ask for.
+
+    `rule` is that of small cycles with its knee.
+    """
+    stops = stops_of_one_problem(states)
+    problem = stops[0].problem
     check_body(problem, body)
     different, order = different_states(stops, true_or_false("straight", straight))
     if points is None:
@@ -201,57 +270,13 @@ def spectrum_damage(
                 isotropic_material("body", problem, one, CRITERION),
                 constants,
                 owner_of(problem, one),
-                small_cycles,
-                knee,
+                *rule,
             ),
         )
         for chosen, one in bodies_at(problem, body, below.ravel())
     ]
-    tell_read, tell_counted = halves(progress)
-    blocks = history_blocks(different, points, body, straight, tell_read)
-    where = body, points.theta, below * problem.hole_radius
-    return counted_damage(criterion, where, (different, order), parts, blocks, tell_counted)
-
-
-def counted_damage(
-    criterion: str,
-    where: tuple[str, np.ndarray, np.ndarray],
-    stops: tuple[Sequence[State], np.ndarray],
-    parts: Sequence[tuple[np.ndarray, CountedMaterial]],
-    blocks: Iterable[tuple[slice, np.ndarray]],
-    progress: Callable[[float], None],
-) -> SpectrumDamage:
-    """Count the cycles of histories, given in blocks of points with their stresses (states, points of the block, 4).
-
-    Parameters
-    ----------
-    criterion : str
-    where : tuple of str, ndarray, ndarray
-        Body, angles of the points, rad, and their distances from the edge, m.
-    stops : tuple
-        The different states, and the place of each stop among them.
-    parts : sequence of (ndarray of bool, CountedMaterial)
-        The points of each material, in a row.
-    blocks : iterable of (slice, ndarray)
-    progress : callable
-
-    Raises
-    ------
-    InputError
-        If the stresses do not change.
-    """
-    (body, theta, depth), (different, order) = where, stops
-    spectrum, found, changes = Spectrum.of(order), _Found(theta.size), False
-    for block, history in blocks:
-        changes = changes or bool(np.ptp(history, axis=0).max() > ROUNDING * np.abs(history).max())
-        for chosen, counted in parts:
-            places = block.start + np.flatnonzero(chosen[block])
-            found.take(counted, history[:, chosen[block]], spectrum, places, progress)
-    if not changes:
-        raise InputError("states", "must have a turning point: their stresses do not change")
-    damage, plane = found.damage.reshape(theta.shape), found.plane.reshape(theta.shape)
-    cycles = found.cycles(spectrum, np.array([load_point(state) for state in different]))
-    return SpectrumDamage(different[0].problem, criterion, body, theta, depth, damage, plane, cycles)
+    blocks = partial(history_blocks, different, points, body, straight)
+    return SpectrumCount(criterion, body, points.theta, below * problem.hole_radius, different, order, parts, blocks)
 
 
 def damage_ranking(

@@ -18,10 +18,9 @@ from fastpin.figures.style import COLOURS, MAX_NAMED, Line, angle_axis, draw_gri
 from fastpin.figures.subjects import Subject, with_stored_cycles
 from fastpin.figures.words import ANGLE, quantity
 from fastpin.model.angles import from_bottom
-from fastpin.model.points import Body
+from fastpin.model.points import Body, edge_body
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
-from fastpin.report.case import edge_body
 from fastpin.report.curves import write_csv
 from fastpin.report.wear import damage_curve, followed_words
 from fastpin.solver.wear_result import WearResult

@@ -25,9 +25,9 @@ from fastpin.figures.words import ANGLE, caption, quantity, short
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import choice, instance, instances
-from fastpin.model.points import EDGES, Body
+from fastpin.model.points import EDGES, Body, edge_body
 from fastpin.model.units import scaled, units
-from fastpin.report.case import assessment_words, edge_body
+from fastpin.report.case import assessment_words
 from fastpin.report.curves import write_csv
 from fastpin.report.cycle import fatigue_bodies
 from fastpin.report.fatigue import fatigue_curve, spectrum_curve

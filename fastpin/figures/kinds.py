@@ -43,7 +43,9 @@ KIND_OPTIONS = {
     "bars": KindOption("tractions: draw the error bars as bands (run --error-bars)", type="flag"),
     "rate": KindOption("animation: states a second (default 4)", "N", "number"),
     "body": KindOption("plate, pin, seat (the plate round a bush), or (hoop and map) both"),
-    "component": KindOption("map: von_mises (default), largest, hoop, radial, shear, sxx, ..."),
+    "component": KindOption(
+        "map: von_mises (default), largest, hoop, radial, shear, sxx, ..., or utilization of a laminate"
+    ),
     "extent": KindOption("map: outer radius (default 2)", "RADII", "number"),
     "angle": KindOption("profile: place (default: the largest hoop stress)", "DEG", "number"),
     "depth": KindOption("profile: largest depth, in radii; fatigue, strength: depth of the points, m", "D", "number"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -158,8 +159,8 @@ def strength_of(
     if how is not None:
         instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
     given = how or StrengthAssessment(distance=0.0)
-    lengths = given.lengths if depth is None else {"distance": depth}
-    given = StrengthAssessment(criterion or given.criterion, **lengths)
+    criterion = criterion or given.criterion
+    given = replace(given, criterion=criterion) if depth is None else StrengthAssessment(criterion, depth)
     found = [joint_strength(state, given.criterion, **given.lengths) for state in drawn]
     curves = [_strength_curve(each) for each in found]
     length = units(drawn[0].problem)["length"]

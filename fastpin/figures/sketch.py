@@ -24,8 +24,9 @@ from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, instance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.points import edge_body
 from fastpin.model.problem import Problem
-from fastpin.report.case import ROUNDING, edge_body
+from fastpin.report.case import ROUNDING
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State

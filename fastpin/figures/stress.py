@@ -22,11 +22,10 @@ from fastpin.figures.style import angle_axis, draw_zero, line
 from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.words import ANGLE, caption, loads_text, point_text, points_text, quantity
 from fastpin.model.checks import choice, instance
-from fastpin.model.points import BODIES, Body, bodies_of
+from fastpin.model.points import BODIES, Body, bodies_of, edge_body
 from fastpin.model.units import named_loads, units
-from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve, write_csv
-from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
+from fastpin.report.stress import FIELDS, UTILIZATION, depth_curves, field_curves, hoop_curves
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 from fastpin.states.quantities import load_point, point_name
@@ -191,7 +190,7 @@ def plot_stress_field(
     state : State or Result
         Of a result the last state.
     component : str
-        A name of :data:`fastpin.report.stress.COMPONENTS`.
+        A name of :data:`fastpin.report.stress.FIELDS`.
     body : {"both", "plate", "pin"}
         "both" leaves out a rigid body.
     extent : float
@@ -209,12 +208,12 @@ def map_plot(
     drawn = subject.states("last" if states is None else states)
     state = drawn[-1]
     curves = field_curves(state, component, body, extent)
-    words = COMPONENTS[component]
+    words = FIELDS[component]
     point = f"load point {point_name(load_point(state))}: {named_loads(state.problem, state.load)}"
     return Plot(
         lambda look: _draw_field(look, state, curves, component),
         partial(write_csv, curves),
-        f"Map of the {words} in pin and plate at {point}.",
+        f"Map of the {words} in {'plate' if component == UTILIZATION else 'pin and plate'} at {point}.",
         f"{words[0].upper()}{words[1:]} at {point}. The thick line is the contact, white where it slips.",
         drawn.notes,
         width=FIELD_WIDTH,
@@ -231,7 +230,7 @@ def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: st
     nearest = 0.3 * radius if not state.problem.pin_body.bore_radius and state.problem.pin_load == "centre" else 0.0
     every = np.concatenate([curve[value][curve[distance] >= nearest] for curve in curves])
     low, high = np.quantile(every, [1.0 - FARTHEST, FARTHEST])
-    factor, label = unit.scale([low, high])
+    factor, label = (1.0, "") if component == UTILIZATION else unit.scale([low, high])
     signed = low < -0.02 * max(high, -low)
     levels = _levels(factor * low, factor * high)
     beyond = "both" if factor * min(float(curve[value].min()) for curve in curves) < levels[0] else "max"
@@ -246,7 +245,7 @@ def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: st
         panel.contour(x, y, factor * z, levels=levels[:: max(1, LEVELS // 5)], colors="0.25", linewidths=0.3)
     handles = _draw_contact(panel, state)
     bar = sheet.figure.colorbar(colours, ax=panel, shrink=0.85, aspect=30)
-    bar.set_label(quantity(COMPONENTS[component], label))
+    bar.set_label(quantity(FIELDS[component], label))
     panel.set_aspect("equal")
     panel.set_xlabel("x / radius of the hole")
     panel.set_ylabel("y / radius of the hole")

@@ -18,7 +18,7 @@ from fastpin.live.protocol import MOST_PICTURES
 from fastpin.live.recording import recorded_places
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instance, string
-from fastpin.report.case import edge_body
+from fastpin.model.points import edge_body
 from fastpin.report.summary import json_ready
 from fastpin.report.wear import DEBRIS
 from fastpin.solver.wear_result import WearResult, WornCycle

@@ -37,6 +37,9 @@ DISTANCES = ("edge", "point", "line", "area")
 SPECTRA = ("history", "cycle")
 """Parts of a history that are one pass of the spectrum: all of it, or its last cycle."""
 
+MOST_LIFE = 1e18
+"""Most passes of a spectrum, and most cycles at a knee: no test has gone as far."""
+
 MOST_ANGLES = 10_000
 """Angles, at most."""
 
@@ -68,6 +71,8 @@ class FatigueAssessment:
         Cycles at the knee of the curve of lives; needed by "original" and "haibach", and only by them.
     straight : bool, optional
         Whether the tractions are straight lines between the nodes. Unless given, they are for more than 500 states.
+    life : float, optional
+        The life that is asked for: passes of the spectrum without a crack. It gives a margin of safety.
 
     Raises
     ------
@@ -84,6 +89,7 @@ class FatigueAssessment:
     small_cycles: str = "elementary"
     knee: float | None = None
     straight: bool | None = None
+    life: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "criterion", _words("criterion", self.criterion, tuple(LIFE_CONSTANTS)))
@@ -104,11 +110,18 @@ class FatigueAssessment:
         object.__setattr__(self, "knee", checked_knee(self.small_cycles, self.knee))
         if self.straight is not None:
             object.__setattr__(self, "straight", true_or_false("straight", self.straight))
+        if self.life is not None:
+            object.__setattr__(self, "life", number("life", self.life, 1.0, MOST_LIFE))
 
     @property
     def criteria(self) -> tuple[str, ...]:
         """The criteria, in the given order."""
         return tuple(self.criterion)
+
+    @property
+    def passes(self) -> str:
+        """The word for passes of the spectrum: "spectra" or "cycles"."""
+        return "spectra" if self.over == "history" else "cycles"
 
     @property
     def theta(self) -> np.ndarray | None:
@@ -166,7 +179,7 @@ def checked_knee(rule: str, knee: float | None) -> float | None:
         return None
     if knee is None:
         raise InputError("knee", f'must be given with small_cycles = "{rule}": the cycles at the knee, such as 1e6')
-    return number("knee", knee, 1.0, 1e18)
+    return number("knee", knee, 1.0, MOST_LIFE)
 
 
 def assessed_bodies(problem: Problem, how: FatigueAssessment, criterion: str) -> tuple[Body, ...]:

@@ -160,6 +160,11 @@ def owner_of(problem: Problem, body: str) -> str:
     return "plate" if body == "seat" else body
 
 
+def edge_body(problem: Problem, body: str) -> str:
+    """Return words for the body whose edge "plate", "seat" or "pin" names: the hole may be in a bush."""
+    return "plate at the seat" if body == "seat" else owner_of(problem, body)
+
+
 def elastic_bodies(problem: Problem) -> tuple[Body, ...]:
     """The bodies of a problem that have a stress: all that are not rigid."""
     return tuple(body for body in bodies_of(problem) if not material_of(problem, body).is_rigid)

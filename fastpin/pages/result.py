@@ -55,8 +55,9 @@ def write_report(
     about : About, optional
         Project, author, revision and date. A field that is not given is that of the stored case.
     case : path, optional
-        The case file of the result. Its text is shown on the page. Unless given, it is the file beside a stored result
-        that has its name with .toml, if that is a case file of the same problem and loads.
+        The case file of the result. Its text is shown on the page. A result in memory is judged by its sections
+        [fatigue] and [crack]; a stored one has its own. Unless given, it is the file beside a stored result that has
+        its name with .toml, if that is a case file of the same problem and loads.
     convergence : Convergence, optional
         A study of the case, which is shown on the page of a result.
     progress : callable, optional
@@ -91,6 +92,9 @@ def write_report(
         raise InputError("convergence", "has no effect on the report of a life of wear")
     if case is not None:
         source = replace(source, case_text=_case_text(case, source))
+        if source.path is None and source.life is None:  # a result in memory does not know how it is to be judged
+            given = parse_case(source.case_text, str(case), Path(case).parent)
+            source = replace(source, case=replace(source.case, fatigue=given.fatigue, crack=given.crack))
     named = replace(source.case, title=title or source.case.title, about=merged(source.case.about, about))
     write_source(replace(source, case=named), target, convergence, progress)
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from fastpin.cracks.margins import crack_margins
+from fastpin.damage.margins import fatigue_margins, reserve_margins
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
 from fastpin.figures.crack_growth import crack_growth_of
@@ -31,19 +34,18 @@ from fastpin.model.growth import Nasgro, Walker, law_words
 from fastpin.model.loads import LOAD, named_load
 from fastpin.model.materials import Material
 from fastpin.model.options import OPTIONS
-from fastpin.model.points import EDGES
+from fastpin.model.points import EDGES, edge_body
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
 from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
 from fastpin.report.assessment import Assessed, assessment_lines
-from fastpin.report.case import ROUNDING, case_rows, corner_columns, edge_body
+from fastpin.report.case import ROUNDING, case_rows, corner_columns
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.crack_growth import growth_line
 from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
-from fastpin.report.fatigue import fatigue_margins
-from fastpin.report.margins import HEADS, margin_rows, static_margins
+from fastpin.report.margins import HEADS, margin_rows
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_line, state_columns
 from fastpin.report.strength import strength_lines
@@ -52,6 +54,7 @@ from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.extremes import yield_doubts
 from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.margins import static_margins
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
 from fastpin.states.state import State
 from fastpin.studies.convergence import Convergence
@@ -154,11 +157,18 @@ def _count(source: Source) -> str:
 
 
 def margins(page: PageParts) -> PageSection:
-    """Return the margins of yield, of the bush and of fatigue, each with the state that governs it."""
+    """Return the margins of yield, bush, fatigue and crack, each with the state that governs it."""
     source, problem = page.source, page.source.case.problem
     found = static_margins(problem, source.found, source.read)
     cycle = [] if source.cycle is None else source.cycle.states
-    found += fatigue_margins(problem, source.fatigue, cycle)
+    judged = {edge_body(problem, one.body) for one in source.assessed.reserves} if source.assessed else set()
+    found += [
+        row
+        for row in fatigue_margins(problem, source.fatigue, cycle)
+        if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
+    ]
+    found += [] if source.assessed is None else reserve_margins(source.assessed.reserves, source.assessed.how)
+    found += [] if isinstance(source.crack, str) else crack_margins(source.crack)
     run = "" if source.result.complete else " of an unfinished run"
     states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
     words = f"Margins of safety over {states}{run}: allowable/value - 1"

@@ -16,17 +16,17 @@ import numpy as np
 from fastpin import storage
 from fastpin.cracks import Growth
 from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
+from fastpin.damage.margins import MOST_STOPS
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
 from fastpin.model.case import Case
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
-from fastpin.model.points import elastic_bodies
+from fastpin.model.points import edge_body, elastic_bodies
 from fastpin.report.assessment import Assessed, assess
-from fastpin.report.case import edge_body
 from fastpin.report.crack_growth import case_growth
-from fastpin.report.cycle import MOST_STOPS, fatigue_bodies, spectrum_damages
+from fastpin.report.cycle import fatigue_bodies, spectrum_damages
 from fastpin.report.states import stored_rows
 from fastpin.report.strength import StrengthFound, assess_strength
 from fastpin.solver.result import Result

@@ -12,6 +12,7 @@ from fastpin.figures.damage import damage_of
 from fastpin.figures.scar import scar_plot, wear_plot
 from fastpin.figures.subjects import InMemory
 from fastpin.model.angles import from_bottom
+from fastpin.model.points import edge_body
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
 from fastpin.pages.content import Facts, Items, PageSection, SectionPart, Table, Text
@@ -32,7 +33,6 @@ from fastpin.pages.sections import (
     zones,
 )
 from fastpin.pages.source import CRITERION, Source
-from fastpin.report.case import edge_body
 from fastpin.report.notes import way_on
 from fastpin.report.states import TableRows
 from fastpin.report.table import columns_at, printed_rows

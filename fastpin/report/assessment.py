@@ -8,13 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fastpin.damage import SpectrumDamage
+from fastpin.damage import SpectrumDamage, StressReserve
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
+from fastpin.model.points import edge_body
 from fastpin.model.units import units
-from fastpin.report.case import assessment_words, edge_body
+from fastpin.report.case import assessment_words
 from fastpin.solver.result import Result
 
 MOST_CYCLES = 3
@@ -32,12 +33,15 @@ class Assessed(NamedTuple):
     how : FatigueAssessment
     found : list of SpectrumDamage
         Bodies by their damage, criterion by criterion.
+    reserves : list of StressReserve
+        The factors by which all stresses may grow, criterion by criterion, the smallest first.
     reason : str
         Why the fatigue is not known; empty if it is.
     """
 
     how: FatigueAssessment
     found: list[SpectrumDamage]
+    reserves: list[StressReserve]
     reason: str = ""
 
     @property
@@ -53,11 +57,16 @@ def assess(
     if case.fatigue is None:
         return None
     if result is None or not result.complete:
-        return Assessed(case.fatigue, [], "the history has not come to its end")
+        return Assessed(case.fatigue, [], [], "the history has not come to its end")
+
+    def half(begin: float) -> Callable[[float, float], None] | None:
+        return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
+
     try:
-        return Assessed(case.fatigue, result.assessed_fatigue(case.fatigue, progress))
+        found = result.assessed_fatigue(case.fatigue, half(0.0))
+        return Assessed(case.fatigue, found, result.assessed_reserves(case.fatigue, half(0.5)))
     except InputError as error:
-        return Assessed(case.fatigue, [], str(error))
+        return Assessed(case.fatigue, [], [], str(error))
 
 
 def assessment_lines(assessed: Assessed) -> list[str]:
@@ -67,11 +76,6 @@ def assessment_lines(assessed: Assessed) -> list[str]:
     return [f"fatigue over {assessment_words(assessed.how)}", *(_line(one, assessed.how) for one in assessed.found)]
 
 
-def life_unit(how: FatigueAssessment) -> str:
-    """Return the unit of lives: "spectra" or "cycles"."""
-    return "spectra" if how.over == "history" else "cycles"
-
-
 def _line(found: SpectrumDamage, how: FatigueAssessment) -> str:
     spot, counted = found.hot_spot, found.cycles
     name = f"fatigue of the {edge_body(found.problem, found.body)}, {found.criterion}"
@@ -79,7 +83,7 @@ def _line(found: SpectrumDamage, how: FatigueAssessment) -> str:
         return f"{name}: no damage"
     depth = "" if spot.depth == 0.0 else f", {units(found.problem)['length'].text(spot.depth, 3)} below the edge"
     parts = [
-        f"life {spot.life:.4g} {life_unit(how)}, damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}",
+        f"life {spot.life:.4g} {how.passes}, damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}",
         f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x",
     ]
     cycles = []
@@ -103,6 +107,7 @@ def document(assessed: Assessed) -> dict[str, Any]:
         "method": how.method,
         "small_cycles": how.small_cycles,
         "knee": how.knee,
+        "life_asked": how.life,
         "error": assessed.reason or None,
         "bodies": [_body(one) for one in assessed.found],
     }

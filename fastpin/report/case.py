@@ -104,7 +104,8 @@ def assessment_words(how: FatigueAssessment) -> str:
     spectrum = "the whole history as a spectrum" if how.over == "history" else "the last cycle"
     rule = RULES[how.small_cycles].format("" if how.knee is None else f"{how.knee:.6g}")
     place = "" if how.method == "edge" else f", stresses by the {how.method} method of critical distances"
-    return f"{spectrum}, {rule}{place}"
+    asked = "" if how.life is None else f", for a life of {how.life:.6g} {how.passes}"
+    return f"{spectrum}, {rule}{place}{asked}"
 
 
 def crack_words(problem: Problem, crack: CrackGrowth) -> str:
@@ -153,11 +154,6 @@ def profile_words(problem: Problem) -> list[tuple[str, str]]:
     if friction is not None:
         found.append(("friction", friction.words(lambda value: f"{value:.4g}")))
     return found
-
-
-def edge_body(problem: Problem, body: str) -> str:
-    """Return words for the body whose edge "plate", "seat" or "pin" names: the hole may be in a bush."""
-    return "plate at the seat" if body == "seat" else owner_of(problem, body)
 
 
 def _bodies(problem: Problem) -> list[tuple[str, str]]:

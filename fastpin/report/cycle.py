@@ -12,14 +12,15 @@ import numpy as np
 
 from fastpin.damage import Fatigue, cycle_states, fatigue
 from fastpin.damage.criteria import Criterion
+from fastpin.damage.margins import MOST_STOPS as MOST_STOPS
 from fastpin.damage.spectrum import SpectrumDamage, bodies_with_lives, spectrum_damage
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.points import EDGES, Body, elastic_bodies, material_of
+from fastpin.model.points import EDGES, Body, edge_body, elastic_bodies, material_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.report.case import ROUNDING, edge_body
+from fastpin.report.case import ROUNDING
 from fastpin.report.curves import Curve
 from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle
@@ -30,9 +31,6 @@ from fastpin.storage.files import replacing
 
 SWT: Criterion = "smith-watson-topper"
 """The criterion of printed texts and pages."""
-
-MOST_STOPS = 100
-"""Most states of a cycle whose fatigue is printed unasked: some tenths of a second."""
 
 WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
 """Words for the behaviours of a node: "no contact", "sticks", "slips" and "opens"."""

@@ -47,7 +47,7 @@ def json_schema(command: str) -> Schema:
 
     Parameters
     ----------
-    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances"}
+    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack"}
         ``fastpin resume`` and ``show`` write the document of "run".
 
     Raises
@@ -66,8 +66,6 @@ def json_schema(command: str) -> Schema:
 def _summary() -> Schema:
     extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
     sides = _object({"smallest": extreme, "largest": extreme})
-    texts, numbers = ("subject", "unit", "remark"), ("value", "allowable", "margin", "load_point")
-    governing = {"smallest": _TRUTH, "loads": _map_of(_NUMBER, "loads of the state that governs")}
     of_cycle = dict.fromkeys(Cycle._fields, _UNKNOWN)
     of_cycle |= {"corner": _WHOLE, "length": _WHOLE, "number": _WHOLE, "solved": _TRUTH}
     return _object(
@@ -88,7 +86,7 @@ def _summary() -> Schema:
             "statistics": _map_of(_NUMBER, "counters of the solver, and its time, s"),
             "states": _list_of(_state(seat=_state())),
             "extremes": _object(dict.fromkeys(READINGS, sides), required=()),
-            "margins": _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing)),
+            "margins": _margins(),
             "cycles": _list_of(_object(of_cycle)),
             "cycle": _or_null(_last_cycle()),
             "fatigue": _or_null(_fatigue()),
@@ -116,6 +114,26 @@ def _strength() -> Schema:
             **place,
             "failure": _or_null(_object({"factor": _NUMBER, "load": loads, "solved": _WHOLE, **place})),
             "error": _OPTIONAL_TEXT,
+        }
+    )
+
+
+def _margins() -> Schema:
+    texts, numbers = ("subject", "name", "body", "unit", "remark"), ("value", "allowable", "margin", "load_point")
+    governing = {"smallest": _TRUTH, "loads": _map_of(_NUMBER, "loads of the state that governs")}
+    return _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing))
+
+
+def _crack_growth() -> Schema:
+    """The document of ``fastpin crack``."""
+    return _object(
+        {
+            "fastpin": _TEXT,
+            "title": _TEXT,
+            "units": _map_of(_TEXT, "unit of each kind of quantity"),
+            "crack": _crack(),
+            "lengths": _map_of(_list_of(_UNKNOWN), "a column of numbers at all lengths, with its unit in its name"),
+            "margins": _margins(),
         }
     )
 
@@ -261,6 +279,7 @@ def _fatigue() -> Schema:
             "method": {"enum": list(DISTANCES)},
             "small_cycles": {"enum": list(MINER_RULES)},
             "knee": _UNKNOWN,
+            "life_asked": _UNKNOWN,
             "error": _OPTIONAL_TEXT,
             "bodies": _list_of(body),
         }
@@ -412,6 +431,7 @@ _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "compliance": _compliance,
     "wear": _wear,
     "tolerances": _tolerances,
+    "crack": _crack_growth,
 }
 
 COMMANDS = tuple(_DOCUMENTS)

@@ -13,11 +13,11 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.checks import instance, instances
-from fastpin.model.points import Body, elastic_bodies
+from fastpin.model.points import Body, edge_body, elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
 from fastpin.reading.zones import is_all_round
-from fastpin.report.case import ROUNDING, edge_body, load_columns
+from fastpin.report.case import ROUNDING, load_columns
 from fastpin.report.table import (
     MAX_ROWS,
     Column,

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fastpin.damage.hole_strength import laminate_of
+from fastpin.damage.laminates import first_ply_failure
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import choice, number
@@ -38,6 +40,12 @@ COMPONENTS = {
     "hydrostatic": "mean normal stress",
 }
 """Components of the stress that can be drawn, and their names."""
+
+UTILIZATION = "utilization"
+"""The name of the strength of a laminate that is used: 1 over the strength ratio of the first ply, by Hashin."""
+
+FIELDS = COMPONENTS | {UTILIZATION: "used strength of the first ply (Hashin)"}
+"""What maps show, and the words for it."""
 
 
 def component_of(stress: Stress, component: str) -> np.ndarray:
@@ -146,7 +154,7 @@ def field_curves(
     ----------
     state : State
     component : str
-        A name of :data:`COMPONENTS`.
+        A name of :data:`FIELDS`. The utilization is that of a laminate; the map then shows the plate alone.
     body : {"plate", "pin", "both"}
         The plate holds its bush.
     extent : float
@@ -159,13 +167,15 @@ def field_curves(
     InputError
         If an argument is out of range, or there is no such component.
     """
-    choice("component", component, tuple(COMPONENTS))
+    choice("component", component, tuple(FIELDS))
     outer = number("extent", extent)
     if not 1.0 < outer <= 100.0:
         raise InputError("extent", f"must be above 1 and at most 100 radii, not {outer:g}")
     unit, radius, curves = units(state.problem), state.problem.hole_radius, []
     choice("body", body, ("plate", "pin", "both"))
     drawn = tuple(each for each in bodies_of(state, body) if each != "seat")  # the plate has it
+    if component == UTILIZATION:
+        drawn = ("plate",)
     if body == "both" and state.problem.plate_body.edge_only:
         drawn = tuple(each for each in drawn if each == "pin")  # the stress inside the plate is unknown
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
@@ -175,12 +185,25 @@ def field_curves(
             below = radius * (min(outer, math.inf if far is None else far) - 1.0) * part**2
         else:  # The force may act at a solid pin's centre, where the stress is infinite.
             below = radius * (1.0 - (far or 0.001)) * (1.0 - part) ** 2
-        values = component_of(state.stress(Points.at_depth(below, theta), each), component)
+        points = Points.at_depth(below, theta)
+        if component == UTILIZATION:
+            values, name = _utilization(state, points), FIELDS[component]
+        else:
+            values = component_of(state.stress(points, each), component)
+            name = f"{FIELDS[component]} [{unit['traction'].name}]"
         distance = radius + below if each == "plate" else radius - below
         columns = {
             f"radius [{unit['length'].name}]": np.broadcast_to(distance, values.shape).ravel(),
             "angle [deg]": np.broadcast_to(np.degrees(theta) + 90.0, values.shape).ravel(),
-            f"{COMPONENTS[component]} [{unit['traction'].name}]": values.ravel(),
+            name: values.ravel(),
         }
         curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
     return curves
+
+
+def _utilization(state: State, points: Points) -> np.ndarray:
+    """1 over the strength ratio of the first ply of a laminate, in the shape of the points."""
+    stress = state.stress(points)
+    whole = np.stack([stress.sxx, stress.syy, stress.sxy], axis=-1)
+    used: np.ndarray = 1.0 / first_ply_failure(laminate_of(state.problem), whole).ratio
+    return used

@@ -10,6 +10,7 @@ import numpy as np
 
 from fastpin import cracks
 from fastpin.bodies.body import BodyBase
+from fastpin.cracks.margins import crack_margins
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
@@ -22,13 +23,13 @@ from fastpin.report import assessment, crack_growth
 from fastpin.report import cycle as cycle_report
 from fastpin.report import strength as strength_report
 from fastpin.report.assessment import Assessed
-from fastpin.report.fatigue import last_cycle_margins
+from fastpin.report.fatigue import life_margins
 from fastpin.report.margins import document as margins_document
-from fastpin.report.margins import static_margins
 from fastpin.report.strength import StrengthFound
 from fastpin.solver.result import Result
-from fastpin.states.extremes import READINGS, Found
+from fastpin.states.extremes import READINGS, KeptStates, marked_extremes
 from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.margins import static_margins
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
 from fastpin.states.state import State
 from fastpin.version import __version__
@@ -86,7 +87,7 @@ def document(
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
         "extremes": {} if result is None else _extremes_summary(result),
-        "margins": [] if result is None else _margins_summary(result),
+        "margins": [] if result is None else _margins_summary(result, fatigue, crack),
         "cycles": [
             row._asdict() | {"dissipation": unit["energy"].factor * row.dissipation}
             for row in (() if result is None else result.cycles)
@@ -186,13 +187,30 @@ def _extremes_summary(result: Result) -> dict[str, Any]:
     }
 
 
-def _margins_summary(result: Result) -> list[dict[str, Any]]:
-    """Return the margins over all states, and those of fatigue over the last cycle where they are known."""
-    found = Found()
-    for name, pair in result.extremes().items():
-        found |= {(name, "smallest"): pair.smallest, (name, "largest"): pair.largest}
-    rows = static_margins(result.problem, found, lambda places: [result.states[place] for place in places])
-    return margins_document(result.problem, rows + last_cycle_margins(result.problem, result.states, result.cycles))
+def _margins_summary(result: Result, fatigue: Assessed | None, crack: cracks.Growth | None) -> list[dict[str, Any]]:
+    """Return the margins over all states, and those of fatigue and of a crack where they are known."""
+    if len(result):
+        kept = KeptStates(result.states)
+        rows = static_margins(result.problem, marked_extremes(kept), kept.read)
+    else:
+        rows = static_margins(result.problem, {}, lambda places: [])
+    rows += life_margins(result.problem, result.states, result.cycles, fatigue, crack)
+    return margins_document(result.problem, rows)
+
+
+def crack_document(case: Case, found: cracks.Growth) -> dict[str, Any]:
+    """Return the growth of a crack with its numbers at all lengths and its margins as a JSON-ready dict."""
+    columns = {name: values.tolist() for name, values in crack_growth.growth_curve(found).columns.items()}
+    return json_ready(
+        {
+            "fastpin": __version__,
+            "title": case.title,
+            "units": unit_names(found.problem),
+            "crack": crack_growth.document(found),
+            "lengths": columns,
+            "margins": margins_document(found.problem, crack_margins(found)),
+        }
+    )
 
 
 def json_ready(value: Any) -> Any:

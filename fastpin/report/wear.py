@@ -8,9 +8,9 @@ import numpy as np
 
 from fastpin.damage import WornFatigue
 from fastpin.model.angles import from_bottom
+from fastpin.model.points import edge_body
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
-from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve
 from fastpin.report.summary import json_ready, unit_names
 from fastpin.report.table import Column, TableLine, columns_at, cut_lines, printed_rows, table_of_lines, with_rows

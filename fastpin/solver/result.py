@@ -320,15 +320,45 @@ class Result(Sequence[State]):
             See :func:`fastpin.damage.assessed_fatigue`; also if the history has no cycle, or the state at a corner was
             not kept.
         """
-        from fastpin.damage import assessed_fatigue, cycle_states
+        from fastpin.damage import assessed_fatigue
+
+        return assessed_fatigue(self._assessed_states(how), how, progress)
+
+    def assessed_reserves(
+        self, how: FatigueAssessment | None = None, progress: Callable[[float, float], None] | None = None
+    ) -> Any:
+        """By what factor all stresses may grow until the life is missed that a section [fatigue] asks for.
+
+        Parameters
+        ----------
+        how, progress
+            See :meth:`assessed_fatigue`.
+
+        Returns
+        -------
+        list of fastpin.damage.StressReserve
+            The smallest factor first, criterion by criterion, see :func:`fastpin.damage.assessed_reserves`.
+
+        Raises
+        ------
+        InputError
+            See :meth:`assessed_fatigue`.
+        """
+        from fastpin.damage import assessed_reserves
+
+        return assessed_reserves(self._assessed_states(how), how, progress)
+
+    def _assessed_states(self, how: FatigueAssessment | None) -> Any:
+        """Return the states of one pass of the spectrum of an assessment."""
+        from fastpin.damage import cycle_states
 
         chosen = FatigueAssessment() if how is None else how
         if instance("how", chosen, FatigueAssessment, "a FatigueAssessment").over == "history":
             self._check_corners()
-            return assessed_fatigue(self.states, how, progress)
+            return self.states
         if not self.cycles:
             raise InputError("over", "the history has no cycles: none of its blocks is repeated")
-        return assessed_fatigue(cycle_states(self, self.cycles[-1]), how, progress)
+        return cycle_states(self, self.cycles[-1])
 
     def _check_corners(self) -> None:
         """Refuse a result without the states at all corners of its history."""

@@ -6,11 +6,12 @@ layout of a file stands in layout.py.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import h5py
@@ -43,11 +44,13 @@ from fastpin.storage.journal import open_h5
 from fastpin.storage.layout import (
     SLIP_FIELDS,
     append,
+    beside_attributes,
     check_format,
     count,
     cycle_rows,
     node_fields_of,
     options_of,
+    read_beside,
     read_cycles,
     read_grid,
     read_history,
@@ -69,7 +72,17 @@ MOST_IN_MEMORY = 4_000_000
 """Most values of a node field in a file that is made in memory. Such a file has some 100 MB, and is there twice."""
 
 
-def save(result: Result, path: str | Path, error: str | None = None, restart: bool = True) -> None:
+NO_SECTIONS: Mapping[str, Any] = MappingProxyType({})
+"""The sections of a case without any."""
+
+
+def save(
+    result: Result,
+    path: str | Path,
+    error: str | None = None,
+    restart: bool = True,
+    sections: Mapping[str, Any] = NO_SECTIONS,
+) -> None:
     """Write a result to an HDF5 file, whole or not at all. The coarse result behind error bars is written too.
 
     Parameters
@@ -81,6 +94,8 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
         Why the result is incomplete; stored in the file.
     restart : bool
         Also write the restart, from which another solution can continue.
+    sections : mapping of str
+        The sections beside the problem by name: how the result is judged by ``fastpin show`` and ``fastpin report``.
 
     Raises
     ------
@@ -106,7 +121,7 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
         raise InputError(str(path), "must be an ordinary file")
     large = len(result) * result.grid.size > MOST_IN_MEMORY
     with replacing(path, result=True) as temporary, written_h5(temporary, large) as file:
-        _write(file, result, error)
+        _write(file, result, error, sections)
         if result.complete and result.states:
             write_extremes(file, KeptStates(result.states))
         if restart and result.restart is not None:
@@ -115,9 +130,12 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
             write_restart(file.create_group("coarse/restart/latest"), result.coarse.restart)
 
 
-def _write(file: h5py.File | packed.PackedGroup, result: Result, error: str | None) -> None:
+def _write(
+    file: h5py.File | packed.PackedGroup, result: Result, error: str | None, sections: Mapping[str, Any]
+) -> None:
     """Write a result into an empty file, all but its restart."""
     write_head(file, result.problem, result.history, result.grid, options_of(result))
+    file["solver"].attrs.update(beside_attributes(sections))
     file.attrs["complete"] = result.complete
     if error is not None:
         file.attrs["error"] = error
@@ -131,7 +149,7 @@ def _write(file: h5py.File | packed.PackedGroup, result: Result, error: str | No
         append(group["cycles"], cycle_rows(coarse.cycles))
 
 
-def pack(result: Result, error: str | None, most: int) -> bytes | None:
+def pack(result: Result, error: str | None, most: int, sections: Mapping[str, Any] = NO_SECTIONS) -> bytes | None:
     """Return a result in few bytes, without its restart; see packed.py. None if it needs more than `most` bytes.
 
     `error` tells why the result is incomplete.
@@ -139,7 +157,7 @@ def pack(result: Result, error: str | None, most: int) -> bytes | None:
     if len(result) * result.grid.size > most:  # a byte of status each, and more
         return None
     file = packed.PackedGroup()
-    _write(file, result, error)
+    _write(file, result, error, sections)
     content = packed.to_bytes(file)
     return content if len(content) <= most else None
 
@@ -154,6 +172,18 @@ def unpack(content: bytes, path: Path) -> Result:
     """
     with _opened(content, path) as file:
         return _read(file, path, ALL, None)[0]
+
+
+def unpack_sections(content: bytes, path: Path) -> dict[str, Any]:
+    """Return the sections of :func:`pack`. `path` names it in errors.
+
+    Raises
+    ------
+    InputError
+        If the bytes are damaged.
+    """
+    with _opened(content, path) as file:
+        return read_beside(file)
 
 
 @contextmanager

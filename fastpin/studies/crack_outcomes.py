@@ -49,7 +49,12 @@ the first to the last length, or spectra. "arrest" is the length at which the cr
 
 
 def of_crack(quantity: str, crack: CrackGrowth, result: Result) -> float:
-    """The value of a name in :data:`CRACK_QUANTITIES`. Growths are kept while the result lives.
+    """The value of a name in :data:`CRACK_QUANTITIES`, see :func:`grown`."""
+    return CRACK_QUANTITIES[quantity].of(grown(crack, result))
+
+
+def grown(crack: CrackGrowth, result: Result) -> cracks.Growth:
+    """The growth of a crack under the last cycle of a result, or else its history; kept while the result lives.
 
     Raises
     ------
@@ -63,4 +68,4 @@ def of_crack(quantity: str, crack: CrackGrowth, result: Result) -> float:
         states = damage.cycle_states(result, result.cycles[-1]) if result.cycles else list(result)
         with doubts_given():
             known[crack] = cracks.planned_growth(states, crack, not result.cycles)
-    return CRACK_QUANTITIES[quantity].of(known[crack])
+    return known[crack]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from weakref import WeakKeyDictionary
 
 from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.doubts import doubts_given
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.damage.spectrum import SpectrumSpot
@@ -52,7 +53,8 @@ def of_assessment(quantity: str, how: FatigueAssessment, result: Result) -> floa
     """
     known = _KNOWN.setdefault(result, {})
     if how not in known:
-        known[how] = result.assessed_fatigue(how)[0].hot_spot
+        with doubts_given():
+            known[how] = result.assessed_fatigue(how)[0].hot_spot
     return FATIGUE_QUANTITIES[quantity].of(known[how])
 
 

@@ -10,6 +10,7 @@ import hashlib
 import json
 import math
 from dataclasses import fields
+from functools import partial
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -36,24 +37,26 @@ _ENCODER = json.JSONEncoder(sort_keys=True, separators=(",", ":"), allow_nan=Fal
 _KNOWN_LOADS: WeakKeyDictionary[LoadHistory, dict[str, Any]] = WeakKeyDictionary()
 
 
-def canonical(case: Case) -> dict[str, Any]:
+def canonical(case: Case, strengths: bool = False) -> dict[str, Any]:
     """Return the run's complete input as a JSON-ready dict.
 
     Two runs with equal dicts and the same version of fastpin have equal results. Numbers survive JSON exactly. They are
     in SI units, or in the units of the paper for a dimensionless problem. The load history enters as its number of
     corners, the loads at its last corner and the SHA-256 of all its numbers. A load that is never given is left out.
+    Strengths change no state, and enter on demand only: for margins of safety that are read from the results.
     """
     problem, pair = case.problem, case.problem.pair
+    material = partial(_material, strengths=strengths)
     if case.history not in _KNOWN_LOADS:
         _KNOWN_LOADS[case.history] = _digested(case.history)
     return {
-        "pin": _material(pair.pin),
-        "plate": _material(pair.plate),
+        "pin": material(pair.pin),
+        "plate": material(pair.plate),
         "plane": pair.plane,
         **_fields(problem),
         # A solid pin and an infinite plate are left out, so that older ids stay. The friction of a bush changes no
         # state, and enters like fatigue constants: a result says whether the bush slips.
-        **{name: _without_negative_zero(body.as_json(_material)) for name, body in problem.given_bodies.items()},
+        **{name: _without_negative_zero(body.as_json(material)) for name, body in problem.given_bodies.items()},
         "dimensionless": problem.dimensionless,
         "loads": _KNOWN_LOADS[case.history],
         "solve": _options(case.options),
@@ -76,7 +79,7 @@ def canonical_json(document: dict[str, Any]) -> str:
     return _ENCODER.encode(document)
 
 
-def _material(material: Material) -> dict[str, Any]:
+def _material(material: Material, strengths: bool) -> dict[str, Any]:
     elastic = {
         name: "inf" if value == math.inf else _without_negative_zero(value)
         for name, value in material.constants().items()
@@ -85,7 +88,7 @@ def _material(material: Material) -> dict[str, Any]:
     constants.pop("source", None)
     growth = {} if material.growth is None else law_entries(material.growth)
     growth.pop("source", None)
-    later = {"fatigue": constants, "growth": growth}
+    later = {"fatigue": constants, "growth": growth, "strengths": material.strengths if strengths else {}}
     return elastic | {name: given for name, given in later.items() if given}
 
 

@@ -38,6 +38,7 @@ from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.crack_outcomes import CRACK_QUANTITIES, of_crack
 from fastpin.studies.fatigue_outcomes import FATIGUE_QUANTITIES, of_assessment, unit_of_life
+from fastpin.studies.margin_outcomes import LEAST, MARGIN_QUANTITIES, OWNERS, SECTIONS, of_margin
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
@@ -68,6 +69,7 @@ KEYS = {
     "fatigue": ("fatigue", *ASSESSMENT_KEYS),
     "crack": ("crack", *CRACK_KEYS),
     "strength": ("strength", *STRENGTH_KEYS[:-1]),
+    "margin": ("margin", "body"),
     "function": ("function", "classes"),
 }
 """The first key of an outcome says what is read. The others may stand beside it."""
@@ -198,6 +200,11 @@ def bar_faults(outcomes: Iterable[str]) -> dict[str, str]:
     }
 
 
+def has_strengths(outcomes: Outcomes) -> bool:
+    """Whether an outcome depends on strengths: then they are a part of the ids of runs."""
+    return any(outcome.has_strengths for outcome in outcomes.values())
+
+
 def _name_fault(name: object) -> str:
     """Return the fault of an outcome's name; empty if there is none."""
     if not isinstance(name, str) or not re.fullmatch(rf"[A-Za-z][A-Za-z0-9_]{{,{LONGEST_NAME - 1}}}", name):
@@ -251,6 +258,8 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
         return _of_crack(source, section, beside.get("crack"))
     if first[0] == "strength":
         return _of_strength(source, section, beside.get("strength"))
+    if first[0] == "margin":
+        return _of_margin(section, beside.get("fatigue"), beside.get("crack"))
     if first[0] == "function":
         return _of_function(section, folder)
     return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
@@ -325,6 +334,9 @@ def _of_fatigue(section: Section, default: FatigueAssessment | None) -> StudyOut
     how = read_assessment(section, {} if default is None else default.given)
     if quantity is None or how is None:
         return None
+    if "criterion" in section and len(how.criteria) > 1:
+        section.report(f"criterion: must be one criterion, not {len(how.criteria)}; each outcome has one", "criterion")
+        return None
     how = how.changed(criterion=how.criteria[0])
     kind, unit = unit_of_life(how) if quantity == "life" else (FATIGUE_QUANTITIES[quantity].kind, "")
     definition = json.dumps({"fatigue": quantity, "how": how.toml()}, sort_keys=True)
@@ -352,6 +364,23 @@ def _of_strength(source: CaseText, section: Section, default: StrengthAssessment
     how = replace(how, failure=False)  # the outcome says whether the load at failure is looked for
     definition = json.dumps({"strength": quantity, "how": how.entries()}, sort_keys=True)
     return StudyOutcome(STRENGTH_QUANTITIES[quantity].kind, "", definition, partial(of_strength, quantity, how))
+
+
+def _of_margin(section: Section, how: FatigueAssessment | None, crack: CrackGrowth | None) -> StudyOutcome | None:
+    """Read the smallest margin of safety, or that of one kind, with the sections [fatigue] and [crack] of the case."""
+    name = _choice(section, "margin", MARGIN_QUANTITIES)
+    owner = _choice(section, "body", OWNERS) if "body" in section else None
+    if name is None or ("body" in section and owner is None):
+        return None
+    needed = SECTIONS.get(name)
+    if needed is not None and {"fatigue": how, "crack": crack}[needed] is None:
+        section.report(f'margin: "{name}" needs a section [{needed}] of the case', "margin")
+        return None
+    if name != LEAST:
+        how, crack = how if needed == "fatigue" else None, crack if needed == "crack" else None
+    definition = {"margin": name, "body": owner, "fatigue": how and how.toml(), "crack": crack and crack.entries()}
+    text = json.dumps({key: value for key, value in definition.items() if value is not None}, sort_keys=True)
+    return StudyOutcome("", "", text, partial(of_margin, name, owner, how, crack), has_strengths=True)
 
 
 def _of_function(section: Section, folder: Path) -> StudyOutcome | None:

@@ -188,6 +188,8 @@ class StudyOutcome:
         grids alone, see :func:`fastpin.states.error_bars.number_bar`.
     wear : Wear or None
         How the bodies wear, of a number of a life of wear.
+    has_strengths : bool
+        Whether the number depends on strengths. They change no state, but then they are a part of the ids of runs.
     """
 
     kind: str
@@ -197,6 +199,7 @@ class StudyOutcome:
     classes: Mapping[int, str] = field(default_factory=dict)
     bar: Callable[[Result], float] | None = None
     wear: Wear | None = None
+    has_strengths: bool = False
 
     def reported(self, value: float) -> float:
         """A value in the units of reports: angles in degrees from the bottom of the hole, widths in degrees."""

@@ -40,7 +40,7 @@ from fastpin.model.doubts import doubts, warn_of, wear_doubts
 from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
 from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
-from fastpin.studies.outcome_tables import Outcomes, bar_faults, outcomes_from, outcomes_in_text
+from fastpin.studies.outcome_tables import Outcomes, bar_faults, has_strengths, outcomes_from, outcomes_in_text
 from fastpin.studies.run_end import KEY_FIGURES
 from fastpin.studies.variation import FACTORS, LOAD_TABLES, BaseCase, conflict, other_units, reads_files
 
@@ -174,7 +174,27 @@ class Plan:
         new = {name: outcome for name, outcome in found.items() if name.lower() not in known}
         for fault in bar_faults(self.outcomes | new).values():
             raise InputError("outcomes", fault)
-        return replace(self, outcomes=self.outcomes | new)
+        more = replace(self, outcomes=self.outcomes | new)
+        known_strengths = has_strengths(self.outcomes)
+        return more if has_strengths(more.outcomes) == known_strengths else more._with_ids(known_strengths)
+
+    def _with_ids(self, known: bool) -> Plan:
+        """Return this plan with the ids that its outcomes ask for; its ids hold strengths if `known`."""
+        points, cases = [], {}
+        for point, case in ((point, self._varied(point, known)) for point in self.points):
+            text = canonical_json(canonical(case, has_strengths(self.outcomes)))
+            points.append(Point(id_of_json(text), point.values, text))
+            if point.id in self._cases:
+                cases[points[-1].id] = case
+        return replace(self, points=points, _cases=cases)
+
+    def _varied(self, point: Point, strengths: bool) -> Case:
+        """Return the case of a point from the text of the base case, see :meth:`case`."""
+        text, case = self._base.vary(point.values)
+        if case is None or text.placed or run_id(canonical(case, strengths)) != point.id:
+            changed = "files of its loads, bodies or materials have changed since the plan was read"
+            raise InputError(f"run {point.id}", changed)
+        return case
 
     def case(self, point: Point) -> Case:
         """Return the case of one point, for :func:`fastpin.solve`.
@@ -187,12 +207,7 @@ class Plan:
         instance("point", point, Point, "a Point of this plan")
         if point.id in self._cases:
             return self._cases[point.id]
-        text, case = self._base.vary(point.values)
-        if case is None or text.placed or run_id(canonical(case)) != point.id:
-            raise InputError(
-                f"run {point.id}", "files of its loads, bodies or materials have changed since the plan was read"
-            )
-        return case
+        return self._varied(point, has_strengths(self.outcomes))
 
 
 def read_plan(path: str | Path, progress: SweepProgress | None = None) -> Plan:
@@ -284,7 +299,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
         return None
     cases: dict[str, Case] = {}
     found: list[InputWarning] = []
-    points = checked_points(source, base, places, rows or [{}], axes, (cases, found), progress)
+    points = checked_points(source, base, places, rows or [{}], axes, (cases, found), progress, has_strengths(outcomes))
     wears = dict.fromkeys(each.wear for each in outcomes.values() if each.wear is not None)
     case = base.vary({})[1] if wears else None
     if case is not None:
@@ -506,10 +521,12 @@ def checked_points(
     axes: dict[str, list[Any]],
     kept: tuple[dict[str, Case], list[InputWarning]],
     progress: SweepProgress | None,
+    strengths: bool = False,
 ) -> list[Point]:
     """Make and check all points. A fault of a run is reported on the line of the field, or of the case.
 
-    Two things are `kept`: the first cases without files of their own, by id, and one doubt of each field.
+    Two things are `kept`: the first cases without files of their own, by id, and one doubt of each field. With
+    `strengths` the ids depend on them.
     """
     cases, doubtful = kept
     doubted: dict[str, tuple[InputWarning, list[dict[str, Any]]]] = {}
@@ -532,7 +549,7 @@ def checked_points(
         if case is not None and not text.placed:
             for doubt in doubts(case.problem, case.history, case.options):
                 doubted.setdefault(doubt.field, (doubt, []))[1].append(values)
-            input_text = canonical_json(canonical(case))
+            input_text = canonical_json(canonical(case, strengths))
             points.append(Point(id_of_json(input_text), values, input_text))
             if len(cases) < MOST_CASES and not reads_files(text.root.table):
                 cases[points[-1].id] = case

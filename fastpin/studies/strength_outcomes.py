@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from fastpin import damage
@@ -36,7 +36,7 @@ def _least(result: Result, how: StrengthAssessment) -> damage.JointStrength:
 def _factor(result: Result, how: StrengthAssessment) -> float:
     """The factor on the loads at failure, on as many nodes and with states at the same fractions of each step."""
     fractions = sorted({state.fraction for state in result} - {1.0})
-    options = {"between": fractions} if fractions else {}
+    options: dict[str, Any] = {"between": fractions} if fractions else {}
     with doubts_given():
         return failure_load(
             result.problem, result.history, how.criterion, **how.lengths, over="history",

@@ -331,7 +331,8 @@ def _write_files(index: Index, points: Iterable[str], results: Path) -> None:
         path = results / f"{run}.h5"
         content = None if state != DONE or path.exists() else index.content(run)
         if content is not None:
-            store.save(store.unpack(content, path), path, restart=False)
+            sections = store.unpack_sections(content, path)
+            store.save(store.unpack(content, path), path, restart=False, sections=sections)
 
 
 def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[str, str | None]]:

@@ -29,7 +29,7 @@ from fastpin.model.doubts import warn_of
 from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.studies.index import DONE
-from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
+from fastpin.studies.outcome_tables import Outcomes, has_strengths, outcomes_from, outcomes_in_text
 from fastpin.studies.plan import (
     MAX_RUNS,
     ROOT_KEYS,
@@ -260,7 +260,8 @@ def _study(source: CaseText, text: str, folder: Path, progress: SweepProgress | 
     cases: dict[str, Case] = {}
     doubts: list[InputWarning] = []
     plan_rows: list[PlanRow] = [{name: (places[name], row[name]) for name in limits} for row in values]
-    points = checked_points(source, base, places, plan_rows, {}, (cases, doubts), progress)
+    kept = cases, doubts
+    points = checked_points(source, base, places, plan_rows, {}, kept, progress, has_strengths(outcomes))
     fields: dict[str, Spacing] = {name: each.spacing for name, each in limits.items()}
     plan = Plan(title, text, fields, {}, points, outcomes, doubts, labels, base, cases)
     return Tolerances(plan, limits, alone, corners, samples)

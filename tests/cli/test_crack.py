@@ -14,6 +14,9 @@ import fastpin
 from fastpin import cracks, damage
 from fastpin.casefile import case_text
 from fastpin.cli.main import main
+from fastpin.report import json_schema
+
+jsonschema = pytest.importorskip("jsonschema")
 
 LAW = ["--first", "1e-4", "--last", "3e-3", "--C", "1e-10", "--m", "3"]
 
@@ -195,3 +198,23 @@ def test_a_crack_that_can_not_be_followed_is_noted(tmp_path, capsys, monkeypatch
     Path("case.toml").write_text(CASE.replace("nodes = 61", 'nodes = 61\nkeep = "every 3"'))
     assert main(["run", "case.toml"]) == 0
     assert "note: no crack is followed: states: must hold all corners of the cycle" in capsys.readouterr().err
+
+
+def test_json_has_the_growth_and_its_margins(stored, tmp_path, capsys):
+    law = [*LAW, "--at", "66", "--threshold-range", "1e6", "--toughness", "5e7"]
+    assert main(["crack", str(stored), *law, "--csv", str(tmp_path / "a.csv"), "--json", "-"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    jsonschema.validate(document, json_schema("crack"))
+    result = fastpin.load(stored)
+    states = damage.cycle_states(result, result.cycles[-1])
+    walker = cracks.Walker(1e-10, 3.0, threshold_range=1e6, toughness=5e7)
+    found = cracks.growth(states, cracks.Crack(math.radians(-24.0)), walker, 1e-4, 3e-3)
+    assert document["crack"]["words"] == found.words
+    assert document["lengths"]["cycles"][-1] == pytest.approx(found.life)
+    assert {len(column) for column in document["lengths"].values()} == {found.length.size}
+    margins = {row["name"]: row["margin"] for row in document["margins"]}
+    assert margins["fracture"] == pytest.approx(5e7 / found.K_max.max() - 1.0)
+    assert margins["growth"] == pytest.approx(1e6 / found.delta_K[0] - 1.0)
+    assert main(["crack", str(stored), *law, "--json", str(tmp_path / "a.json")]) == 0
+    assert json.loads((tmp_path / "a.json").read_text()) == document
+    assert capsys.readouterr().out.startswith("crack at 66.00 deg")

@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 
 import fastpin
+from fastpin import cracks, damage
 from fastpin.cli.main import main
+from fastpin.model.doubts import doubts_given
 from fastpin.report import json_schema
 
 jsonschema = pytest.importorskip("jsonschema")
@@ -141,3 +143,78 @@ def test_an_unfinished_run_has_no_fatigue(folder, capsys, tmp_path):
     assert main(["resume", str(path)]) == 0
     assert HEAD in capsys.readouterr().out
     assert Path(path).exists()
+
+
+ASKED = (
+    CASE.replace("knee = 1e6", "knee = 1e6\nlife = 2e4")
+    + """\
+[crack]
+first = 0.1e-3
+last = 2e-3
+theta = 81
+law = { law = "walker", C = 5e-11, m = 3, threshold_range = 0.5e6, toughness = 35e6 }
+"""
+)
+
+
+@pytest.fixture(scope="module")
+def asked(tmp_path_factory):
+    """A folder with a case that asks for a life and has a crack, and its stored result."""
+    folder = tmp_path_factory.mktemp("margins")
+    (folder / "case.toml").write_text(ASKED, encoding="utf-8")
+    with doubts_given():
+        assert (
+            main(["run", str(folder / "case.toml"), "-o", str(folder / "one.h5"), "--json", str(folder / "run")]) == 0
+        )
+    return folder
+
+
+def test_all_outputs_have_the_margins_of_fatigue_and_crack(asked, capsys):
+    """run, show, JSON of both and the page have the same margins as Python."""
+    result, case = fastpin.load(asked / "one.h5"), fastpin.read_case(asked / "case.toml")
+    (reserve,) = result.assessed_reserves(case.fatigue)
+    assert reserve.goal == ("life", 2e4)
+    ran = json.loads((asked / "run").read_text(encoding="utf-8"))
+    jsonschema.validate(ran, json_schema("run"))
+    capsys.readouterr()
+    assert main(["show", str(asked / "one.h5"), "--json", "-"]) == 0
+    assert json.loads(capsys.readouterr().out)["margins"] == ran["margins"]
+    rows = {row["subject"]: row for row in ran["margins"]}
+    fatigue = rows["plate: smith-watson-topper, factor on all stresses"]
+    assert (fatigue["value"], fatigue["allowable"], fatigue["unit"]) == (1.0, reserve.factor, "")
+    assert (fatigue["name"], fatigue["body"], fatigue["load_point"]) == ("fatigue", "plate", reserve.largest)
+    assert fatigue["margin"] == pytest.approx(reserve.factor - 1.0)
+    assert fatigue["loads"]["Q"] == result[int(reserve.largest) - 1].load["Q"]
+    grown = cracks.planned_growth(damage.cycle_states(result, result.cycles[-1]), case.crack)
+    fracture = rows["plate: crack, fracture up to its last length"]
+    assert fracture["margin"] == pytest.approx(35e6 / grown.K_max.max() - 1.0)
+    assert rows["plate: crack, threshold"]["margin"] == pytest.approx(grown.threshold[0] / grown.delta_K[0] - 1.0)
+    assert main(["show", str(asked / "one.h5")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = (line for line in lines if line.startswith("  plate: smith-watson-topper, factor on all stresses"))
+    assert f" {reserve.factor - 1.0:+.2f}" in line
+    assert "for a life of 20000 spectra; at " in line
+    assert sum(line.startswith("  plate: crack, ") for line in lines) == 3
+    assert main(["report", str(asked / "one.h5"), "-o", str(asked / "page.html")]) == 0
+    page = (asked / "page.html").read_text(encoding="utf-8")
+    for subject in (*(name for name in rows if name.startswith("plate: ")), "for a life of 20000 spectra; at "):
+        assert subject in page
+    assert "plate, fatigue, Smith-Watson-Topper" not in page  # the row without a limit
+
+
+def test_a_wrong_life_names_its_line(tmp_path, capsys):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE.replace("knee = 1e6", "knee = 1e6\nlife = 0.5"), encoding="utf-8")
+    assert main(["check", str(path)]) != 0
+    assert "line 18: life: must lie between 1 and 1e+18, not 0.5" in capsys.readouterr().err
+
+
+def test_a_result_in_memory_is_judged_by_the_case_file(asked):
+    """A page of a result in memory has the sections of the case file that is given with it."""
+    result = fastpin.load(asked / "one.h5")
+    result.report(asked / "plain.html")
+    result.report(asked / "judged.html", case=asked / "case.toml")
+    plain, judged = ((asked / f"{name}.html").read_text(encoding="utf-8") for name in ("plain", "judged"))
+    for words in ("plate: crack, fracture at its first length", "factor on all stresses", "Crack at 81.00 deg"):
+        assert words in judged
+        assert words not in plain

@@ -63,7 +63,7 @@ def test_every_command_with_json_has_a_schema() -> None:
         Draft202012Validator.check_schema(json_schema(command))
     with pytest.raises(
         InputError,
-        match='must be "run", "converge", "verify", "benchmarks", "compliance", "wear" or "tolerances", not "x"',
+        match=r'must be "run", "converge", "verify", .*, "wear", "tolerances" or "crack", not "x"',
     ):
         json_schema("x")
 

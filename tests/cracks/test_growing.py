@@ -80,7 +80,8 @@ def test_the_fastest_growth_of_an_edge(cycle):
 def made(small_states, law, K_max, K_min=0.0, first=1e-4, last=1e-2):
     length = np.geomspace(first, last, 401)
     top = K_max(length) if callable(K_max) else np.full(401, K_max)
-    return Growth(small_states[0].problem, Crack(0.0), law, length, top, np.full(401, K_min), 0.0 * length)
+    at = np.ones(401), {1.0: small_states[0].load}
+    return Growth(small_states[0].problem, Crack(0.0), law, length, top, np.full(401, K_min), 0.0 * length, *at)
 
 
 def test_life_of_a_crack_in_a_tension(small_states):

@@ -2,6 +2,7 @@
 
 import dataclasses
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 import fastpin
 from fastpin import damage
 from fastpin.bodies import Bushing
-from fastpin.errors import InputError
+from fastpin.errors import InputError, InputWarning
 from fastpin.model import FatigueAssessment, FatigueConstants
 
 SWT, FS = "smith-watson-topper", "fatemi-socie"
@@ -152,3 +153,19 @@ def test_refused(result):
         dataclasses.replace(plain, states=plain.states[:1]).assessed_fatigue()
     with pytest.raises(InputError, match="how: must be a FatigueAssessment"):
         result.assessed_fatigue("haibach")
+
+
+def test_straight_lines_on_a_coarse_grid_are_told(monkeypatch):
+    """The worst cycle is read again with power laws, where straight lines are taken unasked."""
+    rng = np.random.default_rng(1)
+    loads = [{"P": p, "Q": q} for p, q in zip(rng.uniform(2e6, 6e6, 20), rng.uniform(-1e6, 1e6, 20), strict=True)]
+    problem = fastpin.Problem(fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], MATERIAL), 10e-3, 40e-6, 0.4)
+    coarse, fine = (fastpin.solve(problem, loads, nodes=nodes) for nodes in (31, 201))
+    monkeypatch.setattr("fastpin.damage.assessed.MOST_REFINED", 5)
+    with pytest.warns(InputWarning, match=r"straight: with refined tractions the worst cycle .* 1\.3 times the damage"):
+        coarse.assessed_fatigue()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", InputWarning)
+        fine.assessed_fatigue()
+        coarse.assessed_fatigue(FatigueAssessment(straight=True))
+        coarse.assessed_fatigue(FatigueAssessment(straight=False))

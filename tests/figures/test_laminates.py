@@ -10,18 +10,21 @@ import numpy as np
 import pytest
 
 from fastpin.cli.main import main
-from fastpin.damage import joint_strength
+from fastpin.damage import first_ply_failure, joint_strength
 from fastpin.errors import InputError
-from fastpin.figures import plot_polar, plot_stiffness, plot_strength
+from fastpin.figures import plot_polar, plot_stiffness, plot_strength, plot_stress_field
 from fastpin.model.laminate import Laminate
 from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.points import Points
 from fastpin.model.problem import Problem
+from fastpin.report.stress import field_curves
 from fastpin.solver.solving import solve
 from fastpin.storage import save
 from tests.support.once import solve_once
 
 PLATE = Laminate.from_layup("[0_2/45/-45/90]s", "T300/914", axis=-0.5 * math.pi + 0.3)
 JOINT = Problem(MaterialPair(MATERIALS["steel"], PLATE, "stress"), 3e-3, 20e-6, 0.2)
+ISOTROPIC = Problem(MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"], "stress"), 3e-3, 20e-6, 0.2)
 HISTORY = [{"P": 1e6}, {"P": 1e6, "Q": 3e5}]
 
 
@@ -85,8 +88,28 @@ def test_kinds_on_the_command_line(tmp_path: Path, capsys) -> None:
 
 
 def test_an_isotropic_plate_has_neither() -> None:
-    isotropic = Problem(MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"], "stress"), 3e-3, 20e-6, 0.2)
     with pytest.raises(InputError, match="plate: must be a laminate"):
-        plot_stiffness(isotropic)
+        plot_stiffness(ISOTROPIC)
     with pytest.raises(InputError, match="plate: must be a laminate"):
-        plot_strength(solve(isotropic, [{"P": 1e6}], nodes=41))
+        plot_strength(solve(ISOTROPIC, [{"P": 1e6}], nodes=41))
+
+
+def test_a_map_of_the_used_strength(tmp_path: Path) -> None:
+    """At a point it is the inverse of the ratio; it is a number, not a stress."""
+    state = result()[-1]
+    (curve,) = field_curves(state, "utilization", extent=1.5, fineness=40)
+    assert list(curve.columns)[-1] == "used strength of the first ply (Hashin)"
+    radius, angle, used = curve.columns.values()
+    for place in (0, 700, used.size - 1):
+        point = Points.at_radius(radius[place], math.radians(angle[place] - 90.0))
+        ratio = first_ply_failure(PLATE, whole(state, point)).ratio
+        assert used[place] == pytest.approx(1.0 / ratio, rel=1e-9)
+    figure = plot_stress_field(state, tmp_path / "map.png", component="utilization")
+    assert figure.axes[-1].get_ylabel() == "used strength of the first ply (Hashin)"
+    with pytest.raises(InputError, match="plate: must be a laminate"):
+        field_curves(solve_once(ISOTROPIC, HISTORY, nodes=41)[-1], "utilization")
+
+
+def whole(state, point):
+    stress = state.stress(point)
+    return np.stack([stress.sxx, stress.syy, stress.sxy], axis=-1)

@@ -11,19 +11,14 @@ import pytest
 from fastpin import LoadHistory, Material, MaterialPair, Problem, Result, solve
 from fastpin.bodies import Bushing, Ring
 from fastpin.damage import fatigue
+from fastpin.damage.margins import fatigue_margins, last_cycle_margins
 from fastpin.model import FatigueConstants
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.report import summary
-from fastpin.report.fatigue import fatigue_margins, last_cycle_margins
-from fastpin.report.margins import (
-    Margin,
-    margin_lines,
-    margin_rows,
-    smallest_margin,
-    static_margins,
-)
+from fastpin.report.margins import margin_lines, margin_rows
 from fastpin.states.extremes import KeptStates, marked_extremes
+from fastpin.states.margins import Margin, smallest_margin, static_margins
 from fastpin.states.yielding import von_mises_peak
 
 STEEL, BRONZE = Material(210e9, 0.3), Material(103e9, 0.34, yield_strength=300e6)

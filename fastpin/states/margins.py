@@ -1,0 +1,151 @@
+"""Margins of safety: of the strengths of each body, and of a bush in its seat, each with its state.
+
+A margin of safety is allowable/value - 1, as aerospace engineers write it: below 0 the part fails. Margins of fatigue
+stand in :mod:`fastpin.damage.margins`, and margins of cracks in :mod:`fastpin.cracks.margins`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import NamedTuple
+
+from fastpin.model.angles import from_bottom
+from fastpin.model.points import bodies_of, material_of
+from fastpin.model.problem import Problem
+from fastpin.model.units import units
+from fastpin.states.extremes import Found
+from fastpin.states.state import State
+from fastpin.states.yielding import PREFIX, circles, place_words, strength_of, von_mises_peak
+
+MARGINS = {
+    "yield": "yield strength over the von Mises stress",
+    "ultimate": "ultimate strength over the von Mises stress",
+    "rotation": "friction of a bonded bush in its seat over the friction needed",
+    "opening": "pressure of the press fit over the pressure needed to close the seat",
+    "findley": "fatigue limit over Findley's parameter in the last cycle",
+    "fatigue": "factor on all stresses until the goal of [fatigue] is missed",
+    "fracture": "toughness over the largest K_I of the crack of [crack], at its first and at its last length",
+    "growth": "threshold over the range of K_I of the crack of [crack] at its first length",
+}
+"""Kinds of margins by name, each with the meaning of allowable and value."""
+
+NO_FAILURE = ("growth",)
+"""Margins below which no part fails: a crack above its threshold grows. None of them is the smallest margin."""
+
+
+class Margin(NamedTuple):
+    """A margin, in SI units. What is not known is NaN, and the remark says why.
+
+    Attributes
+    ----------
+    subject : str
+    kind : str
+        A key of :func:`fastpin.model.units.units`, or "ratio".
+    value, allowable : float
+    load_point : float
+        The load point of the state that governs.
+    remark : str
+        The place; or why there is no margin.
+    loads : mapping
+        The loads of that state by name; empty where no single state governs.
+    name : str
+        One of :data:`MARGINS`.
+    owner : str
+        The body: "plate", "pin" or "bush".
+    """
+
+    subject: str
+    kind: str = "ratio"
+    value: float = math.nan
+    allowable: float = math.nan
+    load_point: float = math.nan
+    remark: str = ""
+    loads: Mapping[str, float] = MappingProxyType({})
+    name: str = ""
+    owner: str = ""
+
+    @property
+    def margin(self) -> float:
+        """allowable/value - 1; infinite if nothing is asked of the part."""
+        if self.value <= 0.0:
+            return math.inf
+        return self.allowable / self.value - 1.0
+
+
+def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
+    """Return the margins of the strengths and of the bush over all states.
+
+    The elastic von Mises stress of each body is compared with its yield strength, and with its ultimate strength if
+    that is given.
+
+    Parameters
+    ----------
+    problem : Problem
+    found : dict
+        The extremes of all states, see :func:`fastpin.states.extremes.marked_extremes`; empty without states.
+    read : callable
+        ``read(places)`` gives the states at these places.
+    """
+    rows = []
+    for owner in dict.fromkeys(circle.owner for circle in circles(problem)):
+        circle = next(each for each in circles(problem) if each.owner == owner)
+        extreme = found.get((PREFIX + owner, "largest"))
+        state = None if extreme is None else read([extreme.place])[0]
+        strengths = {"yield": strength_of(problem, circle)}
+        if (ultimate := material_of(problem, circle.body).ultimate_strength) is not None:
+            strengths["ultimate"] = ultimate
+        for name, strength in strengths.items():
+            row = Margin(f"{owner}: {name}, von Mises", name=name, owner=owner)
+            if problem.dimensionless:
+                rows.append(row._replace(remark="not known: the problem has no dimensions"))
+            elif strength is None:
+                rows.append(row._replace(remark="not known: no yield strength given"))
+            elif extreme is None or state is None:
+                rows.append(row._replace(kind="traction", allowable=strength, remark="not known: there is no state"))
+            else:
+                place = place_words(problem, von_mises_peak(state, owner))
+                known = "traction", extreme.value, strength, extreme.load_point, place, state.load, name, owner
+                rows.append(Margin(row.subject, *known))
+    return rows + (_of_bush(problem, found, read) if "seat" in bodies_of(problem) else [])
+
+
+def smallest_margin(rows: Sequence[Margin]) -> Margin | None:
+    """Return the row with the smallest margin that is known and finite, of all but :data:`NO_FAILURE`; else None."""
+    counted = (row for row in rows if math.isfinite(row.margin) and row.name not in NO_FAILURE)
+    return min(counted, key=lambda row: row.margin, default=None)
+
+
+def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
+    """Return the margins against rotation and opening of a bush in its seat. One that slips has its largest slip."""
+    turning = Margin("bush: rotation, friction needed", name="rotation", owner="bush")
+    opening = Margin("bush: opening, press fit needed", name="opening", owner="bush")
+    if problem.bush_slips:
+        turning = Margin("bush: slip in its seat", owner="bush")
+    least, slipping = found.get(("bush_open_margin", "smallest")), found.get(("bush_least_friction", "largest"))
+    if least is None or slipping is None:
+        none = "not known: there is no state"
+        return [turning._replace(remark=none), opening._replace(remark=none)]
+    (state,), pressure = read([least.place]), units(problem)["traction"].text(least.value, 4)
+    fit = state.bush_fit()
+    smallest = f"smallest pressure {pressure}" if least.value > 0.0 or not problem.bush_slips else "the bush opens"
+    where = f"{smallest} at {from_bottom(fit.open_angle):z.1f} deg"
+    needed = fit.pressure_to_close or math.nan  # of a loose bush it is not known: without pressure it is open anyhow
+    opened = opening._replace(
+        kind="traction", value=needed, allowable=fit.press_fit_pressure, load_point=least.load_point, remark=where,
+        loads=state.load,
+    )  # fmt: skip
+    slip = found.get(("seat_slip", "largest magnitude"))
+    if slip is not None and problem.bush_slips:
+        sliding = read([slip.place])[0]
+        seat = sliding.seat
+        angle = math.nan if seat is None else from_bottom(seat.peak_slip_angle)
+        words = f"no limit of the slip is known; largest at {angle:z.1f} deg"
+        most = abs(slip.value)
+        turned = turning._replace(kind="displacement", value=most, load_point=slip.load_point, remark=words)
+        return [turned._replace(loads=sliding.load), opened]
+    words = "not known: no friction between bush and plate given" if least.value > 0.0 else "the bush opens"
+    loads = read([slipping.place])[0].load
+    turned = turning._replace(value=slipping.value, load_point=slipping.load_point, remark=words, loads=loads)
+    return [turned, opened]
