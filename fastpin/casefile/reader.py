@@ -16,17 +16,17 @@ from typing import Any, TypeVar
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.casefile.assessment import read_assessment
+from fastpin.casefile.beside import READERS
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
-from fastpin.casefile.cracks import read_crack
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.materials import DUNDURS_KEYS, known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
-from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment, check_assessment
+from fastpin.model.assessment import FatigueAssessment, check_assessment
+from fastpin.model.beside import BESIDE
 from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
 from fastpin.model.checks import file_path, string
-from fastpin.model.crack import CRACK_KEYS, check_crack
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory
 from fastpin.model.laminate import LAMINATE_KEYS
@@ -55,8 +55,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
     "wear": WEAR_KEYS,
-    "fatigue": ASSESSMENT_KEYS,
-    "crack": CRACK_KEYS,
+    **{name: each.keys for name, each in BESIDE.items()},
     "solve": tuple(field.name for field in fields(SolveOptions)),
 }
 """Sections of a case file and their keys."""
@@ -183,12 +182,18 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     if problem is not None and wear is not None:
         _check_together(source, lambda: check_wear(problem), "plate_body")
     fatigue = _fatigue(source, problem, history, options)
-    crack = read_crack(source, source.section("crack")) if "crack" in source.root else None
-    if problem is not None and pair is not None and crack is not None:
-        _check_together(source, lambda: check_crack(problem, crack), "crack")
+    beside = {name: _beside(source, name, problem if pair is not None else None) for name in READERS}
     if problem is None or history is None:
         return None
-    return Case(problem, history, options, title, about, wear, fatigue, crack)
+    return Case(problem, history, options, title, about, wear, fatigue, **beside)
+
+
+def _beside(source: CaseText, name: str, problem: Problem | None) -> Any:
+    """The value of a section beside the problem; None without the section, or if it can't be used (reported)."""
+    value = READERS[name](source, source.section(name)) if name in source.root else None
+    if problem is not None and value is not None:
+        _check_together(source, lambda: BESIDE[name].check(problem, value), name)
+    return value
 
 
 def _fatigue(

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 
-from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.beside import BESIDE, beside_of
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.fields import FIELDS
@@ -43,28 +44,24 @@ def case_text(case: Case) -> str:
     """
     instance("case", case, Case, "a Case")
     wear = {} if case.wear is None else case.wear.toml()
-    crack = {} if case.crack is None else case.crack.entries()
     blocks = [
         *([[f"title = {_value(case.title)}"]] if case.title else []),
-        ["[about]", *(f"{name} = {_value(value)}" for name, value in case.about.given().items())],
+        _section("about", case.about.given()),
         ["[pin]", *_material(case.problem.pair.pin)],
         ["[plate]", *_material(case.problem.pair.plate)],
         ["[contact]", *_contact(case.problem)],
         ["[gap]", *(f"{name} = {_value(profile.toml())}" for name, profile in case.problem.gap.given.items())],
         *_bodies(case.problem),
         ["[[load]]", *_loads(case.history, case.problem.thickness)],
-        ["[wear]", *(f"{name} = {_value(value)}" for name, value in wear.items())],
-        *([] if case.fatigue is None else [_fatigue(case.fatigue)]),
-        ["[crack]", *(f"{name} = {_value(value)}" for name, value in crack.items())],
+        _section("wear", wear),
+        *(_section(name, BESIDE[name].written(value)) for name, value in beside_of(case).items()),
         ["[solve]", *_options(case.options)],
     ]
     return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
 
 
-def _fatigue(how: FatigueAssessment) -> list[str]:
-    """Return the section [fatigue]. It names its criterion, so that it is never empty."""
-    given = {"criterion": how.criteria[0] if len(how.criteria) == 1 else list(how.criteria)} | how.toml()
-    return ["[fatigue]", *(f"{name} = {_value(value)}" for name, value in given.items())]
+def _section(name: str, entries: Mapping[str, Any]) -> list[str]:
+    return [f"[{name}]", *(f"{key} = {_value(value)}" for key, value in entries.items())]
 
 
 def _material(material: Material) -> Iterator[str]:

@@ -32,6 +32,7 @@ from fastpin.cli.terminal import (
     write_text,
 )
 from fastpin.errors import InputError
+from fastpin.model.beside import beside_of
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.model.options import OPTIONS
@@ -49,6 +50,7 @@ from fastpin.report.states import (
     stored_rows,
     table_rows,
 )
+from fastpin.report.strength import StrengthFound, assess_strength, strength_lines
 from fastpin.states.choice import check_choice, span_of
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
 from fastpin.states.margins import static_margins
@@ -83,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
         if options.output is None:
             ended = _ending(lambda: solved.append(solver.solve(case.problem, case.history, **keywords)))
         else:
-            keywords |= {"title": case.title, "about": case.about, "fatigue": case.fatigue, "crack": case.crack}
+            keywords |= {"title": case.title, "about": case.about, **beside_of(case)}
             keywords |= {"save_after": saved, "overwrite": options.overwrite}
             ended = _ending(lambda: storage.record(case.problem, case.history, options.output, **keywords))
     if options.output is not None:
@@ -320,12 +322,12 @@ class RunReport:
         cycle = None
         with contextlib.suppress(InputError):
             cycle = self._last_cycle() if case.options.slip_sums else None
-        fatigue, grown = self._assessed(), self._crack()
+        fatigue, grown, strength = self._assessed(), self._crack(), self._strength()
         if fatigue is not None and fatigue.reason and result is not None and result.complete:
             code = fail(f"fatigue: {fatigue.reason}", EXIT_FAILED)
         document = None
         if options.json is not None:
-            document = report.summary.document(case, result, error, cycle, fatigue, grown)
+            document = report.summary.document(case, result, error, cycle, fatigue, grown, strength)
         text = json.dumps(document, indent=2, allow_nan=False) + "\n"
         writers: list[tuple[Any, Callable[[Path], object]]] = []
         if options.json != "-":
@@ -342,7 +344,7 @@ class RunReport:
         if options.json == "-":  # last: the reader of the output may close it early
             sys.stdout.write(text)
         else:
-            self._print_states(cycle, fatigue, grown)
+            self._print_states(cycle, fatigue, grown, strength)
         return code
 
     def _assessed(self) -> Assessed | None:
@@ -400,6 +402,21 @@ class RunReport:
             say(f"fastpin: note: no crack is followed: {error}", file=sys.stderr)
             return None
 
+    def _strength(self) -> StrengthFound | None:
+        """Assess the strength of the case's laminate. None without its section; a note says why it failed."""
+        case, result = self.case, self.result
+        if case.strength is None or result is None or not len(result):
+            return None
+        if not result.complete:
+            case = dataclasses.replace(case, strength=dataclasses.replace(case.strength, failure=False))
+        whole = result if self.part is None or self.path is None else storage.load(self.path)
+        try:
+            with Bar(len(whole), "state {n} of {total}") as progress_bar:
+                return assess_strength(case, whole.states, progress_to(progress_bar))
+        except InputError as error:
+            say(f"fastpin: note: no strength is assessed: {error}", file=sys.stderr)
+            return None
+
     def _plot(self, options: argparse.Namespace, path: Path) -> None:
         """Draw the tractions. States that were not read before are read from the file."""
         try:
@@ -413,7 +430,13 @@ class RunReport:
         if drawn.note:
             say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)
 
-    def _print_states(self, cycle: LoadCycle | None, fatigue: Assessed | None, grown: cracks.Growth | None) -> None:
+    def _print_states(
+        self,
+        cycle: LoadCycle | None,
+        fatigue: Assessed | None,
+        grown: cracks.Growth | None,
+        strength: StrengthFound | None,
+    ) -> None:
         case, result = self.case, self.result
         if case.title:
             say(case.title)
@@ -453,6 +476,8 @@ class RunReport:
             say(*(report.cycle.spectrum_line(one) for one in damages))
         if grown is not None:
             say(growth_line(grown))
+        if strength is not None:
+            say(*strength_lines(strength))
         say(*(f"note: {note}" for note in note_lines(case, result)))
         say(solver_line(result))
 

@@ -29,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
     """Run all cases of a plan that are not finished, then write tables and figures."""
     shard = _shard(options.shard)
     check_combination(options)
-    for name in ("value", "x", "y"):
+    for name in ("value", "x", "y", "envelope"):
         if getattr(options, name) is not None and options.plot is None:
             raise InputError(f"--{name}", "says what a figure shows; --plot FILE is missing")
     with Bar(1, READ_POINTS) as progress_bar:
@@ -132,9 +132,19 @@ def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None
     if options.plot is not None:
         try:
             for value in _values(options, plan):
+                if options.envelope:
+                    _check_envelope(options, plan, value)
+                    continue
                 report.sweep.check_axes(plan, value, options.x, options.y)
         except InputError as error:
             raise InputError(f"--{error.field}", error.reason) from None
+
+
+def _check_envelope(options: argparse.Namespace, plan: studies.plan.Plan, value: str) -> None:
+    """Refuse what an envelope can't show: another outcome, several ones, or other axes."""
+    report.envelope.check_envelope(plan, value)
+    if options.x is not None or options.y is not None or len(_values(options, plan)) > 1:
+        raise InputError("envelope", "has axes of its own, and shows one value: leave out --x, --y and other values")
 
 
 def _values(options: argparse.Namespace, plan: studies.plan.Plan) -> list[str]:
@@ -177,7 +187,14 @@ def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Pa
     rows = studies.sweep.rows(plan, directory)
     if options.table not in (None, "-"):
         report.sweep.write_csv(plan, rows, Path(options.table))
-    if options.plot is not None:
+    if options.plot is not None and options.envelope:
+        found = report.envelope.envelopes(plan, rows, _values(options, plan)[0])
+        if found:
+            figures.plot_envelope(found, options.plot, plan.title)
+        missing = len(rows) - sum(curve[report.envelope.BYPASS].size for curve in found)
+        if missing:
+            say(f"note: {missing} of {len(rows)} points have no value in the figure", file=sys.stderr)
+    elif options.plot is not None:
         values = _values(options, plan)
         charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]
         figures.plot_sweep(charts if len(charts) > 1 else charts[0], options.plot)

@@ -16,6 +16,10 @@ from .criteria import smith_watson_topper as smith_watson_topper
 from .distance import critical_distance as critical_distance
 from .distance import fatigue_at_distance as fatigue_at_distance
 from .histories import stress_history as stress_history
+from .hole_strength import JointStrength as JointStrength
+from .hole_strength import joint_strength as joint_strength
+from .hole_strength import least_strength as least_strength
+from .hole_strength import ply_stresses as ply_stresses
 from .hot_spots import CRITERIA as CRITERIA
 from .hot_spots import NO_CRACK as NO_CRACK
 from .hot_spots import Fatigue as Fatigue
@@ -23,11 +27,6 @@ from .hot_spots import HotSpot as HotSpot
 from .hot_spots import cycle_states as cycle_states
 from .hot_spots import damage_sum as damage_sum
 from .hot_spots import fatigue as fatigue
-from .joint_strength import FailureLoad as FailureLoad
-from .joint_strength import JointStrength as JointStrength
-from .joint_strength import failure_load as failure_load
-from .joint_strength import joint_strength as joint_strength
-from .joint_strength import ply_stresses as ply_stresses
 from .laminates import MODES as MODES
 from .laminates import PLY_CRITERIA as PLY_CRITERIA
 from .laminates import FirstPly as FirstPly

@@ -25,7 +25,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,9 +32,7 @@ from numpy.typing import ArrayLike
 from fastpin.errors import FastpinError, InputError
 from fastpin.model.checks import check_callable, choice, instance, not_negative, number, number_array, positive, triples
 from fastpin.model.laminate import Laminate
-from fastpin.model.ply import LEAST_MODULUS, MOST_MODULUS, Ply, PlyStrengths
-
-PlyCriterion = Literal["maximum-stress", "maximum-strain", "tsai-hill", "tsai-wu", "hashin", "yamada-sun"]
+from fastpin.model.ply import CRITERION_NAMES, LEAST_MODULUS, MOST_MODULUS, Ply, PlyCriterion, PlyStrengths
 
 MODES = ("fibre tension", "fibre compression", "matrix tension", "matrix compression", "shear")
 """Modes of ply failure, in the order of the places in :attr:`PlyFailure.mode`."""
@@ -220,7 +217,7 @@ PLY_CRITERIA: dict[str, Callable[[np.ndarray, Ply], PlyFailure]] = {
     "hashin": lambda stress, ply: hashin(stress, _strengths_of(ply)),
     "yamada-sun": lambda stress, ply: yamada_sun(stress, _strengths_of(ply)),
 }
-"""The criteria of ply failure by name."""
+"""The criteria of ply failure by the names of :data:`fastpin.model.ply.PlyCriterion`."""
 
 
 def ply_failure(laminate: Laminate, stress: ArrayLike, criterion: PlyCriterion = "hashin") -> PlyFailure:
@@ -245,7 +242,7 @@ def ply_failure(laminate: Laminate, stress: ArrayLike, criterion: PlyCriterion =
     InputError
         If an argument can't be used, or a ply has no strengths.
     """
-    evaluate = PLY_CRITERIA[choice("criterion", criterion, tuple(PLY_CRITERIA))]
+    evaluate = PLY_CRITERIA[choice("criterion", criterion, CRITERION_NAMES)]
     known = instance("laminate", laminate, Laminate, "a fastpin.model.Laminate")
     found = [evaluate(each, ply) for each, (ply, _) in zip(known.ply_stresses(stress), known.plies, strict=True)]
     return PlyFailure(*(np.array([getattr(each, name) for each in found]) for name in ("index", "ratio", "mode")))

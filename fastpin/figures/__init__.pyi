@@ -15,6 +15,7 @@ from .animation import animate as animate
 from .convergence import plot_convergence as plot_convergence
 from .crack_growth import plot_crack_growth as plot_crack_growth
 from .cycles import plot_cycles as plot_cycles
+from .envelope import plot_envelope as plot_envelope
 from .fatigue import plot_fatigue as plot_fatigue
 from .gap import plot_gap as plot_gap
 from .history import plot_history as plot_history

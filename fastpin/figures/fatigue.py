@@ -71,7 +71,7 @@ def fatigue_plot(
     Without a cycle it is the damage of the whole history. A section [fatigue] of the case replaces both, unless a depth
     or a criterion without lives is given.
     """
-    how = subject.assessment()
+    how: FatigueAssessment | None = subject.beside("fatigue")
     if how is not None and depth is None and criterion in (None, *SPECTRUM_CRITERIA):
         return _assessed_plot(subject, how.changed(criterion=criterion or how.criteria[0], bodies=body or how.bodies))
     criterion = criterion or "smith-watson-topper"

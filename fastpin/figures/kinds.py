@@ -51,7 +51,7 @@ KIND_OPTIONS = {
     "depth": KindOption("profile: largest depth, in radii; fatigue, strength: depth of the points, m", "D", "number"),
     "criterion": KindOption(
         "fatigue, damage: smith-watson-topper (default), fatemi-socie, findley, ...; "
-        "strength: hashin (default), tsai-wu, yamada-sun, ..."
+        "strength: that of [strength], else hashin, ..."
     ),
 }
 """Options of figures, in the order of the help. Each is a keyword of the functions of the kinds that have it."""

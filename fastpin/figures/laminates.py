@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -12,8 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.damage.joint_strength import JointStrength, joint_strength, laminate_of
-from fastpin.damage.laminates import PlyCriterion
+from fastpin.damage.hole_strength import JointStrength, joint_strength, laminate_of
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.states import DrawnStates, name_states, state_lines
@@ -22,9 +22,11 @@ from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.words import ANGLE, quantity, short
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
-from fastpin.model.checks import as_toml
+from fastpin.model.checks import as_toml, instance
 from fastpin.model.laminate import Laminate, in_axes
+from fastpin.model.ply import PlyCriterion
 from fastpin.model.problem import Problem
+from fastpin.model.strength import StrengthAssessment
 from fastpin.model.units import PASCAL, units
 from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.result import Result
@@ -122,27 +124,52 @@ def plot_strength(
     dpi: float = 300.0,
     *,
     states: StateChoice = None,
-    criterion: PlyCriterion = "hashin",
-    depth: float = 0.0,
+    criterion: PlyCriterion | None = None,
+    depth: float | None = None,
+    how: StrengthAssessment | None = None,
     ax: Axes | None = None,
 ) -> Figure:
-    """Draw the strength ratio of the first ply round the hole, at a `depth` below its edge, m.
+    """Draw the strength ratio of the first ply round the hole.
 
-    A ply fails where the ratio is 1 or less. See :func:`fastpin.damage.joint_strength` for the criteria, and
+    A ply fails where the ratio is 1 or less. The points lie as in `how`, by default on the edge. A `depth` below the
+    edge, m, and a `criterion` replace those of `how`. See :func:`fastpin.damage.joint_strength` for the criteria, and
     :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(strength_plot(InMemory(result), states, criterion, depth))
+    drawn = InMemory(result).states(states)
+    return Look(path, title, width, dpi, ax).drawn(strength_of(drawn, how, criterion, depth))
 
 
 def strength_plot(
-    subject: Subject, states: StateChoice = None, criterion: PlyCriterion = "hashin", depth: float = 0.0
+    subject: Subject, states: StateChoice = None, criterion: PlyCriterion | None = None, depth: float | None = None
 ) -> Plot:
-    """Return the strength ratio round the hole of some states, see :func:`plot_strength`."""
-    drawn = subject.states(states)
-    found = [joint_strength(state, criterion, distance=depth) for state in drawn]
+    """Return the strength ratio round the hole of some states, see :func:`plot_strength`.
+
+    The section [strength] of the case of a stored result takes the place of its argument `how`.
+    """
+    return strength_of(subject.states(states), subject.beside("strength"), criterion, depth)
+
+
+def strength_of(
+    drawn: DrawnStates,
+    how: StrengthAssessment | None,
+    criterion: PlyCriterion | None = None,
+    depth: float | None = None,
+) -> Plot:
+    """Return the strength ratio round the hole of states that are drawn, see :func:`plot_strength`."""
+    if how is not None:
+        instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
+    given = how or StrengthAssessment(distance=0.0)
+    criterion = criterion or given.criterion
+    given = replace(given, criterion=criterion) if depth is None else StrengthAssessment(criterion, depth)
+    found = [joint_strength(state, given.criterion, **given.lengths) for state in drawn]
     curves = [_strength_curve(each) for each in found]
-    place = f"{short(depth, units(drawn[0].problem)['length'])} from the edge" if depth else "at the edge"
-    words = f"first ply by {criterion}, {place}"
+    length = units(drawn[0].problem)["length"]
+    if given.distance is None:
+        across, ahead = (short(given.lengths[name], length) for name in ("tension", "compression"))
+        place = f"on the characteristic curve of {across} and {ahead}"
+    else:
+        place = f"{short(given.distance, length)} from the edge" if given.distance else "at the edge"
+    words = f"first ply by {given.criterion}, {place}"
     return Plot(
         lambda look: _draw_strength(look, drawn, found, curves, words),
         partial(write_csv, curves),

@@ -8,7 +8,7 @@ from typing import Any
 
 from fastpin.errors import InputError
 from fastpin.figures.states import DrawnStates, drawn_states, stored_states
-from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.beside import beside_of
 from fastpin.model.checks import instance
 from fastpin.solver.result import Result
 from fastpin.solver.wear_result import WearResult
@@ -58,8 +58,8 @@ class InMemory:
         """Return the result."""
         return self.result()
 
-    def assessment(self) -> None:
-        """Return None: a result in memory does not know the section [fatigue] of its case."""
+    def beside(self, name: str) -> None:
+        """Return None: a result in memory does not know the sections of its case, such as [fatigue]."""
 
     def wear(self) -> WearResult:
         """Return the life of wear."""
@@ -101,9 +101,9 @@ class InFile:
         """Return the result with all its states."""
         return load(self._path)
 
-    def assessment(self) -> FatigueAssessment | None:
-        """Return how the fatigue is assessed; None if the case did not say it."""
-        return stored_case(self._path).fatigue
+    def beside(self, name: str) -> Any:
+        """Return the section of its case with this name, such as "fatigue"; None if the case had none."""
+        return beside_of(stored_case(self._path)).get(name)
 
     def wear(self) -> WearResult:
         """Raise :class:`InputError`: there is no life of wear."""

@@ -22,4 +22,5 @@ from .points import Points as Points
 from .problem import Problem as Problem
 from .profile import InitialGap as InitialGap
 from .profile import Profile as Profile
+from .strength import StrengthAssessment as StrengthAssessment
 from .wear import Wear as Wear

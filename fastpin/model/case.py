@@ -6,11 +6,13 @@ from dataclasses import asdict, dataclass, field, fields
 
 from fastpin.errors import InputError
 from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.beside import BESIDE, beside_of
 from fastpin.model.checks import instance, string
 from fastpin.model.crack import CrackGrowth
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.strength import StrengthAssessment
 from fastpin.model.wear import Wear
 
 
@@ -68,6 +70,8 @@ class Case:
         How the fatigue of the history is assessed.
     crack : CrackGrowth or None
         How a crack grows from the hole.
+    strength : StrengthAssessment or None
+        How the strength of a laminate is assessed.
 
     Raises
     ------
@@ -83,14 +87,13 @@ class Case:
     wear: Wear | None = None
     fatigue: FatigueAssessment | None = None
     crack: CrackGrowth | None = None
+    strength: StrengthAssessment | None = None
 
     def __post_init__(self) -> None:
-        if self.fatigue is not None:
-            instance("fatigue", self.fatigue, FatigueAssessment, "a FatigueAssessment")
         if self.wear is not None:
             instance("wear", self.wear, Wear, "a Wear")
-        if self.crack is not None:
-            instance("crack", self.crack, CrackGrowth, "a CrackGrowth")
+        for name, value in beside_of(self).items():
+            instance(name, value, BESIDE[name].kind, BESIDE[name].words)
         instance("about", self.about, About, "an About")
         instance("problem", self.problem, Problem, "a Problem")
         instance("history", self.history, LoadHistory, "a LoadHistory")

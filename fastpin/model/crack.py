@@ -12,7 +12,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import DEGREE, angle_at, degrees_at, degrees_of
-from fastpin.model.checks import as_toml, choice, instance, items, number, numbers, positive
+from fastpin.model.checks import as_toml, choice, items, number, numbers, positive
 from fastpin.model.growth import KnownLaw, known_law, law_entries, law_from
 from fastpin.model.points import EDGES, MOST_ANGLE, far_rim, isotropic_material, material_of, near_rim, owner_of
 from fastpin.model.problem import Problem
@@ -146,13 +146,6 @@ def check_crack(problem: Problem, crack: CrackGrowth) -> None:
         raise InputError("body", NO_INSIDE)
     check_length("last", problem, body, crack.angle, crack.last)
     law_of(problem, crack)
-
-
-def checked_crack(problem: Problem, crack: CrackGrowth | None) -> CrackGrowth | None:
-    """Check the crack of a run, if there is one, and return it."""
-    if crack is not None:
-        check_crack(problem, instance("crack", crack, CrackGrowth, "a fastpin.model.CrackGrowth"))
-    return crack
 
 
 NO_INSIDE = "a compliance gives no stress inside the plate: a crack needs it"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -20,6 +20,11 @@ LEAST_THICKNESS, MOST_THICKNESS = 1e-12, 1e6
 
 STABLE = 1e-9
 """Least part of nu12^2 E2 / E1 below 1. A smaller part is rounding: no stable ply has it."""
+
+PlyCriterion = Literal["maximum-stress", "maximum-strain", "tsai-hill", "tsai-wu", "hashin", "yamada-sun"]
+
+CRITERION_NAMES: tuple[str, ...] = get_args(PlyCriterion)
+"""The names of the criteria of ply failure, see :mod:`fastpin.damage.laminates`."""
 
 
 @explains_keywords

@@ -14,7 +14,7 @@ from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.album import Album
 from fastpin.pages.content import Page
-from fastpin.pages.sections import SECTIONS, PageParts, crack, seat
+from fastpin.pages.sections import SECTIONS, PageParts, crack, seat, strength
 from fastpin.pages.source import Source, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
 from fastpin.pages.writing import check_page, write_page
@@ -112,6 +112,7 @@ def write_source(
     if source.life is None:
         left_out = [seat] if source.case.problem.seat is None else []
         left_out += [crack] if source.case.crack is None else []
+        left_out += [strength] if source.case.strength is None else []
         makers = [make for make in SECTIONS if make not in left_out]
     for number, make in enumerate(makers):
         report(number, len(makers))

@@ -18,6 +18,7 @@ from fastpin.figures.cycles import cycles_of
 from fastpin.figures.fatigue import fatigue_of, spectrum_of
 from fastpin.figures.gap import gap_of
 from fastpin.figures.history import history_of
+from fastpin.figures.laminates import strength_of
 from fastpin.figures.load_cycle import STRAIGHT, loops_of, slip_of
 from fastpin.figures.sketch import sketch_of
 from fastpin.figures.states import DrawnStates
@@ -47,6 +48,7 @@ from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
 from fastpin.report.margins import HEADS, margin_rows
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_line, state_columns
+from fastpin.report.strength import strength_lines
 from fastpin.report.table import MAX_ROWS, Column
 from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
@@ -500,6 +502,16 @@ def crack(page: PageParts) -> PageSection:
     return PageSection("crack", "Crack", parts)
 
 
+def strength(page: PageParts) -> PageSection:
+    """Return the strength of the laminate in the worst state, with its figure."""
+    found = page.source.strength
+    if isinstance(found, str):
+        return PageSection("strength", "Strength", [Text(found, "missing")])
+    plot = strength_of(InMemory([found.state]).states(), found.how)
+    parts: list[SectionPart] = [Text(sentence(line)) for line in strength_lines(found)]
+    return PageSection("strength", "Strength", [*parts, page.album.figure(plot)])
+
+
 def convergence(page: PageParts) -> PageSection:
     """Return a convergence study, if there is one."""
     study = page.convergence
@@ -569,6 +581,7 @@ def _shortened(text: str) -> str:
 
 SECTIONS: Sequence[Callable[[PageParts], PageSection]] = (
     overview, margins, case, materials, loads, key_figures, tractions, zones, seat, hysteresis, stresses,
-    fatigue, crack, convergence, checks, provenance,
+    fatigue, crack, strength, convergence, checks, provenance,
 )  # fmt: skip
-"""All sections, in the order of the page. Only a joint whose bush slips has a seat, and only some cases a crack."""
+"""All sections, in the order of the page. Only a joint whose bush slips has a seat, and only some cases a crack or a
+[strength]."""

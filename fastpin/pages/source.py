@@ -28,6 +28,7 @@ from fastpin.report.assessment import Assessed, assess
 from fastpin.report.crack_growth import case_growth
 from fastpin.report.cycle import fatigue_bodies, spectrum_damages
 from fastpin.report.states import stored_rows
+from fastpin.report.strength import StrengthFound, assess_strength
 from fastpin.solver.result import Result
 from fastpin.solver.wear_result import WearResult
 from fastpin.states.choice import even_choice, span_of
@@ -333,6 +334,16 @@ class Source:
             return case_growth(states, self.result.cycles, self.case)
         except InputError as error:
             return f"No crack is followed: {error.field} {error.reason}."
+
+    @cached_property
+    def strength(self) -> StrengthFound | str:
+        """The strength of the laminate as the section [strength] of the case asks for it; or why it is not known."""
+        if self.case.strength is None:
+            return "The case has no section [strength]."
+        try:
+            return assess_strength(self.case, self.read(range(self.points.size)))
+        except InputError as error:
+            return f"No strength is assessed: {error.field} {error.reason}."
 
     @cached_property
     def worn(self) -> list[WornFatigue]:

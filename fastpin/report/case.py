@@ -18,6 +18,7 @@ from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import Material
 from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
+from fastpin.model.strength import StrengthAssessment
 from fastpin.model.units import PASCAL, acting_loads, units
 from fastpin.model.wear import Wear
 from fastpin.report.table import Column, table, visible_rows
@@ -92,6 +93,9 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         rows.append(("fatigue", f"{', '.join(case.fatigue.criteria)}, over {assessment_words(case.fatigue)}"))
     if case.crack is not None:
         rows.append(("crack", crack_words(problem, case.crack)))
+    if case.strength is not None:
+        asked = ", with the load at failure" if case.strength.failure else ""
+        rows.append(("strength", f"{strength_words(problem, case.strength)}{asked}"))
     return rows
 
 
@@ -113,6 +117,15 @@ def crack_words(problem: Problem, crack: CrackGrowth) -> str:
     parts += ["in the plate round the bush"] if crack.body == "seat" else []
     parts += [law_words(law_of(problem, crack))]
     return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
+
+
+def strength_words(problem: Problem, how: StrengthAssessment) -> str:
+    """Criterion of an assessment of strength, and where it is evaluated."""
+    length = units(problem)["length"]
+    if how.distance is not None:
+        return f"{how.criterion} {f'{length.text(how.distance, 3)} from' if how.distance else 'at'} the edge"
+    lengths = (f"{length.text(value, 3)} in {name}" for name, value in how.lengths.items())
+    return f"{how.criterion} on the characteristic curve of {' and '.join(lengths)}"
 
 
 def _wear_words(wear: Wear) -> str:

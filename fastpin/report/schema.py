@@ -12,6 +12,8 @@ from typing import Any
 
 from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.cracks.fates import CRACK_FATES
+from fastpin.damage.hole_strength import JOINT_MODES
+from fastpin.damage.laminates import MODES
 from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA
 from fastpin.model.checks import choice
 from fastpin.model.fatigue import LIFE_CONSTANTS
@@ -20,7 +22,9 @@ from fastpin.model.laminate import MODULI, ORDER
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import METHODS, SolveOptions
+from fastpin.model.ply import CRITERION_NAMES
 from fastpin.model.points import BODIES, EDGES
+from fastpin.model.strength import LENGTHS
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
 from fastpin.states.quantities import QUANTITIES
@@ -87,6 +91,29 @@ def _summary() -> Schema:
             "cycle": _or_null(_last_cycle()),
             "fatigue": _or_null(_fatigue()),
             "crack": _or_null(_crack()),
+            "strength": _or_null(_strength()),
+        }
+    )
+
+
+def _strength() -> Schema:
+    place = {
+        "load_point": _NUMBER,
+        "ratio": _UNKNOWN | {"description": "factor on the stresses at which the first ply fails; null: no stress"},
+        **dict.fromkeys(("angle", "depth", "ply_angle"), _NUMBER),
+        "ply": _WHOLE | {"description": "place in the stack, 0 for the lowest ply"},
+        "ply_mode": {"enum": list(MODES)},
+        "joint_mode": {"enum": ["", *JOINT_MODES]},
+    }
+    loads = _map_of(_NUMBER, "loads of the state that fails")
+    return _object(
+        {
+            "criterion": {"enum": list(CRITERION_NAMES)},
+            **dict.fromkeys(LENGTHS, _UNKNOWN),
+            "states": _WHOLE,
+            **place,
+            "failure": _or_null(_object({"factor": _NUMBER, "load": loads, "solved": _WHOLE, **place})),
+            "error": _OPTIONAL_TEXT,
         }
     )
 

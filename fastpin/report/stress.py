@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fastpin.damage.joint_strength import laminate_of
+from fastpin.damage.hole_strength import laminate_of
 from fastpin.damage.laminates import first_ply_failure
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom

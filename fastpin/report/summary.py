@@ -21,9 +21,11 @@ from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
 from fastpin.report import assessment, crack_growth
 from fastpin.report import cycle as cycle_report
+from fastpin.report import strength as strength_report
 from fastpin.report.assessment import Assessed
 from fastpin.report.fatigue import life_margins
 from fastpin.report.margins import document as margins_document
+from fastpin.report.strength import StrengthFound
 from fastpin.solver.result import Result
 from fastpin.states.extremes import READINGS, KeptStates, marked_extremes
 from fastpin.states.load_cycle import LoadCycle
@@ -35,7 +37,7 @@ from fastpin.version import __version__
 
 def document(
     case: Case, result: Result | None, error: str | None = None, cycle: LoadCycle | None = None,
-    fatigue: Assessed | None = None, crack: cracks.Growth | None = None,
+    fatigue: Assessed | None = None, crack: cracks.Growth | None = None, strength: StrengthFound | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
@@ -55,6 +57,8 @@ def document(
         The assessment of the entry ``fatigue``.
     crack : Growth, optional
         The crack of the entry ``crack``.
+    strength : StrengthFound, optional
+        The strength of the entry ``strength``.
     """
     problem, pair = case.problem, case.problem.pair
     alpha, beta = problem.surfaces.dundurs()
@@ -91,6 +95,7 @@ def document(
         "cycle": None if cycle is None else cycle_report.document(cycle),
         "fatigue": None if fatigue is None else assessment.document(fatigue),
         "crack": None if crack is None else crack_growth.document(crack),
+        "strength": None if strength is None else strength_report.document(strength),
     }
     return json_ready(found)
 

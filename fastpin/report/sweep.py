@@ -249,7 +249,7 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
     factor, label = scaled(
         [number for number in found if number is not None and abs(number) > least], unit_name(plan, value, unit)
     )
-    others_words = {other: _value_words(plan, rows, other, unit) for other in others}
+    others_words = {other: value_words(plan, rows, other, unit) for other in others}
     axes = [_axis(plan, rows, name, unit) for name in (y, x) if name is not None]
     shape = tuple(len(axis.values) for axis, _ in axes)
     parts: dict[str, tuple[np.ndarray, np.ndarray]] = {}
@@ -296,7 +296,7 @@ def axis_label(words: str, unit: str) -> str:
     return f"{words} ({unit})" if unit else words
 
 
-def _value_words(plan: Plan, rows: Sequence[TableRow], field: str, unit: dict[str, str]) -> Callable[[Any], str]:
+def value_words(plan: Plan, rows: Sequence[TableRow], field: str, unit: dict[str, str]) -> Callable[[Any], str]:
     """Return a function that gives words for a value of a field, in the unit that suits all its values."""
     words, given = plan.labels.get(field, field_words(field)), [row[field] for row in rows if row[field] is not None]
     if not all(map(_is_number, given)):

@@ -20,7 +20,6 @@ Every array has its unit as an attribute. Dimensions are named as in netCDF, so 
 from __future__ import annotations
 
 import functools
-import json
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -35,9 +34,8 @@ from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
 from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
-from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.beside import BESIDE, read_text, stored_text
 from fastpin.model.case import About
-from fastpin.model.crack import CRACK_KEYS, CrackGrowth, crack_from
 from fastpin.model.fields import FIELDS
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
@@ -313,34 +311,16 @@ def read_about(file: h5py.File) -> About:
     return About(**{each.name: text_of(stored.get(each.name, "")) for each in fields(About)})
 
 
-def assessment_attributes(how: FatigueAssessment | None) -> dict[str, str]:
-    """Return the attribute of the solver that says how the fatigue is assessed: JSON of all given fields."""
-    if how is None:
-        return {}
-    values = {each.name: getattr(how, each.name) for each in fields(how)}
-    return {"fatigue": json.dumps({name: value for name, value in values.items() if value is not None})}
+def beside_attributes(given: Mapping[str, Any]) -> dict[str, str]:
+    """Return the attributes of the solver with the sections beside the problem, by name: JSON."""
+    return {name: stored_text(name, value) for name, value in given.items()}
 
 
-def read_assessment(file: h5py.File) -> FatigueAssessment | None:
-    """Read how the fatigue of a result is assessed; None if its case did not say it, as in older files."""
-    text = file["solver"].attrs.get("fatigue")
-    return None if text is None else FatigueAssessment(**json.loads(text_of(text)))
-
-
-def crack_attributes(crack: CrackGrowth | None) -> dict[str, str]:
-    """Return the attribute of the solver that says how a crack grows: JSON of the section [crack]."""
-    return {} if crack is None else {"crack": json.dumps(crack.entries())}
-
-
-def read_crack(file: h5py.File) -> CrackGrowth | None:
-    """Read how a crack grows in the case of a result; None unless the case said so."""
-    text = text_of(file["solver"].attrs.get("crack", ""))
-    if not text:
-        return None
-    entries = json.loads(text)
-    if not isinstance(entries, dict) or not set(entries) <= set(CRACK_KEYS):
-        raise ValueError("the crack of its case can't be read")
-    return crack_from(**entries)
+def read_beside(file: h5py.File) -> dict[str, Any]:
+    """Read the sections beside the problem that the case of a result has, by name; none in older files."""
+    stored = file["solver"].attrs
+    found = {name: read_text(name, text_of(stored.get(name, ""))) for name in BESIDE}
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:

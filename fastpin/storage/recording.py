@@ -11,6 +11,7 @@ import numpy as np
 
 from fastpin.errors import InputError, InputWarning
 from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.beside import checked_beside
 from fastpin.model.case import About, Case
 from fastpin.model.checks import (
     as_toml,
@@ -22,12 +23,13 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
-from fastpin.model.crack import CrackGrowth, checked_crack
+from fastpin.model.crack import CrackGrowth
 from fastpin.model.doubts import doubts, pressure_doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OPTIONS, OptionValues, SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.strength import StrengthAssessment
 from fastpin.model.synonyms import unknown_keyword
 from fastpin.solver.attempts import Unfit
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
@@ -40,8 +42,7 @@ from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.journal import check_beside, is_empty
 from fastpin.storage.layout import (
     read_about,
-    read_assessment,
-    read_crack,
+    read_beside,
     read_history,
     read_options,
     read_problem,
@@ -60,6 +61,7 @@ def record(
     about: About | None = None,
     fatigue: FatigueAssessment | None = None,
     crack: CrackGrowth | None = None,
+    strength: StrengthAssessment | None = None,
     save_after: Sequence[int] = (),
     overwrite: bool = False,
     grid: Grid | None = None,
@@ -87,6 +89,8 @@ def record(
         How the fatigue is assessed, stored in the file for its text, figures and report.
     crack : CrackGrowth, optional
         How a crack grows from the hole, stored in the file for ``fastpin crack`` and its report.
+    strength : StrengthAssessment, optional
+        How the strength of a laminate is assessed, stored in the file for its text, figures and report.
     save_after : sequence of int
         Corners, counted from 1, with a restart in the file. ``load(path, after=corner)`` is quick at these corners.
     overwrite : bool
@@ -111,8 +115,6 @@ def record(
     check_writable(path, result=True)
     string("title", title)
     about = About() if about is None else instance("about", about, About, "an About")
-    if fatigue is not None:
-        instance("fatigue", fatigue, FatigueAssessment, "a FatigueAssessment")
     true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
@@ -126,7 +128,8 @@ def record(
     if solve_options.error_bars:
         check_halves(task, start)
     warn_of(doubts(problem, task.history, solve_options), 2)
-    writer = FileRecorder(path, task, title, about, fatigue, checked_crack(problem, crack))
+    beside = checked_beside(problem, {"fatigue": fatigue, "crack": crack, "strength": strength})
+    writer = FileRecorder(path, task, title, about, beside)
     writer.overwrite = overwrite
     writer.check_overwriting()
     writer.chosen_arc &= start is None
@@ -278,7 +281,7 @@ def stored_case(path: str | Path) -> Case:
     with open_result(file_path("path", path)) as file:
         title = text_of(file["solver"].attrs.get("title", ""))
         parts = read_problem(file), read_history(file), read_options(file), title, read_about(file)
-        return Case(*parts, fatigue=read_assessment(file), crack=read_crack(file))
+        return Case(*parts, **read_beside(file))
 
 
 def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:

@@ -6,18 +6,18 @@ layout of a file stands in layout.py.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from types import MappingProxyType
+from typing import Any
 
 import h5py
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import (
     as_toml,
     file_path,
@@ -29,7 +29,6 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
-from fastpin.model.crack import CrackGrowth
 from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.model.inputs import note_input
 from fastpin.solver.result import Restart, Result, with_error_bars
@@ -45,15 +44,13 @@ from fastpin.storage.journal import open_h5
 from fastpin.storage.layout import (
     SLIP_FIELDS,
     append,
-    assessment_attributes,
+    beside_attributes,
     check_format,
     count,
-    crack_attributes,
     cycle_rows,
     node_fields_of,
     options_of,
-    read_assessment,
-    read_crack,
+    read_beside,
     read_cycles,
     read_grid,
     read_history,
@@ -75,20 +72,7 @@ MOST_IN_MEMORY = 4_000_000
 """Most values of a node field in a file that is made in memory. Such a file has some 100 MB, and is there twice."""
 
 
-class Sections(NamedTuple):
-    """The sections of a case that judge a result, and change none of its states.
-
-    Attributes
-    ----------
-    fatigue : FatigueAssessment or None
-    crack : CrackGrowth or None
-    """
-
-    fatigue: FatigueAssessment | None = None
-    crack: CrackGrowth | None = None
-
-
-NO_SECTIONS = Sections()
+NO_SECTIONS: Mapping[str, Any] = MappingProxyType({})
 """The sections of a case without any."""
 
 
@@ -97,7 +81,7 @@ def save(
     path: str | Path,
     error: str | None = None,
     restart: bool = True,
-    sections: Sections = NO_SECTIONS,
+    sections: Mapping[str, Any] = NO_SECTIONS,
 ) -> None:
     """Write a result to an HDF5 file, whole or not at all. The coarse result behind error bars is written too.
 
@@ -110,8 +94,8 @@ def save(
         Why the result is incomplete; stored in the file.
     restart : bool
         Also write the restart, from which another solution can continue.
-    sections : Sections
-        How the result is judged by ``fastpin show`` and ``fastpin report``.
+    sections : mapping of str
+        The sections beside the problem by name: how the result is judged by ``fastpin show`` and ``fastpin report``.
 
     Raises
     ------
@@ -146,10 +130,12 @@ def save(
             write_restart(file.create_group("coarse/restart/latest"), result.coarse.restart)
 
 
-def _write(file: h5py.File | packed.PackedGroup, result: Result, error: str | None, sections: Sections) -> None:
+def _write(
+    file: h5py.File | packed.PackedGroup, result: Result, error: str | None, sections: Mapping[str, Any]
+) -> None:
     """Write a result into an empty file, all but its restart."""
     write_head(file, result.problem, result.history, result.grid, options_of(result))
-    file["solver"].attrs.update(assessment_attributes(sections.fatigue) | crack_attributes(sections.crack))
+    file["solver"].attrs.update(beside_attributes(sections))
     file.attrs["complete"] = result.complete
     if error is not None:
         file.attrs["error"] = error
@@ -163,7 +149,7 @@ def _write(file: h5py.File | packed.PackedGroup, result: Result, error: str | No
         append(group["cycles"], cycle_rows(coarse.cycles))
 
 
-def pack(result: Result, error: str | None, most: int, sections: Sections = NO_SECTIONS) -> bytes | None:
+def pack(result: Result, error: str | None, most: int, sections: Mapping[str, Any] = NO_SECTIONS) -> bytes | None:
     """Return a result in few bytes, without its restart; see packed.py. None if it needs more than `most` bytes.
 
     `error` tells why the result is incomplete.
@@ -188,7 +174,7 @@ def unpack(content: bytes, path: Path) -> Result:
         return _read(file, path, ALL, None)[0]
 
 
-def unpack_sections(content: bytes, path: Path) -> Sections:
+def unpack_sections(content: bytes, path: Path) -> dict[str, Any]:
     """Return the sections of :func:`pack`. `path` names it in errors.
 
     Raises
@@ -197,7 +183,7 @@ def unpack_sections(content: bytes, path: Path) -> Sections:
         If the bytes are damaged.
     """
     with _opened(content, path) as file:
-        return Sections(read_assessment(file), read_crack(file))
+        return read_beside(file)
 
 
 @contextmanager

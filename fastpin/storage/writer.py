@@ -6,18 +6,18 @@ import logging
 import os
 import time
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 import h5py
 import numpy as np
 
 from fastpin.errors import InputError, OutputError
-from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import About
-from fastpin.model.crack import CrackGrowth
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.result import Restart
 from fastpin.solver.run import Run, RunProgress
@@ -33,17 +33,15 @@ from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_r
 from fastpin.storage.layout import (
     Rows,
     append,
-    assessment_attributes,
+    beside_attributes,
     check_format,
     check_growing,
     count,
-    crack_attributes,
     cycle_rows,
     node_fields,
     option_attributes,
     read_about,
-    read_assessment,
-    read_crack,
+    read_beside,
     read_cycles,
     read_grid,
     read_history,
@@ -140,8 +138,8 @@ class FileRecorder:
         The task that is followed. Its stops get a restart in the file.
     title : str
     about : About
-    fatigue : FatigueAssessment or None
-    crack : CrackGrowth or None
+    beside : mapping of str
+        The sections of the case beside the problem, by name.
 
     Attributes
     ----------
@@ -152,14 +150,13 @@ class FileRecorder:
     """
 
     def __init__(
-        self, path: Path, task: Task, title: str, about: About,
-        fatigue: FatigueAssessment | None = None, crack: CrackGrowth | None = None,
-    ) -> None:  # fmt: skip
+        self, path: Path, task: Task, title: str, about: About, beside: Mapping[str, Any] = MappingProxyType({})
+    ) -> None:
         self.path = path
         self.task = task
         self.chosen_arc = task.options.arc is None and task.grid is None
         self.overwrite = True
-        self._title, self._about, self._fatigue, self._crack = title, about, fatigue, crack
+        self._title, self._about, self._beside = title, about, beside
         self._file: JournaledFile | None = None
         self._h5: h5py.File
         self._run: Run
@@ -218,8 +215,7 @@ class FileRecorder:
         extra = {
             "title": self._title,
             **self._about.given(),
-            **assessment_attributes(self._fatigue),
-            **crack_attributes(self._crack),
+            **beside_attributes(self._beside),
             "arc_chosen": self.chosen_arc,
             "save_after": sorted(task.stops),
         }
@@ -453,8 +449,7 @@ def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Rest
                 check_growing(stored, task.grid.size)
                 read_statistics(stored)  # they are written again at the end
                 options = stored["solver"].attrs
-                assessed = read_assessment(stored), read_crack(stored)
-                writer = FileRecorder(path, task, str(options["title"]), read_about(stored), *assessed)
+                writer = FileRecorder(path, task, str(options["title"]), read_about(stored), read_beside(stored))
                 writer.chosen_arc = bool(options["arc_chosen"])
                 restart = _latest(
                     path,

@@ -14,13 +14,16 @@ import os
 import pickle
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from fastpin.casefile.assessment import read_assessment
 from fastpin.casefile.cracks import read_crack
 from fastpin.casefile.profiles import read_wear
+from fastpin.casefile.strength import read_strength
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
@@ -29,6 +32,7 @@ from fastpin.model.checks import alternatives, as_toml, choice, file_path, strin
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth
 from fastpin.model.points import BODIES
 from fastpin.model.profile import Profile
+from fastpin.model.strength import STRENGTH_KEYS, StrengthAssessment
 from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.quantities import QUANTITIES
@@ -50,6 +54,10 @@ from fastpin.studies.outcomes import (
     taken,
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
+from fastpin.studies.strength_outcomes import STRENGTH_QUANTITIES, of_strength
+
+NOTHING: Mapping[str, Any] = MappingProxyType({})
+"""The sections of no case."""
 
 Outcomes = dict[str, StudyOutcome]
 """Outcomes by the names that the user chose."""
@@ -60,6 +68,7 @@ KEYS = {
     "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
     "fatigue": ("fatigue", *ASSESSMENT_KEYS),
     "crack": ("crack", *CRACK_KEYS),
+    "strength": ("strength", *STRENGTH_KEYS[:-1]),
     "margin": ("margin", "body"),
     "function": ("function", "classes"),
 }
@@ -121,12 +130,7 @@ def read_outcomes(path: str | Path) -> Outcomes:
     return found
 
 
-def outcomes_from(
-    given: Mapping[str, Any],
-    wear: Wear | None = None,
-    fatigue: FatigueAssessment | None = None,
-    crack: CrackGrowth | None = None,
-) -> Outcomes:
+def outcomes_from(given: Mapping[str, Any], beside: Mapping[str, Any] = NOTHING) -> Outcomes:
     """Check outcomes that are given in Python.
 
     Parameters
@@ -134,12 +138,8 @@ def outcomes_from(
     given : mapping of str
         By name: a function of a result, a table as in a plan, such as ``{"quantity": "dx", "take": "largest"}``, or an
         :class:`StudyOutcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
-    wear : Wear, optional
-        How the bodies wear, for outcomes of wear that leave it out.
-    fatigue : FatigueAssessment, optional
-        How the fatigue is assessed, for outcomes of fatigue that leave keys out.
-    crack : CrackGrowth, optional
-        How a crack grows, for outcomes of cracks that leave it out.
+    beside : mapping of str, optional
+        The values of the sections [wear], [fatigue], ... of the case by name, for outcomes that leave keys out.
 
     Returns
     -------
@@ -153,23 +153,17 @@ def outcomes_from(
     if not isinstance(given, Mapping):
         raise InputError("outcomes", f"must be a dict of functions and tables by name, not {as_toml(given)}")
     source = CaseText("").with_tables({"outcomes": dict(given)})
-    found = outcomes_in_text(source, Path(), wear, fatigue, crack)
+    found = outcomes_in_text(source, Path(), beside)
     if source.faults:
         raise CaseFileError("outcomes", source.faults)
     return found
 
 
-def outcomes_in_text(
-    source: CaseText,
-    folder: Path,
-    wear: Wear | None = None,
-    fatigue: FatigueAssessment | None = None,
-    crack: CrackGrowth | None = None,
-) -> Outcomes:
+def outcomes_in_text(source: CaseText, folder: Path, beside: Mapping[str, Any] = NOTHING) -> Outcomes:
     """Read the table [outcomes] of a text, and report its faults.
 
-    Relative names of files start in `folder`. `wear`, `fatigue` and `crack` are those of the case, for outcomes that
-    leave their keys out. The outcomes have no meaning if the text has faults.
+    Relative names of files start in `folder`. `beside` has the sections of the case, for outcomes that leave their keys
+    out. The outcomes have no meaning if the text has faults.
     """
     found: Outcomes = {}
     section = source.section("outcomes")
@@ -182,7 +176,7 @@ def outcomes_in_text(
             if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
-                outcome = _of_table(source, _Table(source, name, value), folder, (wear, fatigue, crack))
+                outcome = _of_table(source, _Table(source, name, value), folder, beside)
                 found |= {} if outcome is None else {name: outcome}
             elif callable(value):
                 found[name] = _of_callable(value)
@@ -244,12 +238,7 @@ class _Table(Section):
         super().report(f"{self.outcome}: {message}", *key)
 
 
-def _of_table(
-    source: CaseText,
-    section: _Table,
-    folder: Path,
-    defaults: tuple[Wear | None, FatigueAssessment | None, CrackGrowth | None],
-) -> StudyOutcome | None:
+def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read the table of one outcome, and report its faults. No outcome if a value is wrong."""
     first = [key for key in KEYS if key in section]
     if len(first) != 1:
@@ -262,13 +251,15 @@ def _of_table(
             hint = closest(str(key), allowed) or f"; beside {first[0]} there {others}"
             section.report(f'unknown key "{key}"{hint}', str(key))
     if first[0] == "wear":
-        return _of_wear(section, folder, defaults[0])
+        return _of_wear(section, folder, beside.get("wear"))
     if first[0] == "fatigue":
-        return _of_fatigue(section, defaults[1])
+        return _of_fatigue(section, beside.get("fatigue"))
     if first[0] == "crack":
-        return _of_crack(source, section, defaults[2])
+        return _of_crack(source, section, beside.get("crack"))
+    if first[0] == "strength":
+        return _of_strength(source, section, beside.get("strength"))
     if first[0] == "margin":
-        return _of_margin(section, *defaults[1:])
+        return _of_margin(section, beside.get("fatigue"), beside.get("crack"))
     if first[0] == "function":
         return _of_function(section, folder)
     return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
@@ -362,6 +353,17 @@ def _of_crack(source: CaseText, section: Section, default: CrackGrowth | None) -
     chosen = CRACK_QUANTITIES[quantity]
     of = partial(of_crack, quantity, crack)
     return StudyOutcome(chosen.kind, chosen.unit, definition, of, dict(chosen.classes))
+
+
+def _of_strength(source: CaseText, section: Section, default: StrengthAssessment | None) -> StudyOutcome | None:
+    """Read a number of the strength of a laminate: as the case says, unless the table does."""
+    quantity = _choice(section, "strength", tuple(STRENGTH_QUANTITIES))
+    how = read_strength(source, section, {} if default is None else default.entries())
+    if quantity is None or how is None:
+        return None
+    how = replace(how, failure=False)  # the outcome says whether the load at failure is looked for
+    definition = json.dumps({"strength": quantity, "how": how.entries()}, sort_keys=True)
+    return StudyOutcome(STRENGTH_QUANTITIES[quantity].kind, "", definition, partial(of_strength, quantity, how))
 
 
 def _of_margin(section: Section, how: FatigueAssessment | None, crack: CrackGrowth | None) -> StudyOutcome | None:

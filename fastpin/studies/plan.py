@@ -70,6 +70,14 @@ ROOT_KEYS = {name: name for name in ("title", "case")} | {
 }  # fmt: skip
 """Keys of a plan, as they are written."""
 
+UNVARIED = {
+    "wear": ("no run of a sweep wears", "depth"),
+    "fatigue": ("changes no run of a sweep", "life"),
+    "crack": ("no run of a sweep grows a crack", "fate"),
+    "strength": ("changes no run of a sweep", "ratio"),
+}
+"""Sections whose keys no plan varies: the reason, and an outcome that has the keys."""
+
 _RANGE_KEYS = ("from", "to", "count", "spacing")
 
 
@@ -158,7 +166,7 @@ class Plan:
         InputError
             With all faults. Also if the plan has another outcome of such a name.
         """
-        found = outcomes_from(outcomes, self._base.wear, self._base.fatigue, self._base.crack)
+        found = outcomes_from(outcomes, self._base.beside)
         known = {name.lower(): outcome.definition for name, outcome in self.outcomes.items()}
         for name, outcome in found.items():
             if known.get(name.lower(), outcome.definition) != outcome.definition:
@@ -285,7 +293,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     count = max(len(rows), 1) * math.prod(len(values) for values in axes.values())
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
-    outcomes = outcomes_in_text(source, folder, *(() if base is None else (base.wear, base.fatigue, base.crack)))
+    outcomes = outcomes_in_text(source, folder, {} if base is None else base.beside)
     labels = labels_in(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
@@ -443,18 +451,9 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     if section not in KEYS:
         hint = closest(section, tuple(KEYS)) or f"; sections are {', '.join(KEYS)}"
         return f'"{name}": there is no section [{section}] in a case file{hint}'
-    if section == "wear":
-        return (
-            f'"{name}": no run of a sweep wears; an outcome such as {{ wear = "depth" }} may have {names[-1]} beside it'
-        )
-    if section == "fatigue":
-        beside = f'an outcome such as {{ fatigue = "life" }} may have {names[-1]} beside it'
-        return f'"{name}": changes no run of a sweep; {beside}'
-    if section == "crack":
-        return (
-            f'"{name}": no run of a sweep grows a crack; an outcome such as {{ crack = "fate" }} may have {names[-1]} '
-            "beside it"
-        )
+    if section in UNVARIED:
+        why, outcome = UNVARIED[section]
+        return f'"{name}": {why}; an outcome such as {{ {section} = "{outcome}" }} may have {names[-1]} beside it'
     if section == "load":
         if not 3 <= len(names) <= 4 or not names[1].isdecimal():
             return f'"{name}": a load is written load.N.key, such as load.2.Q in the second [[load]] block'

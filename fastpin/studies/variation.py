@@ -19,16 +19,14 @@ from fastpin.casefile.profiles import PROFILES, varied
 from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.beside import BESIDE, beside_of
 from fastpin.model.case import Case
 from fastpin.model.checks import number
-from fastpin.model.crack import CrackGrowth
 from fastpin.model.growth import law_entries
 from fastpin.model.history import check_loads
 from fastpin.model.laminate import LAMINATE_KEYS, MODULI
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.materials import MATERIALS, STRENGTHS, Material
-from fastpin.model.wear import Wear
 from fastpin.states.error_bars import check_nodes
 
 LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
@@ -74,26 +72,14 @@ class BaseCase:
         return len(self.text.blocks("load")) if isinstance(blocks, list) else 0
 
     @property
-    def wear(self) -> Wear | None:
-        """How its bodies wear, if the case says so."""
-        case = self._case_with("wear")
-        return None if case is None else case.wear
-
-    @property
-    def fatigue(self) -> FatigueAssessment | None:
-        """How its fatigue is assessed, if the case says so."""
-        case = self._case_with("fatigue")
-        return None if case is None else case.fatigue
-
-    @property
-    def crack(self) -> CrackGrowth | None:
-        """How a crack grows, if the case says so."""
-        case = self._case_with("crack")
-        return None if case is None else case.crack
-
-    def _case_with(self, section: str) -> Case | None:
-        """Return the case if it has a section of this name."""
-        return self.vary({})[1] if section in self.text.root else None
+    def beside(self) -> dict[str, Any]:
+        """The values of its sections [wear] and beside the problem, by name: outcomes leave their keys out."""
+        if not any(name in self.text.root for name in ("wear", *BESIDE)):
+            return {}
+        case = self.vary({})[1]
+        if case is None:
+            return {}
+        return ({} if case.wear is None else {"wear": case.wear}) | beside_of(case)
 
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""

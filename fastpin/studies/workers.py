@@ -24,6 +24,7 @@ from typing import Any, TypeVar
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError
+from fastpin.model.beside import beside_of
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.runtime.jit import limit_to_one_thread
@@ -311,7 +312,7 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, settin
         seconds = time.perf_counter() - began
         if result is not None and len(result):
             figures, bars = key_figures(result), key_bars(result)
-            sections = store.Sections(case.fatigue, case.crack)
+            sections = beside_of(case)
             content = store.pack(result, reason, setting.most, sections)
             if content is None:
                 store.save(result, path, error=reason, restart=False, sections=sections)

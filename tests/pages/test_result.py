@@ -131,7 +131,7 @@ def test_page_can_be_read_without_seeing_it(text: str) -> None:
 def test_every_section_stands_in_the_contents(text: str) -> None:
     page = Page(text)
     sections = [found["id"] for tag, found in page.attributes if tag == "section"]
-    assert len(sections) == len(SECTIONS) - 2 == 14  # no seat, no crack
+    assert len(sections) == len(SECTIONS) - 3 == 14  # no seat, no crack, no strength
     links = [found["href"] for tag, found in page.attributes if tag == "a"]
     assert links == ["#content", *(f"#{name}" for name in sections)]
 
@@ -252,7 +252,7 @@ def test_a_result_in_memory_has_the_same_page(tmp_path: Path) -> None:
     assert re.search(r"\d ± \d", words)
     assert "There are no error bars" not in words
     assert "shortcut" not in words  # the options of the solver are not known
-    assert calls == [(k, len(SECTIONS) - 2) for k in range(len(SECTIONS) - 1)]
+    assert calls == [(k, len(SECTIONS) - 3) for k in range(len(SECTIONS) - 2)]
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -261,8 +261,14 @@ take = "most"
         (8, 'd: unknown key "tak", did you mean "take"?'),
         (8, 'd: unknown key "of"; beside quantity there may be take and over'),
         (9, 'e: unknown key "over"; beside cycle there may be interface'),
-        (10, "f: must have one of the keys quantity, cycle, wear, fatigue, crack, margin, function, such as {"),
-        (11, "g: must have one of the keys quantity, cycle, wear, fatigue, crack, margin, function, such as {"),
+        (
+            10,
+            "f: must have one of the keys quantity, cycle, wear, fatigue, crack, strength, margin, function, such as {",
+        ),
+        (
+            11,
+            "g: must have one of the keys quantity, cycle, wear, fatigue, crack, strength, margin, function, such as {",
+        ),
         (12, 'h: must be a table such as { quantity = "peak_shear", take = "largest" }'),
         (13, "peak_pressure: is a column of every sweep; choose another name"),
         (14, '"i-j": the name of an outcome is a letter, then letters, digits and underscores, at most 64'),

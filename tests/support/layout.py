@@ -17,6 +17,7 @@ ABOVE_BODIES = tuple(
     for name in (
         "__init__",
         "assessment",
+        "beside",
         "case",
         "crack",
         "doubts",
@@ -25,6 +26,7 @@ ABOVE_BODIES = tuple(
         "lug",
         "points",
         "problem",
+        "strength",
         "units",
     )
 )
@@ -112,6 +114,7 @@ MANY_PARAMETERS: dict[str, str] = {
     "storage/recording.py record": "the arguments of solve, and three of the file",
     "storage/wear_files.py wear": "the arguments of solve, those of wear, and four of the file",
     "figures/tractions.py plot_tractions": "the arguments of all figures, and two of its own",
+    "figures/laminates.py plot_strength": "the arguments of all figures, and four of its own",
     "figures/stress.py plot_stress_profile": "the arguments of all figures, and three of its own",
     "verification/integral_equations.py residuals": "the quantities of the equations (46), (47)",
 }

@@ -1,4 +1,4 @@
-"""Strength of a laminate round the hole of a solved state, and the load at failure."""
+"""Strength of a laminate round the hole of a solved state."""
 
 from __future__ import annotations
 
@@ -7,13 +7,20 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.damage import JointStrength, failure_load, joint_strength, ply_failure, ply_stresses
-from fastpin.damage.joint_strength import JOINT_MODES, _next_factor
+from fastpin.damage import (
+    JointStrength,
+    joint_strength,
+    least_strength,
+    ply_failure,
+    ply_stresses,
+)
+from fastpin.damage.hole_strength import JOINT_MODES
 from fastpin.errors import InputError
 from fastpin.model.laminate import Laminate
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.points import Points
 from fastpin.model.problem import Problem
+from fastpin.model.strength import StrengthAssessment
 from fastpin.solver.solving import solve
 from tests.support.laminates import TURNED
 from tests.support.once import solve_once
@@ -75,38 +82,6 @@ def test_modes_by_the_angle_from_the_force():
         assert moved.joint_mode == ("" if mode is None else JOINT_MODES[mode])
 
 
-@pytest.mark.parametrize("lengths", [{"distance": 0.4e-3}, {"tension": 0.5e-3, "compression": 1.5e-3}])
-@pytest.mark.parametrize("criterion", ["hashin", "tsai-wu", "yamada-sun"])
-def test_at_the_load_of_failure_the_ratio_is_one(criterion, lengths):
-    found = failure_load(problem(), [{"P": 1e6, "syy": 20e6}], criterion, **lengths, nodes=101)
-    assert found.strength.least_ratio == pytest.approx(1.0, abs=2e-6)
-    again = solve(problem(), [{"P": 1e6 * found.factor, "syy": 20e6 * found.factor}], nodes=101)[-1]
-    assert joint_strength(again, criterion, **lengths).least_ratio == pytest.approx(1.0, abs=2e-6)
-
-
-def test_a_neat_fit_fails_at_its_ratio():
-    """Its stresses are in proportion to the load."""
-    neat = problem(0.0)
-    ratio = joint_strength(solve(neat, [{"P": 1e6}], nodes=101)[-1], "maximum-stress", distance=0.5e-3).least_ratio
-    found = failure_load(neat, [{"P": 1e6}], "maximum-stress", distance=0.5e-3, nodes=101)
-    assert found.factor == pytest.approx(ratio, rel=1e-6)
-    assert found.solved == 2
-
-
-def test_a_laminate_and_its_load_in_another_direction_fail_alike():
-    def factor(plate: Laminate, loads: dict[str, float]) -> float:
-        return failure_load(problem(plate=plate), [loads], distance=0.5e-3, nodes=101).factor
-
-    assert factor(PLATE, {"P": 1e6}) == pytest.approx(factor(PLATE.turned(0.5 * math.pi), {"Q": 1e6}), rel=1e-4)
-
-
-def test_the_next_factor_stays_between_those_that_are_known():
-    assert _next_factor([(0.0, 0.5)]) == 0.5
-    assert _next_factor([(0.0, 0.5), (0.5, -0.5)]) == 0.25
-    known = [(0.0, 0.5), (0.5, -0.1), (0.45, 0.4)]
-    assert 0.45 < _next_factor(known) < 0.5
-
-
 @pytest.mark.parametrize(
     ("field", "words", "ask"),
     [
@@ -117,7 +92,6 @@ def test_the_next_factor_stays_between_those_that_are_known():
         ("tension", "force on the pin", lambda: joint_strength(state(syy=1e6), tension=1e-3, compression=1e-3)),
         ("plies", "unknown", lambda: joint_strength(of(TURNED), distance=1e-3)),
         ("plate", "laminate", lambda: joint_strength(of(MATERIALS["aluminium"]), distance=1e-3)),
-        ("history", "stress the laminate", lambda: failure_load(problem(), [{"P": 0.0}], distance=1e-3, nodes=61)),
     ],
 )
 def test_what_is_refused(field, words, ask):
@@ -128,3 +102,24 @@ def test_what_is_refused(field, words, ask):
 
 def of(plate):
     return solve(problem(plate=plate), [{"P": 1e6}], nodes=61)[-1]
+
+
+def test_the_least_of_several_states():
+    how = StrengthAssessment(distance=0.5e-3)
+    loads = [{"P": 1e6}, {"P": 5e5}]
+    states = solve_once(problem(), loads, nodes=101)
+    told = []
+    worst, strength = least_strength(states, how, lambda done, total: told.append((done, total)))
+    assert worst is states[0]
+    assert strength.least_ratio < joint_strength(states[1], distance=0.5e-3).least_ratio
+    assert told == [(1, 2), (2, 2)]
+    with pytest.raises(InputError, match="states: must hold at least one state"):
+        least_strength([], how)
+
+
+def test_states_without_a_force_have_no_curve():
+    how = StrengthAssessment(tension=0.5e-3, compression=1e-3)
+    states = solve_once(problem(), [{"P": 1e6}, {"P": 0.0}], nodes=101)
+    assert least_strength(states, how)[0] is states[0]
+    with pytest.raises(InputError, match="tension: needs a force on the pin"):
+        least_strength(states[1:], how)

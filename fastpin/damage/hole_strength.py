@@ -1,4 +1,4 @@
-"""Strength of a laminate round the hole: ply failure at a distance from the edge, modes, and the load at failure.
+"""Strength of a laminate round the hole: ply failure at a distance from the edge, and modes.
 
 The stress at the edge of a hole is so uneven that the first ply fails there long before the laminate does. So criteria
 of plies are asked at a distance that comes from tests: on a circle round the hole, or on the characteristic curve of
@@ -9,24 +9,21 @@ nor a clamped washer.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from fastpin.damage.laminates import MODES, PlyCriterion, characteristic_radius, first_ply_failure
+from fastpin.damage.laminates import MODES, characteristic_radius, first_ply_failure
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between, near_bottom
-from fastpin.model.checks import instance, not_negative
-from fastpin.model.history import LoadHistory
+from fastpin.model.checks import instance, instances
 from fastpin.model.laminate import Laminate
-from fastpin.model.loads import LOAD_KIND, Corner
+from fastpin.model.ply import PlyCriterion
 from fastpin.model.points import Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.solver.errors import ConvergenceError
-from fastpin.solver.solving import solve
+from fastpin.model.strength import StrengthAssessment, checked_lengths
 from fastpin.states.state import State
 
 AROUND = 720
@@ -38,14 +35,8 @@ MODE_ENDS = (15.0, 30.0, 60.0, 75.0)
 JOINT_MODES = ("bearing", "bearing or shear-out", "shear-out", "shear-out or net section", "net section")
 """Modes of the joint between these angles; Chang, Scott and Springer. Beyond 90 deg there is no mode."""
 
-CLOSE = 1e-6
-"""Largest difference of the strength ratio from 1 at the load at failure."""
-
-MOST_SOLVED = 40
-"""Most histories that are solved to find it. Three or four are usual: stresses nearly grow with the load."""
-
-SCALED = tuple(name for name, kind in LOAD_KIND.items() if kind != "ratio")
-"""The loads that a factor multiplies: all but the change of friction."""
+NO_FORCE = "needs a force on the pin: the characteristic curve lies about its direction"
+"""Refusal of the curve where its direction is not known."""
 
 
 def ply_stresses(state: State, points: Points) -> np.ndarray:
@@ -176,106 +167,59 @@ def joint_strength(
     """
     instance("state", state, State, "a fastpin.State")
     plate = laminate_of(state.problem)
-    force = complex(state.resultants["Q"], -state.resultants["P"])
+    lengths = checked_lengths(distance, tension, compression)
+    force = force_on_pin(state)
     direction = float(np.angle(force)) if force else math.nan
-    if distance is not None:
-        if tension is not None or compression is not None:
-            raise InputError("distance", "can't be given together with tension and compression")
+    if "distance" in lengths:
         theta = 2.0 * math.pi * np.arange(AROUND) / AROUND - 1.5 * math.pi
-        depth = np.full(AROUND, not_negative("distance", distance))
+        depth = np.full(AROUND, lengths["distance"])
     else:
-        if tension is None or compression is None:
-            raise InputError("distance", "or tension and compression must be given: lengths from tests, m")
         if not force:
-            raise InputError("tension", "needs a force on the pin: the characteristic curve lies about its direction")
+            raise InputError("tension", NO_FORCE)
         away = 0.5 * math.pi * np.linspace(-1.0, 1.0, AROUND // 2 + 1)
         theta, radius = direction + away, state.problem.hole_radius
-        depth = characteristic_radius(away, radius, tension, compression) - radius
+        depth = characteristic_radius(away, radius, **lengths) - radius
     found = first_ply_failure(plate, _whole(state, Points.at_depth(depth, theta)), criterion)
     return JointStrength(theta, depth, found.ratio, found.ply, found.mode, direction, plate)
 
 
-@dataclass(frozen=True, eq=False)
-class FailureLoad:
-    """The load at which the first ply fails.
-
-    Attributes
-    ----------
-    factor : float
-        Factor on all loads of the history.
-    state : State
-        The state at the end of the history times this factor.
-    strength : JointStrength
-        The strength there; its least ratio is 1.
-    solved : int
-        Number of histories that were solved.
-    """
-
-    factor: float
-    state: State
-    strength: JointStrength
-    solved: int
+def force_on_pin(state: State) -> complex:
+    """The force on the pin, x + iy, N/m."""
+    return complex(state.resultants["Q"], -state.resultants["P"])
 
 
-def failure_load(
-    problem: Problem,
-    history: LoadHistory | Sequence[Corner],
-    criterion: PlyCriterion = "hashin",
-    *,
-    distance: float | None = None,
-    tension: float | None = None,
-    compression: float | None = None,
-    **options: Any,
-) -> FailureLoad:
-    """The factor on a load history at whose end the first ply fails at a distance from the hole.
+def least_strength(
+    states: Sequence[State], how: StrengthAssessment, progress: Callable[[float, float], None] | None = None
+) -> tuple[State, JointStrength]:
+    """The state with the least strength ratio, and its strength. Of equal states it is the first one.
 
-    With a clearance the stresses are not in proportion to the load. So histories are solved until the strength ratio is
-    1. Damage before failure, which spreads the load, is not known to it.
+    Without a force on the pin there is no characteristic curve. With `tension` such states are left out.
 
     Parameters
     ----------
-    problem : Problem
-    history : LoadHistory or sequence of dicts
-        The loads that the factor multiplies, but for a change of friction.
-    criterion, distance, tension, compression
-        See :func:`joint_strength`.
-    **options
-        Options of :func:`fastpin.solve`, such as ``nodes``.
+    states : sequence of State
+    how : StrengthAssessment
+        Criterion and lengths.
+    progress : callable, optional
+        Called as ``progress(done, total)`` after each state.
 
     Raises
     ------
     InputError
-        See :func:`joint_strength`; also if the laminate carries no stress at the end of the history.
-    SolveError
-        If a history can't be followed, or no factor is found.
+        See :func:`joint_strength`; also if no state has a force on the pin, which `tension` needs.
     """
-    loads = history if isinstance(history, LoadHistory) else LoadHistory(history)
-    factor, known = 1.0, []
-    for solved in range(1, MOST_SOLVED + 1):
-        state = solve(problem, loads.scaled(dict.fromkeys(SCALED, factor)), **options)[-1]
-        strength = joint_strength(state, criterion, distance=distance, tension=tension, compression=compression)
-        ratio = strength.least_ratio
-        if not math.isfinite(ratio):
-            raise InputError("history", "must stress the laminate at its end: no factor makes a ply fail there")
-        if abs(ratio - 1.0) <= CLOSE:
-            return FailureLoad(factor, state, strength, solved)
-        known.append((math.log(factor), math.log(ratio)))
-        factor = math.exp(_next_factor(known))
-    raise ConvergenceError(f"no load at failure was found after {MOST_SOLVED} histories")
-
-
-def _next_factor(known: list[tuple[float, float]]) -> float:
-    """The logarithm of the next factor to try, from those of the known factors and their strength ratios.
-
-    A ratio above 1 asks for a larger factor. The secant of the logarithms is taken where it stays between the nearest
-    factors on both sides, and else the step for stresses in proportion to the load, or the middle.
-    """
-    low = max((x for x, y in known if y > 0.0), default=-math.inf)
-    high = min((x for x, y in known if y < 0.0), default=math.inf)
-    x, y = known[-1]
-    found = x + y
-    if len(known) > 1:
-        before, value = known[-2]
-        if y != value and low < (secant := x - y * (x - before) / (y - value)) < high:
-            found = secant
-    return found if low < found < high else 0.5 * (low + high)
+    instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
+    known = instances("states", states, State, "a sequence of states")
+    if not known:
+        raise InputError("states", "must hold at least one state")
+    if "distance" not in how.lengths:
+        known = [state for state in known if force_on_pin(state)] or known[:1]
+    found: tuple[State, JointStrength] | None = None
+    for done, state in enumerate(known, 1):
+        strength = joint_strength(state, how.criterion, **how.lengths)
+        if found is None or strength.least_ratio < found[1].least_ratio:
+            found = state, strength
+        if progress is not None:
+            progress(done, len(known))
+    assert found is not None
+    return found

@@ -1,0 +1,74 @@
+"""Figures of the bearing stress against the by-pass stress at which the first ply of a laminate fails."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fastpin.errors import InputError
+from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.style import MAX_NAMED, line
+from fastpin.figures.sweep import MARKERS, shown_label
+from fastpin.figures.words import quantity
+from fastpin.model.checks import instances
+from fastpin.model.units import PASCAL
+from fastpin.report.curves import Curve, write_csv
+from fastpin.report.envelope import BEARING, BYPASS
+
+
+def plot_envelope(
+    found: Sequence[Curve],
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 5.8,
+    dpi: float = 300.0,
+    *,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw the envelopes of :func:`fastpin.report.envelope.envelopes`: no ply fails below a line.
+
+    See :func:`fastpin.plot_tractions` for the other arguments.
+    """
+    return Look(path, title, width, dpi, ax).drawn(envelope_of(found))
+
+
+def envelope_of(found: Sequence[Curve]) -> Plot:
+    """Return envelopes of a sweep, see :func:`plot_envelope`."""
+    each = instances("found", found, Curve, "a list of envelopes")
+    if not 1 <= len(each) <= MAX_NAMED:
+        raise InputError("found", f"must be 1 to {MAX_NAMED} envelopes, not {len(each)}")
+    words = "bearing stress over the by-pass stress at which the first ply fails"
+    return Plot(
+        lambda look: _draw(look, each),
+        partial(write_csv, each),
+        f"Line chart of the {words}.",
+        f"{words[0].upper()}{words[1:]}.",
+    )
+
+
+def _draw(look: Look, found: Sequence[Curve]) -> Sheet:
+    sheet = look.sheet([0.6 * look.width], extra=0.8)
+    (panel,) = sheet.axes[0]
+    largest = [float(np.abs(curve[name]).max()) for curve in found for name in (BYPASS, BEARING)]
+    factor, label = PASCAL.scale(largest)
+    handles = []
+    for place, curve in enumerate(found):
+        (drawn,) = panel.plot(
+            factor * curve[BYPASS], factor * curve[BEARING], marker=MARKERS[place], markersize=3.5,
+            label=shown_label(str(curve.parameters.get("case", ""))), **line(place),
+        )  # fmt: skip
+        handles.append(drawn)
+    panel.axvline(0.0, color="0.6", linewidth=0.8)
+    panel.set_ylim(bottom=0.0)
+    panel.set_xlabel(quantity("by-pass stress", label))
+    panel.set_ylabel(quantity("bearing stress", label))
+    if any("case" in curve.parameters for curve in found):
+        sheet.legend(handles, 2)
+    sheet.head(look.title, f"failure of the first ply by {found[0].parameters['criterion']}")
+    sheet.grid()
+    return sheet

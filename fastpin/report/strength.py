@@ -1,0 +1,134 @@
+"""The strength of a laminate as the section [strength] of its case asks for it: text, and JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from fastpin import damage, studies
+from fastpin.errors import InputError
+from fastpin.model.angles import from_bottom
+from fastpin.model.case import Case
+from fastpin.model.doubts import doubts_given
+from fastpin.model.strength import StrengthAssessment
+from fastpin.model.units import printed_loads, units
+from fastpin.report.case import strength_words
+from fastpin.solver.errors import SolveError
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+
+UNASKED = ("error_bars", "slip_sums")
+"""Options of the case that the search for the load at failure leaves out: they cost time and change no state."""
+
+
+class StrengthFound(NamedTuple):
+    """The strength of a laminate in the worst state of a history.
+
+    Attributes
+    ----------
+    how : StrengthAssessment
+    states : int
+        Number of states of which it is the worst.
+    state : State
+    strength : JointStrength
+    failure : FailureLoad or None
+        None unless it is asked for and found.
+    reason : str
+        Why it was not found; empty if it was, or was not asked for.
+    """
+
+    how: StrengthAssessment
+    states: int
+    state: State
+    strength: damage.JointStrength
+    failure: studies.FailureLoad | None
+    reason: str
+
+
+def assess_strength(
+    case: Case, states: Sequence[State], progress: Callable[[float, float], None] | None = None
+) -> StrengthFound:
+    """Return the strength in the worst of some states of a case with a section [strength], and its load at failure.
+
+    Raises
+    ------
+    InputError
+        If the strength can't be assessed.
+    """
+    how = case.strength
+    assert how is not None
+    state, strength = damage.least_strength(states, how, progress)
+    failure, reason = None, ""
+    if how.failure:
+        options = {name: value for name, value in case.options.keywords().items() if name not in UNASKED}
+        try:
+            with doubts_given():
+                failure = studies.failure_load(
+                    case.problem, case.history, how.criterion, **how.lengths, over="history", **options
+                )
+        except (InputError, SolveError) as error:
+            reason = str(error)
+    return StrengthFound(how, len(states), state, strength, failure, reason)
+
+
+def strength_lines(found: StrengthFound) -> list[str]:
+    """Return lines of text: the least strength ratio with its place and mode, and the factor on the loads."""
+    which = (
+        f"the least of {found.states:,} kept states, at load point {load_point(found.state):.6g}"
+        if found.states > 1
+        else ""
+    )
+    ratio = found.strength.least_ratio
+    if not math.isfinite(ratio):
+        return [f"strength by {strength_words(found.state.problem, found.how)}: no stress"]
+    parts = [f"strength ratio {ratio:.4g} by {strength_words(found.state.problem, found.how)}", which]
+    lines = ["; ".join(filter(None, [", ".join(filter(None, parts)), place_words(found.strength)]))]
+    if found.failure is not None:
+        at = f"load point {load_point(found.failure.state):.6g}" if found.states > 1 else ""
+        words = "; ".join(filter(None, [at, place_words(found.failure.strength)]))
+        lines.append(f"load at failure: {found.failure.factor:.4g} times all loads; {words}")
+    elif found.reason:
+        lines.append(f"load at failure: not found, {found.reason}")
+    return lines
+
+
+def place_words(strength: damage.JointStrength) -> str:
+    """Return the place of the least ratio, its ply and its modes in words."""
+    parts = [f"at {from_bottom(strength.angle):z.2f} deg from the bottom"]
+    parts += [f"ply of {strength.ply_angle:g} deg by {strength.ply_mode}"]
+    return ", ".join(parts + ([strength.joint_mode] if strength.joint_mode else []))
+
+
+def document(found: StrengthFound) -> dict[str, Any]:
+    """Return a strength as a JSON-ready dict. A ratio without stress is infinite."""
+    failure = found.failure
+    return {
+        "criterion": found.how.criterion,
+        **dict.fromkeys(("distance", "tension", "compression")),
+        **{name: units(found.state.problem)["length"].factor * value for name, value in found.how.lengths.items()},
+        "states": found.states,
+        **_place(found.state, found.strength),
+        "failure": None
+        if failure is None
+        else {
+            "factor": failure.factor,
+            "load": printed_loads(failure.state.problem, failure.state.load),
+            "solved": failure.solved,
+            **_place(failure.state, failure.strength),
+        },
+        "error": found.reason or None,
+    }
+
+
+def _place(state: State, strength: damage.JointStrength) -> dict[str, Any]:
+    return {
+        "load_point": load_point(state),
+        "ratio": strength.least_ratio,
+        "angle": from_bottom(strength.angle),
+        "depth": units(state.problem)["length"].factor * float(strength.depth[strength.least]),
+        "ply": int(strength.ply[strength.least]),
+        "ply_angle": strength.ply_angle,
+        "ply_mode": strength.ply_mode,
+        "joint_mode": strength.joint_mode,
+    }

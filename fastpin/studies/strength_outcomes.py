@@ -1,0 +1,67 @@
+"""Outcomes of the strength of a laminate round the hole, in the worst state of a result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+from fastpin import damage
+from fastpin.model.doubts import doubts_given
+from fastpin.model.strength import StrengthAssessment
+from fastpin.solver.result import Result
+from fastpin.studies.failure import failure_load
+
+_ASSESSED: WeakKeyDictionary[Result, dict[StrengthAssessment, damage.JointStrength]] = WeakKeyDictionary()
+
+
+class StrengthQuantity(NamedTuple):
+    """A number of the strength of a laminate, see :class:`CycleQuantity`.
+
+    `of` gives its value for a result. Without a kind it has no unit.
+    """
+
+    kind: str
+    of: Callable[[Result, StrengthAssessment], float]
+
+
+def _least(result: Result, how: StrengthAssessment) -> damage.JointStrength:
+    """The strength in the worst state. It is kept while the result lives."""
+    known = _ASSESSED.setdefault(result, {})
+    if how not in known:
+        known[how] = damage.least_strength(result.states, how)[1]
+    return known[how]
+
+
+def _factor(result: Result, how: StrengthAssessment) -> float:
+    """The factor on the loads at failure, on as many nodes and with states at the same fractions of each step."""
+    fractions = sorted({state.fraction for state in result} - {1.0})
+    options: dict[str, Any] = {"between": fractions} if fractions else {}
+    with doubts_given():
+        return failure_load(
+            result.problem, result.history, how.criterion, **how.lengths, over="history",
+            nodes=result.grid.size, **options,
+        ).factor  # fmt: skip
+
+
+STRENGTH_QUANTITIES: dict[str, StrengthQuantity] = {
+    "ratio": StrengthQuantity("", lambda result, how: _least(result, how).least_ratio),
+    "angle": StrengthQuantity("angle", lambda result, how: _least(result, how).angle),
+    "factor": StrengthQuantity("", _factor),
+}
+"""The quantities of the strength of a laminate, by name.
+
+"ratio" is the least strength ratio of all states. "angle" is its place on the hole. "factor" is the factor on all loads
+at which the first ply fails; the history is solved several times for it.
+"""
+
+
+def of_strength(quantity: str, how: StrengthAssessment, result: Result) -> float:
+    """The value of a name in :data:`STRENGTH_QUANTITIES`.
+
+    Raises
+    ------
+    FastpinError
+        If the strength can't be assessed, or no factor is found.
+    """
+    return STRENGTH_QUANTITIES[quantity].of(result, how)

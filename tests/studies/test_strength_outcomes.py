@@ -1,0 +1,151 @@
+"""Outcomes of the strength of a laminate in sweeps, their faults, and envelopes of bearing and by-pass."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fastpin
+from fastpin import damage, studies
+from fastpin.cli.main import main
+from fastpin.errors import CaseFileError
+from fastpin.report.envelope import BEARING, BYPASS, envelopes
+from fastpin.studies import read_plan, sweep
+
+CASE = """
+[pin]
+material = "steel"
+[plate]
+layup = "[0/45/-45/90]2s"
+ply = "T300/914"
+[contact]
+plane = "stress"
+hole_radius = 3e-3
+clearance = 20e-6
+friction = 0.2
+[[load]]
+P = 1e6
+[solve]
+nodes = 61
+[strength]
+criterion = "yamada-sun"
+distance = 0.5e-3
+failure = true
+"""
+
+PLAN = """case = "case.toml"
+[grid]
+load.1.P = [0, 1e6]
+load.1.syy = [-100e6, 100e6]
+[outcomes]
+factor = { strength = "factor" }
+ratio = { strength = "ratio" }
+curve = { strength = "ratio", criterion = "hashin", tension = 5e-4, compression = 1e-3 }
+angle = { strength = "angle" }
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CASE)
+    Path("plan.toml").write_text(PLAN)
+    return tmp_path
+
+
+def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope"]) == 1  # two have no curve
+    plan = read_plan("plan.toml")
+    rows = sweep.rows(plan, "plan")
+    problem = fastpin.read_case("case.toml").problem
+    for row in rows:
+        loads = [{"P": row["load.1.P"], "syy": row["load.1.syy"]}]
+        state = fastpin.solve(problem, loads, nodes=61)[-1]
+        found = damage.joint_strength(state, "yamada-sun", distance=0.5e-3)
+        assert row["ratio"] == pytest.approx(found.least_ratio)
+        assert row["angle"] == pytest.approx(math.degrees(found.angle) + 90.0)
+        failing = studies.failure_load(problem, loads, "yamada-sun", distance=0.5e-3, nodes=61)
+        assert row["factor"] == pytest.approx(failing.factor)
+    assert rows[0]["curve"] is None
+    assert rows[3]["curve"] == pytest.approx(
+        damage.joint_strength(state, "hashin", tension=5e-4, compression=1e-3).least_ratio
+    )
+    (curve,) = envelopes(plan, rows, "factor")
+    assert {*np.round(curve[BYPASS])} == {round(row["factor"] * row["load.1.syy"]) for row in rows}
+    assert curve[BEARING].max() == pytest.approx(max(row["factor"] for row in rows[2:]) * 1e6 / 6e-3)
+    assert np.all(np.diff(np.arctan2(curve[BYPASS], curve[BEARING])) > 0.0)
+    svg = Path("one.svg").read_text()
+    assert "by-pass stress (MPa)" in svg
+    assert "outcome curve can't be read in 2 runs" in capsys.readouterr().out
+
+
+def test_an_envelope_follows_the_force_and_the_other_fields(folder: Path) -> None:
+    Path("plan.toml").write_text(
+        'case = "case.toml"\n[grid]\nload.1.Q = [-1e6]\nload.1.P = [0]\nload.1.sxx = [50e6]\nload.1.syy = [-9e6]\n'
+        '"plate.layup" = ["[0/90]4s", "[0/45/-45/90]2s"]\n[outcomes]\nf = { strength = "factor" }\n'
+        '[labels]\n"plate.layup" = "layup"\n'
+    )
+    assert main(["sweep", "plan.toml", "--workers", "1"]) == 0
+    plan = read_plan("plan.toml")
+    rows = sweep.rows(plan, "plan")
+    for curve, row, layup in zip(envelopes(plan, rows, "f"), rows, ("[0/90]4s", "[0/45/-45/90]2s"), strict=True):
+        assert curve.parameters == {"criterion": "yamada-sun", "case": f"layup = {layup}"}
+        assert curve[BYPASS] == pytest.approx([row["f"] * 50e6])
+        assert curve[BEARING] == pytest.approx([row["f"] * 1e6 / 6e-3])
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--plot", "a.png", "--envelope", "--value", "ratio"], 'must be an outcome { strength = "factor" }'),
+        (["--plot", "a.png", "--envelope", "--value", "max_shear"], 'must be an outcome { strength = "factor" }'),
+        (["--plot", "a.png", "--envelope", "--x", "load.1.P"], "--envelope: has axes of its own"),
+        (["--envelope"], "--envelope: says what a figure shows; --plot FILE is missing"),
+    ],
+)
+def test_what_an_envelope_can_not_show(
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], sentence: str
+) -> None:
+    assert main(["sweep", "plan.toml", *words]) == 2
+    assert sentence in capsys.readouterr().err
+    assert not Path("plan").exists()
+
+
+def test_points_without_a_factor_are_noted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("plan.toml").write_text(PLAN.replace("[-100e6, 100e6]", "[0]"))
+    assert main(["sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope"]) == 1
+    assert "note: 1 of 2 points have no value in the figure" in capsys.readouterr().err
+    Path("plan.toml").write_text(PLAN.replace("[-100e6, 100e6]", "[0]").replace("[0, 1e6]", "[0]"))
+    assert main(["sweep", "plan.toml", "-o", "none", "--workers", "1", "--plot", "none.svg", "--envelope"]) == 1
+    assert not Path("none.svg").exists()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "sentence"),
+    [
+        ('"ratio" }', '"ratios" }', 7, 'ratio: strength: must be "ratio", "angle" or "factor"'),
+        ('"factor" }', '"factor", failure = true }', 6, 'factor: unknown key "failure"'),
+        ('"factor" }', '"factor", distance = -1 }', 6, "factor: distance: must not be negative"),
+        ("load.1.P", "strength.distance = [1e-4]\nload.1.P", 3, '"strength.distance": changes no run of a sweep; an'),
+    ],
+)
+def test_a_fault_is_one_sentence_with_its_line(folder: Path, old: str, new: str, line: int, sentence: str) -> None:
+    Path("plan.toml").write_text(PLAN.replace(old, new, 1))
+    with pytest.raises(CaseFileError) as caught:
+        read_plan("plan.toml")
+    ((found_line, found),) = caught.value.problems
+    assert found_line == line
+    assert found.startswith(sentence)
+
+
+def test_a_tolerance_study_has_the_strength_too(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("case.toml").write_text(CASE)
+    Path("tolerances.toml").write_text(
+        'case = "case.toml"\n[tolerances]\n"contact.clearance" = { from = 10e-6, to = 30e-6 }\n'
+        '[outcomes]\nratio = { strength = "ratio" }\n'
+    )
+    assert main(["tolerances", "tolerances.toml", "--workers", "1"]) == 0
+    assert "ratio" in capsys.readouterr().out
