@@ -45,6 +45,7 @@ factor = { strength = "factor" }
 ratio = { strength = "ratio" }
 curve = { strength = "ratio", criterion = "hashin", tension = 5e-4, compression = 1e-3 }
 angle = { strength = "angle" }
+ply = { margin = "ply" }
 """
 
 
@@ -66,6 +67,7 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path, capsys:
         state = fastpin.solve(problem, loads, nodes=61)[-1]
         found = damage.joint_strength(state, "yamada-sun", distance=0.5e-3)
         assert row["ratio"] == pytest.approx(found.least_ratio)
+        assert row["ply"] == pytest.approx(found.least_ratio - 1.0)
         assert row["angle"] == pytest.approx(math.degrees(found.angle) + 90.0)
         failing = studies.failure_load(problem, loads, "yamada-sun", distance=0.5e-3, nodes=61)
         assert row["factor"] == pytest.approx(failing.factor)
