@@ -275,7 +275,9 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
     pressure, shear = np.interp(theta, nodes, values[0]), np.interp(theta, nodes, values[1])
     friction = np.interp(theta, patch.theta, patch.friction)
     for law, sign in laws.borders:
-        pressure += _missed(patch.cusp(law, sign), theta, nodes)
+        of_pressure = patch.cusp(law, sign)
+        missed = of_pressure.values(theta) - np.interp(theta, nodes, of_pressure.values(nodes))  # by straight lines
+        pressure += np.where(np.abs(theta - law.place) < 2.0 * law.reach, missed, 0.0)
     for edge_law in laws.pressure:
         if edge_law is not None:
             near = edge_law.applies(theta)
@@ -355,12 +357,6 @@ def _pressure_at_borders(patch: Patch, laws: Laws) -> np.ndarray:
         near = np.abs(x) <= BORDER_NEAR
         pressure[near] = columns[near] @ coefficients + cusp[near]
     return pressure
-
-
-def _missed(cusp: PressureCusp, theta: np.ndarray, nodes: np.ndarray) -> np.ndarray:
-    """The part of a cusp of N that straight lines between the `nodes` miss, at the angles `theta` (m,)."""
-    missed = cusp.values(theta) - np.interp(theta, nodes, cusp.values(nodes))
-    return np.where(np.abs(theta - cusp.law.place) < 2.0 * cusp.law.reach, missed, 0.0)
 
 
 def _slip_zones(patch: Patch) -> Iterator[tuple[float, float, int]]:

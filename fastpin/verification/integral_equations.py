@@ -102,8 +102,7 @@ def residuals(
     plate = 0.5 * (pair.plate_kolosov + 1.0) * pair.plate_compliance / pair.beta_star
     gamma, gamma_prime = _pin_constants(problem)
 
-    theta = grid.theta
-    cos, sin = np.cos(theta), np.sin(theta)
+    theta, cos, sin = grid.theta, np.cos(grid.theta), np.sin(grid.theta)
     cos_moment, sin_moment = grid.trig_moments()
     N_cos, N_sin, N_total = cos_moment @ N, sin_moment @ N, grid.weights @ N
     T_cos, T_sin, T_total = cos_moment @ T, sin_moment @ T, grid.weights @ T
@@ -123,9 +122,7 @@ def residuals(
     else:
         remote |= {Q: float(N_cos + T_sin), P: float(T_cos - N_sin)}
         added = _traction_terms(bodies, grid, np.array([N, T])) + _load_terms(problem, bodies, theta, remote)
-        resultant = complex(float(N_cos + T_sin), float(T_cos - N_sin))
-        if bodies.anisotropy:
-            added += _laminate_terms(bodies.anisotropy, theta, cot_N + 1j * cot_T, complex(N_total, T_total), resultant)
+        added += _laminate_terms(bodies, theta, cot_N + 1j * cot_T, complex(N_total, T_total), remote)
     return left_46 - right_46 / (4.0 * math.pi) + added[0], left_47 - right_47 / (4.0 * math.pi) + added[1]
 
 
@@ -173,14 +170,16 @@ def _traction_terms(bodies: BodyTerms, grid: Grid, tractions: np.ndarray) -> np.
 
 
 def _laminate_terms(
-    anisotropy: complex, theta: np.ndarray, principal: np.ndarray, total: complex, force: complex
-) -> np.ndarray:
-    """Terms of (46) and (47), shape (2, n), of the anisotropy of a laminate, (T58).
+    bodies: BodyTerms, theta: np.ndarray, principal: np.ndarray, total: complex, load: dict[int, float]
+) -> np.ndarray | float:
+    """Terms of (46) and (47), shape (2, n), of the anisotropy of a laminate, (T58); 0 in an isotropic plate.
 
-    `principal` (n,) is the principal value of int cot(phi/2) (N + iT), `total` is int (N + iT), and `force` Q + iP.
+    `principal` (n,) is the principal value of int cot(phi/2) (N + iT), and `total` is int (N + iT).
     """
-    turn = np.exp(1j * theta)
-    moved = anisotropy / (4j * math.pi) / turn**2 * (principal + 1j * total + 1j * turn * force)
+    if not bodies.anisotropy:
+        return 0.0
+    turn, force = np.exp(1j * theta), complex(load[Q], load[P])
+    moved = bodies.anisotropy / (4j * math.pi) / turn**2 * (principal + 1j * total + 1j * turn * force)
     return -np.array([moved.real, moved.imag])
 
 
