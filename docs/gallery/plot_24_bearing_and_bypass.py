@@ -1,8 +1,8 @@
 """
-Bearing and by-pass of a laminate
+Bearing and bypass of a laminate
 =================================
 
-In a row of bolts the plate carries the force of this bolt, and the stress that passes by. For several ratios of both,
+In a row of bolts the plate carries the force of this bolt, and the stress that goes past. For several ratios of both,
 the load at which the first ply fails is looked for. The lines join the failures of two fits.
 """
 
@@ -25,11 +25,11 @@ for clearance in (10e-6, 40e-6):
         points.append((factor * stress / 1e6, factor * load["P"] / 6e-3 / 1e6))
     axes.plot(*zip(*points, strict=True), marker="o", label=f"clearance {1e6 * clearance:.0f} um")
     bearing[clearance] = points[2][1]
-axes.set(xlabel="by-pass stress (MPa)", ylabel="bearing stress (MPa)", ylim=(0, None))
+axes.set(xlabel="bypass stress (MPa)", ylabel="bearing stress (MPa)", ylim=(0, None))
 axes.legend()
 
 # %%
-# Without by-pass the larger clearance takes a fifth of the bearing strength.
+# Without bypass the larger clearance takes a fifth of the bearing strength.
 
 print({f"{1e6 * clearance:.0f} um": f"{stress:.0f} MPa" for clearance, stress in bearing.items()})
 assert 0.78 < bearing[40e-6] / bearing[10e-6] < 0.84

@@ -1,4 +1,4 @@
-"""Outcomes of the strength of a laminate in sweeps, their faults, and envelopes of bearing and by-pass."""
+"""Outcomes of the strength of a laminate in sweeps, their faults, and envelopes of bearing and bypass."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path, capsys:
     assert curve[BEARING].max() == pytest.approx(max(row["factor"] for row in rows[2:]) * 1e6 / 6e-3)
     assert np.all(np.diff(np.arctan2(curve[BYPASS], curve[BEARING])) > 0.0)
     svg = Path("one.svg").read_text()
-    assert "by-pass stress (MPa)" in svg
+    assert "bypass stress (MPa)" in svg
     assert "outcome curve can't be read in 2 runs" in capsys.readouterr().out
 
 
