@@ -138,6 +138,8 @@ class Valid:
         life = fastpin.wear(steel, cycle_in_newtons, coefficient=1e-14, nodes=NODES)
         worn = damage.worn_fatigue(life)
         spectrum = damage.spectrum_damage(result, constants=STRENGTHS)
+        laminated = fastpin.Problem(fastpin.MaterialPair(pair.pin, LAMINATE, "stress"), 0.01, 1e-5, 0.4)
+        stressed = fastpin.solve(laminated, [{"P": 1e5}], nodes=NODES)
         lug = casefile.parse_lug(LUG).lug
         compliance = bodies.Compliance(0.3, "strain", 1.0, MATRIX)
         grid = result.grid
@@ -163,7 +165,9 @@ class Valid:
             cracks.growth_along_edge(result, law, length, 2.0 * length, [-1.5]), planned,
             cracks.spectrum_growth(result, crack, law, length, 2.0 * length), cracks.CrackFate.STOPS,
             LAMINATE, PLY, PLY.strengths, damage.ply_failure(LAMINATE, [1e8, 1e7, 1e7]),
-            damage.first_ply_failure(LAMINATE, [1e8, 1e7, 1e7]),
+            damage.first_ply_failure(LAMINATE, [1e8, 1e7, 1e7]), model.StrengthAssessment(distance=1e-3),
+            damage.joint_strength(stressed[-1], distance=1e-3),
+            studies.failure_load(laminated, [{"P": 1e5}], distance=1e-3, nodes=NODES),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
@@ -181,6 +185,9 @@ class Valid:
         self._by_target["damage_ranking.states"] = _always(list(life[0].states))
         self._by_target["assessed_fatigue.states"] = _always(list(life[0].states))
         self._by_target["assessed_reserves.states"] = _always(list(life[0].states))
+        self._by_target |= {name: _always(stressed[-1]) for name in ("joint_strength.state", "ply_stresses.state")}
+        self._by_target |= {name: _always(stressed) for name in ("least_strength.states", "plot_strength.result")}
+        self._by_target |= {name: _always(laminated) for name in ("failure_load.problem", "plot_stiffness.joint")}
         self._by_annotation = self._annotations(result)
 
     def _write_files(self, result: fastpin.Result, case: fastpin.Case) -> None:
@@ -358,6 +365,11 @@ class Valid:
             "turned.angle": 0.3,
             "point_stress_ratio.profile": np.exp,
             "average_stress_ratio.profile": np.exp,
+            "joint_strength.distance": 1e-3,
+            "StrengthAssessment.distance": 1e-3,
+            "failure_load.distance": 1e-3,
+            "failure_load.history": [{"P": 1e5}],
+            "failure_load.nodes": NODES,
             "characteristic_radius.theta": [0.0, 0.5],
             "characteristic_radius.tension": 0.1,
             "characteristic_radius.compression": 0.2,

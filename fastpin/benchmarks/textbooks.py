@@ -9,7 +9,9 @@ import numpy as np
 from fastpin.benchmarks.rows import Benchmark, Outcome, Row
 from fastpin.bodies import Ring
 from fastpin.model.angles import BOTTOM
+from fastpin.model.laminate import Laminate
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.ply import Ply
 from fastpin.model.points import Points
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
@@ -18,6 +20,10 @@ from fastpin.verification import closed_forms
 from fastpin.verification.rows import NODES, half_width
 
 STEEL = MATERIALS["steel"]
+
+GRAPHITE = Ply(181e9, 10.3e9, 7.17e9, 0.28, 1e-3)
+GLASS = Ply(47.4e9, 16.2e9, 7e9, 0.26, 1e-3)
+"""Plies of open holes, of any thickness."""
 
 TOUCH = 1.0
 """A force on the pin, N/m: a load history needs one. It changes pressures and stresses by some 10 Pa."""
@@ -81,6 +87,33 @@ def open_hole(progress: Report | None = None) -> Outcome:
     ])  # fmt: skip
 
 
+ROOTS = {
+    "[0], graphite/epoxy": ("[0]", GRAPHITE, (0.8566, 4.8936)),
+    "[90], graphite/epoxy": ("[90]", GRAPHITE, (0.2043, 1.1674)),
+    "[0/90], graphite/epoxy": ("[0/90]s", GRAPHITE, (0.2747, 3.6403)),
+    "[+-45], graphite/epoxy": ("[+-45]s", GRAPHITE, (0.5109, 0.5109)),
+    "[0], glass/epoxy": ("[0]", GLASS, (0.7139, 2.3960)),
+    "[90], glass/epoxy": ("[90]", GLASS, (0.4174, 1.4007)),
+    "[0/90], glass/epoxy": ("[0/90]s", GLASS, (0.4965, 2.0142)),
+}
+"""Layups, plies and the imaginary parts of the two roots that are printed. [0/90] and [+-45] are stretched only."""
+
+
+def open_hole_of_laminates(progress: Report | None = None) -> Outcome:
+    """Solve a loose pin and then the remote stress, as for an isotropic plate."""
+    plates = {words: Laminate.from_layup(layup, ply, axis=0.0) for words, (layup, ply, _) in ROOTS.items()}
+    printed = {words: f"{1.0 + sum(roots):.3f}" for words, (_, _, roots) in ROOTS.items()}
+    plates["moduli of CR-125596"] = Laminate.from_moduli(10e9, 5e9, 3e9, 0.3, axis=0.0)
+    printed["moduli of CR-125596"] = "3.3583"
+    rows, stress = [], 1e6
+    for words, plate in steps(list(plates.items()), progress):
+        problem = Problem(MaterialPair(STEEL, plate, "stress"), 10e-3, 1e-4, 0.3, "body")
+        state = solve(problem, [{"P": TOUCH}, {"sxx": stress}], nodes=101)[-1]
+        (top,) = state.hoop_stress("plate", [-BOTTOM]) / stress
+        rows.append(Row(f"hoop stress over sxx, top of the hole, {words}", "", printed[words], float(top)))
+    return Outcome(rows)
+
+
 def shrink_fit(progress: Report | None = None) -> Outcome:
     """Solve the fit. The pressure is uniform, and linear elements follow it exactly."""
     inner, outer, interference = 20e-3, 40e-3, 20e-6
@@ -126,6 +159,20 @@ BENCHMARKS = (
         "Infinite steel plate under sxx, with a loose pin that touches it with no more than 1 N/m. Plane strain.",
         ["G. Kirsch, 1898: the stress concentration is 3 beside the load axis and -1 on it"],
         open_hole,
+    ),
+    Benchmark(
+        "lekhnitskii",
+        "Lekhnitskii: hoop stress at an open hole of a laminate under remote tension",
+        "Infinite laminate under sxx along its axis 1, with a loose pin that touches it with no more than 1 N/m. "
+        "Graphite/epoxy: E1 181, E2 10.3, G12 7.17 GPa, nu12 0.28. Glass/epoxy: 47.4, 16.2, 7 GPa, 0.26. The third "
+        "plate has E1 10, E2 5, G12 3 and nu12 0.3.",
+        [
+            "D. S. Sharma (2011), roots of the characteristic equation to four digits, as a public program quotes them "
+            "in its tests (class Sharma); the stress concentration is 1 and the sum of their imaginary parts, "
+            "Lekhnitskii's formula; printed here to three digits, as a sum of two rounded roots",
+            "NASA CR-125596, example 5.3.1, as the documentation of the program Panelyze quotes it: 3.3583",
+        ],
+        open_hole_of_laminates,
     ),
     Benchmark(
         "shrink-fit",

@@ -405,7 +405,7 @@ def add_sweep(commands: Any) -> None:
     )
     sweep.add_argument("--x", metavar="FIELD", help="field along the figure's x axis")
     sweep.add_argument("--y", metavar="FIELD", help="field along the figure's y axis (for a map)")
-    words = "plot bearing over by-pass stress at failure; the value is an outcome strength = factor"
+    words = "plot bearing over bypass stress at failure; the value is an outcome strength = factor"
     sweep.add_argument("--envelope", action="store_true", default=None, help=words)
 
     merge = _command(commands, "merge", "sweep", "merge", "join the directories of the parts of a sweep")

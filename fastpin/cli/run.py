@@ -464,8 +464,8 @@ class RunReport:
             say(report.cycle.cycle_line(cycle))
         states = result.states if cycle is None else cycle.states
         margins = static_margins(case.problem, extremes, lambda places: [found[place] for place in places])
-        if result.cycles or fatigue is not None or grown is not None:
-            margins += report.fatigue.life_margins(case.problem, states, result.cycles, fatigue, grown)
+        if result.cycles or any(each is not None for each in (fatigue, grown, strength)):
+            margins += report.fatigue.life_margins(case.problem, states, result.cycles, fatigue, grown, strength)
         say(*margin_lines(case.problem, margins))
         if fatigue is not None:
             say(*report.assessment.assessment_lines(fatigue))

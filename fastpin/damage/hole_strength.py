@@ -17,7 +17,7 @@ import numpy as np
 from fastpin.damage.laminates import MODES, characteristic_radius, first_ply_failure
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between, near_bottom
-from fastpin.model.checks import instance, instances
+from fastpin.model.checks import check_callable, instance, instances
 from fastpin.model.laminate import Laminate
 from fastpin.model.ply import PlyCriterion
 from fastpin.model.points import Points
@@ -210,6 +210,8 @@ def least_strength(
     """
     instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
     known = instances("states", states, State, "a sequence of states")
+    if progress is not None:
+        check_callable("progress", progress)
     if not known:
         raise InputError("states", "must hold at least one state")
     if "distance" not in how.lengths:

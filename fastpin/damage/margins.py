@@ -1,4 +1,4 @@
-"""Margins of safety of fatigue: over the last cycle, and against the life that a section [fatigue] asks for."""
+"""Margins of safety of fatigue, over the last cycle and against the goal of [fatigue], and of the first ply."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import contextlib
 import math
 from collections.abc import Sequence
 
+from fastpin.damage.hole_strength import JointStrength
 from fastpin.damage.hot_spots import Fatigue, cycle_states
 from fastpin.damage.hot_spots import fatigue as fatigue_of
 from fastpin.damage.reserve import Goal, StressReserve
@@ -14,10 +15,11 @@ from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.points import edge_body, isotropic_bodies, owner_of
 from fastpin.model.problem import Problem
+from fastpin.model.strength import StrengthAssessment
 from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
 from fastpin.states.margins import Margin
-from fastpin.states.quantities import point_name
+from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 
 MOST_STOPS = 100
@@ -104,3 +106,12 @@ def _remark(one: StressReserve, how: FatigueAssessment) -> str:
     depth = "" if one.depth == 0.0 else f", {units(one.problem)['length'].text(one.depth, 3)} below the edge"
     ends = f"by load points {point_name(one.start)} and {point_name(one.stop)}"
     return f"{words}; at {from_bottom(one.theta):z.1f} deg{depth}, {ends}"
+
+
+def strength_margins(how: StrengthAssessment, state: State, strength: JointStrength) -> list[Margin]:
+    """Return the margin of the first ply in the worst state. The value is 1, and the allowable the strength ratio."""
+    ratio = strength.least_ratio
+    place = f"at {from_bottom(strength.angle):z.1f} deg, ply of {strength.ply_angle:g} deg by {strength.ply_mode}"
+    remark = place if math.isfinite(ratio) else "no stress"
+    point, subject = load_point(state), f"plate: first ply by {how.criterion}, factor on the stresses"
+    return [Margin(subject, "ratio", 1.0, ratio, point, remark, state.load, "ply", "plate")]

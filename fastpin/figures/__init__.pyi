@@ -1,4 +1,5 @@
 from . import animation as animation
+from . import envelope as envelope
 from . import load_cycle as load_cycle
 from . import plotting as plotting
 from . import polar as polar
@@ -15,7 +16,6 @@ from .animation import animate as animate
 from .convergence import plot_convergence as plot_convergence
 from .crack_growth import plot_crack_growth as plot_crack_growth
 from .cycles import plot_cycles as plot_cycles
-from .envelope import plot_envelope as plot_envelope
 from .fatigue import plot_fatigue as plot_fatigue
 from .gap import plot_gap as plot_gap
 from .history import plot_history as plot_history

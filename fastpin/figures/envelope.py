@@ -1,4 +1,4 @@
-"""Figures of the bearing stress against the by-pass stress at which the first ply of a laminate fails."""
+"""Figures of the bearing stress against the bypass stress at which the first ply of a laminate fails."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def envelope_of(found: Sequence[Curve]) -> Plot:
     each = instances("found", found, Curve, "a list of envelopes")
     if not 1 <= len(each) <= MAX_NAMED:
         raise InputError("found", f"must be 1 to {MAX_NAMED} envelopes, not {len(each)}")
-    words = "bearing stress over the by-pass stress at which the first ply fails"
+    words = "bearing stress over the bypass stress at which the first ply fails"
     return Plot(
         lambda look: _draw(look, each),
         partial(write_csv, each),
@@ -65,7 +65,7 @@ def _draw(look: Look, found: Sequence[Curve]) -> Sheet:
         handles.append(drawn)
     panel.axvline(0.0, color="0.6", linewidth=0.8)
     panel.set_ylim(bottom=0.0)
-    panel.set_xlabel(quantity("by-pass stress", label))
+    panel.set_xlabel(quantity("bypass stress", label))
     panel.set_ylabel(quantity("bearing stress", label))
     if any("case" in curve.parameters for curve in found):
         sheet.legend(handles, 2)

@@ -159,7 +159,7 @@ def strength_of(
     if how is not None:
         instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
     given = how or StrengthAssessment(distance=0.0)
-    criterion = criterion or given.criterion
+    criterion = given.criterion if criterion is None else criterion
     given = replace(given, criterion=criterion) if depth is None else StrengthAssessment(criterion, depth)
     found = [joint_strength(state, given.criterion, **given.lengths) for state in drawn]
     curves = [_strength_curve(each) for each in found]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fastpin.cracks.margins import crack_margins
-from fastpin.damage.margins import fatigue_margins, reserve_margins
+from fastpin.damage.margins import fatigue_margins, reserve_margins, strength_margins
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
 from fastpin.figures.crack_growth import crack_growth_of
@@ -169,6 +169,7 @@ def margins(page: PageParts) -> PageSection:
     ]
     found += [] if source.assessed is None else reserve_margins(source.assessed.reserves, source.assessed.how)
     found += [] if isinstance(source.crack, str) else crack_margins(source.crack)
+    found += [] if isinstance(source.strength, str) else strength_margins(*source.strength.worst)
     run = "" if source.result.complete else " of an unfinished run"
     states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
     words = f"Margins of safety over {states}{run}: allowable/value - 1"

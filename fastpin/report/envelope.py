@@ -1,4 +1,4 @@
-"""Envelopes of strength from sweeps: the bearing stress against the by-pass stress at which the first ply fails."""
+"""Envelopes of strength from sweeps: the bearing stress against the bypass stress at which the first ply fails."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fastpin.report.curves import Curve
 from fastpin.report.sweep import TableRow, printed_rows, value_words
 from fastpin.studies.plan import Plan
 
-BYPASS, BEARING = "by-pass stress [Pa]", "bearing stress [Pa]"
+BYPASS, BEARING = "bypass stress [Pa]", "bearing stress [Pa]"
 """Columns of an envelope."""
 
 
@@ -22,7 +22,7 @@ def envelopes(plan: Plan, rows: Sequence[TableRow], value: str) -> list[Curve]:
     """Return the envelopes of a sweep: one for each combination of the fields that are no loads; none without a factor.
 
     The loads at the last corner are multiplied by the factor at failure. The bearing stress is the force on the pin
-    over the diameter of the hole, per thickness. The by-pass stress is the remote stress in the direction of this
+    over the diameter of the hole, per thickness. The bypass stress is the remote stress in the direction of this
     force, or along the y axis without a force. The points stand by the angle between both.
 
     Parameters
@@ -61,7 +61,7 @@ def check_envelope(plan: Plan, value: str) -> None:
 
 
 def _stresses(case: Case, factor: float) -> tuple[float, float]:
-    """By-pass and bearing stress at failure, Pa."""
+    """Bypass and bearing stress at failure, Pa."""
     load = dict(zip(LOADS, case.history.values()[-1].tolist(), strict=True))
     force = np.array([load["Q"], -load["P"]])
     size = float(np.hypot(*force))

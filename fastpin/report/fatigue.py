@@ -9,12 +9,13 @@ import numpy as np
 from fastpin import cracks
 from fastpin.cracks.margins import crack_margins
 from fastpin.damage import Fatigue, SpectrumDamage
-from fastpin.damage.margins import last_cycle_margins, reserve_margins
+from fastpin.damage.margins import last_cycle_margins, reserve_margins, strength_margins
 from fastpin.model.angles import from_bottom
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.assessment import Assessed
 from fastpin.report.curves import Curve
+from fastpin.report.strength import StrengthFound
 from fastpin.states.cycles import Cycle
 from fastpin.states.margins import Margin
 from fastpin.states.state import State
@@ -63,11 +64,13 @@ def life_margins(
     cycles: Sequence[Cycle],
     assessed: Assessed | None,
     grown: cracks.Growth | None,
+    strength: StrengthFound | None = None,
 ) -> list[Margin]:
-    """Return the margins that need more than single states: of the last cycle, of [fatigue] and of [crack].
+    """Return the margins of the last cycle and of the sections [fatigue], [crack] and [strength].
 
     `states` hold the last cycle.
     """
     rows = last_cycle_margins(problem, states, cycles)
     rows += [] if assessed is None else reserve_margins(assessed.reserves, assessed.how)
-    return rows + ([] if grown is None else crack_margins(grown))
+    rows += [] if grown is None else crack_margins(grown)
+    return rows + ([] if strength is None else strength_margins(*strength.worst))

@@ -45,6 +45,11 @@ class StrengthFound(NamedTuple):
     failure: studies.FailureLoad | None
     reason: str
 
+    @property
+    def worst(self) -> tuple[StrengthAssessment, State, damage.JointStrength]:
+        """How it was assessed, the worst state and its strength."""
+        return self.how, self.state, self.strength
+
 
 def assess_strength(
     case: Case, states: Sequence[State], progress: Callable[[float, float], None] | None = None

@@ -87,7 +87,7 @@ def document(
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
         "extremes": {} if result is None else _extremes_summary(result),
-        "margins": [] if result is None else _margins_summary(result, fatigue, crack),
+        "margins": [] if result is None else _margins_summary(result, fatigue, crack, strength),
         "cycles": [
             row._asdict() | {"dissipation": unit["energy"].factor * row.dissipation}
             for row in (() if result is None else result.cycles)
@@ -187,14 +187,16 @@ def _extremes_summary(result: Result) -> dict[str, Any]:
     }
 
 
-def _margins_summary(result: Result, fatigue: Assessed | None, crack: cracks.Growth | None) -> list[dict[str, Any]]:
+def _margins_summary(
+    result: Result, fatigue: Assessed | None, crack: cracks.Growth | None, strength: StrengthFound | None
+) -> list[dict[str, Any]]:
     """Return the margins over all states, and those of fatigue and of a crack where they are known."""
     if len(result):
         kept = KeptStates(result.states)
         rows = static_margins(result.problem, marked_extremes(kept), kept.read)
     else:
         rows = static_margins(result.problem, {}, lambda places: [])
-    rows += life_margins(result.problem, result.states, result.cycles, fatigue, crack)
+    rows += life_margins(result.problem, result.states, result.cycles, fatigue, crack, strength)
     return margins_document(result.problem, rows)
 
 

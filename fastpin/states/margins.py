@@ -28,6 +28,7 @@ MARGINS = {
     "fatigue": "factor on all stresses until the goal of [fatigue] is missed",
     "fracture": "toughness over the largest K_I of the crack of [crack], at its first and at its last length",
     "growth": "threshold over the range of K_I of the crack of [crack] at its first length",
+    "ply": "factor on the stresses at which the first ply of a laminate fails by [strength]",
 }
 """Kinds of margins by name, each with the meaning of allowable and value."""
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 from weakref import WeakKeyDictionary
 
 from fastpin.cracks.margins import crack_margins
-from fastpin.damage.margins import last_cycle_margins, reserve_margins
+from fastpin.damage.margins import last_cycle_margins, reserve_margins, strength_margins
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.crack import CrackGrowth
+from fastpin.model.strength import StrengthAssessment
 from fastpin.solver.result import Result
 from fastpin.states.extremes import KeptStates, marked_extremes
 from fastpin.states.margins import MARGINS, Margin, smallest_margin, static_margins
 from fastpin.studies.crack_outcomes import grown
+from fastpin.studies.strength_outcomes import least_of
 
 LEAST = "least"
 """The smallest of all margins that are known, as tables mark it."""
@@ -23,35 +26,39 @@ MARGIN_QUANTITIES = (LEAST, *MARGINS)
 OWNERS = ("pin", "bush", "plate")
 """The bodies whose margins can be chosen."""
 
-SECTIONS = {"fatigue": "fatigue", "fracture": "crack", "growth": "crack"}
+SECTIONS = {"fatigue": "fatigue", "fracture": "crack", "growth": "crack", "ply": "strength"}
 """Kinds of margins that need a section of the case."""
 
 _KNOWN: WeakKeyDictionary[Result, dict[object, list[Margin]]] = WeakKeyDictionary()
 
 
-def of_margin(
-    name: str, owner: str | None, how: FatigueAssessment | None, crack: CrackGrowth | None, result: Result
-) -> float:
+def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...], result: Result) -> float:
     """The smallest margin of a name in :data:`MARGIN_QUANTITIES`, of all bodies or of one; NaN if none is known.
 
-    The margins are computed from the states, with the strengths that the problem of the result has.
+    The margins are computed from the states, with the strengths that the problem of the result has. `sections` are
+    those of the case, pairs of a name and a value.
 
     Raises
     ------
     FastpinError
-        If the fatigue of `how` can't be assessed, or `crack` can't be followed.
+        If a fatigue or a strength can't be assessed, or a crack can't be followed.
     """
-    known, key = _KNOWN.setdefault(result, {}), (how, crack)
-    if key not in known:
-        known[key] = margins_of(result, how, crack)
-    rows = [row for row in known[key] if owner in (None, row.owner)]
+    known = _KNOWN.setdefault(result, {})
+    if sections not in known:
+        known[sections] = margins_of(result, **dict(sections))
+    rows = [row for row in known[sections] if owner in (None, row.owner)]
     if name != LEAST:
         rows = [row._replace(name="") for row in rows if row.name == name]  # also one that is no failure
     least = smallest_margin(rows)
     return math.nan if least is None else least.margin
 
 
-def margins_of(result: Result, how: FatigueAssessment | None, crack: CrackGrowth | None) -> list[Margin]:
+def margins_of(
+    result: Result,
+    fatigue: FatigueAssessment | None = None,
+    crack: CrackGrowth | None = None,
+    strength: StrengthAssessment | None = None,
+) -> list[Margin]:
     """All margins of a result, as ``fastpin run`` prints them.
 
     Raises
@@ -62,5 +69,6 @@ def margins_of(result: Result, how: FatigueAssessment | None, crack: CrackGrowth
     found = marked_extremes(KeptStates(result.states))
     rows = static_margins(result.problem, found, lambda places: [result.states[place] for place in places])
     rows += last_cycle_margins(result.problem, result.states, result.cycles)
-    rows += [] if how is None else reserve_margins(result.assessed_reserves(how), how)
-    return rows + ([] if crack is None else crack_margins(grown(crack, result)))
+    rows += [] if fatigue is None else reserve_margins(result.assessed_reserves(fatigue), fatigue)
+    rows += [] if crack is None else crack_margins(grown(crack, result))
+    return rows + ([] if strength is None else strength_margins(strength, *least_of(result, strength)))

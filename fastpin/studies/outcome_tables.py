@@ -28,6 +28,7 @@ from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment
+from fastpin.model.beside import BESIDE
 from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth
 from fastpin.model.points import BODIES
@@ -259,7 +260,7 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
     if first[0] == "strength":
         return _of_strength(source, section, beside.get("strength"))
     if first[0] == "margin":
-        return _of_margin(section, beside.get("fatigue"), beside.get("crack"))
+        return _of_margin(section, beside)
     if first[0] == "function":
         return _of_function(section, folder)
     return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
@@ -366,21 +367,27 @@ def _of_strength(source: CaseText, section: Section, default: StrengthAssessment
     return StudyOutcome(STRENGTH_QUANTITIES[quantity].kind, "", definition, partial(of_strength, quantity, how))
 
 
-def _of_margin(section: Section, how: FatigueAssessment | None, crack: CrackGrowth | None) -> StudyOutcome | None:
-    """Read the smallest margin of safety, or that of one kind, with the sections [fatigue] and [crack] of the case."""
+def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
+    """Read the smallest margin of safety, or that of one kind, with the sections of the case."""
     name = _choice(section, "margin", MARGIN_QUANTITIES)
     owner = _choice(section, "body", OWNERS) if "body" in section else None
     if name is None or ("body" in section and owner is None):
         return None
     needed = SECTIONS.get(name)
-    if needed is not None and {"fatigue": how, "crack": crack}[needed] is None:
+    if needed is not None and needed not in beside:
         section.report(f'margin: "{name}" needs a section [{needed}] of the case', "margin")
         return None
-    if name != LEAST:
-        how, crack = how if needed == "fatigue" else None, crack if needed == "crack" else None
-    definition = {"margin": name, "body": owner, "fatigue": how and how.toml(), "crack": crack and crack.entries()}
+    sections = {each: beside[each] for each in BESIDE if each in beside and (name == LEAST or each == needed)}
+    if "strength" in sections:
+        sections["strength"] = replace(sections["strength"], failure=False)
+    written: dict[str, Callable[[Any], dict[str, Any]]] = {
+        "fatigue": FatigueAssessment.toml,
+        "crack": CrackGrowth.entries,
+        "strength": StrengthAssessment.entries,
+    }
+    definition = {"margin": name, "body": owner, **{each: written[each](value) for each, value in sections.items()}}
     text = json.dumps({key: value for key, value in definition.items() if value is not None}, sort_keys=True)
-    return StudyOutcome("", "", text, partial(of_margin, name, owner, how, crack), has_strengths=True)
+    return StudyOutcome("", "", text, partial(of_margin, name, owner, tuple(sections.items())), has_strengths=True)
 
 
 def _of_function(section: Section, folder: Path) -> StudyOutcome | None:

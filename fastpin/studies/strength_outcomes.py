@@ -10,9 +10,10 @@ from fastpin import damage
 from fastpin.model.doubts import doubts_given
 from fastpin.model.strength import StrengthAssessment
 from fastpin.solver.result import Result
+from fastpin.states.state import State
 from fastpin.studies.failure import failure_load
 
-_ASSESSED: WeakKeyDictionary[Result, dict[StrengthAssessment, damage.JointStrength]] = WeakKeyDictionary()
+_ASSESSED: WeakKeyDictionary[Result, dict[StrengthAssessment, tuple[State, damage.JointStrength]]] = WeakKeyDictionary()
 
 
 class StrengthQuantity(NamedTuple):
@@ -25,11 +26,11 @@ class StrengthQuantity(NamedTuple):
     of: Callable[[Result, StrengthAssessment], float]
 
 
-def _least(result: Result, how: StrengthAssessment) -> damage.JointStrength:
-    """The strength in the worst state. It is kept while the result lives."""
+def least_of(result: Result, how: StrengthAssessment) -> tuple[State, damage.JointStrength]:
+    """The worst state and its strength. They are kept while the result lives."""
     known = _ASSESSED.setdefault(result, {})
     if how not in known:
-        known[how] = damage.least_strength(result.states, how)[1]
+        known[how] = damage.least_strength(result.states, how)
     return known[how]
 
 
@@ -45,8 +46,8 @@ def _factor(result: Result, how: StrengthAssessment) -> float:
 
 
 STRENGTH_QUANTITIES: dict[str, StrengthQuantity] = {
-    "ratio": StrengthQuantity("", lambda result, how: _least(result, how).least_ratio),
-    "angle": StrengthQuantity("angle", lambda result, how: _least(result, how).angle),
+    "ratio": StrengthQuantity("", lambda result, how: least_of(result, how)[1].least_ratio),
+    "angle": StrengthQuantity("angle", lambda result, how: least_of(result, how)[1].angle),
     "factor": StrengthQuantity("", _factor),
 }
 """The quantities of the strength of a laminate, by name.

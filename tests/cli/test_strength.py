@@ -52,7 +52,9 @@ def test_a_case_with_a_strength_is_told_by_every_command(folder, capsys):
     found = damage.joint_strength(states[0], "tsai-wu", distance=0.5e-3)
     assert found.least_ratio < damage.joint_strength(states[1], "tsai-wu", distance=0.5e-3).least_ratio
     assert main(["run", "case.toml"]) == 0
-    lines = [each for each in capsys.readouterr().out.splitlines() if "at failure" in each or "strength" in each]
+    printed = capsys.readouterr().out.splitlines()
+    lines = [each for each in printed if each.startswith(("load at failure", "strength"))]
+    assert f"1 of {found.least_ratio:.3g}" in next(each for each in printed if "plate: first ply by tsai-wu" in each)
     assert lines[0].startswith(HEAD.format(found.least_ratio))
     assert f"ply of {found.ply_angle:g} deg by {found.ply_mode}, {found.joint_mode}" in lines[0]
     options = {"over": "history", "nodes": 61}
@@ -77,6 +79,10 @@ def test_a_case_with_a_strength_is_told_by_every_command(folder, capsys):
     assert lines[0][1:] in page
     assert lines[1][1:] in page
     assert "Strength ratio of the first ply by tsai-wu" in page
+    (row,) = [row for row in document["margins"] if "first ply" in row["subject"]]
+    assert row["margin"] == pytest.approx(found.least_ratio - 1.0)
+    assert row["load_point"] == 1.0
+    assert "plate: first ply by tsai-wu, factor on the stresses" in page
 
 
 def test_a_figure_takes_the_section_unless_options_replace_it(folder, capsys):

@@ -57,6 +57,7 @@ ELSEWHERE = {
     "reading-results.md": "test_teaching_pages.py",
     "superposition.md": "test_teaching_pages.py",
     "bush.md": "test_bush_page.py",
+    "carbon-laminate.md": "test_carbon_page.py",
     "wear.md": "test_wear_page.py",
     "tolerances.md": "test_tolerances_page.py",
 }

@@ -1,4 +1,4 @@
-"""Outcomes of the strength of a laminate in sweeps, their faults, and envelopes of bearing and by-pass."""
+"""Outcomes of the strength of a laminate in sweeps, their faults, and envelopes of bearing and bypass."""
 
 from __future__ import annotations
 
@@ -45,6 +45,7 @@ factor = { strength = "factor" }
 ratio = { strength = "ratio" }
 curve = { strength = "ratio", criterion = "hashin", tension = 5e-4, compression = 1e-3 }
 angle = { strength = "angle" }
+ply = { margin = "ply" }
 """
 
 
@@ -66,6 +67,7 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path, capsys:
         state = fastpin.solve(problem, loads, nodes=61)[-1]
         found = damage.joint_strength(state, "yamada-sun", distance=0.5e-3)
         assert row["ratio"] == pytest.approx(found.least_ratio)
+        assert row["ply"] == pytest.approx(found.least_ratio - 1.0)
         assert row["angle"] == pytest.approx(math.degrees(found.angle) + 90.0)
         failing = studies.failure_load(problem, loads, "yamada-sun", distance=0.5e-3, nodes=61)
         assert row["factor"] == pytest.approx(failing.factor)
@@ -78,7 +80,7 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path, capsys:
     assert curve[BEARING].max() == pytest.approx(max(row["factor"] for row in rows[2:]) * 1e6 / 6e-3)
     assert np.all(np.diff(np.arctan2(curve[BYPASS], curve[BEARING])) > 0.0)
     svg = Path("one.svg").read_text()
-    assert "by-pass stress (MPa)" in svg
+    assert "bypass stress (MPa)" in svg
     assert "outcome curve can't be read in 2 runs" in capsys.readouterr().out
 
 
