@@ -40,7 +40,7 @@ def plate_stress(
     depth : ndarray, shape (m,)
         Distances of the points from the edge of the hole, in units of R; at least 0. All are 0 for a compliance.
     """
-    laminate = problem.joint.hole.laminate
+    laminate = None if problem.pair.plate.is_isotropic else problem.joint.hole.laminate
     if laminate is not None and not laminate.is_quasi_isotropic:
         return laminate_stress(laminate, tractions, remote, theta, depth)
     kolosov, none = problem.surfaces.plate_kolosov, np.zeros(3)

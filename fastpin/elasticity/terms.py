@@ -96,8 +96,7 @@ class BodyTerms:
 @lru_cache(maxsize=16)
 def body_terms(problem: Problem) -> BodyTerms | None:
     """The terms of the bodies of a problem; None for a solid pin in an infinite, isotropic plate."""
-    laminate = problem.joint.hole.laminate
-    if laminate is None and not problem.has_bodies:
+    if problem.pair.plate.is_isotropic and not problem.has_bodies:
         return None
     joint, surfaces, beta = problem.joint, problem.surfaces, problem.surfaces.beta_star
     (pin_rim, hole), pin_body, plate_body = (joint.pin_rim, joint.hole), joint.pin_body, joint.plate_body
@@ -115,5 +114,6 @@ def body_terms(problem: Problem) -> BodyTerms | None:
         coefficients[:] = 0.0
     scale = 1.0 / (4.0 * math.pi * beta)
     columns, matrix = plate_body.load_columns(hole, beta), plate_body.matrix_in(hole, beta)
+    laminate = hole.laminate
     factor = None if laminate is None else -2.0 * laminate.delta / beta
     return BodyTerms(scale * coefficients, matrix, -scale * float(of_pin[1] - of_plate[1]), columns, factor)

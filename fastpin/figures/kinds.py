@@ -74,6 +74,8 @@ class Kind(NamedTuple):
     sources : tuple of str
         What the figure may show: "result" is the result of a run, "life" a life of wear, "case" a case file. For a case
         file the function is ``KIND_of(case)``.
+    of_laminates : bool
+        Whether only laminates have the figure.
     """
 
     file: str
@@ -81,6 +83,7 @@ class Kind(NamedTuple):
     options: tuple[str, ...]
     ending: str = "png"
     sources: tuple[str, ...] = ("result", "life")
+    of_laminates: bool = False
 
 
 SOURCES = {"result": "the result of a run", "life": "a life of wear", "case": "a case file"}
@@ -99,9 +102,18 @@ KINDS = {
     "map": Kind(
         "stress", "one component of the stress in both bodies", ("states", "csv", "body", "component", "extent")
     ),
-    "stiffness": Kind("laminates", "moduli of a laminate by direction", ("csv",), sources=("result", "life", "case")),
+    "stiffness": Kind(
+        "laminates",
+        "moduli of a laminate by direction",
+        ("csv",),
+        sources=("result", "life", "case"),
+        of_laminates=True,
+    ),
     "strength": Kind(
-        "laminates", "strength ratio of a laminate round the hole", ("states", "csv", "criterion", "depth")
+        "laminates",
+        "strength ratio of a laminate round the hole",
+        ("states", "csv", "criterion", "depth"),
+        of_laminates=True,
     ),
     "cycles": Kind("cycles", "changes in each cycle", ("csv",), sources=("result",)),
     "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv",)),

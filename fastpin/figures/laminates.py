@@ -69,7 +69,7 @@ def stiffness_of(joint: Problem | Case | Result) -> Plot:
         raise InputError("joint", f"must be a Problem, Case or Result, not {as_toml(joint)}")
     problem = joint if isinstance(joint, Problem) else joint.problem
     plate = laminate_of(problem)
-    curve = stiffness_curve(plate)
+    curve = stiffness_curve(plate, "1/beta*" if problem.dimensionless else PASCAL.name)
     words = "Young's modulus and shear modulus of the laminate by direction"
     return Plot(
         lambda look: _draw_stiffness(look, problem, plate, curve),
@@ -79,19 +79,21 @@ def stiffness_of(joint: Problem | Case | Result) -> Plot:
     )
 
 
-def stiffness_curve(plate: Laminate) -> Curve:
-    """Young's modulus and the shear modulus by the direction, deg from the bottom; Pa, or in units of 1/beta*."""
+def stiffness_curve(plate: Laminate, unit: str) -> Curve:
+    """Young's modulus and the shear modulus by the direction, deg from the bottom, in this `unit`."""
     degrees = np.linspace(-180.0, 180.0, DIRECTIONS)
     turned = in_axes(plate.matrix, np.radians(degrees - 90.0))
-    return Curve({}, {"direction [deg]": degrees, "E": 1.0 / turned[:, 0, 0], "G": 1.0 / turned[:, 2, 2]})
+    return Curve(
+        {}, {"direction [deg]": degrees, f"E [{unit}]": 1.0 / turned[:, 0, 0], f"G [{unit}]": 1.0 / turned[:, 2, 2]}
+    )
 
 
 def _draw_stiffness(look: Look, problem: Problem, plate: Laminate, curve: Curve) -> Sheet:
     sheet = look.sheet([0.5 * look.width], columns=2, extra=1.1, subplot_kw={"projection": "polar"})
-    along = np.radians(curve["direction [deg]"])
+    degrees, *moduli = curve.columns.values()
+    along, words = np.radians(degrees), ("Young's modulus E", "shear modulus G")
     directions = plate.axis + np.radians(sorted({angle for _, angle in plate.plies}))
-    for place, (name, panel) in enumerate(zip(("E", "G"), sheet.axes[0], strict=True)):
-        values = curve[name]
+    for place, (values, panel) in enumerate(zip(moduli, sheet.axes[0], strict=True)):
         factor, label = (1.0, "1/β*") if problem.dimensionless else PASCAL.scale([float(values.max())])
         panel.set_theta_zero_location("S")
         panel.plot(along, factor * values, **line(place))
@@ -104,7 +106,7 @@ def _draw_stiffness(look: Look, problem: Problem, plate: Laminate, curve: Curve)
         panel.set_thetagrids(range(0, 360, 45), [f"{from_label(angle)}°" for angle in range(0, 360, 45)], fontsize=7.0)
         panel.tick_params(axis="y", labelsize=6.5)
         panel.grid(color="0.88", linewidth=0.6)
-        panel.set_xlabel(quantity({"E": "Young's modulus E", "G": "shear modulus G"}[name], label))
+        panel.set_xlabel(quantity(words[place], label))
     if directions.size:
         sheet.legend([Line2D([], [], color="0.6", linewidth=0.8, label="directions of the plies")], 1)
     sheet.head(look.title, caption=f"{plate.label}, {plate.direction_words}")

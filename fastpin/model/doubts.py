@@ -290,7 +290,7 @@ def _of_contact(problem: Problem) -> Iterator[InputWarning]:
 
 def _of_slip(problem: Problem) -> Iterator[InputWarning]:
     """A doubt about friction that is so large that slip may have several solutions; (T52)."""
-    laminate = problem.joint.hole.laminate
+    laminate = None if problem.pair.plate.is_isotropic else problem.joint.hole.laminate
     if laminate is None or laminate.is_isotropic_contact:
         return
     most = math.sqrt(max((0.5 * problem.surfaces.beta_star / abs(laminate.delta)) ** 2 - 1.0, 0.0))

@@ -37,13 +37,14 @@ class Coupling:
     @classmethod
     def of(cls, problem: Problem, friction: np.ndarray, theta: np.ndarray) -> Coupling:
         """The coupling of the surfaces of a problem at the angles `theta` (n,), with the `friction` (n,) there."""
-        laminate, ones = problem.joint.hole.laminate, np.ones((3, theta.size))
+        laminate = None if problem.pair.plate.is_isotropic else problem.joint.hole.laminate
         if laminate is None or laminate.is_isotropic_contact:
             return cls.of_isotropic(friction, problem.surfaces.dundurs()[1])
         surfaces, turned = problem.surfaces, laminate.delta * np.exp(-2j * theta)
         mean, s = 0.5 * surfaces.beta_star, 0.25 * surfaces.alpha_star
         pressed = mean + turned.real  # Lambda_rr of both bodies; Lambda_rt is that of the plate
         held = pressed - np.outer([0.0, 1.0, -1.0], friction * turned.imag)
+        ones = np.ones((3, theta.size))
         tilt = np.arctan2(friction * s, held) / math.pi * np.array([[0.0], [1.0], [1.0]])
         beta = s / np.sqrt(mean * mean - abs(laminate.delta) ** 2)
         share = pressed / held

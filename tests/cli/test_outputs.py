@@ -48,7 +48,7 @@ TEXTS: dict[str, dict[str, str]] = {
     "resume": STATES,
     "show": STATES,
     "plot": {"--output": ".png", "--csv": ".csv"},
-    "crack": {"--output": ".png", "--csv": ".csv"},
+    "crack": {"--output": ".png", "--csv": ".csv", "--json": ".json"},
     "report": {"--output": ".html"},
     "converge": {"--csv": ".csv", "--json": ".json", "--plot": ".pdf"},
     "sweep": {"--table": ".csv", "--plot": ".png"},

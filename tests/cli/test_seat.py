@@ -20,7 +20,14 @@ from fastpin.report.states import bush_line, seat_line
 from tests.support.drawing import draw_roughly
 from tests.support.seats import BONDED, LOADS, SLIPS, TEXT, sample_case, sample_seat, stored_sample
 
-NOT_OF_STATES = {"scar", "wear", "damage", "animation", "gap"}
+NOT_OF_STATES = {
+    "scar",
+    "wear",
+    "damage",
+    "animation",
+    "gap",
+    *(name for name, kind in KINDS.items() if kind.of_laminates),
+}
 """Kinds that need a life of wear, write a film, or have nothing to show of this joint."""
 
 
