@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from datetime import date
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -182,18 +183,14 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     if problem is not None and wear is not None:
         _check_together(source, lambda: check_wear(problem), "plate_body")
     fatigue = _fatigue(source, problem, history, options)
-    beside = {name: _beside(source, name, problem if pair is not None else None) for name in READERS}
+    beside = {name: read(source, source.section(name)) for name, read in READERS.items() if name in source.root}
+    for name, value in beside.items():
+        check = BESIDE[name].check
+        if problem is not None and pair is not None and value is not None and check is not None:
+            _check_together(source, partial(check, problem, value), name)
     if problem is None or history is None:
         return None
     return Case(problem, history, options, title, about, wear, fatigue, **beside)
-
-
-def _beside(source: CaseText, name: str, problem: Problem | None) -> Any:
-    """The value of a section beside the problem; None without the section, or if it can't be used (reported)."""
-    value = READERS[name](source, source.section(name)) if name in source.root else None
-    if problem is not None and value is not None:
-        _check_together(source, lambda: BESIDE[name].check(problem, value), name)
-    return value
 
 
 def _fatigue(

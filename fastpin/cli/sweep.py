@@ -129,22 +129,17 @@ def check_combination(options: argparse.Namespace) -> None:
 def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None:
     """Check before the work that the table and the figure can be made and written."""
     check_outputs({"--table": options.table, "--plot": options.plot})
+    if options.envelope and (options.x or options.y or len(_values(options, plan)) > 1):
+        raise InputError("--envelope", "has axes of its own, and shows one value: leave out --x, --y and other values")
     if options.plot is not None:
         try:
             for value in _values(options, plan):
                 if options.envelope:
-                    _check_envelope(options, plan, value)
+                    report.envelope.check_envelope(plan, value)
                     continue
                 report.sweep.check_axes(plan, value, options.x, options.y)
         except InputError as error:
             raise InputError(f"--{error.field}", error.reason) from None
-
-
-def _check_envelope(options: argparse.Namespace, plan: studies.plan.Plan, value: str) -> None:
-    """Refuse what an envelope can't show: another outcome, several ones, or other axes."""
-    report.envelope.check_envelope(plan, value)
-    if options.x is not None or options.y is not None or len(_values(options, plan)) > 1:
-        raise InputError("envelope", "has axes of its own, and shows one value: leave out --x, --y and other values")
 
 
 def _values(options: argparse.Namespace, plan: studies.plan.Plan) -> list[str]:

@@ -140,6 +140,15 @@ class FatigueAssessment:
         """The keys and values of the section [fatigue] of a case file."""
         return {name: list(value) if isinstance(value, tuple) else value for name, value in self.given.items()}
 
+    def written(self) -> dict[str, Any]:
+        """The section [fatigue] with its criterion, so that it is never empty."""
+        return {"criterion": self.criteria[0] if len(self.criteria) == 1 else list(self.criteria)} | self.toml()
+
+    def stored(self) -> dict[str, Any]:
+        """All given fields, for files."""
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        return {name: value for name, value in values.items() if value is not None}
+
     def changed(self, **given: Any) -> FatigueAssessment:
         """Return the assessment with other values of some fields.
 

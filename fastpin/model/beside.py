@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import fields
 from typing import Any, NamedTuple
 
-from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment
 from fastpin.model.checks import instance
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth, check_crack, crack_from
 from fastpin.model.problem import Problem
@@ -32,8 +31,9 @@ class Beside(NamedTuple):
         The value of such entries.
     written : callable
         Entries of a value in a case file. No entries leave the section out.
-    check : callable
-        Called with the problem and a value. It raises :class:`InputError` if both do not fit.
+    check : callable or None
+        Called with the problem and a value. It raises :class:`InputError` if both do not fit. None for the fatigue: it
+        is checked with the history, by the reader of case files and by the assessment itself.
     keys : tuple of str
         All keys of the entries.
     """
@@ -43,28 +43,14 @@ class Beside(NamedTuple):
     stored: Callable[[Any], dict[str, Any]]
     read: Callable[..., Any]
     written: Callable[[Any], dict[str, Any]]
-    check: Callable[[Problem, Any], None]
+    check: Callable[[Problem, Any], None] | None
     keys: tuple[str, ...]
-
-
-def _given(how: FatigueAssessment) -> dict[str, Any]:
-    values = {each.name: getattr(how, each.name) for each in fields(how)}
-    return {name: value for name, value in values.items() if value is not None}
-
-
-def _fatigue_written(how: FatigueAssessment) -> dict[str, Any]:
-    """Entries of the section [fatigue]. It names its criterion, so that it is never empty."""
-    return {"criterion": how.criteria[0] if len(how.criteria) == 1 else list(how.criteria)} | how.toml()
-
-
-def _unchecked(problem: Problem, value: Any) -> None:
-    """The fatigue is checked with the history, by the reader of case files and by the assessment itself."""
 
 
 BESIDE = {
     "fatigue": Beside(
-        FatigueAssessment, "a FatigueAssessment", _given, FatigueAssessment, _fatigue_written, _unchecked,
-        tuple(each.name for each in fields(FatigueAssessment)),
+        FatigueAssessment, "a FatigueAssessment", FatigueAssessment.stored, FatigueAssessment,
+        FatigueAssessment.written, None, ASSESSMENT_KEYS,
     ),
     "crack": Beside(
         CrackGrowth, "a fastpin.model.CrackGrowth", CrackGrowth.entries, crack_from, CrackGrowth.entries, check_crack,
@@ -87,7 +73,9 @@ def checked_beside(problem: Problem, given: Mapping[str, Any]) -> dict[str, Any]
     """Check the sections of a run, and return the ones that are not None."""
     found = {name: value for name, value in given.items() if value is not None}
     for name, value in found.items():
-        BESIDE[name].check(problem, instance(name, value, BESIDE[name].kind, BESIDE[name].words))
+        instance(name, value, BESIDE[name].kind, BESIDE[name].words)
+        if (check := BESIDE[name].check) is not None:
+            check(problem, value)
     return found
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -50,7 +51,12 @@ def envelopes(plan: Plan, rows: Sequence[TableRow], value: str) -> list[Curve]:
             words = ", ".join(words_of(row[name]) for name, words_of in others.items())
             found.setdefault(words, []).append(_stresses(plan.case(point), row[value]))
     criterion = json.loads(plan.outcomes[value].definition)["how"]["criterion"]
-    return [_curve(criterion, words, np.array(points)) for words, points in found.items()]
+    curves = []
+    for words, points in found.items():
+        bypass, bearing = np.array(sorted(points, key=lambda point: math.atan2(*point))).T
+        parameters = {"criterion": criterion} | ({"case": words} if words else {})
+        curves.append(Curve(parameters, {BYPASS: bypass, BEARING: bearing}))
+    return curves
 
 
 def check_envelope(plan: Plan, value: str) -> None:
@@ -68,9 +74,3 @@ def _stresses(case: Case, factor: float) -> tuple[float, float]:
     along = force / size if size else np.array([0.0, -1.0])
     remote = np.array([[load["sxx"], load["sxy"]], [load["sxy"], load["syy"]]])
     return factor * float(along @ remote @ along), factor * size / (2.0 * case.problem.hole_radius)
-
-
-def _curve(criterion: str, words: str, points: np.ndarray) -> Curve:
-    bypass, bearing = points[np.argsort(np.arctan2(points[:, 0], points[:, 1]))].T
-    parameters = {"criterion": criterion} | ({"case": words} if words else {})
-    return Curve(parameters, {BYPASS: bypass, BEARING: bearing})

@@ -18,9 +18,6 @@ from fastpin.solver.errors import SolveError
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
-UNASKED = ("error_bars", "slip_sums")
-"""Options of the case that the search for the load at failure leaves out: they cost time and change no state."""
-
 
 class StrengthFound(NamedTuple):
     """The strength of a laminate in the worst state of a history.
@@ -66,7 +63,7 @@ def assess_strength(
     state, strength = damage.least_strength(states, how, progress)
     failure, reason = None, ""
     if how.failure:
-        options = {name: value for name, value in case.options.keywords().items() if name not in UNASKED}
+        options = case.options.keywords() | {"error_bars": False}  # they need another run each time
         try:
             with doubts_given():
                 failure = studies.failure_load(

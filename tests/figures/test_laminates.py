@@ -17,6 +17,7 @@ from fastpin.model.laminate import Laminate
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.points import Points
 from fastpin.model.problem import Problem
+from fastpin.model.strength import StrengthAssessment
 from fastpin.report.stress import field_curves
 from fastpin.solver.solving import solve
 from fastpin.storage import save
@@ -113,3 +114,17 @@ def test_a_map_of_the_used_strength(tmp_path: Path) -> None:
 def whole(state, point):
     stress = state.stress(point)
     return np.stack([stress.sxx, stress.syy, stress.sxy], axis=-1)
+
+
+def test_strength_as_an_assessment_says() -> None:
+    how = StrengthAssessment("yamada-sun", tension=0.5e-3, compression=1e-3)
+    state = result()[-1]
+    panel = plot_strength(state, how=how).axes[0]
+    found = joint_strength(state, "yamada-sun", tension=0.5e-3, compression=1e-3)
+    assert panel.lines[0].get_ydata().min() == pytest.approx(found.least_ratio)
+    assert "on the characteristic curve of 500\xa0µm and 1\xa0mm" in panel.figure.get_suptitle() + panel.get_title()
+    other = plot_strength(state, how=how, criterion="hashin", depth=1e-3).axes[0]
+    at = joint_strength(state, "hashin", distance=1e-3)
+    assert other.lines[0].get_ydata().min() == pytest.approx(at.least_ratio)
+    with pytest.raises(InputError, match="how: must be a"):
+        plot_strength(state, how="hashin")

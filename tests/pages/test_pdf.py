@@ -88,7 +88,7 @@ def test_sections_stand_on_the_pages_that_the_contents_and_the_outline_name(
 ) -> None:
     texts, pdf = report
     outline = [entry for entry in pdf.outline if not isinstance(entry, list)]
-    assert len(outline) == len(SECTIONS) - 2  # no seat, no crack
+    assert len(outline) == len(SECTIONS) - 3  # no seat, no crack, no strength
     for number, entry in enumerate(outline, 1):
         page = pdf.get_destination_page_number(entry) + 1
         title = str(entry.title).removeprefix(f"{number}. ")
