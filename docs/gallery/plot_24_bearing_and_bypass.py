@@ -1,6 +1,6 @@
 """
 Bearing and bypass of a laminate
-=================================
+================================
 
 In a row of bolts the plate carries the force of this bolt, and the stress that goes past. For several ratios of both,
 the load at which the first ply fails is looked for. The lines join the failures of two fits.
