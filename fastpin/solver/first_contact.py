@@ -372,6 +372,8 @@ def _first_patch(
         rough = self_similar or pinched or (system.problem.rotation == "free" and load[M] != 0.0)
         found = _one_step(system, resting, load, self_similar) if rough else _shearless_step(system, resting, load)
         if found is None or worst_residual(system, found) > MAX_RESIDUAL:
+            if self_similar:  # smaller loads have the same statuses
+                break
             part *= 0.7
             continue
         count = int(found.closed.sum())

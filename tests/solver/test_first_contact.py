@@ -12,7 +12,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, M, P, Q
-from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import first_contact, path
 from fastpin.solver.assembly import unloaded_configuration
@@ -213,3 +213,15 @@ def test_the_friction_where_the_pin_touches_limits_a_moment(titanium_in_aluminiu
         return
     now, _ = first_contact.first_contact(system, nothing, 0.0 * after, after)
     assert np.cos(system.grid.theta[now.closed]).max() < 0.0
+
+
+def test_a_neat_fit_that_no_arc_can_hold_is_tried_once_at_each_grid(monkeypatch):
+    """In a neat fit smaller loads have the same statuses. Under compression the pin touches at both sides."""
+    tried = []
+    one_step = first_contact._one_step
+    monkeypatch.setattr(first_contact, "_one_step", lambda *given: (tried.append(given), one_step(*given))[1])
+    pair = MaterialPair(MATERIALS["Ti-6Al-4V"], Material(54e9, 0.31), "stress")
+    problem = Problem(pair, 3e-3, 0.0, 0.2)
+    state = solve(problem, [{"P": 0.75e6, "syy": -97e6}, {"P": 1.5e6, "syy": -195e6}], nodes=61)[-1]
+    assert len(tried) < 12
+    assert max(state.residuals.values()) < 1e-12
