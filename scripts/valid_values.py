@@ -176,6 +176,7 @@ class Valid:
         self._bushed = bushed
         self._with_constants = fastpin.solve(steel, cycle_in_newtons, nodes=NODES)  # of the plate, for fatigue
         self.objects |= {
+            "StressReserve": _always(self._with_constants.assessed_reserves()[0]),
             "BushFit": _always(bushed.bush_fit()),
             "GrowthLaw": _always(law),  # the class alone has no rate
             "Session": session.copy,

@@ -1,12 +1,13 @@
 """Strength of laminates: criteria of ply failure, first-ply failure, and criteria at a distance from a hole.
 
 A criterion has a function f of the stresses of a ply in its own axes, and the ply fails where f = 1. Two numbers tell
-how far it is away:
+how far it is away.
 
-* The *failure index* is f at the given stresses. It grows with the stresses, but not in proportion, for most f are
-  quadratic. By Tsai and Wu and by Hashin it may be negative.
-* The *strength ratio* R is the factor on all stresses, and so on a single load, at which f = 1. It is infinite without
-  stress. It doubles when the stresses halve. A ply fails where R is at most 1.
+The failure index is f at the given stresses. It grows with the stresses, but not in proportion, for most f are
+quadratic. By Tsai and Wu and by Hashin it may be negative.
+
+The strength ratio R is the factor on all stresses, and so on a single load, at which f = 1. It is infinite without
+stress. It doubles when the stresses halve. A ply fails where R is at most 1.
 
 These are criteria of stresses in plies that are stuck together. They say nothing of delamination and free edges, of
 stresses through the thickness, of residual stresses from curing, nor of the load that a laminate carries after its
