@@ -9,8 +9,9 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from fastpin.errors import InputError
 from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment
-from fastpin.model.checks import instance
+from fastpin.model.checks import as_toml, choice, instance
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth, check_crack, crack_from
 from fastpin.model.problem import Problem
 from fastpin.model.strength import STRENGTH_KEYS, StrengthAssessment, check_strength
@@ -71,6 +72,10 @@ def beside_of(case: Any) -> dict[str, Any]:
 
 def checked_beside(problem: Problem, given: Mapping[str, Any]) -> dict[str, Any]:
     """Check the sections of a run, and return the ones that are not None."""
+    if not isinstance(given, Mapping):
+        raise InputError("sections", f"must map names of sections to their values, not {as_toml(given)}")
+    for name in given:
+        choice("sections", name, tuple(BESIDE))
     found = {name: value for name, value in given.items() if value is not None}
     for name, value in found.items():
         instance(name, value, BESIDE[name].kind, BESIDE[name].words)

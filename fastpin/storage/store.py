@@ -18,6 +18,7 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.model.beside import checked_beside
 from fastpin.model.checks import (
     as_toml,
     file_path,
@@ -107,6 +108,7 @@ def save(
     """
     instance("result", result, Result, "a Result")
     true_or_false("restart", restart)
+    sections = checked_beside(result.problem, sections)
     if error is not None:
         string("error", error)
     path = file_path("path", path)
