@@ -16,6 +16,7 @@ from functools import cached_property
 
 import numpy as np
 
+from fastpin.elasticity.convolution import spectra
 from fastpin.kernels import influence, toeplitz
 from fastpin.model.grid import Grid
 from fastpin.runtime.extensions import fft
@@ -45,18 +46,34 @@ class AnisotropicTerm:
         away, width = spacing * np.arange(n), np.array([spacing])
         return np.ascontiguousarray((np.exp(-1j * away) * _hats(away, np.zeros(1), width, width)[:, 0]).real)
 
+    @cached_property
+    def _half_hats(self) -> np.ndarray:
+        """The columns D of the first and the last node of an arc, complex, shape (n, 2)."""
+        return self._plain(np.array([0, self.grid.size - 1]))
+
+    @cached_property
+    def _spectrum(self) -> tuple[int, np.ndarray]:
+        """The period of a convolution with the even k, and the transform of k, real."""
+        period, found = spectra(self.by_distance[None], (1.0,), self.grid.closed)
+        return period, np.ascontiguousarray(found[0].real)
+
     def columns(self, nodes: np.ndarray) -> np.ndarray:
         """The columns D of the `nodes` (k,), complex, shape (n, k)."""
-        theta = self.grid.theta
         if not self.grid.uniform:
             return self._plain(nodes)
-        n = theta.size
+        n = self.grid.size
         found: np.ndarray = self._factor * np.outer(self._turn, self._turn[nodes])
         found *= self.by_distance[np.abs(np.arange(n)[:, None] - nodes)]
-        if not self.grid.closed:  # the half hats at the ends
-            ends = np.flatnonzero((nodes == 0) | (nodes == n - 1))
-            if ends.size:
-                found[:, ends] = self._plain(nodes[ends])
+        if not self.grid.closed:
+            for end, node in enumerate((0, n - 1)):
+                found[:, nodes == node] = self._half_hats[:, [end]]
+        return found
+
+    def diagonal(self) -> np.ndarray:
+        """The entries D_ii, complex, shape (n,), on equally spaced nodes."""
+        found: np.ndarray = self._factor * self._turn**2 * self.by_distance[0]
+        if not self.grid.closed:
+            found[[0, -1]] = self._half_hats[[0, -1], [0, 1]]
         return found
 
     def _plain(self, nodes: np.ndarray) -> np.ndarray:
@@ -74,7 +91,7 @@ class AnisotropicTerm:
             whole[..., [0, -1]] = 0.0
         moved = self._factor * self._turn * self._convolved(whole)
         if not self.grid.closed and both[..., [0, -1]].any():
-            moved = moved + both[..., [0, -1]] @ self.columns(np.array([0, n - 1])).T
+            moved = moved + both[..., [0, -1]] @ self._half_hats.T
         return np.concatenate([moved.real, -moved.imag], axis=-1).T
 
     def add_entries(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
@@ -84,23 +101,17 @@ class AnisotropicTerm:
         """
         n = self.grid.size
         for place, column in enumerate(columns.tolist()):
-            if not self.grid.closed and column % n in (0, n - 1):  # a half hat
-                moved = self.columns(np.array([column % n]))[rows % n, 0] * (1j if column >= n else 1.0)
+            if not self.grid.closed and column % n in (0, n - 1):
+                moved = self._half_hats[rows % n, int(column % n > 0)] * (1j if column >= n else 1.0)
                 out[:, place] += np.where(rows >= n, -moved.imag, moved.real)
             else:
                 toeplitz.add_turned_column(self.by_distance, self._turn, self._factor, rows, column, out[:, place])
 
     def _convolved(self, values: np.ndarray) -> np.ndarray:
         """The convolution of k and `values` (..., n), complex."""
-        n, k = self.grid.size, self.by_distance
-        period = n if self.grid.closed else fft.next_fast_len(2 * n - 1, real=True)
-        kernel = np.zeros(period)
-        kernel[:n] = k
-        if not self.grid.closed:
-            kernel[period - n + 1 :] = k[:0:-1]
-        spectrum = fft.rfft(kernel, workers=1).real
+        period, spectrum = self._spectrum
         parts = fft.rfft(np.stack([values.real, values.imag]), period, workers=1) * spectrum
-        real, imag = fft.irfft(parts, period, workers=1)[..., :n]
+        real, imag = fft.irfft(parts, period, workers=1)[..., : self.grid.size]
         return np.asarray(real + 1j * imag)
 
     def add_to(self, matrix: np.ndarray) -> None:

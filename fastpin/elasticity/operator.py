@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.elasticity.anisotropy import AnisotropicTerm
+from fastpin.elasticity.convolution import spectra
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels import influence, toeplitz
@@ -158,22 +159,10 @@ class ToeplitzOperator(Operator):
         n = blocks.shape[2]
         super().__init__(2 * n)
         self._closed, self._left, self._right = closed, left, right
-        first, second, cross = influence.by_distance(blocks, closed)
-        self._by_distance = np.array([first, second, cross])
+        self._by_distance = np.array(influence.by_distance(blocks, closed))
         self._half_hat = np.zeros((4, 0)) if closed else np.ascontiguousarray(blocks[..., 0].reshape(4, n))
-        # On a circle the convolution is periodic. On an arc its period has room for all distances of either sign.
-        self._period = n if closed else fft.next_fast_len(2 * n - 1, real=True)
-        self._even, self._odd = self._spectra(first, second, cross)
-
-    def _spectra(self, first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The transforms of two even kernels, real, shape (2, m), and of an odd one, imaginary, shape (m,)."""
-        n, period = first.size, self._period
-        kernels = np.zeros((3, period))
-        kernels[:, :n] = first, second, cross
-        if not self._closed:
-            kernels[:, period - n + 1 :] = np.array([[1.0], [1.0], [-1.0]]) * kernels[:, n - 1 : 0 : -1]
-        spectra = fft.rfft(kernels, workers=1)
-        return np.ascontiguousarray(spectra[:2].real), 1j * spectra[2].imag
+        self._period, found = spectra(self._by_distance, (1.0, 1.0, -1.0), closed)
+        self._even, self._odd = np.ascontiguousarray(found[:2].real), 1j * found[2].imag
 
     def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
         n, period = self.size // 2, self._period
@@ -234,7 +223,7 @@ class AnisotropicOperator(Operator):
         self._term.add_entries(rows, columns, out)
 
     def diagonal(self) -> np.ndarray:
-        own = np.array([self._term.columns(np.array([node]))[node, 0].real for node in range(self.size // 2)])
+        own = self._term.diagonal().real
         return self._base.diagonal() + np.r_[own, -own]
 
 

@@ -53,7 +53,7 @@ def test_columns_of_unequal_spacings_are_the_same():
 
 @pytest.mark.parametrize("spacing", ["equal", "unequal"])
 def test_a_uniform_pressure_widens_the_hole_by_lambda_less_s(spacing):
-    """v = (Lambda - s) e_r R p: exact, but for the symmetric form, whose error is of second order."""
+    """v = (Lambda - s) e_r R p: exact, except in the symmetric form, whose error is of second order."""
     errors = []
     for nodes in (100, 200):
         grid = Grid.circle(nodes)
