@@ -58,7 +58,7 @@ def ply_stresses(state: State, points: Points) -> np.ndarray:
         If the plate is no laminate with plies, or a point lies outside it.
     """
     instance("state", state, State, "a fastpin.State")
-    return laminate_of(state.problem).ply_stresses(_whole(state, points))
+    return laminate_of(state.problem).ply_stresses(state.stress(points).in_plane)
 
 
 def laminate_of(problem: Problem) -> Laminate:
@@ -67,12 +67,6 @@ def laminate_of(problem: Problem) -> Laminate:
     if found is None:
         raise InputError("plate", "must be a laminate with plies that have strengths")
     return found
-
-
-def _whole(state: State, points: Points) -> np.ndarray:
-    """The mean stresses (s_x, s_y, s_xy) through the thickness, Pa, shape (..., 3)."""
-    stress = state.stress(points)
-    return np.stack([stress.sxx, stress.syy, stress.sxy], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,7 +173,7 @@ def joint_strength(
         away = 0.5 * math.pi * np.linspace(-1.0, 1.0, AROUND // 2 + 1)
         theta, radius = direction + away, state.problem.hole_radius
         depth = characteristic_radius(away, radius, **lengths) - radius
-    found = first_ply_failure(plate, _whole(state, Points.at_depth(depth, theta)), criterion)
+    found = first_ply_failure(plate, state.stress(Points.at_depth(depth, theta)).in_plane, criterion)
     return JointStrength(theta, depth, found.ratio, found.ply, found.mode, direction, plate)
 
 

@@ -62,6 +62,11 @@ class Stress:
         """Shear stress in the directions x and y."""
         return self._half_difference * np.sin(2.0 * self.theta) + self.shear * np.cos(2.0 * self.theta)
 
+    @property
+    def in_plane(self) -> np.ndarray:
+        """The components (sxx, syy, sxy), shape (..., 3)."""
+        return np.stack([self.sxx, self.syy, self.sxy], axis=-1)
+
     @cached_property
     def principal(self) -> np.ndarray:
         """The three principal stresses, largest first, shape (..., 3)."""

@@ -185,12 +185,11 @@ def field_curves(
             below = radius * (min(outer, math.inf if far is None else far) - 1.0) * part**2
         else:  # The force may act at a solid pin's centre, where the stress is infinite.
             below = radius * (1.0 - (far or 0.001)) * (1.0 - part) ** 2
-        points = Points.at_depth(below, theta)
+        found = state.stress(Points.at_depth(below, theta), each)
         if component == UTILIZATION:
-            values, name = _utilization(state, points), FIELDS[component]
+            values, name = 1.0 / first_ply_failure(laminate_of(state.problem), found.in_plane).ratio, FIELDS[component]
         else:
-            values = component_of(state.stress(points, each), component)
-            name = f"{FIELDS[component]} [{unit['traction'].name}]"
+            values, name = component_of(found, component), f"{FIELDS[component]} [{unit['traction'].name}]"
         distance = radius + below if each == "plate" else radius - below
         columns = {
             f"radius [{unit['length'].name}]": np.broadcast_to(distance, values.shape).ravel(),
@@ -199,11 +198,3 @@ def field_curves(
         }
         curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
     return curves
-
-
-def _utilization(state: State, points: Points) -> np.ndarray:
-    """1 over the strength ratio of the first ply of a laminate, in the shape of the points."""
-    stress = state.stress(points)
-    whole = np.stack([stress.sxx, stress.syy, stress.sxy], axis=-1)
-    used: np.ndarray = 1.0 / first_ply_failure(laminate_of(state.problem), whole).ratio
-    return used
