@@ -245,8 +245,10 @@ def ply_failure(laminate: Laminate, stress: ArrayLike, criterion: PlyCriterion =
     """
     evaluate = PLY_CRITERIA[choice("criterion", criterion, CRITERION_NAMES)]
     known = instance("laminate", laminate, Laminate, "a fastpin.model.Laminate")
-    found = [evaluate(each, ply) for each, (ply, _) in zip(known.ply_stresses(stress), known.plies, strict=True)]
-    return PlyFailure(*(np.array([getattr(each, name) for each in found]) for name in ("index", "ratio", "mode")))
+    stresses = dict(zip(known.plies, known.ply_stresses(stress), strict=True))  # equal plies have equal stresses
+    found = {layer: evaluate(each, layer[0]) for layer, each in stresses.items()}
+    each_ply = [found[layer] for layer in known.plies]
+    return PlyFailure(*(np.array([getattr(each, name) for each in each_ply]) for name in ("index", "ratio", "mode")))
 
 
 def first_ply_failure(laminate: Laminate, stress: ArrayLike, criterion: PlyCriterion = "hashin") -> FirstPly:
