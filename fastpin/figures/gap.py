@@ -12,11 +12,10 @@ from matplotlib.lines import Line2D
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import angle_axis, draw_zero, line
-from fastpin.figures.subjects import Subject
+from fastpin.figures.subjects import Subject, problem_of
 from fastpin.figures.words import ANGLE, caption, quantity
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
-from fastpin.model.checks import as_toml
 from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import units
@@ -52,9 +51,7 @@ def gap_plot(subject: Subject) -> Plot:
 
 def gap_of(joint: Problem | Case | Result) -> Plot:
     """Return the profiles along the rim of a joint, see :func:`plot_gap`."""
-    if not isinstance(joint, (Problem, Case, Result)):
-        raise InputError("joint", f"must be a Problem, Case or Result, not {as_toml(joint)}")
-    problem = joint if isinstance(joint, Problem) else joint.problem
+    problem = problem_of(joint)
     if not problem.profiles:
         raise InputError("gap", "there is no initial gap, and the friction is the same all round")
     curve = profile_curve(problem)

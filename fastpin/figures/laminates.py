@@ -14,15 +14,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.damage.hole_strength import JointStrength, joint_strength, laminate_of
-from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.states import DrawnStates, name_states, state_lines
 from fastpin.figures.style import angle_axis, line
-from fastpin.figures.subjects import InMemory, Subject
+from fastpin.figures.subjects import InMemory, Subject, problem_of
 from fastpin.figures.words import ANGLE, quantity, short
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
-from fastpin.model.checks import as_toml, instance
+from fastpin.model.checks import instance
 from fastpin.model.laminate import Laminate, in_axes
 from fastpin.model.ply import PlyCriterion
 from fastpin.model.problem import Problem
@@ -65,9 +64,7 @@ def stiffness_plot(subject: Subject) -> Plot:
 
 def stiffness_of(joint: Problem | Case | Result) -> Plot:
     """Return the stiffness of a laminate in all directions, see :func:`plot_stiffness`."""
-    if not isinstance(joint, (Problem, Case, Result)):
-        raise InputError("joint", f"must be a Problem, Case or Result, not {as_toml(joint)}")
-    problem = joint if isinstance(joint, Problem) else joint.problem
+    problem = problem_of(joint)
     plate = laminate_of(problem)
     curve = stiffness_curve(plate, "1/beta*" if problem.dimensionless else PASCAL.name)
     words = "Young's modulus and shear modulus of the laminate by direction"
@@ -97,12 +94,11 @@ def _draw_stiffness(look: Look, problem: Problem, plate: Laminate, curve: Curve)
         factor, label = (1.0, "1/β*") if problem.dimensionless else PASCAL.scale([float(values.max())])
         panel.set_theta_zero_location("S")
         panel.plot(along, factor * values, **line(place))
-        panel.set_ylim(0.0, 1.05 * factor * float(values.max()))
+        top = 1.05 * factor * float(values.max())
+        panel.set_ylim(0.0, top)
         for direction in directions:
             for turn in (0.5 * math.pi, 1.5 * math.pi):
-                panel.plot(
-                    [direction + turn] * 2, [0.0, 1.05 * factor * float(values.max())], color="0.6", linewidth=0.8
-                )
+                panel.plot([direction + turn] * 2, [0.0, top], color="0.6", linewidth=0.8)
         panel.set_thetagrids(range(0, 360, 45), [f"{from_label(angle)}°" for angle in range(0, 360, 45)], fontsize=7.0)
         panel.tick_params(axis="y", labelsize=6.5)
         panel.grid(color="0.88", linewidth=0.6)

@@ -9,7 +9,9 @@ from typing import Any
 from fastpin.errors import InputError
 from fastpin.figures.states import DrawnStates, drawn_states, stored_states
 from fastpin.model.beside import beside_of
-from fastpin.model.checks import instance
+from fastpin.model.case import Case
+from fastpin.model.checks import as_toml, instance
+from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.wear_result import WearResult
 from fastpin.states.choice import NO_CYCLE, StateChoice, span_of
@@ -108,6 +110,13 @@ class InFile:
     def wear(self) -> WearResult:
         """Raise :class:`InputError`: there is no life of wear."""
         return load_wear(self._path)
+
+
+def problem_of(joint: Problem | Case | Result) -> Problem:
+    """Return the problem of a joint. Anything else raises :class:`InputError`."""
+    if not isinstance(joint, (Problem, Case, Result)):
+        raise InputError("joint", f"must be a Problem, Case or Result, not {as_toml(joint)}")
+    return joint if isinstance(joint, Problem) else joint.problem
 
 
 Subject = InMemory | InFile
