@@ -128,6 +128,7 @@ class Bounds:
     def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
         self._problem, self._grid, self._names = problem, grid, names - set(NUMBERS)
         self._friction = problem.friction_at(grid.theta)
+        self._coupled = not Coupling.of(problem, self._friction, grid.theta).is_smooth
         self._found: dict[str, list[Pair]] = {name: [] for name in self._names}
         self._stresses = (StressBounds if problem.seat is None else JointBounds)(problem, grid, names)
         self._waiting: list[tuple[list[Nodal], np.ndarray]] = []  # until so many states make the matrices worth while
@@ -136,8 +137,7 @@ class Bounds:
     def add(self, block: StateBlock, rows: list[int]) -> None:
         """Take these rows of a block."""
         pressure, shear, status = block.nodal(rows)
-        coupled = not Coupling.of(self._problem, self._friction, self._grid.theta).is_smooth
-        peaks = pressure_bounds(self._grid, pressure, coupled)
+        peaks = pressure_bounds(self._grid, pressure, self._coupled)
         factor = 1.0 + block.loads[rows][:, FRICTION_CHANGE]
         friction, most = factor[:, None] * self._friction, factor * self._problem.most_friction
         known: dict[str, Callable[[], Pair]] = {
