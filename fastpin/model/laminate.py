@@ -22,7 +22,7 @@ from fastpin.model.checks import instance, number, number_array, positive, strin
 from fastpin.model.lamination import Stack, checked_stack, ply_strains, ply_stresses, stress_turn, whole_compliance
 from fastpin.model.layup import checked_angles, layup_text
 from fastpin.model.materials import Material, Plane
-from fastpin.model.ply import PLIES, Ply, checked_ratio, ply_from
+from fastpin.model.ply import LEAST_MODULUS, MOST_MODULUS, PLIES, Ply, checked_ratio, ply_from
 from fastpin.model.synonyms import explains_keywords
 
 ALONG_LOAD = -0.5 * math.pi
@@ -198,7 +198,7 @@ class Laminate(Material):
             If a modulus is not positive, or no stable material has these constants.
         """
         first, second, shear = (
-            number(field_, positive(field_, value), 1e-60, 1e60)
+            number(field_, positive(field_, value), LEAST_MODULUS, MOST_MODULUS)
             for field_, value in (("E1", E1), ("E2", E2), ("G12", G12))
         )
         ratio = checked_ratio(first, second, nu12)

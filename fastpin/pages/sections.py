@@ -157,7 +157,7 @@ def _count(source: Source) -> str:
 
 
 def margins(page: PageParts) -> PageSection:
-    """Return the margins of yield, bush, fatigue and crack, each with the state that governs it."""
+    """Return the margins of yield, bush, fatigue, crack and plies, each with the state that governs it."""
     source, problem = page.source, page.source.case.problem
     found = static_margins(problem, source.found, source.read)
     cycle = [] if source.cycle is None else source.cycle.states

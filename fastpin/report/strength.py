@@ -11,7 +11,7 @@ from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
-from fastpin.model.strength import StrengthAssessment
+from fastpin.model.strength import LENGTHS, StrengthAssessment
 from fastpin.model.units import printed_loads, units
 from fastpin.report.case import strength_words
 from fastpin.solver.errors import SolveError
@@ -76,19 +76,16 @@ def assess_strength(
 
 def strength_lines(found: StrengthFound) -> list[str]:
     """Return lines of text: the least strength ratio with its place and mode, and the factor on the loads."""
-    which = (
-        f"the least of {found.states:,} kept states, at load point {load_point(found.state):.6g}"
-        if found.states > 1
-        else ""
-    )
-    ratio = found.strength.least_ratio
+    ratio, words = found.strength.least_ratio, strength_words(found.state.problem, found.how)
     if not math.isfinite(ratio):
-        return [f"strength by {strength_words(found.state.problem, found.how)}: no stress"]
-    parts = [f"strength ratio {ratio:.4g} by {strength_words(found.state.problem, found.how)}", which]
-    lines = ["; ".join(filter(None, [", ".join(filter(None, parts)), place_words(found.strength)]))]
+        return [f"strength by {words}: no stress"]
+    line = f"strength ratio {ratio:.4g} by {words}"
+    if found.states > 1:
+        line += f", the least of {found.states:,} kept states, at load point {load_point(found.state):.6g}"
+    lines = [f"{line}; {place_words(found.strength)}"]
     if found.failure is not None:
-        at = f"load point {load_point(found.failure.state):.6g}" if found.states > 1 else ""
-        words = "; ".join(filter(None, [at, place_words(found.failure.strength)]))
+        at = f"load point {load_point(found.failure.state):.6g}; " if found.states > 1 else ""
+        words = f"{at}{place_words(found.failure.strength)}"
         lines.append(f"load at failure: {found.failure.factor:.4g} times all loads; {words}")
     elif found.reason:
         lines.append(f"load at failure: not found, {found.reason}")
@@ -97,9 +94,9 @@ def strength_lines(found: StrengthFound) -> list[str]:
 
 def place_words(strength: damage.JointStrength) -> str:
     """Return the place of the least ratio, its ply and its modes in words."""
-    parts = [f"at {from_bottom(strength.angle):z.2f} deg from the bottom"]
-    parts += [f"ply of {strength.ply_angle:g} deg by {strength.ply_mode}"]
-    return ", ".join(parts + ([strength.joint_mode] if strength.joint_mode else []))
+    at = f"at {from_bottom(strength.angle):z.2f} deg from the bottom"
+    parts = [at, f"ply of {strength.ply_angle:g} deg by {strength.ply_mode}", strength.joint_mode]
+    return ", ".join(filter(None, parts))
 
 
 def document(found: StrengthFound) -> dict[str, Any]:
@@ -107,7 +104,7 @@ def document(found: StrengthFound) -> dict[str, Any]:
     failure = found.failure
     return {
         "criterion": found.how.criterion,
-        **dict.fromkeys(("distance", "tension", "compression")),
+        **dict.fromkeys(LENGTHS),
         **{name: units(found.state.problem)["length"].factor * value for name, value in found.how.lengths.items()},
         "states": found.states,
         **_place(found.state, found.strength),

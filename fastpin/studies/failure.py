@@ -70,7 +70,7 @@ def failure_load(
     ----------
     problem : Problem
     history : LoadHistory or sequence of dicts
-        The loads that the factor multiplies, but for a change of friction.
+        The loads that the factor multiplies. A change of friction is kept as it is.
     criterion, distance, tension, compression
         See :func:`joint_strength`.
     over : {"end", "history"}

@@ -368,7 +368,7 @@ def _of_strength(source: CaseText, section: Section, default: StrengthAssessment
 
 
 def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
-    """Read the smallest margin of safety, or that of one kind, with the sections of the case."""
+    """Read the smallest margin of safety, of all kinds or of one kind, with the sections of the case."""
     name = _choice(section, "margin", MARGIN_QUANTITIES)
     owner = _choice(section, "body", OWNERS) if "body" in section else None
     if name is None or ("body" in section and owner is None):
