@@ -98,12 +98,12 @@ class DenseOperator(Operator):
         return product
 
     def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
-        out[...] = self.matrix[np.ix_(rows, columns)]
+        out[...] = self.matrix[rows[:, None], columns]
 
     def entries(self, rows: np.ndarray | None = None, columns: np.ndarray | None = None) -> np.ndarray:
         if rows is None:  # whole columns or rows are copied faster than their parts
             return self.matrix.copy() if columns is None else self.matrix[:, columns]
-        return self.matrix[rows] if columns is None else self.matrix[np.ix_(rows, columns)]
+        return self.matrix[rows] if columns is None else self.matrix[rows[:, None], columns]
 
     def diagonal(self) -> np.ndarray:
         return np.diagonal(self.matrix)

@@ -23,6 +23,7 @@ import numpy as np
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, make_drive
 from fastpin.elasticity.operator import DenseOperator, Operator, SoftOperator, make_operator, uniform_part
 from fastpin.elasticity.terms import BodyTerms, body_terms
+from fastpin.kernels.arrays import Equations
 from fastpin.model.grid import Grid, arc_of
 from fastpin.model.loads import ACTING, FRICTION_CHANGE, LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
 from fastpin.model.problem import Problem
@@ -202,6 +203,12 @@ class System:
         return len(self.motion_rows)
 
     @cached_property
+    def equations(self) -> Equations:
+        """The arrays of the equations for kernels, all in the order of C."""
+        arrays = self.motion, self.equilibrium, self.motion_rows, self.friction
+        return Equations(*(np.ascontiguousarray(array) for array in arrays))
+
+    @cached_property
     def interfaces(self) -> tuple[Interface, ...]:
         """All contacts of the joint. That of the pin is the first one."""
         return (Interface(self.problem, self.grid, slice(0, self.grid.size), 0, self.radius),)
@@ -309,7 +316,7 @@ class System:
         acting = self._acting
         return self.forces[:, :acting] @ load[:acting]
 
-    @property
+    @cached_property
     def _acting(self) -> int:
         """Number of loads in products."""
         columns = self.loads.shape[1]

@@ -1,4 +1,4 @@
-"""The arrays of the exchange steps: the tableau, the contact, the terms of the work and the queue of changes."""
+"""The arrays of the kernels that follow a contact: tableau, contact, equations, terms of the work, queue of changes."""
 
 from __future__ import annotations
 
@@ -65,6 +65,38 @@ class Contact(NamedTuple):
     motion: np.ndarray
     rest_slip: np.ndarray
     slip_tally: np.ndarray
+
+
+class Values(NamedTuple):
+    """Pressure, shear, gap, slip and status of each node, shape (n,), and the motion (m,): a contact or a solution."""
+
+    pressure: np.ndarray
+    shear: np.ndarray
+    gap: np.ndarray
+    slip: np.ndarray
+    status: np.ndarray
+    motion: np.ndarray
+
+
+class Equations(NamedTuple):
+    """The part of the equations that all operators share.
+
+    Attributes
+    ----------
+    motion : ndarray, shape (2n, m)
+        Maps the motion to gap and slip.
+    equilibrium : ndarray, shape (m, 2n)
+        Maps (N, T) to the conditions of equilibrium.
+    motion_rows : ndarray, shape (m, m)
+        Maps the motion to the conditions of equilibrium.
+    friction : ndarray, shape (n,)
+        Coefficient of friction at each node.
+    """
+
+    motion: np.ndarray
+    equilibrium: np.ndarray
+    motion_rows: np.ndarray
+    friction: np.ndarray
 
 
 class LoadTerms(NamedTuple):

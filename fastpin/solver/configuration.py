@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from fastpin.elasticity.system import Interface, System
+from fastpin.kernels import conditions
+from fastpin.kernels.arrays import Values
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
 from fastpin.model.loads import P, Q
 from fastpin.reading.marks import Marks
@@ -98,6 +100,11 @@ class Configuration:
         """Whether each node is in contact, bool, shape (n,)."""
         return self.status != OPEN
 
+    @property
+    def values(self) -> Values:
+        """The arrays of the contact for kernels."""
+        return Values(self.pressure, self.shear, self.gap, self.slip, self.status, self.motion)
+
 
 def embedded(
     system: System,
@@ -152,6 +159,10 @@ class Solution:
     slip: np.ndarray
     motion: np.ndarray
 
+    def under(self, status: np.ndarray) -> Values:
+        """The arrays for kernels, with the statuses (n,) under which the solution was found."""
+        return Values(self.pressure, self.shear, self.gap, self.slip, status, self.motion)
+
     def part(self, nodes: slice) -> Solution:
         """The solution at some nodes. The motion is that of all."""
         return Solution(self.pressure[nodes], self.shear[nodes], self.gap[nodes], self.slip[nodes], self.motion)
@@ -201,7 +212,7 @@ def solve_unknowns(
     known = system.load_displacement(load, active.rows)
     known[: active.normal.size] += np.broadcast_to(rest_gap, n)[active.normal]
     known[active.normal.size :] -= stuck_slip[active.tangential]
-    unknowns = active.solve(np.r_[-known, system.load_forces(load)])
+    unknowns = active.solve(np.concatenate([-known, system.load_forces(load)]))
     tractions = active.expand(unknowns)
     motion = unknowns[active.count :]
     displacement = system.displacement(tractions, motion, load, rest_gap)
@@ -316,27 +327,10 @@ def contact_residuals(system: System, configuration: Configuration) -> dict[str,
         "gap" and "slip", relative to the largest displacement; "cone" (Coulomb's law and N >= 0), relative to the
         largest pressure; "equilibrium", relative to the sum of the resultants of the absolute tractions.
     """
-    n, mu = system.grid.size, system.friction
-    pressure, shear, status = configuration.pressure, configuration.shear, configuration.status
-    tractions = np.concatenate([pressure, shear])
-    elastic = system.elastic(tractions)
-    true = system.total_displacement(elastic, configuration.motion, configuration.load, configuration.rest_gap)
-    closed, stick = status != OPEN, status == STICK
-    slipping = closed & ~stick
-    gap_error = np.where(closed, np.abs(true[:n]), np.maximum(-true[:n], 0.0))
-    slip_error = np.where(closed, np.abs(true[n:] - configuration.slip), 0.0)
-    on_cone = np.where(slipping, np.abs(shear + status * mu * pressure), np.abs(shear) - mu * pressure)
-    cone_error = np.where(closed, np.maximum(on_cone, -pressure), np.maximum(np.abs(pressure), np.abs(shear)))
-    balance = system.equilibrium @ tractions + system.motion_rows @ configuration.motion
-    balance_error = np.abs(balance - system.load_forces(configuration.load))
-    length = max(float(np.abs(elastic).max()), float(np.abs(configuration.motion).max()), 1e-300)
-    if not closed.any():
-        length = max(length, float(np.abs(system.concentric_gap).max()))
-    traction = max(float(pressure.max()), 1e-300)
-    total = max(float(np.abs(system.equilibrium) @ np.abs(tractions) @ np.ones(system.motions)), 1e-300)
-    return {
-        "gap": float(gap_error.max()) / length,
-        "slip": float(slip_error.max()) / length,
-        "cone": float(max(cone_error.max(), 0.0)) / traction,
-        "equilibrium": float(balance_error.max()) / total,
-    }
+    tractions = np.concatenate([configuration.pressure, configuration.shear])
+    load = configuration.load
+    found = conditions.residuals(
+        system.equations, configuration.values, system.elastic(tractions), system.load_displacement(load),
+        system.load_forces(load), configuration.rest_gap, system.concentric_gap,
+    )  # fmt: skip
+    return dict(zip(("gap", "slip", "cone", "equilibrium"), found, strict=True))

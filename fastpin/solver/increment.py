@@ -14,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from fastpin.elasticity.system import System
+from fastpin.kernels import conditions
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.configuration import (
     Configuration,
@@ -89,21 +90,14 @@ def _iterate(
 
 def _wanted_status(system: System, start: Configuration, solution: Solution, status: np.ndarray) -> np.ndarray:
     """The statuses for the next iteration: the present statuses, changed where the solution breaks a condition."""
-    traction_tol = TOLERANCE * max(float(np.abs(solution.pressure).max()), 1e-300)
-    slid = solution.slip - start.slip
-    length_tol = TOLERANCE * max(float(np.abs(solution.gap - start.rest_gap).max()), float(np.abs(slid).max()), 1e-300)
-    wanted = status.copy()
-    closing = (status == OPEN) & (solution.gap < -length_tol)
-    wanted[closing] = np.where(slid[closing] < 0.0, -1, 1)
-    closed = status != OPEN
-    slipping = closed & (status != STICK) & (system.friction > 0.0)
-    wanted[slipping & (status * slid < -length_tol)] = STICK
-    letting_go = (status == STICK) & (np.abs(solution.shear) > system.friction * solution.pressure + traction_tol)
-    wanted[letting_go] = np.where(solution.shear[letting_go] > 0.0, -1, 1)
-    wanted[closed & (solution.pressure < -traction_tol)] = OPEN
+    wanted = np.empty_like(status)
+    conditions.wanted_status(
+        system.friction, solution.under(status), start.slip, start.rest_gap, TOLERANCE, wanted
+    )  # fmt: skip
     for nodes in system.turning:
         if not np.any(wanted[nodes] == STICK):
-            _hold_one(wanted[nodes], status[nodes], solution.part(nodes), system.friction[nodes], slid[nodes])
+            slid = solution.slip[nodes] - start.slip[nodes]
+            _hold_one(wanted[nodes], status[nodes], solution.part(nodes), system.friction[nodes], slid)
     return wanted
 
 

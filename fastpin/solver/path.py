@@ -15,7 +15,7 @@ import numpy as np
 
 from fastpin.elasticity.operator import Operator
 from fastpin.elasticity.system import System
-from fastpin.kernels import exchange
+from fastpin.kernels import conditions, exchange
 from fastpin.kernels.arrays import Contact, LoadTerms, Queue
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import P, Q
@@ -344,10 +344,10 @@ class PathStep:
 
     def _error_of(self, elastic: np.ndarray, true: np.ndarray) -> float:
         """Largest relative error of gap and slip at the sample, whose elastic part and `true` values are given."""
-        now = self.now
-        error = true - np.concatenate([now.gap, now.slip])[self._sample]
-        length = max(float(np.abs(elastic).max()), float(np.abs(now.motion).max()), 1e-4 * float(now.gap.max()))
-        return float(np.abs(error).max()) / max(length, 1e-300)
+        now, nodes = self.now, self._sample
+        if not isinstance(nodes, slice):
+            nodes = nodes[: nodes.size // 2]
+        return conditions.drift(elastic, true, now.gap[nodes], now.slip[nodes], now.motion, now.gap.max())
 
     def _go_back(self) -> bool:
         """Go back to the last configuration that was checked, and rebuild the tableau more often from there.
@@ -413,40 +413,32 @@ class PathStep:
         if the step could go back.
         """
         system, now, n = self.system, self.now, self.system.grid.size
-        pressure, shear, motion = now.pressure.copy(), now.shear.copy(), now.motion.copy()
-        closed, stick = now.closed, now.status == STICK
-        pressure[~closed] = shear[~closed] = 0.0
-        slipping = closed & ~stick
+        loaded, forces = system.load_displacement(now.load), system.load_forces(now.load)
+        found = now.values._replace(
+            pressure=np.where(now.closed, now.pressure, 0.0), shear=np.where(now.closed, now.shear, 0.0),
+            motion=now.motion.copy(),
+        )  # fmt: skip
+        true, missing = np.empty(2 * n), np.empty(2 * n + now.motion.size)
         updates, last = int(self._queue.counts[exchange.UPDATES]), np.inf
         while True:
-            tractions = np.concatenate([pressure, shear])
-            elastic = system.operator @ tractions
-            true = system.total_displacement(elastic, motion, now.load, now.rest_gap)
+            elastic = system.operator @ np.concatenate([found.pressure, found.shear])
+            error = conditions.imbalance(
+                system.equations, found, elastic, loaded, forces, now.rest_gap, true, missing
+            )  # fmt: skip
             if last == np.inf:
                 drift = self._error_of(elastic[self._sample], true[self._sample])
                 if drift > SEVERE_DRIFT and self._go_back():
                     return None
-            balance = system.load_forces(now.load) - system.equilibrium @ tractions - system.motion_rows @ motion
-            missing = np.concatenate([-true[:n] * closed, (now.slip - true[n:]) * stick, balance])
-            # The scales are the present elastic part and force, even where an unloading has left little of them.
-            length = max(float(np.abs(elastic).max()), 1e-300)
-            force = max(float((np.abs(system.equilibrium) @ np.abs(tractions)).max()), 1e-300)
-            error = max(float(np.abs(missing[: 2 * n]).max()) / length, float(np.abs(balance).max()) / force)
             if error <= ROUNDING or not error < 0.5 * last:
                 break
             last = error
-            change = self._columns.response(missing, updates)
-            pressure += np.where(closed, change[:n], 0.0)
-            tied = change[n : 2 * n] - self._contact.tie * system.friction * change[:n]
-            shear += np.where(stick, tied, 0.0)
-            shear[slipping] = -system.friction[slipping] * now.status[slipping] * pressure[slipping]
-            motion += change[2 * n :]
+            conditions.correct(system.friction, self._contact.tie, self._columns.response(missing, updates), found)
         if not error <= MOST_ERROR:
             exact = self._exact_solution()
             if exact is not None:
                 self.rebuilds += 1
                 return exact
-        return Solution(pressure, shear, true[:n], true[n:], motion)
+        return Solution(found.pressure, found.shear, true[:n], true[n:], found.motion)
 
     def _exact_solution(self) -> Solution | None:
         """The solution of the present statuses, by a factorisation; None if the closed nodes can't hold the pin."""
@@ -475,18 +467,8 @@ def snap_to_bounds(system: System, configuration: Configuration, solution: Solut
     A pressure, shear or gap beyond its bound, or almost at it, is put exactly on the bound.
     """
     new = configuration.copy()
-    closed, stick = new.status != OPEN, new.status == STICK
-    tiny = 1e-12 * max(float(np.abs(solution.pressure).max()), 1e-300)
-    new.pressure = np.where(closed & (solution.pressure > tiny), solution.pressure, 0.0)
-    bound = system.friction * new.pressure
-    new.shear = np.where(closed, solution.shear, 0.0)
-    at_bound = stick & (np.abs(new.shear) > bound - tiny)
-    new.shear = np.where(at_bound, np.copysign(bound, new.shear), new.shear)
-    new.shear = np.where(closed & (new.pressure == 0.0), 0.0, new.shear)
-    shortest = 1e-12 * max(float(np.abs(solution.gap).max()), 1e-300)
-    new.gap = np.where(closed | (solution.gap <= shortest), 0.0, solution.gap)
-    new.slip = np.where(stick, new.slip, solution.slip)
     new.motion = solution.motion
+    conditions.put_on_bounds(system.friction, solution.under(new.status), new.values)
     return new
 
 
@@ -495,13 +477,8 @@ def _exceeds_bounds(settled: Configuration, solution: Solution) -> bool:
 
     `settled` is the configuration from :func:`snap_to_bounds`.
     """
-    stick, gaping = settled.status == STICK, ~settled.closed
-    traction, length = MOST_DRIFT * settled.pressure.max(), MOST_DRIFT * settled.gap.max()
-    return bool(
-        np.abs(settled.pressure - solution.pressure).max() > traction
-        or np.abs(settled.shear - solution.shear)[stick].max(initial=0.0) > traction
-        or np.abs(settled.gap - solution.gap)[gaping].max(initial=0.0) > length
-    )
+    traction, gap = conditions.beyond_bounds(solution.under(settled.status), settled.values)
+    return bool(traction > MOST_DRIFT * settled.pressure.max() or gap > MOST_DRIFT * settled.gap.max())
 
 
 def _is_rounding(settled: Configuration, solution: Solution) -> bool:
@@ -509,11 +486,6 @@ def _is_rounding(settled: Configuration, solution: Solution) -> bool:
 
     At a stop where gaps have opened this instant, the largest gap is itself rounding.
     """
-    stick, gaping = settled.status == STICK, ~settled.closed
-    traction = MOST_DRIFT * settled.pressure.max()
+    traction, gap = conditions.beyond_bounds(solution.under(settled.status), settled.values)
     length = ROUNDING * max(float(np.abs(solution.slip).max()), float(np.abs(solution.motion).max()))
-    return bool(
-        np.abs(settled.pressure - solution.pressure).max() <= traction
-        and np.abs(settled.shear - solution.shear)[stick].max(initial=0.0) <= traction
-        and np.abs(settled.gap - solution.gap)[gaping].max(initial=0.0) <= length
-    )
+    return bool(traction <= MOST_DRIFT * settled.pressure.max() and gap <= length)
