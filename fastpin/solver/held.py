@@ -16,13 +16,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.kernels import exchange
+from fastpin.kernels import exchange, held
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
 from fastpin.solver.neighbours import Neighbours
-from fastpin.solver.tableau import TableauMemory, expected_ties, has_turned
+from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, have_toeplitz_matrix
 
 FEW_NODES = 512
@@ -227,19 +227,6 @@ class HeldColumns:
     ) -> None:
         n, updates = system.grid.size, memory.left.shape[1]
         self._table = table
-        closed = contact.status != OPEN
-        both = np.concatenate([closed, closed])
-        displaced = system.load_displacement(load_rate)
-        given = np.concatenate([displaced, system.load_forces(load_rate)])
-        given[: 2 * n] *= -1.0 * both
-        rates = (table.matrix @ given[table.stack])[table.order]
-        rates[: 2 * n] += displaced * ~both
-        self.turned = has_turned(contact.status, rates[:n], rates[n : 2 * n], system.friction)
-        ties = expected_ties(contact, rates)
-        contact.tie[:] = ties if self.turned else np.where(np.abs(contact.status) == 1, contact.status, ties)
-        coupling = system.friction * contact.tie
-        tied = np.where(closed, coupling, 0.0)
-        rates[n : 2 * n] += tied * rates[:n]
         self.tableau = Tableau(
             matrix=table.matrix,
             order=table.order,
@@ -248,11 +235,15 @@ class HeldColumns:
             source=np.empty(updates, dtype=np.int64),
             slot=np.empty(updates, dtype=np.int64),
             delta=np.empty(updates),
-            rates=rates,
-            tied=tied,
-            drag=np.where(closed, 0.0, -coupling),
+            rates=np.empty(table.order.size),
+            tied=np.empty(n),
+            drag=np.empty(n),
             chunk=updates + 1,
         )
+        self.turned = held.begin(
+            table.matrix, table.stack, contact, system.friction, system.load_displacement(load_rate),
+            system.load_forces(load_rate), np.empty(table.order.size), self.tableau,
+        )  # fmt: skip
 
     def response(self, given: np.ndarray, updates: int) -> np.ndarray:
         """The product (2n+m,) of the tableau and the vector `given` (2n+m,).
