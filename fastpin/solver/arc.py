@@ -58,6 +58,12 @@ DIRECTIONS = 16
 """Directions in the plane of two loads. The outermost corner in each direction is an extreme corner."""
 
 
+class CoarseRun(Run):
+    """A run that finds the nodes that are ever in contact."""
+
+    is_coarse = True
+
+
 def candidate_grids(
     problem: Problem, values: np.ndarray, force: float, nodes: int, progress: RunProgress | None = None
 ) -> Iterator[Grid]:
@@ -163,7 +169,7 @@ def _touched_arc(
         circle = GAP_NODES if problem.gap else COARSE_NODES
         grid = Grid.circle(circle) if arc is None else Grid.arc(*arc, COARSE_NODES)
         try:
-            run = Run(history, System.build(problem, grid, force), SolveOptions(), progress=progress)
+            run = CoarseRun(history, System.build(problem, grid, force), SolveOptions(), progress=progress)
             run.follow()
             margin = 4
         except ArcError:
@@ -197,7 +203,8 @@ def _quick_arc(
     """
     if arc is None or arc[1] - arc[0] >= WHOLE or history.distinct()[:, REMOTE].any():
         return None
-    run = Run(history, System.build(problem, Grid.arc(*arc, QUICK_NODES), force), SolveOptions(), progress=progress)
+    system = System.build(problem, Grid.arc(*arc, QUICK_NODES), force)
+    run = CoarseRun(history, system, SolveOptions(), progress=progress)
     try:
         run.follow()
     except SolveError:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -77,6 +78,25 @@ MOST_TRIALS = 30
 
 LEAST_PART = 1e-12
 """Smallest part of a step at which a first contact is tried."""
+
+
+class Way(NamedTuple):
+    """The step that leads to a first contact.
+
+    Attributes
+    ----------
+    begins : float
+        Fraction of the step at which the contact begins.
+    before, after : ndarray, shape (loads,)
+        Dimensionless loads at the ends of the step.
+    has_slip : bool
+        Whether the slip of the first nodes is found, too.
+    """
+
+    begins: float
+    before: np.ndarray
+    after: np.ndarray
+    has_slip: bool = True
 
 
 def at_rest(
@@ -176,7 +196,12 @@ def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
 
 
 def first_contact(
-    system: System, floating: Configuration, before: np.ndarray, after: np.ndarray, strict: bool = False
+    system: System,
+    floating: Configuration,
+    before: np.ndarray,
+    after: np.ndarray,
+    strict: bool = False,
+    has_slip: bool = True,
 ) -> tuple[Configuration, float]:
     """Find the first contact on the way from load `before` to load `after`: one implicit increment from rest.
 
@@ -189,6 +214,9 @@ def first_contact(
         Dimensionless loads at the start and the end of the step.
     strict : bool
         Whether it is an error if the hole can't keep its shape while the first nodes close.
+    has_slip : bool
+        Whether the slip of the first nodes is found, too. It takes half of the time. A coarse run that only asks which
+        nodes ever touch does not need it.
 
     Returns
     -------
@@ -206,12 +234,12 @@ def first_contact(
         If the pin touches the hole outside the arc or at its end.
     """
     if isinstance(system, JointSystem):
-        return _first_contact_of_joint(system, floating, before, after, strict)
+        return _first_contact_of_joint(system, floating, before, after, strict, has_slip)
     found = at_rest(system, floating, before, after)
     if found is None:
         return release(system, floating, after), 1.0
     resting, begins = found
-    way = begins, before, after
+    way = Way(begins, before, after, has_slip)
     try:
         return _first_contact_from(system, resting, way, steady=True)
     except ResolutionError:
@@ -221,7 +249,7 @@ def first_contact(
 
 
 def _first_contact_of_joint(
-    joint: JointSystem, floating: Configuration, before: np.ndarray, after: np.ndarray, strict: bool
+    joint: JointSystem, floating: Configuration, before: np.ndarray, after: np.ndarray, strict: bool, has_slip: bool
 ) -> tuple[Configuration, float]:
     """The first contact of a pin in a bush: a loose bush comes to rest first, then the pin in the bent bush."""
     floating, begins, beginning = replace(floating, load=before), 0.0, None
@@ -229,15 +257,15 @@ def _first_contact_of_joint(
         beginning, alone = floating, joint.alone[SEAT]
         most = 1.0 if alone.concentric_gap.any() else CONFORMING_PART  # a neat one touches all round
         begun = before + most * (after - before)
-        seat, part = first_contact(alone, part_of(joint, floating, SEAT), before, begun, strict)
+        seat, part = first_contact(alone, part_of(joint, floating, SEAT), before, begun, strict, has_slip)
         if not seat.closed.any():
             return release(joint, floating, after), part
         floating, begins = with_part(joint, floating, SEAT, seat), most * part
     view = PinView(joint, floating)
     try:
-        pin, part = first_contact(view.system, view.pin, before, after, strict)
+        pin, part = first_contact(view.system, view.pin, before, after, strict, has_slip)
     except NoEquilibriumError:  # a bush that bends leaves a neat pin no room
-        both = None if beginning is None else _both_at_once(joint, beginning, (begins, before, after), seat.status)
+        both = None if beginning is None else _both_at_once(joint, beginning, Way(begins, before, after), seat.status)
         if both is None:
             raise
         return both
@@ -247,7 +275,7 @@ def _first_contact_of_joint(
 
 
 def _both_at_once(
-    joint: JointSystem, floating: Configuration, way: tuple[float, np.ndarray, np.ndarray], seat_status: np.ndarray
+    joint: JointSystem, floating: Configuration, way: Way, seat_status: np.ndarray
 ) -> tuple[Configuration, float] | None:
     """The first contacts of the pin and of a loose bush in one implicit increment; None where none is found.
 
@@ -255,14 +283,14 @@ def _both_at_once(
     part of the step at which the bush alone has its first contact, and the loads at the ends of the step.
     `seat_status` (n,) are the statuses of this contact, with which the iteration begins.
     """
-    part, before, after = way
+    part, before, after = way[:3]
     resting = floating
     for place in (PIN, SEAT):
         found = at_rest(joint.alone[place], part_of(joint, floating, place), before, after)
         if found is None or found[1] > 0.0:
             return None
         resting = with_part(joint, resting, place, found[0])
-    if all(_is_self_similar(alone, resting, (0.0, before, after)) for alone in joint.alone):
+    if all(_is_self_similar(alone, resting, way._replace(begins=0.0)) for alone in joint.alone):
         part = 1.0
     resting.status[joint.interfaces[SEAT].nodes] = seat_status
     for _ in range(MOST_TRIALS):
@@ -274,14 +302,12 @@ def _both_at_once(
     return None
 
 
-def _first_contact_from(
-    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], steady: bool
-) -> tuple[Configuration, float]:
+def _first_contact_from(system: System, resting: Configuration, way: Way, steady: bool) -> tuple[Configuration, float]:
     """The first contact from rest; see :func:`_first_patch`. On a large grid it is found on a window.
 
     `steady` says whether the hole must keep its shape while the first nodes close.
     """
-    begins, before, after = way
+    begins, before, after, _ = way
     most_part = _steady_part(system, resting, (1.0 - begins) * (after - before)) if steady else 1.0
     if not isinstance(system, LargeSystem):
         return _first_patch(system, resting, way, most_part)
@@ -340,20 +366,18 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
     return float(np.clip(place[0], 0.0, 1.0)), place[1:], held
 
 
-def _first_patch(
-    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], most_part: float
-) -> tuple[Configuration, float]:
+def _first_patch(system: System, resting: Configuration, way: Way, most_part: float) -> tuple[Configuration, float]:
     """Make one implicit increment from rest to a load whose contact spans a few nodes.
 
     Friction in one increment would leave a shear in these nodes that does not follow from the load path. So the nodes
     begin without shear, and stick. Three cases need the friction: a moment; a pin that only the remote stress holds;
     and a neat fit. In a neat fit all grows in proportion to the load, and the increment is exact.
 
-    `way` is the fraction of the step at which the contact begins, and the loads at the ends of the step. `most_part` is
-    the largest part of the rest of the step that the increment may take, unless everything grows in proportion or the
-    hole closes on the pin all round. Returned are the configuration and the fraction of the step at which it holds.
+    `most_part` is the largest part of the rest of the step that the increment may take, unless everything grows in
+    proportion or the hole closes on the pin all round. Returned are the configuration and the fraction of the step at
+    which it holds.
     """
-    begins, before, after = way
+    begins, before, after, has_slip = way
     patches = len(runs(system.grid, resting.closed))
     least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
@@ -396,10 +420,13 @@ def _first_patch(
         raise ResolutionError(NARROW)
     if reaches_end(system, found):
         raise ArcError(CUT_OFF)
-    return _begun(system, resting, found, None if rough else before + begins * (after - before)), fraction
+    begin = None if rough else before + begins * (after - before)
+    return _begun(system, resting, found, begin, has_slip), fraction
 
 
-def _begun(system: System, resting: Configuration, found: Configuration, begin: np.ndarray | None) -> Configuration:
+def _begun(
+    system: System, resting: Configuration, found: Configuration, begin: np.ndarray | None, has_slip: bool = True
+) -> Configuration:
     """The first patch `found` with its slip tally, dissipation and work since the pin was at rest.
 
     `begin` is the load (loads,) at which the contact begins, for the slip of a patch without shear; None for others.
@@ -408,7 +435,7 @@ def _begun(system: System, resting: Configuration, found: Configuration, begin: 
     if begin is None:
         begun = slip_tally_with(replace(resting, status=found.status))  # its nodes slip from there on
         found.slip_tally = slip_tally_between(replace(resting, slip_tally=begun), found)
-    elif system.has_friction:
+    elif has_slip and system.has_friction:
         found = _with_grown_slip(system, found, begin) or found
     found.dissipation += dissipated
     found.seat_dissipation += seat_dissipation_between(system, resting, found)
@@ -416,9 +443,9 @@ def _begun(system: System, resting: Configuration, found: Configuration, begin: 
     return found
 
 
-def _is_self_similar(system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray]) -> bool:
+def _is_self_similar(system: System, resting: Configuration, way: Way) -> bool:
     """Whether everything grows in proportion to the load, as in a neat fit without loads before."""
-    begins, before, after = way
+    begins, before, after, _ = way
     is_neat = not system.concentric_gap.any()
     if system.problem.gap and begins == 0.0:  # it may be neat beside the middle
         is_neat = bool(resting.gap.max() <= _rounding(system))
@@ -520,7 +547,9 @@ def _set_slip_beside(system: System, patch: Configuration, grown: Configuration,
             return False
         away = angle_between(system.grid.theta[fitted], system.grid.theta[first])
         slip = (grown.slip[fitted] - grown.slip[first] - rest[fitted]) / away**2
-        linear, constant = np.polyfit(away, slip, 1)
+        beside, mean = away - away.sum() / away.size, slip.sum() / away.size  # the line of least squares
+        linear = float(beside @ slip) / float(beside @ beside)
+        constant = mean - linear * away.sum() / away.size
         inner = inner[patch.closed[inner]]
         away = angle_between(system.grid.theta[inner], system.grid.theta[first])
         new[inner] = patch.slip[first] + rest[inner] + (constant + linear * away) * away**2

@@ -141,9 +141,13 @@ class Run:
     wears : bool
         Whether the gap changes from step to step. Then no configuration repeats, borders have no marks, and the slip
         tally counts int N |ds|.
+    is_coarse : bool
+        Whether only the nodes that are ever in contact are asked for. Then the slip of the first contact is not found,
+        and borders have no marks.
     """
 
     wears: ClassVar[bool] = False
+    is_coarse: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -334,7 +338,7 @@ class Run:
             if self._outside is not None and self._outside.is_closed(self.system, self.now):
                 raise ArcError(BEYOND)
             known = None
-            if not self.wears:
+            if not self.wears and not self.is_coarse:
                 self._mark_borders()
             if self._may_repeat:
                 known = self.repeats.recall(self.now, ends_cycle, step)
@@ -421,7 +425,8 @@ class Run:
         """Find the first contact, see :func:`first_contact`. Its friction is that of the load at which it is found."""
         friction_at = before
         for _ in range(MOST_FIRST):
-            found = first_contact(self.system.under(friction_at), self.now, before, load, self.strict)
+            system, has_slip = self.system.under(friction_at), not self.is_coarse
+            found = first_contact(system, self.now, before, load, self.strict, has_slip)
             if found[0].load[FRICTION_CHANGE] == friction_at[FRICTION_CHANGE]:
                 return found
             friction_at = found[0].load
