@@ -112,13 +112,13 @@ class Places(NamedTuple):
     circle: list[Circle]
 
     @classmethod
-    def of(cls, problem: Problem, grid: Grid, owner: str) -> Places:
-        """The points of an owner of :data:`OWNERS`. An edge in contact has points at the nodes, too."""
+    def of(cls, problem: Problem, grid: Grid, owner: str, edges_only: bool = False) -> Places:
+        """The points of an owner of :data:`OWNERS`: of all circles, or of edges only. A contact has the nodes, too."""
         around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
         nodes = grid.theta[:: -(-grid.size // 400)]  # at most 400, evenly chosen
         theta, depth, circle = [], [], []
         for one in circles(problem):
-            if one.owner == owner:
+            if one.owner == owner and (one.is_edge or not edges_only):
                 touches = one.depth == 0.0 and one.body != "seat"
                 there = np.r_[around, nodes] if touches else around
                 theta.append(there)
@@ -158,9 +158,12 @@ class MisesPeak(NamedTuple):
     circle: Circle
 
 
-def von_mises_peak(state: State, owner: str) -> MisesPeak:
-    """The largest von Mises stress of an elastic body of :data:`OWNERS`, with straight lines between the nodes."""
-    places = Places.of(state.problem, state.grid, owner)
+def von_mises_peak(state: State, owner: str, edges_only: bool = False) -> MisesPeak:
+    """The largest von Mises stress of an elastic body of :data:`OWNERS`, with straight lines between the nodes.
+
+    With `edges_only` it is the largest on the edges of the body.
+    """
+    places = Places.of(state.problem, state.grid, owner, edges_only)
     points = Points.at_depth(places.depth * state.problem.hole_radius, places.theta)
     found = state.stress(points, places.body, straight=True).von_mises
     top = int(np.argmax(found))
