@@ -74,7 +74,8 @@ def different_states(states: Sequence[State], straight: bool) -> tuple[list[Stat
         change = state.load.get("friction_change", 0.0)
         if (change, same) not in shared:
             shared[change, same] = _digest(parts, straight)
-        key = shared[change, same] + b"".join(_remote(part).tobytes() for part in parts)
+        remote = np.array([part.load.get(LOADS[place], 0.0) for part in parts for place in REMOTE])
+        key = shared[change, same] + remote.tobytes()
         order[k] = seen.setdefault(key, len(different))
         if order[k] == len(different):
             different.append(state)
@@ -152,7 +153,3 @@ def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progr
 def _components(stress: Stress) -> np.ndarray:
     """Return sxx, syy, szz and sxy, shape (4, points)."""
     return np.array([stress.sxx, stress.syy, stress.axial, stress.sxy]).reshape(4, -1)
-
-
-def _remote(state: State) -> np.ndarray:
-    return np.array([state.load.get(name, 0.0) for place, name in enumerate(LOADS) if place in REMOTE])

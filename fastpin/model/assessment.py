@@ -132,9 +132,11 @@ class FatigueAssessment:
     def given(self) -> dict[str, Any]:
         """The fields that differ from their usual values, by name. A list of one word is this word."""
         values = {each.name: getattr(self, each.name) for each in fields(self)}
-        plain = {name: value[0] if _is_single(name, value) else value for name, value in values.items()}
+        for name in ("criterion", "bodies"):
+            if isinstance(values[name], tuple) and len(values[name]) == 1:
+                (values[name],) = values[name]
         usual = {each.name: each.default for each in fields(self)}
-        return {name: value for name, value in plain.items() if value != usual[name]}
+        return {name: value for name, value in values.items() if value != usual[name]}
 
     def toml(self) -> dict[str, Any]:
         """The keys and values of the section [fatigue] of a case file."""
@@ -167,10 +169,6 @@ def _words(field: str, value: str | Sequence[str], allowed: tuple[str, ...]) -> 
     if not words or len(set(words)) < len(words):
         raise InputError(field, f"must be at least one word, each one once, not {len(words)}")
     return words
-
-
-def _is_single(name: str, value: object) -> bool:
-    return name in ("criterion", "bodies") and isinstance(value, tuple) and len(value) == 1
 
 
 def checked_knee(rule: str, knee: float | None) -> float | None:
@@ -211,7 +209,8 @@ def assessed_bodies(problem: Problem, how: FatigueAssessment, criterion: str) ->
     elastic = isotropic_bodies(problem)
     if not elastic and elastic_bodies(problem):
         isotropic_material("bodies", problem, elastic_bodies(problem)[0], CRITERION)
-    known = tuple(body for body in elastic if not _lacks(problem, body, names))
+    constants = {body: material_of(problem, body).fatigue or FatigueConstants() for body in elastic}
+    known = tuple(body for body in elastic if all(getattr(constants[body], name) is not None for name in names))
     if not known and elastic:
         _check_constants(problem, elastic[0], names, criterion)
     return known
@@ -238,11 +237,6 @@ def check_assessment(
     stops = 1 if options is None or options.keep == "corners" else options.fractions.size
     if len(history) * stops < 2:
         raise InputError("fatigue", "needs a turning point: the history has one corner only")
-
-
-def _lacks(problem: Problem, body: Body, names: Sequence[str]) -> bool:
-    given = material_of(problem, body).fatigue
-    return given is None or any(getattr(given, name) is None for name in names)
 
 
 def _check_constants(problem: Problem, body: Body, names: Sequence[str], purpose: str) -> None:

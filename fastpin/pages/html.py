@@ -13,26 +13,19 @@ FOLDER = Path(__file__).parent
 """The folder of the templates and the style sheet."""
 
 
-def _shown(value: object) -> object:
-    """Return a text of a page as it can be printed. Markup stays."""
-    return shown(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
-
-
-def _in_style(text: str) -> str:
-    """Return a text as a string of a style sheet. Letters and digits stay; all else is escaped by its number."""
-    return '"' + re.sub(r"[^A-Za-z0-9 ]", lambda found: f"\\{ord(found[0]):06x}", shown(text)) + '"'
-
-
 def html_of(page: Page) -> str:
     """Return a page as HTML. All text is escaped; only the markup of pictures is written as it is."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
-        finalize=_shown,
+        # A text is changed so that it can be printed; markup stays.
+        finalize=lambda value: shown(value) if isinstance(value, str) and not hasattr(value, "__html__") else value,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     style = (FOLDER / "page.css").read_text(encoding="utf-8")
-    head = [_in_style(text) for text in page.head]
+    # Strings of a style sheet: letters and digits stay; all else is escaped by its number.
+    escaped = [re.sub(r"[^A-Za-z0-9 ]", lambda sign: f"\\{ord(sign[0]):06x}", shown(text)) for text in page.head]
+    head = [f'"{text}"' for text in escaped]
     return environment.get_template("page.html").render(page=page, style=style, head=head) + "\n"

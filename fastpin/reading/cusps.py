@@ -258,7 +258,7 @@ class ShearNodes:
 
         None if the solutions of the half line do not show the border at this angle.
         """
-        node, offset = int(nodes[0]), self._index(int(nodes[0]), angle)
+        node, offset = int(nodes[0]), self._offset(int(nodes[0]), angle)
         place = self._border_place(nodes[::-outwards], -outwards)
         if not abs(-outwards * place - offset) <= SAME_PLACE:
             return None
@@ -424,7 +424,7 @@ class ShearNodes:
         """Exponent (T26) of the reserve at a border with its outermost `node`, and shear of this `sign` beyond."""
         return 0.5 - float(self.coupling.tilt[sign, node]) * sign * inwards
 
-    def _index(self, node: int, angle: float) -> float:
+    def _offset(self, node: int, angle: float) -> float:
         """Distance of an angle from a node, in node distances."""
         left, right = self.grid.knots()
         theta = float(self.grid.theta[node])

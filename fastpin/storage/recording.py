@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
@@ -120,10 +120,14 @@ def record(
         check_start(problem, start)
     history = as_history(history)
     save_corners = _checked_corners(save_after, len(history))
-    _check_names(options)
+    for name in options:
+        if name not in OPTIONS:
+            raise unknown_keyword("record", name, OPTIONS)
     solve_options = SolveOptions(**options)
     check_options(solve_options, grid, start)
-    _check_bars(solve_options, start)
+    if solve_options.error_bars and start is not None:
+        words = "a run that continues another one has none in a file; leave them or the file out"
+        raise InputError("error_bars", words)
     task = Task(problem, history, solve_options, grid, progress, save_corners)
     if solve_options.error_bars:
         check_halves(task, start)
@@ -141,14 +145,6 @@ def record(
     if solve_options.error_bars:
         _record_coarse(path, task)
     warn_of(_pressure_doubts(path, task), 2)
-
-
-def _check_bars(options: SolveOptions, start: Result | None) -> None:
-    """Refuse error bars of a run in a file that continues another one."""
-    if options.error_bars and start is not None:
-        raise InputError(
-            "error_bars", "a run that continues another one has none in a file; leave them or the file out"
-        )
 
 
 def _checked_corners(save_after: Sequence[int], count: int) -> frozenset[int]:
@@ -288,10 +284,3 @@ def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:
     """The doubts about the largest pressure and the largest stresses of the run that has been written to a file."""
     found = pressure_doubts(task.problem, task.history, [np.array([largest_pressure(path)])])
     return found + stored_yield_doubts(path, task.problem, task.history)
-
-
-def _check_names(options: Mapping[str, object]) -> None:
-    """Raise :class:`TypeError`, as Python does, if an option of :func:`record` is unknown."""
-    for name in options:
-        if name not in OPTIONS:
-            raise unknown_keyword("record", name, OPTIONS)

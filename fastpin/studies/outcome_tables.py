@@ -170,7 +170,7 @@ def outcomes_in_text(source: CaseText, folder: Path, beside: Mapping[str, Any] =
     section = source.section("outcomes")
     for name in section.table:
         value = section.value(name)
-        if fault := _name_fault(name) or _double_fault(name, found):
+        if fault := _name_fault(name, found):
             section.report(fault, str(name))
             continue
         try:
@@ -206,8 +206,8 @@ def has_strengths(outcomes: Outcomes) -> bool:
     return any(outcome.has_strengths for outcome in outcomes.values())
 
 
-def _name_fault(name: object) -> str:
-    """Return the fault of an outcome's name; empty if there is none."""
+def _name_fault(name: object, others: Outcomes) -> str:
+    """Return the fault of an outcome's name beside `others`; empty if there is none."""
     if not isinstance(name, str) or not re.fullmatch(rf"[A-Za-z][A-Za-z0-9_]{{,{LONGEST_NAME - 1}}}", name):
         return (
             f"{as_toml(name)}: the name of an outcome is a letter, then letters, digits and underscores, at most "
@@ -215,12 +215,7 @@ def _name_fault(name: object) -> str:
         )
     if name.lower() in RUN_COLUMNS:
         return f"{name}: is a column of every sweep; choose another name"
-    return ""
-
-
-def _double_fault(name: str, found: Outcomes) -> str:
-    """Return the fault of a name that differs from another name in its capital letters only; empty if there is none."""
-    other = next((other for other in found if other.lower() == name.lower()), None)
+    other = next((other for other in others if other.lower() == name.lower()), None)
     return f"{name}: there is {other} already; capital letters make no difference" if other else ""
 
 
