@@ -13,9 +13,6 @@ from fastpin.report.curves import Curve
 AGREES = "agrees to the digits printed"
 """The verdict on a number that differs by at most one unit of the last digit printed."""
 
-WORDS = ("differs", "open", "comparison only", "misprint")
-"""Words that begin the verdict on other numbers."""
-
 
 @dataclass(frozen=True)
 class Row:
@@ -29,7 +26,7 @@ class Row:
     ours : float
         fastpin's number, in `unit`.
     why : str
-        The verdict if the numbers differ. It begins with one of :data:`WORDS`.
+        The verdict if the numbers differ. It begins with "differs", "open", "comparison only" or "misprint".
     last_digit : float, optional
         A unit of the last digit of the published number, where it is not a decimal one.
     """

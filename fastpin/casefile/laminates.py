@@ -18,11 +18,6 @@ from fastpin.model.synonyms import closest
 KINDS = {"layup": ("layup", "ply"), "E1": MODULI, "compliance": ("compliance",)}
 """The ways to give a laminate: the key that names the way, and all its keys."""
 
-NO_MEANING = ("fatigue", "growth", *STRENGTHS)
-"""Keys of an isotropic material that a laminate has no use for."""
-
-_HARMLESS = {**dict.fromkeys(PLY_KEYS, 1.0), "nu12": 0.0, "name": "", "source": ""}
-
 
 def read_laminate(source: CaseText, section: Section) -> Laminate | None:
     """The laminate of [plate]; None if it can't be used (reported)."""
@@ -34,7 +29,7 @@ def read_laminate(source: CaseText, section: Section) -> Laminate | None:
         )
         return None
     for key in (*MATERIAL_KEYS, *LAMINATE_KEYS):
-        if key in section and key in NO_MEANING:
+        if key in section and key in ("fatigue", "growth", *STRENGTHS):
             section.report(f"{key}: has no meaning for a laminate", key)
         elif key in section and key not in (*KINDS[way], "axis"):
             section.report(f"[plate]: {key} can't be given together with {way}", key)
@@ -89,4 +84,5 @@ def _ply(source: CaseText, section: Section, given: Any) -> Ply | None:
             inner.report(f'unknown key "{key}" in ply of [{section.name}]{hint}', key)
         elif key in STRENGTH_KEYS and "load_parameter" in source.section("contact"):
             inner.report(f"{key}: has no meaning with load_parameter, for the stresses have no unit", key)
-    return inner.build(ply_from, {key: inner.value(key) for key in PLY_KEYS if key in inner}, _HARMLESS)
+    harmless = {**dict.fromkeys(PLY_KEYS, 1.0), "nu12": 0.0, "name": "", "source": ""}
+    return inner.build(ply_from, {key: inner.value(key) for key in PLY_KEYS if key in inner}, harmless)

@@ -23,9 +23,6 @@ from fastpin.model.laminate import LAMINATE_KEYS
 from fastpin.model.materials import MATERIALS, STRENGTHS, Material, MaterialPair
 from fastpin.model.synonyms import closest
 
-DUNDURS_KEYS = ("alpha", "beta", "nu_pin", "convention", "beta_star")
-"""Keys of [dundurs]."""
-
 FILE_KEYS = ("E", "nu", "yield_strength", "ultimate_strength", "fatigue", "growth", "source")
 """Keys of a material in a file of materials."""
 

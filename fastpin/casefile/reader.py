@@ -20,7 +20,7 @@ from fastpin.casefile.assessment import read_assessment
 from fastpin.casefile.beside import READERS
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
-from fastpin.casefile.materials import DUNDURS_KEYS, known_materials, read_pair
+from fastpin.casefile.materials import known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
@@ -46,7 +46,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "about": tuple(field.name for field in fields(About)),
     "pin": MATERIAL_KEYS,
     "plate": (*MATERIAL_KEYS, *LAMINATE_KEYS),
-    "dundurs": DUNDURS_KEYS,
+    "dundurs": ("alpha", "beta", "nu_pin", "convention", "beta_star"),
     "contact": (
         *("plane", "hole_radius", "clearance", "load_parameter"),
         *(name for name, each in FIELDS.items() if name not in ("hole_radius", "clearance") and not each.has_section),
@@ -66,7 +66,6 @@ ROOT_KEYS = ("title", "materials")
 
 T = TypeVar("T")
 
-_DEFAULTS = SolveOptions()
 
 _SIZES: dict[str, Any] = {
     each.name: each.default
@@ -381,7 +380,7 @@ def _about(section: Section) -> About:
 
 def _options(section: Section) -> SolveOptions:
     given = {key: section.value(key) for key in KEYS["solve"] if key in section}
-    harmless = _DEFAULTS.keywords()
+    harmless = SolveOptions().keywords()
     if "increments" in given:
         harmless["method"] = "increment"  # replaces a wrong method, so that its increments are not reported as well
-    return section.build(SolveOptions, given, harmless) or _DEFAULTS
+    return section.build(SolveOptions, given, harmless) or SolveOptions()

@@ -14,7 +14,7 @@ from fastpin.cli.terminal import check_outputs, flag, say, write_files, write_te
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
-from fastpin.model.growth import LAW_KEYS
+from fastpin.model.growth import LAWS
 from fastpin.report.crack_growth import case_growth, growth_curve, growth_line, growth_table, spectrum_stops
 from fastpin.report.curves import write_csv
 from fastpin.states.choice import NO_CYCLE, span_of
@@ -88,7 +88,8 @@ def _how(options: argparse.Namespace, case: Case) -> CrackGrowth:
     given = {"first": options.first, "last": options.last, "theta": options.at, "body": options.body}
     given |= {"angle": options.angle}
     entries |= {name: value for name, value in given.items() if value is not None}
-    law = {name: value for name in LAW_KEYS if (value := getattr(options, name, None)) is not None}
+    keys = dict.fromkeys(["law", *(name for _, names, _ in LAWS.values() for name in names)])
+    law = {name: value for name in keys if (value := getattr(options, name, None)) is not None}
     if law:
         entries["law"] = {"law": "walker"} | law
     return crack_from(**entries)

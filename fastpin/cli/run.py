@@ -60,9 +60,6 @@ if TYPE_CHECKING:  # they import compiled code
     from fastpin.report.assessment import Assessed
     from fastpin.states.load_cycle import LoadCycle
 
-LISTS = ("arc", "between")
-"""Options that take a number or a list of numbers, written with commas."""
-
 
 def run(options: argparse.Namespace) -> int:
     """Solve a case, and write its states."""
@@ -156,7 +153,8 @@ def _ending(work: Callable[[], object]) -> solver.SolveError | solver.Interrupte
 
 def _with_options(case: Case, options: argparse.Namespace) -> Case:
     """Return the case with the solver's options of the command line in place of its own."""
-    given = {name: _value(text, name in LISTS) for name in OPTIONS if (text := getattr(options, name)) is not None}
+    texts = {name: text for name in OPTIONS if (text := getattr(options, name)) is not None}
+    given = {name: _value(text, name in ("arc", "between")) for name, text in texts.items()}  # these may be lists
     with _as_options(options):
         changed = case.options.changed(**given)
         check_keep(case.history, changed)

@@ -13,9 +13,6 @@ from fastpin.cli.sweep import check_combination, fail_interrupted, print_summary
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_files, write_text
 from fastpin.errors import InputError
 
-USUALLY_DRAWN = 3
-"""Outcomes of a figure unless ``--value`` is given: the first ones."""
-
 
 def run(options: argparse.Namespace) -> int:
     """Run all points of a tolerance plan that are not finished, then write tables and figures."""
@@ -55,7 +52,7 @@ def _check_outputs(options: argparse.Namespace, study: studies.tolerances.Tolera
     if options.scatter is not None and not study.samples:
         raise InputError("--scatter", "draws samples, and the plan has none; give it samples = 200")
     if options.value is None:
-        return [*study.plan.outcomes][:USUALLY_DRAWN]
+        return [*study.plan.outcomes][:3]
     shown = [name.strip() for name in str(options.value).split(",")]
     try:
         report.tolerances.check_outcomes(study, shown)

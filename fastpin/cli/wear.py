@@ -25,9 +25,6 @@ from fastpin.cli.terminal import (
 )
 from fastpin.errors import InputError
 
-CYCLES = "{whole} of {total:,} cycles"
-"""Text of the progress bar."""
-
 
 def run(options: argparse.Namespace) -> int:
     """Follow a life of wear, and print and write the chosen cycles."""
@@ -51,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     settings |= {"overwrite": options.overwrite, "resume": options.resume, "output": options.output}
     result: solver.WearResult | None = None
     code, trouble = EXIT_OK, None
-    with Bar(1, CYCLES) as progress_bar:
+    with Bar(1, "{whole} of {total:,} cycles") as progress_bar:
         settings |= {"progress": progress_to(progress_bar), "title": case.title}
         try:
             result = storage.wear(case.problem, case.history, **how, **settings)

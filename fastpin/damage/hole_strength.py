@@ -35,9 +35,6 @@ MODE_ENDS = (15.0, 30.0, 60.0, 75.0)
 JOINT_MODES = ("bearing", "bearing or shear-out", "shear-out", "shear-out or net section", "net section")
 """Modes of the joint between these angles; Chang, Scott and Springer. Beyond 90 deg there is no mode."""
 
-NO_FORCE = "needs a force on the pin: the characteristic curve lies about its direction"
-"""Refusal of the curve where its direction is not known."""
-
 
 def ply_stresses(state: State, points: Points) -> np.ndarray:
     """The stresses in the plies of a laminate, (s_1, s_2, t_12) along and across the fibres, Pa.
@@ -169,7 +166,8 @@ def joint_strength(
         depth = np.full(AROUND, lengths["distance"])
     else:
         if not force:
-            raise InputError("tension", NO_FORCE)
+            words = "needs a force on the pin: the characteristic curve lies about its direction"
+            raise InputError("tension", words)
         away = 0.5 * math.pi * np.linspace(-1.0, 1.0, AROUND // 2 + 1)
         theta, radius = direction + away, state.problem.hole_radius
         depth = characteristic_radius(away, radius, **lengths) - radius

@@ -21,7 +21,3 @@ class Race(IntEnum):
     def words(self) -> str:
         """The winner in words."""
         return ("no crack in any case", "wear wins", "a crack wins")[self]
-
-
-RACES = {int(race): race.words for race in Race}
-"""The words of each end of the race, by its number."""

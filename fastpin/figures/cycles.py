@@ -32,9 +32,6 @@ from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 """Marks of cycles of different lengths, which differ without colour."""
 
-CYCLE = "cycle (1: first of the history)"
-"""Words of the axis of cycles."""
-
 PERIODIC: dict[str, Any] = {"color": "0.45", "linewidth": 0.8, "linestyle": (0, (1.0, 2.0))}
 """Line of the first periodic cycle of a block."""
 
@@ -236,7 +233,7 @@ def _cycle_axis(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
     A logarithmic axis would squeeze all blocks but the first.
     """
     last = len(cycles)
-    panels[-1].set_xlabel(CYCLE)
+    panels[-1].set_xlabel("cycle (1: first of the history)")
     if last > 50 and len(consecutive_cycles(cycles)) == 1:
         for panel in panels:
             panel.set_xscale("log")

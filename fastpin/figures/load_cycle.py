@@ -44,13 +44,9 @@ from fastpin.solver.result import Result
 from fastpin.states.choice import chosen_cycles
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 
-SHADES = {NodeBehaviour.SLIPS: ("0.80", "slips at some time"), NodeBehaviour.OPENS: ("0.92", "opens at some time")}
-"""Shades of the nodes that do not stick all the time, and their names."""
-
 STRAIGHT = 3
 """States of a cycle, with both ends, between which a loop is a line. Its area tells nothing then."""
 
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 ENERGY_DIGITS = 4
 """Significant digits of areas and energies."""
@@ -163,7 +159,8 @@ def _shade(panel: Axes, cycle: LoadCycle, frame: Frame, slips: bool) -> list[Art
     middles = 0.5 * (frame.angle[1:] + frame.angle[:-1])
     ends = np.r_[frame.angle[0], middles, frame.angle[-1]]
     entries: list[Artist] = []
-    for behaviour, (shade, label) in SHADES.items():
+    shades = {NodeBehaviour.SLIPS: ("0.80", "slips at some time"), NodeBehaviour.OPENS: ("0.92", "opens at some time")}
+    for behaviour, (shade, label) in shades.items():
         shaded = cycle.behaviour[frame.order] == behaviour
         if not shaded.any() or (behaviour == NodeBehaviour.SLIPS and not slips):
             continue
@@ -400,4 +397,5 @@ def _displacement_scale(values: np.ndarray, unit: Unit) -> tuple[float, str]:
     if not 0.0 < largest < 0.1:  # longer numbers would overlap on the axis
         return factor, label
     power = math.floor(math.log10(largest))
-    return factor / 10.0**power, f"10{str(power).translate(SUPERSCRIPTS)} {label}"
+    superscripts = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+    return factor / 10.0**power, f"10{str(power).translate(superscripts)} {label}"

@@ -30,8 +30,8 @@ from fastpin.states.state import State
 HEIGHT = 0.9
 """Height of the largest traction over the circle, in radii of the hole."""
 
-INSIDE, PLIES = 0.4, "0.6"
-"""Half the length of a line in the direction of a ply, in radii of the hole, and its colour."""
+PLIES = "0.6"
+"""Colour of a line in the direction of a ply."""
 
 RINGS = 2
 """Circles of round values, about."""
@@ -100,7 +100,7 @@ def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
 def _draw_plies(panel: Axes, laminate: Laminate) -> None:
     """Draw lines in the directions of the plies, and the angles of the plies beside them."""
     for angle in sorted({angle for _, angle in laminate.plies}):
-        along = cmath.rect(INSIDE, laminate.axis + math.radians(angle))
+        along = cmath.rect(0.4, laminate.axis + math.radians(angle))  # radii of the hole
         panel.plot([-along.real, along.real], [-along.imag, along.imag], color=PLIES, linewidth=0.8)
         text = f"{angle:g}°".replace("-", "−")
         panel.text(1.2 * along.real, 1.2 * along.imag, text, color="0.3", fontsize=6.0, ha="center", va="center")

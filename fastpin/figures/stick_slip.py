@@ -19,7 +19,7 @@ from fastpin.figures.slip_extent import BOTH_WAYS, ExtentBox, MapColumn, columns
 from fastpin.figures.states import DrawnStates, Frame
 from fastpin.figures.style import line
 from fastpin.figures.subjects import InMemory, Subject
-from fastpin.figures.words import LOAD_POINT, caption, load_text, loads_by_change, short_load
+from fastpin.figures.words import caption, load_text, loads_by_change, short_load
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Status
 from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
@@ -251,7 +251,7 @@ def _add_words(sheet: Sheet, states: DrawnStates, frame: Frame, title: str, note
     panel = sheet.axes[-1, 0]
     frame.scale(panel, upright=True)
     panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
-    panel.set_xlabel(LOAD_POINT)
+    panel.set_xlabel("load point (1: first corner of the history)")
     panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True, min_n_ticks=1))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     for above in sheet.axes[:-1, 0]:

@@ -26,12 +26,7 @@ LOW: Any = {"facecolor": COLOURS[4], "edgecolor": "black", "linewidth": 0.5}
 HIGH: Any = {"facecolor": COLOURS[1], "edgecolor": "black", "linewidth": 0.5, "hatch": "////"}
 """Bars of the lower and of the upper limit. The hatch tells them apart in grey."""
 
-CORNERS: Any = {"color": "0.35", "linewidth": 1.2, "marker": "|", "markersize": 7.0}
-SAMPLES: Any = {"color": "0.35", "linewidth": 3.0, "solid_capstyle": "butt"}
 INNER: Any = {"color": "black", "linestyle": "none", "marker": "o", "markersize": 2.5}
-
-ROW = 0.27
-"""Height of a row of a tornado, inches. It holds a line of letters."""
 
 WIDE_RATIO = 10.0
 """Ratio of the largest to the smallest outcome beyond which the axis of a tornado is logarithmic."""
@@ -128,7 +123,8 @@ def samples_of(charts: Sequence[ToleranceChart]) -> Plot:
 
 def _draw_tornado(look: Look, charts: Sequence[ToleranceChart]) -> Sheet:
     rows = [len(chart.bars) + (chart.corners is not None) + bool(chart.percentiles) for chart in charts]
-    sheet = look.sheet([ROW * count + 0.35 for count in rows], extra=0.75 + 0.25 * len(charts))
+    # A row of a tornado holds a line of letters.
+    sheet = look.sheet([0.27 * count + 0.35 for count in rows], extra=0.75 + 0.25 * len(charts))
     sheet.grid("x")
     for panel, chart in zip(sheet.axes[:, 0], charts, strict=True):
         _draw_bars(panel, chart)
@@ -160,11 +156,12 @@ def _draw_bars(panel: Axes, chart: ToleranceChart) -> None:
         panel.plot(inner, np.full(len(inner), row), zorder=4, **INNER)
         _write_limits(panel, chart.nominal, row, bar.limits, (low, high))
     if chart.corners is not None:
-        panel.plot(chart.corners, [len(names)] * 2, **CORNERS)
+        panel.plot(chart.corners, [len(names)] * 2, color="0.35", linewidth=1.2, marker="|", markersize=7.0)
         names.append("all corners")
     if chart.percentiles:
         ends = min(chart.percentiles), max(chart.percentiles)
-        panel.plot([chart.percentiles[each] for each in ends], [len(names)] * 2, **SAMPLES)
+        span = [chart.percentiles[each] for each in ends]
+        panel.plot(span, [len(names)] * 2, color="0.35", linewidth=3.0, solid_capstyle="butt")
         names.append(f"samples, {ends[0]} % to {ends[1]} %")
     panel.set_yticks(range(len(names)), names, parse_math=False)
     panel.tick_params(axis="y", length=0)

@@ -31,21 +31,13 @@ from fastpin.states.curves import friction_along
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
-ARROWS = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}
-"""The direction in which the pin slips over the plate."""
-
 _SHADE = "0.9"
 
 _BAND = 0.3
 """Opacity of the bands of error bars. They are darker than the shade of slip, also in grey."""
 
-_PANEL, _ROW, _LEAST = 1.9, 0.23, 0.75
-"""Heights of a panel of curves and of a row of zones, inches, and of the words beside the rows."""
-
 _BAR = 0.46
 """Height of the bars of a zone, in parts of a row. The arrows of narrow zones stand between the bars."""
-
-_STROKE: dict[str, Any] = {"arrowstyle": "-", "linewidth": 0.7, "color": "0.15", "shrinkA": 0, "shrinkB": 0}
 
 
 def plot_tractions(
@@ -117,8 +109,8 @@ def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve], sketch: bool
     frictionless = states[0].problem.frictionless
     lines = state_lines(states)
     zones = not frictionless and len(states) > 1
-    panels = [_PANEL] if frictionless else [_PANEL, _PANEL]
-    strip = max(_ROW * len(states) + 0.15, _LEAST)
+    panels = [1.9] if frictionless else [1.9, 1.9]
+    strip = max(0.23 * len(states) + 0.15, 0.75)  # the words beside the rows need the least height
     sheet = look.sheet([*panels, strip] if zones else panels, extra=1.6, sharex=True)
     axes, frame = sheet.axes[:, 0], Frame(states)
     _draw_curves(list(axes), states, curves, lines)
@@ -242,10 +234,15 @@ def _draw_zones(panel: Axes, states: DrawnStates, lines: Sequence[Line], frame: 
 
 
 def _write_arrow(panel: Axes, x: float, y: float, sign: int, transform: Any, above: bool) -> None:
-    """Write an arrow in a zone. Above a narrow zone a stroke under the arrow points at the zone."""
+    """Write an arrow in a zone: the direction in which the pin slips over the plate.
+
+    Above a narrow zone a stroke under the arrow points at the zone.
+    """
+    arrow = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}.get(int(sign), "")
+    stroke = {"arrowstyle": "-", "linewidth": 0.7, "color": "0.15", "shrinkA": 0, "shrinkB": 0}
     panel.annotate(
-        ARROWS.get(int(sign), ""), (x, y), xycoords=transform, xytext=(0.0, 2.5 if above else 0.0),
+        arrow, (x, y), xycoords=transform, xytext=(0.0, 2.5 if above else 0.0),
         textcoords="offset points", ha="center", va="bottom" if above else "center", fontsize=7.0, color="0.15",
-        arrowprops=_STROKE if above else None,
+        arrowprops=stroke if above else None,
         annotation_clip=False,
     )  # fmt: skip

@@ -23,9 +23,6 @@ from fastpin.states.state import State
 ANGLE = "angle from the bottom of the hole, counter-clockwise (deg)"
 """Words of the axis of angles."""
 
-LOAD_POINT = "load point (1: first corner of the history)"
-"""Words of the axis of load points."""
-
 DIGITS, LOAD_DIGITS = 3, 5
 """Significant digits of a parameter in a caption, and of a load in a heading."""
 

@@ -59,12 +59,6 @@ tables."""
 NO_GESTURE = -1
 """Number for changes without a gesture. The gestures of a page are not negative."""
 
-AROUND = angle_at(np.arange(CALLED) * (360.0 / CALLED) - 180.0)
-"""Angles at which the page gets the profiles along the rim, rad: from -180 degrees from the bottom on."""
-
-UNKNOWN = (object(), object())
-"""Initial entry of what a page knows. It equals nothing."""
-
 Answer = dict[str, Any]
 
 
@@ -351,7 +345,8 @@ class LiveContact:
             "case": (self.session.problem, self._nodes), "reference": (self._reference,), "grids": (len(self._grids),)
         }  # fmt: skip
         for name, value in depends.items():
-            if any(one is not other for one, other in zip(value, self._known.get(name, UNKNOWN), strict=False)):
+            known = self._known.get(name)
+            if known is None or any(one is not other for one, other in zip(value, known, strict=True)):
                 self._known[name] = value
                 answer[name] = getattr(self, f"{name}_document")()
         return answer
@@ -420,6 +415,7 @@ def _named(given: np.ndarray) -> dict[str, float]:
 def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer:
     """A problem as the page needs it: units, sizes and shapes of the bodies, loads and controls."""
     lug, bush = problem.plate_body.lug, problem.plate_body.bush
+    around = angle_at(np.arange(CALLED) * (360.0 / CALLED) - 180.0)  # from -180 degrees from the bottom on
     return {
         "title": title,
         "units": {kind: asdict(unit) for kind, unit in units(problem).items()},
@@ -433,7 +429,7 @@ def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer
         "plate": problem.plate_body.kind,
         "bush": None if bush is None else bush.outer_radius,
         "rim": lug.outer_radius if math.isfinite(lug.outer_radius) else None,
-        "profiles": {name: packed(each.at(AROUND, problem.hole_radius)) for name, each in problem.profiles.items()},
+        "profiles": {name: packed(each.at(around, problem.hole_radius)) for name, each in problem.profiles.items()},
         "profile_words": profile_words(problem),
         "doubts": [str(doubt) for doubt in doubts(problem, None, SolveOptions())],
         "axes": vector_axes(problem, scales),

@@ -22,9 +22,6 @@ CHARTS = "vendor/uPlot.iife.min.js"
 
 LICENCE = "vendor/uPlot-LICENSE.txt"
 
-SLOT = "<!-- {} -->"
-"""A place in the HTML that is filled."""
-
 
 @lru_cache
 def page_text(name: str) -> str:
@@ -87,4 +84,4 @@ def _import_map(places: dict[str, str]) -> str:
 
 def _filled(head: list[str], scripts: list[str]) -> str:
     page = page_text("page.html")
-    return page.replace(SLOT.format("head"), "\n".join(head)).replace(SLOT.format("scripts"), "\n".join(scripts))
+    return page.replace("<!-- head -->", "\n".join(head)).replace("<!-- scripts -->", "\n".join(scripts))

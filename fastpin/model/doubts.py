@@ -120,11 +120,6 @@ TRIED_INTENSITY, LEAST_RATE, MOST_RATE = 1e7, -12.0, -4.0
 
 _GIVEN: ContextVar[bool] = ContextVar("given", default=False)
 
-_STRENGTHS = (
-    *STRENGTHS, "fatigue_strength", "shear_fatigue_strength", "bending_limit", "torsion_limit", "limit_range",
-)  # fmt: skip
-"""Constants of a material that are stresses."""
-
 
 def doubts(
     problem: Problem, history: LoadHistory | None = None, options: SolveOptions | None = None
@@ -335,7 +330,8 @@ def _of_material(name: str, material: Material, has_units: bool) -> Iterator[Inp
     if least is not None and material.ultimate_strength is not None and material.ultimate_strength < least:
         words = f"{_short(material.ultimate_strength)} Pa of the {name} is less than its yield strength"
         yield InputWarning("ultimate_strength", f"{words} of {_short(least)} Pa")
-    for field in _STRENGTHS:
+    limits = ("fatigue_strength", "shear_fatigue_strength", "bending_limit", "torsion_limit", "limit_range")
+    for field in (*STRENGTHS, *limits):  # the constants that are stresses
         if field in strengths and (value := strengths[field]) < LEAST_STRENGTH * material.E:
             yield InputWarning(
                 field,

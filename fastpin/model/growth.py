@@ -326,17 +326,16 @@ class Nasgro(GrowthLaw):
 KnownLaw = Walker | Nasgro
 """The laws that materials, case files and results can hold."""
 
-_WALKER, _NASGRO = (tuple(each.name for each in fields(law)) for law in (Walker, Nasgro))
-
 LAWS: dict[str, tuple[type[Walker] | type[Nasgro], tuple[str, ...], tuple[str, ...]]] = {
-    "paris": (Walker, tuple(name for name in _WALKER if "exponent" not in name), ("C", "m")),
-    "walker": (Walker, _WALKER, ("C", "m")),
-    "nasgro": (Nasgro, _NASGRO, ("C", "n", "p", "q", "threshold_range", "toughness")),
+    "paris": (Walker, tuple(each.name for each in fields(Walker) if "exponent" not in each.name), ("C", "m")),
+    "walker": (Walker, tuple(each.name for each in fields(Walker)), ("C", "m")),
+    "nasgro": (
+        Nasgro,
+        tuple(each.name for each in fields(Nasgro)),
+        ("C", "n", "p", "q", "threshold_range", "toughness"),
+    ),
 }
 """The laws of case files by name: the class, its constants, and those that must be given."""
-
-LAW_KEYS = tuple(dict.fromkeys(["law", *(name for _, names, _ in LAWS.values() for name in names)]))
-"""Keys of all laws."""
 
 
 def law_entries(law: KnownLaw) -> dict[str, Any]:

@@ -323,7 +323,7 @@ class LoadHistory:
         ------
         CaseFileError
             If the file can't be read, a column is missing or unknown, a unit does not fit its load, or cells are not
-            finite numbers. The error lists the first :data:`fastpin.model.history_csv.MOST_FAULTS` faulty lines.
+            finite numbers. The error lists the first :data:`fastpin.model.profile_csv.MOST_FAULTS` faulty lines.
         InputError
             If `path`, `columns` or `thickness` can't be used.
         """

@@ -19,6 +19,7 @@ from fastpin.model.csv_columns import ColumnChoice, CsvColumn, chosen_columns, n
 from fastpin.model.inputs import open_input
 from fastpin.model.load_units import Basis, is_unit, unit_name
 from fastpin.model.loads import LOADS
+from fastpin.model.profile_csv import MOST_FAULTS
 
 LONGEST_LINE = 1_000_000
 """Most characters of a line. A pipe of the shell may have no end of a line."""
@@ -34,9 +35,6 @@ A file of blank lines and comments is refused soon in this way, and any file bef
 
 SHORTEST_LINE = 100
 """Characters that a line counts at least: reading a line takes as long as some 100 characters."""
-
-MOST_FAULTS = 20
-"""Most faulty lines of a CSV file that an error lists."""
 
 
 def read_corners(path: Path, choices: Mapping[str, ColumnChoice] | None, basis: Basis) -> np.ndarray:
@@ -205,7 +203,8 @@ class _Rows:
             raise InputError(field, f"thousands must not be separated: write 1234.5, not {as_toml(cell.strip())}")
         else:
             self._comma_line = self._comma_line or line_number
-            self._commas_are_sure = self._commas_are_sure or not _THOUSANDS.fullmatch(cell.strip())
+            thousands = re.fullmatch(r"[+-]?[1-9]\d{0,2},\d{3}", cell.strip())  # 1,234: the comma may separate them
+            self._commas_are_sure = self._commas_are_sure or not thousands
         if self._point_line and self._comma_line:
             first, last = sorted((self._point_line, self._comma_line))
             words = (
@@ -224,10 +223,6 @@ class _Rows:
 
     def _refuse(self, line_number: int, words: str) -> NoReturn:
         raise CaseFileError(self._name, [(line_number, words)])
-
-
-_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
-"""A number such as 1,234: the comma may separate thousands."""
 
 
 def _is_number(text: str) -> bool:

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, get_args
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from fastpin.model.checks import (
     whole_number,
 )
 from fastpin.model.grid import Grid
-from fastpin.model.profile_csv import PROFILE_KINDS, read_samples
+from fastpin.model.profile_csv import ProfileKind, read_samples
 from fastpin.model.profile_terms import (
     MOST_ANGLE,
     MOST_ORDER,
@@ -160,7 +160,8 @@ class Profile:
         InputError
             If the samples do not go round the hole, see :meth:`samples`.
         """
-        return cls.samples(*read_samples(path, choice("quantity", quantity, PROFILE_KINDS)))  # type: ignore[arg-type]
+        kind = choice("quantity", quantity, get_args(ProfileKind))
+        return cls.samples(*read_samples(path, kind))  # type: ignore[arg-type]
 
     @classmethod
     def of(cls, place: str, value: ProfileLike) -> Profile:

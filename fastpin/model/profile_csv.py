@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from io import StringIO
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 
@@ -19,9 +19,6 @@ from fastpin.model.load_units import Basis, LoadUnit, load_unit
 ProfileKind = Literal["gap", "friction", "wear"]
 """What the values of a file are."""
 
-PROFILE_KINDS = get_args(ProfileKind)
-"""The words of :data:`ProfileKind`."""
-
 
 MOST_BYTES = 2_000_000
 """Most bytes of a file. 20,000 samples with all digits have 0.9 MB."""
@@ -30,7 +27,7 @@ MOST_ROWS = 20_001
 """Most rows: the samples of a profile, and the first one again."""
 
 MOST_FAULTS = 20
-"""Most faulty lines that an error lists."""
+"""Most faulty lines of a CSV file that an error lists."""
 
 
 def read_samples(

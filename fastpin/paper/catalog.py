@@ -49,9 +49,6 @@ BEYOND = tuple(name for name in FIGURES if name not in PAPER)
 NODES = 400
 """Number of nodes unless another one is chosen."""
 
-UNITS = "N (pressure) and T (shear on the pin) in F/R; angles from the bottom and T counter-clockwise positive"
-"""Units and signs of all columns, for the head of the CSV files."""
-
 
 def figure_name(name: str | int) -> str:
     """Return the name of a figure as in :data:`FIGURES`, from a number, "03" or any letter case.
@@ -129,5 +126,6 @@ def make(
     """
     check([name], directory, nodes, formats)
     chosen = figure(name)
-    remarks = (chosen.title, f"fastpin {__version__}, --nodes {nodes}", UNITS)
+    units = "N (pressure) and T (shear on the pin) in F/R; angles from the bottom and T counter-clockwise positive"
+    remarks = (chosen.title, f"fastpin {__version__}, --nodes {nodes}", units)
     return write_files(chosen.compute(nodes, progress), chosen.draw, stem(name), directory, remarks, formats)

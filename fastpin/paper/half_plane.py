@@ -48,7 +48,6 @@ from fastpin.verification import closed_forms
 LEVELS = (0.05, 0.01)
 """Relative errors at which a formula counts as right."""
 
-SIMILAR = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])
 FRICTION, LOW_FRICTION = 0.5, 0.2
 RATIO = 0.6
 """Q/(mu P)"""
@@ -145,7 +144,8 @@ def like_errors(load_parameter: float, friction: float, nodes: int, ratio: float
     Hertz and bulk stress need `friction` = FRICTION, bulk stress also `ratio` = RATIO and an L_p of at least 1. For
     smaller L_p the stress drives the stick zone to the edge.
     """
-    problem = Problem.from_load_parameter(SIMILAR, load_parameter, friction, "centre", "fixed")
+    similar = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])
+    problem = Problem.from_load_parameter(similar, load_parameter, friction, "centre", "fixed")
     Q = ratio * friction
     pushed, forward, back = solve(problem, [{"P": 1.0}, {"Q": Q}, {"Q": -Q}], nodes=nodes)
     half = float(closed_forms.hertz_half_angle(load_parameter))

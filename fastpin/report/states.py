@@ -39,9 +39,6 @@ from fastpin.states.state import State
 LOAD_POINT = "load point"
 """Heading of the first column."""
 
-OWN_COLUMNS = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
-"""Columns in which a state differs from the same state one cycle before: its number, a sum, and rounding."""
-
 MOST_COMPARED = 1_000
 """Most different states whose rows are compared: a row takes some 2 ms. Of more states no row is folded."""
 
@@ -120,7 +117,9 @@ def table_rows(
         return TableRows(with_rows(cut_lines(rows.size), wanted), points)
     if numbers.size < rows.size or repeats(row_numbers(tuple(state.load.values()) for state in states)):
         columns = state_columns(problem, [states[place] for place in first.tolist()])
-        cells = zip(*(cells for name, _, cells in columns if name not in OWN_COLUMNS), strict=True)
+        # A state differs from the same state one cycle before in its number, in a sum, and by rounding.
+        own = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
+        cells = zip(*(cells for name, _, cells in columns if name not in own), strict=True)
         rows = row_numbers(cells)[rows]
     return TableRows(with_rows(folded_lines(rows), wanted), points)
 

@@ -61,12 +61,6 @@ ROUNDING = 1e-11
 Values this close are equal by symmetry or equilibrium. Their bar is this rounding, without a floor.
 """
 
-MAY_BE_EXACT = ("force", "moment", "rotation", "displacement")
-"""Kinds of quantities whose values may be exact, by symmetry or equilibrium.
-
-Angles and widths are not among them: ends that are read at nodes of both grids agree without being exact.
-"""
-
 LEAST_COARSE = 51
 """Least number of nodes of the coarse grid."""
 
@@ -163,7 +157,8 @@ def _known_bar(kind: str, value: float, other: float, natural_size: float) -> fl
     if value == other == 0.0:
         return 0.0
     rounding = ROUNDING * natural_size
-    if abs(value - other) <= rounding and kind in MAY_BE_EXACT:
+    # These may be exact, by symmetry or equilibrium. Ends read at nodes of both grids agree, but are not exact.
+    if abs(value - other) <= rounding and kind in ("force", "moment", "rotation", "displacement"):
         return rounding
     return None
 

@@ -32,9 +32,6 @@ MARGINS = {
 }
 """Kinds of margins by name, each with the meaning of allowable and value."""
 
-NO_FAILURE = ("growth",)
-"""Margins below which no part fails: a crack above its threshold grows. None of them is the smallest margin."""
-
 
 class Margin(NamedTuple):
     """A margin, in SI units. What is not known is NaN, and the remark says why.
@@ -113,8 +110,11 @@ def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]
 
 
 def smallest_margin(rows: Sequence[Margin]) -> Margin | None:
-    """Return the row with the smallest margin that is known and finite, of all but :data:`NO_FAILURE`; else None."""
-    counted = (row for row in rows if math.isfinite(row.margin) and row.name not in NO_FAILURE)
+    """Return the row with the smallest margin that is known and finite; None if there is none.
+
+    The margin of growth is not counted: a crack above its threshold grows, but no part fails.
+    """
+    counted = (row for row in rows if math.isfinite(row.margin) and row.name != "growth")
     return min(counted, key=lambda row: row.margin, default=None)
 
 

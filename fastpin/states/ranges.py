@@ -6,10 +6,6 @@ import math
 import re
 from typing import NamedTuple
 
-_NUMBER = r"\d+(?:\.\d*)?|\.\d+"
-
-_RANGE = re.compile(rf"({_NUMBER})?\s*-\s*({_NUMBER})?")
-
 
 class Range(NamedTuple):
     """All numbers from one to another, both included. A single number is a range of equal ends.
@@ -41,9 +37,10 @@ def ranges_in(text: str) -> list[Range]:
     ValueError
         If a part is neither a number nor a range, is not finite, or a range ends before it begins.
     """
+    number = r"(\d+(?:\.\d*)?|\.\d+)?"
     found = []
     for part in map(str.strip, text.split(",")):
-        match = _RANGE.fullmatch(part)
+        match = re.fullmatch(rf"{number}\s*-\s*{number}", part)
         if match and (match[1] or match[2]):
             ends = Range(float(match[1] or -math.inf), float(match[2] or math.inf))
         else:

@@ -42,9 +42,6 @@ _PLAIN = re.compile(rf"CREATE TABLE \"?([a-z]+)\"? \({_COLUMN}(?:, {_COLUMN})*\)
 # The end of a journal that names a super-journal, which SQLite deletes: its length, a checksum, and these bytes.
 _MAGIC = bytes.fromhex("d9d505f920a163d7")
 
-_LEGACY = b"\x01\x01"  # Versions in the header of a file without a write-ahead log.
-_VERSIONS = slice(18, 20)
-
 
 def open_database(path: Path, mode: Mode, timeout: float = BUSY_SECONDS) -> sqlite3.Connection:
     """Open a database, and check that its tables are those of an index.
@@ -130,10 +127,10 @@ def _check_file(real: Path, path: Path) -> None:
         if not real.is_file():
             raise InputError(str(path), "must be an ordinary file")
         with real.open("rb") as file:
-            head = file.read(_VERSIONS.stop)
+            head = file.read(20)
     except OSError as error:
         raise InputError(str(path), f"can't be read: {error.strerror}") from None
-    if head.startswith(SQLITE_SIGNATURE) and head[_VERSIONS] != _LEGACY:
+    if head.startswith(SQLITE_SIGNATURE) and head[18:] != b"\x01\x01":  # the versions of a file without such a log
         raise InputError(str(path), "is no index of a sweep: it has a write-ahead log, which fastpin never makes")
 
 

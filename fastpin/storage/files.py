@@ -30,9 +30,6 @@ BESIDE_RESULT = (".journal", ".checkpoint")
 INDEX = "index.sqlite"
 """Name of the index in the directory of a sweep."""
 
-BESIDE_INDEX = ("lock", f"{INDEX}-journal")
-"""Files that a sweep keeps beside its index."""
-
 NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 """Flag of :func:`os.open`: follow no link."""
 
@@ -100,7 +97,7 @@ def _is_needed(path: Path) -> bool:
     path = Path(os.path.realpath(path))
     if path.suffix in BESIDE_RESULT:
         return path.with_suffix("").exists()
-    return path.name in BESIDE_INDEX and path.with_name(INDEX).exists()
+    return path.name in ("lock", f"{INDEX}-journal") and path.with_name(INDEX).exists()
 
 
 def no_figure(field: str, path: Path) -> InputError:

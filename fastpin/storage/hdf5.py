@@ -33,8 +33,6 @@ MOST_TEXTS = 1000
 MOST_ATTRIBUTE = 1 << 24
 """Most bytes of an attribute in the file."""
 
-_FILTERS = (h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32)
-
 
 class Attributes:
     """The attributes of a group or an array."""
@@ -86,7 +84,8 @@ class Array:
         label, how = self.name[1:], dataset.id.get_create_plist()
         if how.get_layout() == h5py.h5d.VIRTUAL or how.get_external_count():
             raise ValueError(f"{label} lies in another file, and a result is one file")
-        if any(how.get_filter(k)[0] not in _FILTERS for k in range(how.get_nfilters())):
+        filters = (h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32)
+        if any(how.get_filter(k)[0] not in filters for k in range(how.get_nfilters())):
             raise ValueError(f"{label} is packed in an unknown way")
         if math.prod(self.chunks or ()) * self.dtype.itemsize > MOST_CHUNK:
             raise ValueError(f"{label} has chunks of the shape {self.chunks}, larger than those of any result")

@@ -34,9 +34,6 @@ MOST_BYTES = 1 << 30
 MOST_NOTES = 1_000_000
 """Most records of a journal that are undone. A transaction writes a few thousand times."""
 
-# A link is not followed, and a pipe not waited for, where the system knows these flags.
-_NO_LINK = NO_LINK | getattr(os, "O_NONBLOCK", 0)
-
 
 def journal_of(path: Path) -> Path:
     """Return the path of a file's journal. It stands beside the file itself, also if `path` is a link."""
@@ -283,7 +280,8 @@ def _open_journal(path: Path, flags: int) -> int:
     kind = "read" if flags == os.O_RDONLY else "written"
     try:
         check_beside(journal)
-        file = os.open(journal, flags | _NO_LINK, 0o666)
+        # A link is not followed, and a pipe not waited for, where the system knows these flags.
+        file = os.open(journal, flags | NO_LINK | getattr(os, "O_NONBLOCK", 0), 0o666)
     except OSError as error:
         if isinstance(error, FileNotFoundError) and kind == "read":
             raise

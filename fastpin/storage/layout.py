@@ -76,9 +76,6 @@ WITH_SEAT = 5
 WITH_LAMINATE = 6
 """Version with a plate that is a laminate, for the same reason."""
 
-VERSIONS = (FORMAT_VERSION, WITH_BODIES, WITH_PROFILES, WITH_SEAT, WITH_LAMINATE)
-"""Versions that this program reads."""
-
 # Each dict below maps a stored field to its kind of quantity: a key of fastpin.model.units.units, or "" for a plain
 # number. The other fields of State are written and read one by one. Error bars come from the states in ``/coarse``.
 # A test checks that every field of State is in one of the three tables.
@@ -115,9 +112,6 @@ NUMBER_FIELDS = {
     "energy": "energy",
 }
 """Kind of quantity of each field of a state with one number."""
-
-OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "error_bars", "marks", "seat")
-"""Fields of a state that are stored in another form, or not at all."""
 
 FIELD_KINDS = {**NODE_FIELDS, **BORDER_FIELDS, **SLIP_FIELDS, **NUMBER_FIELDS}
 """Kind of quantity of each array of node values or numbers in ``/states``."""
@@ -558,7 +552,8 @@ def check_format(file: h5py.File, path: str) -> None:
     """Raise :class:`InputError` if a file is no result, or has another version of the format."""
     if file.attrs.get("format") != FORMAT:
         raise InputError(path, "is an HDF5 file, but not a result of fastpin")
-    if file.attrs.get("format_version") not in VERSIONS:
+    versions = (FORMAT_VERSION, WITH_BODIES, WITH_PROFILES, WITH_SEAT, WITH_LAMINATE)
+    if file.attrs.get("format_version") not in versions:
         made_by = file.attrs.get("version_fastpin")
         origin = "" if made_by is None else f"; it was written by fastpin {made_by}"
         raise InputError(path, f"has a format that this version of fastpin can't read{origin}")

@@ -22,8 +22,11 @@ LEAST_FORCE = 1e-145
 """Least reference force in a file, N/m; the largest is its inverse. The limits of units and loads imply it."""
 
 # Sums begin anew at a corner. Marks have arrays of another form.
-_NO_ARRAYS = ("dissipation", "work", "seat_dissipation", "slip_tally", *MARKS)
-_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in _NO_ARRAYS]
+_ARRAYS = [
+    field.name
+    for field in dataclasses.fields(Configuration)
+    if field.name not in ("dissipation", "work", "seat_dissipation", "slip_tally", *MARKS)
+]
 
 
 def write_restart(group: h5py.Group, restart: Restart) -> None:

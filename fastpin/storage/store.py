@@ -73,16 +73,12 @@ MOST_IN_MEMORY = 4_000_000
 """Most values of a node field in a file that is made in memory. Such a file has some 100 MB, and is there twice."""
 
 
-NO_SECTIONS: Mapping[str, Any] = MappingProxyType({})
-"""The sections of a case without any."""
-
-
 def save(
     result: Result,
     path: str | Path,
     error: str | None = None,
     restart: bool = True,
-    sections: Mapping[str, Any] = NO_SECTIONS,
+    sections: Mapping[str, Any] = MappingProxyType({}),
 ) -> None:
     """Write a result to an HDF5 file, whole or not at all. The coarse result behind error bars is written too.
 
@@ -151,7 +147,9 @@ def _write(
         append(group["cycles"], cycle_rows(coarse.cycles))
 
 
-def pack(result: Result, error: str | None, most: int, sections: Mapping[str, Any] = NO_SECTIONS) -> bytes | None:
+def pack(
+    result: Result, error: str | None, most: int, sections: Mapping[str, Any] = MappingProxyType({})
+) -> bytes | None:
     """Return a result in few bytes, without its restart; see packed.py. None if it needs more than `most` bytes.
 
     `error` tells why the result is incomplete.

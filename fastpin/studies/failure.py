@@ -24,9 +24,6 @@ CLOSE = 1e-6
 MOST_SOLVED = 40
 """Most histories that are solved to find it. Three or four are usual: stresses nearly grow with the load."""
 
-SCALED = tuple(name for name, kind in LOAD_KIND.items() if kind != "ratio")
-"""The loads that a factor multiplies: all but the change of friction."""
-
 
 @dataclass(frozen=True, eq=False)
 class FailureLoad:
@@ -88,9 +85,10 @@ def failure_load(
     loads = history if isinstance(history, LoadHistory) else LoadHistory(history)
     how = StrengthAssessment(criterion, distance, tension, compression)
     last = slice(-1 if choice("over", over, ("end", "history")) == "end" else 0, None)
+    scaled = [name for name, kind in LOAD_KIND.items() if kind != "ratio"]  # all but the change of friction
     factor, known = 1.0, []
     for solved in range(1, MOST_SOLVED + 1):
-        states = solver.solve(problem, loads.scaled(dict.fromkeys(SCALED, factor)), **options)[last]
+        states = solver.solve(problem, loads.scaled(dict.fromkeys(scaled, factor)), **options)[last]
         state, strength = damage.least_strength(states, how)
         ratio = strength.least_ratio
         if not math.isfinite(ratio):

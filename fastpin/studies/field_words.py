@@ -49,9 +49,6 @@ _PROFILE_WORDS = {
 }
 """Words for keys of profiles whose names are no words, or that are in degrees."""
 
-_GAP_LENGTHS = ("hole", "pin", "ellipse", "size", "flat", "crown", "constant", "cosine", "sine")
-"""Keys of gaps that are lengths."""
-
 
 def field_words(field: str) -> str:
     """Return words for a field of a case: "modulus of the pin" for "pin.E", "moment M in load 2" for "load.2.M"."""
@@ -76,5 +73,6 @@ def field_kind(field: str) -> str:
     """Return the kind of a varied field; empty if it has no unit."""
     section, key = field.split(".")[0], field.rsplit(".", 1)[-1]
     if section == "gap":
-        return "displacement" if key in _GAP_LENGTHS else ""
+        lengths = ("hole", "pin", "ellipse", "size", "flat", "crown", "constant", "cosine", "sine")
+        return "displacement" if key in lengths else ""
     return LOAD_KIND.get(key, "") if section == "load" else _KIND.get(field, "")

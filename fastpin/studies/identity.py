@@ -32,7 +32,6 @@ FIRST_LOADS = 6
 ID_LENGTH = 16
 """Hexadecimal digits of an id."""
 
-_ENCODER = json.JSONEncoder(sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 _KNOWN_LOADS: WeakKeyDictionary[LoadHistory, dict[str, Any]] = WeakKeyDictionary()
 
@@ -76,7 +75,7 @@ def id_of_json(text: str, version: str = __version__) -> str:
 
 def canonical_json(document: dict[str, Any]) -> str:
     """Return a dict as JSON with sorted keys. A number has the fewest digits that give it back exactly."""
-    return _ENCODER.encode(document)
+    return json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
 def _material(material: Material, strengths: bool) -> dict[str, Any]:

@@ -43,7 +43,6 @@ from fastpin.studies.margin_outcomes import LEAST, MARGIN_QUANTITIES, OWNERS, SE
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
-    SPANS,
     TAKES,
     WEAR_QUANTITIES,
     FunctionOfFile,
@@ -56,9 +55,6 @@ from fastpin.studies.outcomes import (
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
 from fastpin.studies.strength_outcomes import STRENGTH_QUANTITIES, of_strength
-
-NOTHING: Mapping[str, Any] = MappingProxyType({})
-"""The sections of no case."""
 
 Outcomes = dict[str, StudyOutcome]
 """Outcomes by the names that the user chose."""
@@ -131,7 +127,7 @@ def read_outcomes(path: str | Path) -> Outcomes:
     return found
 
 
-def outcomes_from(given: Mapping[str, Any], beside: Mapping[str, Any] = NOTHING) -> Outcomes:
+def outcomes_from(given: Mapping[str, Any], beside: Mapping[str, Any] = MappingProxyType({})) -> Outcomes:
     """Check outcomes that are given in Python.
 
     Parameters
@@ -160,7 +156,7 @@ def outcomes_from(given: Mapping[str, Any], beside: Mapping[str, Any] = NOTHING)
     return found
 
 
-def outcomes_in_text(source: CaseText, folder: Path, beside: Mapping[str, Any] = NOTHING) -> Outcomes:
+def outcomes_in_text(source: CaseText, folder: Path, beside: Mapping[str, Any] = MappingProxyType({})) -> Outcomes:
     """Read the table [outcomes] of a text, and report its faults.
 
     Relative names of files start in `folder`. `beside` has the sections of the case, for outcomes that leave their keys
@@ -270,7 +266,7 @@ def _choice(section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
 
 def _of_quantity(section: Section) -> StudyOutcome | None:
     quantity = _choice(section, "quantity", tuple(QUANTITIES))
-    take, span = _choice(section, "take", TAKES), _choice(section, "over", SPANS)
+    take, span = _choice(section, "take", TAKES), _choice(section, "over", ("history", "cycle"))
     interface = _choice(section, "interface", INTERFACES)
     if quantity is None or take is None or span is None or interface is None:
         return None

@@ -22,7 +22,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from fastpin.damage.criteria import FATIGUE_CRITERIA
-from fastpin.damage.race import RACES
+from fastpin.damage.race import Race
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
@@ -45,9 +45,6 @@ if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
 
 TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
 """Ways to take one number from the values of a quantity, see :func:`taken`."""
-
-SPANS = ("history", "cycle")
-"""Kept states whose values count: those of the whole history, or of the last cycle."""
 
 INTERFACES = ("pin", "seat")
 """Interfaces of a joint: the pin in the hole, and a bush that slips in its seat."""
@@ -157,7 +154,9 @@ WEAR_QUANTITIES: dict[str, WearQuantity] = {
     "pressure": WearQuantity("traction", lambda life: life[-1].largest_pressure),
     "life": WearQuantity("life", lambda found: _finite(found.life), is_damage=True),
     "damage": WearQuantity("", lambda found: float(found.damage[-1].max()), is_damage=True),
-    "race": WearQuantity("class", lambda found: float(found.race), is_damage=True, classes=RACES),
+    "race": WearQuantity(
+        "class", lambda found: float(found.race), is_damage=True, classes={int(race): race.words for race in Race}
+    ),
 }
 """The quantities of the last cycle of a result that is followed on a profile that wears, by name.
 
@@ -495,7 +494,7 @@ def _check_cycles(result: Result) -> None:
 
 
 def _states_of(span: str, result: Result) -> Sequence[State]:
-    """The kept states of a span of :data:`SPANS`."""
+    """The kept states whose values count: those of the whole "history", or of the last "cycle"."""
     return _states_of_cycle(result) if span == "cycle" else result
 
 

@@ -45,7 +45,6 @@ class BodyCase:
 BRONZE = Material(110e9, 0.34)
 """The material of bushes."""
 
-_STEEL_IN_ALUMINIUM = MaterialPair(Material(210e9, 0.3), Material(69e9, 0.33))
 _THIN = partial(Problem.from_load_parameter, LIKE, pin_body=Tube(0.8), plate_body=Ring(1.5, "uniform"))
 _HALF = partial(Problem.from_load_parameter, LIKE, pin_load="body", plate_body=Ring(2.0, "half"))
 _HELD = partial(Problem.from_load_parameter, UNLIKE, pin_load="body", plate_body=Ring(2.0))
@@ -66,7 +65,10 @@ CASES = {
         0.412542, 1.181457, 1.65224,
     ),
     "bush": BodyCase(
-        Problem.from_load_parameter(_STEEL_IN_ALUMINIUM, 0.1, 0.2, "body", plate_body=Bushing(BRONZE, 1.25)),
+        Problem.from_load_parameter(
+            MaterialPair(Material(210e9, 0.3), Material(69e9, 0.33)),  # steel in aluminium
+            0.1, 0.2, "body", plate_body=Bushing(BRONZE, 1.25),
+        ),
         0.549388, 1.085855, 1.17797,
     ),
     "held ring, fretting": BodyCase(

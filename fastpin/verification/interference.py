@@ -39,10 +39,7 @@ from fastpin.model.loads import check_corner
 from fastpin.model.problem import Problem
 
 HARMONIC_LOADS = ("P", "Q", "M", "sxx", "syy", "sxy")
-"""Loads whose tractions have a closed form."""
-
-REMOTE = ("sxx", "syy", "sxy")
-"""The remote stresses among them, for a solid pin in an infinite plate."""
+"""Loads whose tractions have a closed form. That of a remote stress is for a solid pin in an infinite plate."""
 
 
 def uniform_pressure(problem: Problem, sxx: float = 0.0, syy: float = 0.0) -> float:
@@ -345,7 +342,7 @@ def _checked_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, flo
     for name in given:
         if name not in HARMONIC_LOADS:
             raise InputError(name, f"has no closed form; the loads are {', '.join(HARMONIC_LOADS)}")
-        if name in REMOTE and given[name] != 0.0 and problem.has_bodies:
+        if name in ("sxx", "syy", "sxy") and given[name] != 0.0 and problem.has_bodies:
             raise InputError(name, "has a closed form for a solid pin in an infinite plate only")
     if given:
         check_loads(problem, LoadHistory([given]))

@@ -13,9 +13,9 @@ import pytest
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model import history_csv
 from fastpin.model.history import LoadHistory, cycle_length, cycles_after, same_ahead
-from fastpin.model.history_csv import MOST_FAULTS
 from fastpin.model.loads import LOADS, complete_load
 from fastpin.model.options import KeepRule
+from fastpin.model.profile_csv import MOST_FAULTS
 
 NEVER = np.full(len(LOADS), np.nan)
 
