@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import WIDE, Look, Plot, Sheet
 from fastpin.figures.style import Line, line
 from fastpin.figures.words import caption, loads_text
 from fastpin.model.checks import as_toml, instance, whole_number
@@ -28,9 +28,6 @@ MOST_PANELS = 9
 
 COLUMNS = 3
 """Panels side by side."""
-
-WIDTH = 7.6
-"""Width of a figure, inches."""
 
 LETTERS = 9.5
 """Size of the words of a panel, points. They can be read at half size."""
@@ -72,7 +69,7 @@ def plot_convergence(
     title: str = "",
     dpi: float = 300.0,
     *,
-    width: float = WIDTH,
+    width: float = WIDE,
     ax: Axes | None = None,
 ) -> Figure:
     """Draw the convergence at one corner, with up to nine panels, one for each outcome or quantity.
@@ -101,7 +98,7 @@ def convergence_of(convergence: Convergence, corner: int | None = None) -> Plot:
         lambda look: _draw(look, convergence, chosen),
         instead="Charts of the distance of each quantity to its limit, against the number of nodes or increments.",
         caption="Distance to the limit at the last corner. A dash at the last count is the error bar.",
-        width=WIDTH,
+        width=WIDE,
     )
 
 

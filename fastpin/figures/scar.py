@@ -26,9 +26,6 @@ from fastpin.solver.wear_result import WearResult, WornCycle
 MARGIN = 0.15
 """Angles beside the contact that are shown, in parts of its width."""
 
-CYCLES = "cycles"
-"""Words of the axis of cycles."""
-
 
 def scar_plot(subject: Subject) -> Plot:
     """Return the profiles of wear, and the pressure on them, after some of the stored cycles."""
@@ -68,7 +65,7 @@ def life_caption(life: WearResult) -> str:
 
 def cycles_axis(panels: Sequence[Axes], numbers: np.ndarray) -> None:
     """Set the shared axis of cycles: logarithmic beyond 1 for a long life. The cycle 0 then stands at its left end."""
-    panels[-1].set_xlabel(CYCLES)
+    panels[-1].set_xlabel("cycles")
     if numbers[-1] <= MAX_NAMED:
         panels[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True, min_n_ticks=1))
         return
@@ -130,7 +127,7 @@ def _draw_scar(look: Look, life: WearResult, shown: Sequence[WornCycle]) -> Shee
     ]
     sheet.head(look.title, "; ".join(filter(None, head)), caption=life_caption(life))
     handles = [Line2D([], [], label=f"{each.cycle:,}", **line(k, k)) for k, each in enumerate(shown)]
-    sheet.legend(handles, min(len(handles), 4), CYCLES)
+    sheet.legend(handles, min(len(handles), 4), "cycles")
     return sheet
 
 

@@ -31,6 +31,9 @@ from fastpin.model.checks import file_path, instance
 WIDTH = 6.7
 """Width of most figures, inches."""
 
+WIDE = 7.6
+"""Width of a figure of several panels side by side, inches."""
+
 HEADING = 9.5
 """Size of a title, points."""
 

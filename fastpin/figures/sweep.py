@@ -24,7 +24,7 @@ from matplotlib.transforms import Bbox
 
 from fastpin.errors import InputError
 from fastpin.figures.class_map import class_patches, draw_classes
-from fastpin.figures.sheet import SMALL, Look, Plot, Sheet
+from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
 from fastpin.figures.words import caption, shown_unit
 from fastpin.model.checks import instance, instances
@@ -36,9 +36,6 @@ _UNSURE: Any = {
     "linestyle": "none",
 }  # fmt: skip
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
-SIDE_BY_SIDE = 7.6
-"""Width of a figure of several charts, inches."""
-
 MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 """Marks of the computed values, as many as colours. Crosses mark failed runs."""
 
@@ -91,7 +88,7 @@ def plot_sweep(
             raise InputError("chart", "must hold at least one chart")
         if ax is not None:
             raise InputError("ax", "holds one chart; give a list of charts no axes")
-        look = Look(path, each[0].title if title is None else title, SIDE_BY_SIDE if width is None else width, dpi)
+        look = Look(path, each[0].title if title is None else title, WIDE if width is None else width, dpi)
         return look.drawn(sweeps_of(each))
     plot = sweep_of(chart)
     maps = 0 if chart.y is None else len(chart.parts)
@@ -112,7 +109,7 @@ def sweeps_of(charts: Sequence[Chart]) -> Plot:
         lambda look: _draw_beside(look, charts),
         instead=f"{'Curves' if charts[0].y is None else 'Maps'} of {names} over {_over(charts[0])}.",
         caption=" ".join([f"{names[0].upper()}{names[1:]} over {_over(charts[0])}.", *gaps]),
-        width=SIDE_BY_SIDE,
+        width=WIDE,
     )
 
 

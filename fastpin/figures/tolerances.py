@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import WIDTH, Look, Plot, Sheet
+from fastpin.figures.sheet import WIDE, WIDTH, Look, Plot, Sheet
 from fastpin.figures.style import COLOURS
 from fastpin.figures.sweep import round_numbers, shown_label
 from fastpin.figures.words import shown_unit
@@ -30,9 +30,6 @@ INNER: Any = {"color": "black", "linestyle": "none", "marker": "o", "markersize"
 
 WIDE_RATIO = 10.0
 """Ratio of the largest to the smallest outcome beyond which the axis of a tornado is logarithmic."""
-
-WIDE = 7.6
-"""Width of a figure of samples, inches."""
 
 ACROSS = 4
 """Most panels of samples side by side."""

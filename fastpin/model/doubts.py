@@ -29,6 +29,7 @@ from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import owner_of
 from fastpin.model.problem import LOOKED_AT, Problem
+from fastpin.model.profile_terms import MOST_ANGLE
 from fastpin.model.units import units
 from fastpin.model.wear import Wear
 
@@ -85,9 +86,6 @@ MOST_ROTATION = 0.2
 
 MOST_SHIFT = 0.05
 """Prescribed displacement beyond the clearance, in parts of the hole radius: a strain of that size."""
-
-MOST_ANGLE = 4.0 * math.pi
-"""Angle of an arc, rad, above which it is probably in degrees: two turns."""
 
 LEAST_STRENGTH = 1e-5
 """Strength in parts of Young's modulus, below which it is probably in MPa: a pure soft metal yields at 1e-4."""

@@ -26,7 +26,7 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.points import edge_body, elastic_bodies
 from fastpin.report.assessment import Assessed, assess
 from fastpin.report.crack_growth import case_growth
-from fastpin.report.cycle import fatigue_bodies, spectrum_damages
+from fastpin.report.cycle import SWT, fatigue_bodies, spectrum_damages
 from fastpin.report.states import stored_rows
 from fastpin.report.strength import StrengthFound, assess_strength
 from fastpin.solver.result import Result
@@ -39,9 +39,6 @@ from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
-
-CRITERION: Any = "smith-watson-topper"
-"""The criterion of fatigue of a page. It finds the hot spot without constants of the material."""
 
 MOST_DRAWN = 6
 """Most states that a figure or a table of all quantities shows: as many have a legend of their own."""
@@ -286,7 +283,7 @@ class Source:
     def fatigue(self) -> list[Fatigue] | str:
         """Fatigue of plate and bush over the last cycle; or a sentence that says why it is not known."""
         body = edge_body(self.case.problem, "plate")
-        bodies = fatigue_bodies(self.case.problem, CRITERION)
+        bodies = fatigue_bodies(self.case.problem, SWT)
         if self.case.problem.surfaces.plate.is_rigid:
             return f"The {body} is rigid: it has no stress and no fatigue."
         if not bodies:
@@ -295,10 +292,10 @@ class Source:
             return f"Fatigue needs a cycle: {self.why_no_cycle}."
         count = len(self.cycle.states)
         if count > MOST_STOPS:
-            how = f"fastpin plot {self.path} fatigue" if self.path else f'result.fatigue("{CRITERION}")'
+            how = f"fastpin plot {self.path} fatigue" if self.path else f'result.fatigue("{SWT}")'
             return f"The last cycle has {count:,} states; fatigue of more than {MOST_STOPS} takes long. Left to: {how}"
         try:
-            return [fatigue(self.cycle.states, CRITERION, one) for one in bodies]
+            return [fatigue(self.cycle.states, SWT, one) for one in bodies]
         except InputError as error:
             return f"There is no fatigue: {error.field} {error.reason}."
 
@@ -354,7 +351,7 @@ class Source:
         cycles = [self.life[place] for place in even_choice(range(len(self.life)), MOST_SUMMED)]
         for body in elastic_bodies(self.life.problem):
             with contextlib.suppress(InputError):  # there are no such constants
-                found.append(worn_fatigue(cycles, CRITERION, body))
+                found.append(worn_fatigue(cycles, SWT, body))
         return found
 
     @property

@@ -17,7 +17,7 @@ from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Listing, Page, PageSection, SectionPart, Table, Text
 from fastpin.pages.result import merged
 from fastpin.pages.source import now
-from fastpin.pages.tolerances import effects_section, limits_section
+from fastpin.pages.tolerances import MOST_DRAWN, effects_section, limits_section
 from fastpin.pages.writing import check_page, write_page
 from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.sweep import brief, chart, check_axes, definition_words, run_columns
@@ -27,9 +27,6 @@ from fastpin.studies.plan import Plan, describe_values, parse_plan, read_plan
 from fastpin.studies.sweep import PLAN, rows
 from fastpin.studies.tolerances import Tolerances, has_tolerances, parse_tolerances, read_tolerances
 from fastpin.version import __version__
-
-MOST_CHARTS = 8
-"""Most outcomes that are drawn."""
 
 BESIDE = 4
 """Most charts of a figure, two in a row: more would not fit on a page of paper."""
@@ -191,7 +188,7 @@ def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSec
         parts.append(Text(f"There is no figure: {error.reason}.", "missing"))
         names = []
     # The page has the title.
-    charts = {name: replace(chart(plan, runs, name), title="") for name in names[:MOST_CHARTS]}
+    charts = {name: replace(chart(plan, runs, name), title="") for name in names[:MOST_DRAWN]}
     drawn = [found for found in charts.values() if found.missing < len(runs)]
     if any(len(found.parts) > 1 for found in drawn):
         parts += [album.figure(sweep_of(found)) for found in drawn]
@@ -201,8 +198,8 @@ def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSec
             parts.append(album.figure(sweeps_of(some) if len(some) > 1 else sweep_of(some[0])))
     missing = [name for name, found in charts.items() if found.missing == len(runs)]
     parts += [Text(f"There is no figure of {name}: no run has a value.", "missing") for name in missing]
-    if len(names) > MOST_CHARTS:
-        others = ", ".join(names[MOST_CHARTS:])
+    if len(names) > MOST_DRAWN:
+        others = ", ".join(names[MOST_DRAWN:])
         parts.append(Text(f"Not drawn here: {others}. fastpin sweep --plot FILE --value NAME draws one.", "missing"))
     return PageSection("results", "Results", parts)
 

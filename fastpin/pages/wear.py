@@ -32,7 +32,8 @@ from fastpin.pages.sections import (
     warnings_and_notes,
     zones,
 )
-from fastpin.pages.source import CRITERION, Source
+from fastpin.pages.source import Source
+from fastpin.report.cycle import SWT
 from fastpin.report.notes import way_on
 from fastpin.report.states import TableRows
 from fastpin.report.table import columns_at, printed_rows
@@ -135,7 +136,7 @@ def damage(page: PageParts) -> PageSection:
     """Return the damage of the material of all bodies with constants, and the race of crack and wear."""
     source, life = page.source, _life(page)
     if not source.worn:
-        words = f"Damage needs constants for a life by {CRITERION}: the key fatigue of a case file gives them."
+        words = f"Damage needs constants for a life by {SWT}: the key fatigue of a case file gives them."
         if len(life) < 2:
             words = "Damage needs the profile of cycle 0 and another one."
         return PageSection("damage", "Damage", [Text(words, "missing")])

@@ -57,7 +57,6 @@ REMOTE = {"balanced": {"sxx": 1.0 / 1.6, "syy": 1.4 / 1.6}, "uniaxial": {"sxx": 
 """Remote stresses whose hoop stress at the bottom of the hole is one."""
 BETA = 0.1438
 MU_OVER_BETA = (0.5, 1.0, 1.5)
-UNLIKE = {sign: MaterialPair.from_dundurs(sign * 0.5, sign * BETA, nu_pin=0.3) for sign in (1, -1)}
 
 LOAD_PARAMETERS = tuple(10.0 ** (k / 3) for k in range(-3, 13))
 UNLIKE_LOAD_PARAMETERS = tuple(10.0 ** (k / 2) for k in range(-2, 11))
@@ -210,7 +209,8 @@ def unlike_errors(
 
     `limit` is the value of half-planes, see :func:`unlike_half_planes`.
     """
-    for sign, pair in UNLIKE.items():
+    for sign in (1, -1):
+        pair = MaterialPair.from_dundurs(sign * 0.5, sign * BETA, nu_pin=0.3)
         problem = Problem.from_load_parameter(pair, load_parameter, ratio * BETA, pin_load)
         _, stick, _, contact = stick_and_contact(solve(problem, [{"P": 1.0}], nodes=nodes)[-1])
         relation = ">" if sign > 0 else "<"

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.model.grid import Grid
-from fastpin.reading.ends import end_place
+from fastpin.reading.ends import CUSP_TERMS, end_place
 from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import End, Fit, Tries, Try, half_line
 from fastpin.reading.old_borders import OldBorder, old_borders
@@ -32,9 +32,6 @@ DEGREES = (3, 4, 5)
 
 END_TERMS = (4, 5)
 """Terms to try at an end of the zone."""
-
-CUSP_TERMS = 3
-"""Terms at an old border."""
 
 SAME_PLACE = 0.01
 """Largest difference of two readings of one border that agree, in node distances."""

@@ -30,7 +30,7 @@ from fastpin.states.state import State
 from fastpin.storage.files import replacing
 
 SWT: Criterion = "smith-watson-topper"
-"""The criterion of printed texts and pages."""
+"""The criterion of printed texts and pages. It finds the hot spot without constants of the material."""
 
 WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
 """Words for the behaviours of a node: "no contact", "sticks", "slips" and "opens"."""

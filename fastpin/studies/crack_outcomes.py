@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
 
 from fastpin import cracks, damage
 from fastpin.cracks.fates import CRACK_FATES
@@ -15,8 +14,7 @@ from fastpin.model.crack import CrackGrowth
 from fastpin.model.doubts import doubts_given
 from fastpin.solver.result import Result
 from fastpin.states.choice import missing_corners
-
-_GROWN: WeakKeyDictionary[Result, dict[CrackGrowth, cracks.Growth]] = WeakKeyDictionary()
+from fastpin.studies.kept import kept
 
 
 class CrackQuantity(NamedTuple):
@@ -50,10 +48,11 @@ the first to the last length, or spectra. "arrest" is the length at which the cr
 
 def of_crack(quantity: str, crack: CrackGrowth, result: Result) -> float:
     """The value of a name in :data:`CRACK_QUANTITIES`, see :func:`grown`."""
-    return CRACK_QUANTITIES[quantity].of(grown(crack, result))
+    return CRACK_QUANTITIES[quantity].of(grown(result, crack))
 
 
-def grown(crack: CrackGrowth, result: Result) -> cracks.Growth:
+@kept
+def grown(result: Result, crack: CrackGrowth) -> cracks.Growth:
     """The growth of a crack under the last cycle of a result, or else its history; kept while the result lives.
 
     Raises
@@ -61,11 +60,8 @@ def grown(crack: CrackGrowth, result: Result) -> cracks.Growth:
     FastpinError
         If the result has neither a cycle nor a spectrum, or the crack can't be followed.
     """
-    known = _GROWN.setdefault(result, {})
-    if crack not in known:
-        if not result.cycles and (len(result) < 3 or missing_corners(result, 1, len(result.history))):
-            raise FastpinError("the history has no cycle, and is no spectrum of at least 3 kept corners")
-        states = damage.cycle_states(result, result.cycles[-1]) if result.cycles else list(result)
-        with doubts_given():
-            known[crack] = cracks.planned_growth(states, crack, not result.cycles)
-    return known[crack]
+    if not result.cycles and (len(result) < 3 or missing_corners(result, 1, len(result.history))):
+        raise FastpinError("the history has no cycle, and is no spectrum of at least 3 kept corners")
+    states = damage.cycle_states(result, result.cycles[-1]) if result.cycles else list(result)
+    with doubts_given():
+        return cracks.planned_growth(states, crack, not result.cycles)

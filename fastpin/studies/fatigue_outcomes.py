@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
-from weakref import WeakKeyDictionary
 
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.doubts import doubts_given
+from fastpin.studies.kept import kept
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.damage.spectrum import SpectrumSpot
@@ -40,8 +40,6 @@ FATIGUE_QUANTITIES: dict[str, FatigueQuantity] = {
 "life" and "angle" are NaN, and "damage" is 0, where no cycle does damage.
 """
 
-_KNOWN: WeakKeyDictionary[Result, dict[FatigueAssessment, SpectrumSpot]] = WeakKeyDictionary()
-
 
 def of_assessment(quantity: str, how: FatigueAssessment, result: Result) -> float:
     """The value of a name in :data:`FATIGUE_QUANTITIES` by the first criterion. Hot spots are kept with the result.
@@ -51,11 +49,13 @@ def of_assessment(quantity: str, how: FatigueAssessment, result: Result) -> floa
     InputError
         See :meth:`fastpin.Result.assessed_fatigue`.
     """
-    known = _KNOWN.setdefault(result, {})
-    if how not in known:
-        with doubts_given():
-            known[how] = result.assessed_fatigue(how)[0].hot_spot
-    return FATIGUE_QUANTITIES[quantity].of(known[how])
+    return FATIGUE_QUANTITIES[quantity].of(_hot_spot(result, how))
+
+
+@kept
+def _hot_spot(result: Result, how: FatigueAssessment) -> SpectrumSpot:
+    with doubts_given():
+        return result.assessed_fatigue(how)[0].hot_spot
 
 
 def unit_of_life(how: FatigueAssessment) -> tuple[str, str]:

@@ -12,7 +12,6 @@ import math
 from dataclasses import fields
 from functools import partial
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.studies.kept import kept
 from fastpin.version import __version__
 
 FIRST_LOADS = 6
@@ -31,9 +31,6 @@ FIRST_LOADS = 6
 
 ID_LENGTH = 16
 """Hexadecimal digits of an id."""
-
-
-_KNOWN_LOADS: WeakKeyDictionary[LoadHistory, dict[str, Any]] = WeakKeyDictionary()
 
 
 def canonical(case: Case, strengths: bool = False) -> dict[str, Any]:
@@ -46,8 +43,6 @@ def canonical(case: Case, strengths: bool = False) -> dict[str, Any]:
     """
     problem, pair = case.problem, case.problem.pair
     material = partial(_material, strengths=strengths)
-    if case.history not in _KNOWN_LOADS:
-        _KNOWN_LOADS[case.history] = _digested(case.history)
     return {
         "pin": material(pair.pin),
         "plate": material(pair.plate),
@@ -57,7 +52,7 @@ def canonical(case: Case, strengths: bool = False) -> dict[str, Any]:
         # state, and enters like fatigue constants: a result says whether the bush slips.
         **{name: _without_negative_zero(body.as_json(material)) for name, body in problem.given_bodies.items()},
         "dimensionless": problem.dimensionless,
-        "loads": _KNOWN_LOADS[case.history],
+        "loads": _digested(case.history),
         "solve": _options(case.options),
     }
 
@@ -109,6 +104,7 @@ def _without_negative_zero(value: Any) -> Any:
     return float(value) + 0.0 if isinstance(value, float) else value  # -0 becomes 0.
 
 
+@kept
 def _digested(history: LoadHistory) -> dict[str, Any]:
     """Return the loads of a history. A load that is never given differs from a load of zero."""
     digest, last = hashlib.sha256(), np.full(len(LOADS), np.nan)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from typing import Any
-from weakref import WeakKeyDictionary
 
 from fastpin.cracks.margins import crack_margins
 from fastpin.damage.margins import last_cycle_margins, reserve_margins, strength_margins
@@ -13,15 +12,13 @@ from fastpin.model.crack import CrackGrowth
 from fastpin.model.strength import StrengthAssessment
 from fastpin.solver.result import Result
 from fastpin.states.extremes import KeptStates, marked_extremes
-from fastpin.states.margins import MARGINS, Margin, smallest_margin, static_margins
+from fastpin.states.margins import Margin, smallest_margin, static_margins
 from fastpin.studies.crack_outcomes import grown
+from fastpin.studies.kept import kept
 from fastpin.studies.strength_outcomes import least_of
 
 LEAST = "least"
 """The smallest of all margins that are known, as tables mark it."""
-
-MARGIN_QUANTITIES = (LEAST, *MARGINS)
-"""The names of outcomes of margins."""
 
 OWNERS = ("pin", "bush", "plate")
 """The bodies whose margins can be chosen."""
@@ -29,11 +26,9 @@ OWNERS = ("pin", "bush", "plate")
 SECTIONS = {"fatigue": "fatigue", "fracture": "crack", "growth": "crack", "ply": "strength"}
 """Kinds of margins that need a section of the case."""
 
-_KNOWN: WeakKeyDictionary[Result, dict[object, list[Margin]]] = WeakKeyDictionary()
-
 
 def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...], result: Result) -> float:
-    """The smallest margin of a name in :data:`MARGIN_QUANTITIES`, of all bodies or of one; NaN if none is known.
+    """The smallest margin, or the smallest one of a kind, of all bodies or of one; NaN if none is known.
 
     The margins are computed from the states, with the strengths that the problem of the result has. `sections` are
     those of the case, pairs of a name and a value.
@@ -43,14 +38,16 @@ def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...
     FastpinError
         If a fatigue or a strength can't be assessed, or a crack can't be followed.
     """
-    known = _KNOWN.setdefault(result, {})
-    if sections not in known:
-        known[sections] = margins_of(result, **dict(sections))
-    rows = [row for row in known[sections] if owner in (None, row.owner)]
+    rows = [row for row in _margins(result, sections) if owner in (None, row.owner)]
     if name != LEAST:
         rows = [row._replace(name="") for row in rows if row.name == name]  # also one that is no failure
     least = smallest_margin(rows)
     return math.nan if least is None else least.margin
+
+
+@kept
+def _margins(result: Result, sections: tuple[tuple[str, Any], ...]) -> list[Margin]:
+    return margins_of(result, **dict(sections))
 
 
 def margins_of(
@@ -70,5 +67,5 @@ def margins_of(
     rows = static_margins(result.problem, found, lambda places: [result.states[place] for place in places])
     rows += last_cycle_margins(result.problem, result.states, result.cycles)
     rows += [] if fatigue is None else reserve_margins(result.assessed_reserves(fatigue), fatigue)
-    rows += [] if crack is None else crack_margins(grown(crack, result))
+    rows += [] if crack is None else crack_margins(grown(result, crack))
     return rows + ([] if strength is None else strength_margins(strength, *least_of(result, strength)))

@@ -36,10 +36,11 @@ from fastpin.model.profile import Profile
 from fastpin.model.strength import STRENGTH_KEYS, StrengthAssessment
 from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
+from fastpin.states.margins import MARGINS
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.crack_outcomes import CRACK_QUANTITIES, of_crack
 from fastpin.studies.fatigue_outcomes import FATIGUE_QUANTITIES, of_assessment, unit_of_life
-from fastpin.studies.margin_outcomes import LEAST, MARGIN_QUANTITIES, OWNERS, SECTIONS, of_margin
+from fastpin.studies.margin_outcomes import LEAST, OWNERS, SECTIONS, of_margin
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
@@ -360,7 +361,7 @@ def _of_strength(source: CaseText, section: Section, default: StrengthAssessment
 
 def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read the smallest margin of safety, of all kinds or of one kind, with the sections of the case."""
-    name = _choice(section, "margin", MARGIN_QUANTITIES)
+    name = _choice(section, "margin", (LEAST, *MARGINS))
     owner = _choice(section, "body", OWNERS) if "body" in section else None
     if name is None or ("body" in section and owner is None):
         return None

@@ -17,7 +17,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -36,6 +35,7 @@ from fastpin.states.load_cycle import NodeBehaviour
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
+from fastpin.studies.kept import kept
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.damage.hot_spots import HotSpot
@@ -52,18 +52,6 @@ INTERFACES = ("pin", "seat")
 
 ROUNDING = 1e-9
 """Largest slip range without slip, in parts of the natural size of displacements."""
-
-
-@dataclass
-class _Known:
-    """What outcomes have read from a result: lives of wear, the damage of these lives, and hot spots."""
-
-    lives: dict[Wear, WearResult] = field(default_factory=dict)
-    damages: dict[tuple[Wear, str, Body], WornFatigue] = field(default_factory=dict)
-    spots: dict[tuple[str, Body], HotSpot] = field(default_factory=dict)
-
-
-_KNOWN: WeakKeyDictionary[Result, _Known] = WeakKeyDictionary()
 
 
 class CycleQuantity(NamedTuple):
@@ -418,17 +406,19 @@ def of_last_cycle(quantity: str, interface: str, result: Result) -> float:
 
 def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Result) -> float:
     """The value of a name in :data:`WEAR_QUANTITIES`; NaN without a crack. Lives are kept while the result lives."""
-    known = _KNOWN.setdefault(result, _Known())
-    if wear not in known.lives:
-        with doubts_given():
-            known.lives[wear] = result.wear(**wear.given)
-    life, chosen = known.lives[wear], WEAR_QUANTITIES[quantity]
-    if not chosen.is_damage:
-        return chosen.of(life)
-    key = (wear, criterion, body)
-    if key not in known.damages:
-        known.damages[key] = life.fatigue(criterion, body)
-    return chosen.of(known.damages[key])
+    chosen = WEAR_QUANTITIES[quantity]
+    return chosen.of(_worn_fatigue(result, wear, criterion, body) if chosen.is_damage else _worn(result, wear))
+
+
+@kept
+def _worn(result: Result, wear: Wear) -> WearResult:
+    with doubts_given():
+        return result.wear(**wear.given)
+
+
+@kept
+def _worn_fatigue(result: Result, wear: Wear, criterion: str, body: Body) -> WornFatigue:
+    return _worn(result, wear).fatigue(criterion, body)
 
 
 @dataclass(frozen=True)
@@ -544,13 +534,11 @@ def _friction_energy(result: Result) -> tuple[float, float]:
     return float(cycle.friction_energy.max()), cycle.angle_of_largest(cycle.friction_energy)
 
 
+@kept
 def _hot_spot(result: Result, criterion: str, body: Body) -> HotSpot:
     """The hot spot on the edge of a body. It is kept while the result lives: several outcomes read it."""
-    spots = _KNOWN.setdefault(result, _Known()).spots
-    if (criterion, body) not in spots:
-        _states_of_cycle(result)
-        spots[criterion, body] = result.fatigue(criterion, body).hot_spot
-    return spots[criterion, body]
+    _states_of_cycle(result)
+    return result.fatigue(criterion, body).hot_spot
 
 
 def _life(result: Result, criterion: str, body: Body) -> float:

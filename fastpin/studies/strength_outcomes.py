@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
-from weakref import WeakKeyDictionary
 
 from fastpin import damage
 from fastpin.model.doubts import doubts_given
@@ -12,8 +11,7 @@ from fastpin.model.strength import StrengthAssessment
 from fastpin.solver.result import Result
 from fastpin.states.state import State
 from fastpin.studies.failure import failure_load
-
-_ASSESSED: WeakKeyDictionary[Result, dict[StrengthAssessment, tuple[State, damage.JointStrength]]] = WeakKeyDictionary()
+from fastpin.studies.kept import kept
 
 
 class StrengthQuantity(NamedTuple):
@@ -26,12 +24,10 @@ class StrengthQuantity(NamedTuple):
     of: Callable[[Result, StrengthAssessment], float]
 
 
+@kept
 def least_of(result: Result, how: StrengthAssessment) -> tuple[State, damage.JointStrength]:
     """The worst state and its strength. They are kept while the result lives."""
-    known = _ASSESSED.setdefault(result, {})
-    if how not in known:
-        known[how] = damage.least_strength(result.states, how)
-    return known[how]
+    return damage.least_strength(result.states, how)
 
 
 def _factor(result: Result, how: StrengthAssessment) -> float:
