@@ -40,9 +40,6 @@ usual force."""
 GAPS = ("hole", "pin")
 """The bodies whose initial gaps have controls."""
 
-FORMS = {"0": "no lobes", "2": "oval"} | {str(count): f"{count} lobes" for count in (3, 4, 5, 6, 8, 12)}
-"""The forms of hole and pin that can be chosen: their numbers of lobes, and words."""
-
 FRICTION_ALONG = {"case": "as in the case", "uniform": "uniform"}
 """The choices of the friction along the rim, where that of the case varies."""
 
@@ -243,8 +240,9 @@ def _lobes(profile: Profile) -> tuple[int, float, float, tuple[Term, ...]]:
 
 
 def _forms(count: int) -> dict[str, str]:
-    """The forms that can be chosen, with that of so many lobes."""
-    return FORMS | ({} if str(count) in FORMS else {str(count): f"{count} lobes"})
+    """The forms of hole and pin that can be chosen, with that of so many lobes: their numbers of lobes, and words."""
+    forms = {"0": "no lobes", "2": "oval"} | {str(lobes): f"{lobes} lobes" for lobes in (3, 4, 5, 6, 8, 12)}
+    return forms | ({} if str(count) in forms else {str(count): f"{count} lobes"})
 
 
 def _gap(problem: Problem, body: str, unit: Unit, most: float) -> list[dict[str, Any]]:

@@ -81,7 +81,7 @@ def write_sweep_report(
     if version != __version__:
         words = f"was made by fastpin {version}, which names its runs differently: write its page with that version"
         raise InputError(str(folder), words)
-    found, study = _plan_of(folder, digest) if plan is None else _read(file_path("plan", plan))
+    found, study = _plan_of(folder, digest) if plan is None else _plan_in(file_path("plan", plan))
     runs, album, sections = rows(found, folder), Album(), []
     makers = SECTIONS if study is None else _sections_of(study)
     for number, make in enumerate(makers):
@@ -98,7 +98,7 @@ def write_sweep_report(
     write_page(Page(found.title or "Report of a sweep", lead, sections, made, named), target)
 
 
-def _read(path: Path) -> tuple[Plan, Tolerances | None]:
+def _plan_in(path: Path) -> tuple[Plan, Tolerances | None]:
     """Read a plan, which may be a tolerance plan."""
     if has_tolerances(read_text(path, MOST_BYTES_OF_PLAN)):
         study = read_tolerances(path)

@@ -158,7 +158,10 @@ class State(ReadOnly):
             )
             if value != 0.0
         ]
-        zones_ = [f"{name} {_in_degrees(ends)}" for name, ends in (("contact", self.contact), ("stick", self.stick))]
+        zones_ = []
+        for name, intervals in (("contact", self.contact), ("stick", self.stick)):
+            ends = [interval_from_bottom(start, stop) for start, stop in intervals]
+            zones_.append(f"{name} {' and '.join(f'{start:z.2f} to {stop:z.2f}' for start, stop in ends) or 'none'}")
         return f"{head}\n {', '.join(peaks_)}\n {', '.join(zones_)} deg, {self.grid.size} nodes>"
 
     def _repr_html_(self) -> str:
@@ -578,9 +581,3 @@ def state_again(state: State, step: int, dissipation: float, work: float) -> Sta
     content, again = state.__dict__, State.__new__(State)
     again.__dict__.update({name: content[name] for name in _FIELDS}, step=step, dissipation=dissipation, work=work)
     return again
-
-
-def _in_degrees(intervals: list[Interval]) -> str:
-    """Text of the intervals in degrees from the bottom."""
-    ends = [interval_from_bottom(start, stop) for start, stop in intervals]
-    return " and ".join(f"{start:z.2f} to {stop:z.2f}" for start, stop in ends) or "none"

@@ -272,7 +272,10 @@ class FileRecorder:
         if now > self._next_checkpoint:
             if self._next_checkpoint:
                 self._commit()
-                self._write_checkpoint()
+                with replacing(checkpoint_of(self.path), result=True) as temporary, written_h5(temporary) as file:
+                    file.attrs["run"] = self._name
+                    self._write_restart(file.create_group("restart"))
+                log.debug("checkpoint after corner %d", self._run.corner)
             duration = time.monotonic() - now
             self._next_checkpoint = time.monotonic() + max(CHECKPOINT_EVERY, CHECKPOINT_SHARE * duration)
 
@@ -369,12 +372,6 @@ class FileRecorder:
         write_restart(group, self._run.restart())
         group["statistics"].attrs["seconds"] = self._all_seconds()
         group.attrs.update(states=self._corner[0], cycles=self._corner[1])
-
-    def _write_checkpoint(self) -> None:
-        with replacing(checkpoint_of(self.path), result=True) as temporary, written_h5(temporary) as file:
-            file.attrs["run"] = self._name
-            self._write_restart(file.create_group("restart"))
-        log.debug("checkpoint after corner %d", self._run.corner)
 
     def _all_seconds(self) -> float:
         return self._seconds + time.monotonic() - self._began

@@ -78,7 +78,7 @@ class Work:
         with closing(self._run(todo, self._submit_solve, pace.size)) as ended:
             for ends in ended:
                 pace.learn(ends)
-                yield [_check_end(end, self._path(end.id)) for end in ends]
+                yield [_arrived(end, self._path(end.id)) for end in ends]
 
     def read(self, missing: dict[str, list[str]]) -> Generator[list[RunEnd], None, None]:
         """Yield the outcomes of finished runs, when they are read. `missing` has their names by run."""
@@ -156,7 +156,7 @@ class Pace:
         return max(1, min(int(by_time), MOST_IN_BATCH, waiting // (4 * self._workers)))
 
 
-def _check_end(end: RunEnd, path: Path) -> RunEnd:
+def _arrived(end: RunEnd, path: Path) -> RunEnd:
     """Return the end of a run. A missing result becomes a failure."""
     if end.reason is None and end.content is None and not path.exists():
         return RunEnd(end.id, f"the result did not arrive: {end.host} must see {path.parent} under the same path")
