@@ -486,7 +486,7 @@ class PlateBody(BodyBase):
         others = self.add_fields(rim, t, remote, found)
         return found.wall(rim.kolosov, 1.0, self.far(rim) if math.isfinite(self.outer_radius) else 1.0, others)
 
-    def add_fields(self, rim: Rim, t: np.ndarray, remote: Remote, found: Amplitudes) -> tuple[Other, ...]:
+    def add_fields(self, rim: Rim, t: np.ndarray, remote: Remote, amplitudes: Amplitudes) -> tuple[Other, ...]:
         """Add the harmonics other than the first, beyond the infinite plate, and return fields in closed form."""
         return ()
 

@@ -92,7 +92,7 @@ class Plate(PlateBody):
         along = rim.laminate.gauge_tensor @ np.array([force.real, force.imag])
         return moved + math.log(gauge) / (2.0 * math.pi) * complex(*along)
 
-    def add_fields(self, rim: Rim, t: np.ndarray, remote: Remote, found: Amplitudes) -> tuple[Other, ...]:
+    def add_fields(self, rim: Rim, t: np.ndarray, remote: Remote, amplitudes: Amplitudes) -> tuple[Other, ...]:
         if self.reaction is None:
             return ()
         x, y = (value / rim.radius for value in self.reaction)

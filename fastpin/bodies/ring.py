@@ -114,33 +114,33 @@ class Ring(PlateBody):
 
     # -- stresses
 
-    def add_fields(self, rim: Rim, t: np.ndarray, remote: Remote, found: Amplitudes) -> tuple[Other, ...]:
+    def add_fields(self, rim: Rim, t: np.ndarray, remote: Remote, amplitudes: Amplitudes) -> tuple[Other, ...]:
         far, kolosov = self.far(rim), rim.kolosov
         last = min(len(t) - 1, self.highest_inside(rim))
         n, used = np.arange(2.0, last + 1.0), slice(2, last + 1)
         growing, falling = free_at_contact(harmonics.ring(n, far, kolosov, self.outer_kind), t[used], kolosov)
-        found.A[used], found.C[used] = growing * np.array([far**n, far ** (n - 2.0)])
-        found.B[used] += falling[0]
-        found.D[used] += falling[1]
+        amplitudes.A[used], amplitudes.C[used] = growing * np.array([far**n, far ** (n - 2.0)])
+        amplitudes.B[used] += falling[0]
+        amplitudes.D[used] += falling[1]
         q = far**-2.0
         stiff = kolosov - 1.0 + 2.0 * q if self.held else -2.0 * ((1.0 - 1.0 / far) * (1.0 + 1.0 / far))
-        found.add_uniform(q * t[0, 0].real / stiff)
+        amplitudes.add_uniform(q * t[0, 0].real / stiff)
         if not self.held:
-            self._add_rim_stress(rim, remote, found)
-        return self._add_half_support(rim, force_on(t), found) if self.support == "half" else ()
+            self._add_rim_stress(rim, remote, amplitudes)
+        return self._add_half_support(rim, force_on(t), amplitudes) if self.support == "half" else ()
 
-    def _add_rim_stress(self, rim: Rim, remote: Remote, found: Amplitudes) -> None:
+    def _add_rim_stress(self, rim: Rim, remote: Remote, amplitudes: Amplitudes) -> None:
         """Add the field of a ring whose outer rim carries the tractions of a remote stress."""
         far = self.far(rim)
         total, difference = remote[0] + remote[1], complex(remote[0] - remote[1], 2.0 * remote[2])
         layer = Layer(np.array([2.0]), far, rim.kolosov, rim.compliance)
         growing = layer.loaded_outside(np.array([[0.0, 0.5 * np.conj(difference)]]))
-        found.A[2] += growing[0, 0]
-        found.C[2] += growing[0, 1]
-        self._free_hole(rim, np.array([2]), growing, found)
-        found.add_uniform(0.25 * total / ((1.0 - 1.0 / far) * (1.0 + 1.0 / far)))
+        amplitudes.A[2] += growing[0, 0]
+        amplitudes.C[2] += growing[0, 1]
+        self._free_hole(rim, np.array([2]), growing, amplitudes)
+        amplitudes.add_uniform(0.25 * total / ((1.0 - 1.0 / far) * (1.0 + 1.0 / far)))
 
-    def _add_half_support(self, rim: Rim, force: complex, found: Amplitudes) -> tuple[Other, ...]:
+    def _add_half_support(self, rim: Rim, force: complex, amplitudes: Amplitudes) -> tuple[Other, ...]:
         """Add the field of a ring under a half cosine of pressure on its outer rim, beyond the first harmonic.
 
         The field of the disk under the same pressure is returned: its series converges slowly at the rim, but has a
@@ -149,14 +149,14 @@ class Ring(PlateBody):
         far = self.far(rim)
         half = [HalfCosine(-force.imag, -0.5 * math.pi, far), HalfCosine(force.real, 0.0, far)]
         m = np.arange(1, self.highest_inside(rim) // 2 + 1)
-        m = m[2 * m < found.A.size]
+        m = m[2 * m < amplitudes.A.size]
         order = 2.0 * m
         t = sum(each.harmonics(m) for each in half)
         growing = Layer(order, far, rim.kolosov, rim.compliance).loaded_outside(np.stack([t, t], axis=1))
-        found.A[2 * m] += growing[:, 0] - t / (order + 1.0)
-        found.C[2 * m] += growing[:, 1] + t * order / (order - 1.0)
-        self._free_hole(rim, 2 * m, growing, found)
-        found.add_uniform(0.5 * sum(each.mean for each in half) / ((1.0 - 1.0 / far) * (1.0 + 1.0 / far)))
+        amplitudes.A[2 * m] += growing[:, 0] - t / (order + 1.0)
+        amplitudes.C[2 * m] += growing[:, 1] + t * order / (order - 1.0)
+        self._free_hole(rim, 2 * m, growing, amplitudes)
+        amplitudes.add_uniform(0.5 * sum(each.mean for each in half) / ((1.0 - 1.0 / far) * (1.0 + 1.0 / far)))
         return tuple(each.polar for each in half)
 
     def _free_hole(self, rim: Rim, place: np.ndarray, growing: np.ndarray, found: Amplitudes) -> None:

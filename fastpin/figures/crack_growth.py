@@ -61,19 +61,19 @@ def crack_growth_of(found: Growth | Sequence[Growth]) -> Plot:
     )
 
 
-def _place(found: Growth) -> str:
-    return f"{from_bottom(found.crack.theta):.1f} deg".replace("-", "−")
+def _place(growth: Growth) -> str:
+    return f"{from_bottom(growth.crack.theta):.1f} deg".replace("-", "−")
 
 
-def _draw(look: Look, found: Sequence[Growth]) -> Sheet:
-    sheet, unit = look.sheet([2.4, 1.9], extra=1.4, sharex=True), units(found[0].problem)
+def _draw(look: Look, growths: Sequence[Growth]) -> Sheet:
+    sheet, unit = look.sheet([2.4, 1.9], extra=1.4, sharex=True), units(growths[0].problem)
     top, bottom = sheet.axes[:, 0]
-    length, length_name = unit["length"].scale([float(one.length[-1]) for one in found])
-    intensity, intensity_name = unit["stress intensity"].scale([float(one.delta_K.max()) for one in found])
-    finite = [one.rate[np.isfinite(one.rate)].max(initial=0.0) for one in found]
+    length, length_name = unit["length"].scale([float(one.length[-1]) for one in growths])
+    intensity, intensity_name = unit["stress intensity"].scale([float(one.delta_K.max()) for one in growths])
+    finite = [one.rate[np.isfinite(one.rate)].max(initial=0.0) for one in growths]
     rate, rate_name = unit["crack growth"].scale([float(value) for value in finite])
-    rate_name, handles = rate_name.replace("cycle", found[0].per), []
-    for k, one in enumerate(found):
+    rate_name, handles = rate_name.replace("cycle", growths[0].per), []
+    for k, one in enumerate(growths):
         a = length * one.length
         top.plot(a, _shown(intensity * one.delta_K), **line(k))
         top.plot(a, _shown(intensity * one.K_max), **line(k, 2, 1.0))
@@ -95,10 +95,12 @@ def _draw(look: Look, found: Sequence[Growth]) -> Sheet:
     bottom.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bottom.xaxis.set_minor_formatter(NullFormatter())
     bottom.set_xlabel(quantity("length of the crack", length_name))
-    bottom.set_xlim(length * min(float(one.length[0]) for one in found), length * max(one.length[-1] for one in found))
+    bottom.set_xlim(
+        length * min(float(one.length[0]) for one in growths), length * max(one.length[-1] for one in growths)
+    )
     sheet.figure.align_ylabels([top, bottom])
-    sheet.legend(handles, 1 if len(found) > 1 else 3)
-    sheet.head(look.title, caption=caption(found[0].problem))
+    sheet.legend(handles, 1 if len(growths) > 1 else 3)
+    sheet.head(look.title, caption=caption(growths[0].problem))
     return sheet
 
 

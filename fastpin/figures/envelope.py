@@ -51,13 +51,13 @@ def envelope_of(found: Sequence[Curve]) -> Plot:
     )
 
 
-def _draw(look: Look, found: Sequence[Curve]) -> Sheet:
+def _draw(look: Look, curves: Sequence[Curve]) -> Sheet:
     sheet = look.sheet([0.6 * look.width], extra=0.8)
     (panel,) = sheet.axes[0]
-    largest = [float(np.abs(curve[name]).max()) for curve in found for name in (BYPASS, BEARING)]
+    largest = [float(np.abs(curve[name]).max()) for curve in curves for name in (BYPASS, BEARING)]
     factor, label = PASCAL.scale(largest)
     handles = []
-    for place, curve in enumerate(found):
+    for place, curve in enumerate(curves):
         (drawn,) = panel.plot(
             factor * curve[BYPASS], factor * curve[BEARING], marker=MARKERS[place], markersize=3.5,
             label=shown_label(str(curve.parameters.get("case", ""))), **line(place),
@@ -67,8 +67,8 @@ def _draw(look: Look, found: Sequence[Curve]) -> Sheet:
     panel.set_ylim(bottom=0.0)
     panel.set_xlabel(quantity("bypass stress", label))
     panel.set_ylabel(quantity("bearing stress", label))
-    if any("case" in curve.parameters for curve in found):
+    if any("case" in curve.parameters for curve in curves):
         sheet.legend(handles, 2)
-    sheet.head(look.title, f"failure of the first ply by {found[0].parameters['criterion']}")
+    sheet.head(look.title, f"failure of the first ply by {curves[0].parameters['criterion']}")
     sheet.grid()
     return sheet

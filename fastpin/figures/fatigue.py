@@ -132,13 +132,13 @@ def spectrum_of(found: Sequence[SpectrumDamage]) -> Plot:
     )
 
 
-def _draw_spectrum(look: Look, found: Sequence[SpectrumDamage]) -> Sheet:
+def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
     sheet = look.sheet([2.2, 2.2], extra=1.2)
     axes, handles = sheet.axes, list[Line2D]()
     sheet.grid()
-    names = [edge_body(one.problem, one.body) for one in found]
-    for place, one in enumerate(found):
-        spot, before = one.hot_spot, f"{names[place]}: " if len(found) > 1 else ""
+    names = [edge_body(one.problem, one.body) for one in damages]
+    for place, one in enumerate(damages):
+        spot, before = one.hot_spot, f"{names[place]}: " if len(damages) > 1 else ""
         angle, order = _by_angle(one)
         damage, colour = one.damage.ravel()[order], COLOURS[2 * place + 1]
         axes[0, 0].plot(angle, damage, **line(2 * place))
@@ -150,12 +150,12 @@ def _draw_spectrum(look: Look, found: Sequence[SpectrumDamage]) -> Sheet:
         handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
         _draw_planes(axes[0, 0], angle, damage, (one.plane.ravel() - one.theta.ravel())[order])
         axes[1, 0].semilogy(angle, np.where(damage > 0.0, one.life.ravel()[order], np.nan), **line(2 * place))
-    highest = max(one.hot_spot.damage for one in found)
+    highest = max(one.hot_spot.damage for one in damages)
     if highest > 0.0:
         handles.append(Line2D([], [], label="worst planes", color="0.3", linewidth=1.0))
         axes[0, 0].set_ylim(0.0, 1.15 * highest)
         axes[1, 0].set_ylim(0.5 / highest, 1e4 / highest)
-    axes[0, 0].set_ylabel(f"damage of a spectrum,\n{found[0].criterion}")
+    axes[0, 0].set_ylabel(f"damage of a spectrum,\n{damages[0].criterion}")
     axes[1, 0].set_ylabel("life (spectra)")
     for panel in axes[:, 0]:
         panel.set_xlim(-180.0, 180.0)
@@ -163,8 +163,8 @@ def _draw_spectrum(look: Look, found: Sequence[SpectrumDamage]) -> Sheet:
     axes[-1, 0].set_xlabel(ANGLE)
     sheet.figure.align_ylabels(axes)
     sheet.legend(handles, min(len(handles), 3))
-    heading = "; ".join(f"{name}, {_depth_words(one)}" for name, one in zip(names, found, strict=True))
-    sheet.head(look.title, heading, caption=caption(found[0].problem))
+    heading = "; ".join(f"{name}, {_depth_words(one)}" for name, one in zip(names, damages, strict=True))
+    sheet.head(look.title, heading, caption=caption(damages[0].problem))
     return sheet
 
 

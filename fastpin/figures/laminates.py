@@ -174,21 +174,21 @@ def strength_of(
     )
 
 
-def _strength_curve(found: JointStrength) -> Curve:
-    angle = np.array([from_bottom(each) for each in found.theta.tolist()])
-    order, plies = np.argsort(angle), np.array([each for _, each in found.laminate.plies])
-    columns = {"angle [deg]": angle, "strength ratio": found.ratio, "ply [deg]": plies[found.ply]}
+def _strength_curve(strength: JointStrength) -> Curve:
+    angle = np.array([from_bottom(each) for each in strength.theta.tolist()])
+    order, plies = np.argsort(angle), np.array([each for _, each in strength.laminate.plies])
+    columns = {"angle [deg]": angle, "strength ratio": strength.ratio, "ply [deg]": plies[strength.ply]}
     return Curve({}, {name: values[order] for name, values in columns.items()})
 
 
 def _draw_strength(
-    look: Look, states: DrawnStates, found: Sequence[JointStrength], curves: Sequence[Curve], words: str
+    look: Look, states: DrawnStates, strengths: Sequence[JointStrength], curves: Sequence[Curve], words: str
 ) -> Sheet:
     sheet = look.sheet([0.55 * look.width], extra=1.1)
     (panel,) = sheet.axes[0]
     for curve, style in zip(curves, state_lines(states), strict=True):
         panel.plot(curve["angle [deg]"], curve["strength ratio"], **style)
-    least = min(each.least_ratio for each in found)
+    least = min(each.least_ratio for each in strengths)
     if math.isfinite(least):
         panel.set_ylim(0.0, MOST_RATIO * max(least, 0.2))
     panel.axhline(1.0, color="0.4", linewidth=0.8, linestyle=(0, (4.0, 2.0)))

@@ -78,5 +78,5 @@ def is_input(path: Path) -> bool:
         return False
 
 
-def _identity(found: stat_result) -> tuple[int, int]:
-    return found.st_dev, found.st_ino
+def _identity(status: stat_result) -> tuple[int, int]:
+    return status.st_dev, status.st_ino

@@ -76,12 +76,12 @@ def assessment_lines(assessed: Assessed) -> list[str]:
     return [f"fatigue over {assessment_words(assessed.how)}", *(_line(one, assessed.how) for one in assessed.found)]
 
 
-def _line(found: SpectrumDamage, how: FatigueAssessment) -> str:
-    spot, counted = found.hot_spot, found.cycles
-    name = f"fatigue of the {edge_body(found.problem, found.body)}, {found.criterion}"
+def _line(damage: SpectrumDamage, how: FatigueAssessment) -> str:
+    spot, counted = damage.hot_spot, damage.cycles
+    name = f"fatigue of the {edge_body(damage.problem, damage.body)}, {damage.criterion}"
     if math.isnan(spot.theta):
         return f"{name}: no damage"
-    depth = "" if spot.depth == 0.0 else f", {units(found.problem)['length'].text(spot.depth, 3)} below the edge"
+    depth = "" if spot.depth == 0.0 else f", {units(damage.problem)['length'].text(spot.depth, 3)} below the edge"
     parts = [
         f"life {spot.life:.4g} {how.passes}, damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}",
         f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x",
@@ -113,16 +113,16 @@ def document(assessed: Assessed) -> dict[str, Any]:
     }
 
 
-def _body(found: SpectrumDamage) -> dict[str, Any]:
-    spot, counted = found.hot_spot, found.cycles
+def _body(damage: SpectrumDamage) -> dict[str, Any]:
+    spot, counted = damage.hot_spot, damage.cycles
     columns = {name: getattr(counted, name)[:MOST_LISTED].tolist() for name in counted._fields}
     return {
-        "criterion": found.criterion,
-        "body": found.body,
+        "criterion": damage.criterion,
+        "body": damage.body,
         "damage": spot.damage,
         "life": spot.life,
         "angle": math.nan if math.isnan(spot.theta) else from_bottom(spot.theta),
-        "depth": units(found.problem)["length"].factor * spot.depth,
+        "depth": units(damage.problem)["length"].factor * spot.depth,
         "plane": math.degrees(spot.plane),
         "cycles": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)],
     }

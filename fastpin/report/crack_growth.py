@@ -24,35 +24,35 @@ ROWS = 13
 """Most lengths of a table, in equal steps of their logarithm."""
 
 
-def passes_of(found: cracks.Growth) -> str:
+def passes_of(growth: cracks.Growth) -> str:
     """Return the name of the passes that are counted: "cycles" or "spectra"."""
-    return "cycles" if found.per == "cycle" else "spectra"
+    return "cycles" if growth.per == "cycle" else "spectra"
 
 
-def growth_curve(found: cracks.Growth) -> Curve:
+def growth_curve(growth: cracks.Growth) -> Curve:
     """Return length, stress intensities, range, threshold, rate and cycles of a crack, by its length."""
-    unit = units(found.problem)
+    unit = units(growth.problem)
     length, intensity, rate = (unit[kind].name for kind in ("length", "stress intensity", "crack growth"))
-    rate, passes = rate.replace("cycle", found.per), passes_of(found)
+    rate, passes = rate.replace("cycle", growth.per), passes_of(growth)
     return Curve(
-        {"mouth [deg]": from_bottom(found.crack.theta), "body": found.crack.body},
+        {"mouth [deg]": from_bottom(growth.crack.theta), "body": growth.crack.body},
         {
-            f"length [{length}]": found.length,
-            f"K_I largest [{intensity}]": found.K_max,
-            f"K_I smallest [{intensity}]": found.K_min,
-            f"K_II [{intensity}]": found.K_II,
-            f"range [{intensity}]": found.delta_K,
-            f"threshold [{intensity}]": found.threshold,
-            f"rate [{rate}]": found.rate,
-            passes: found.cycles,
+            f"length [{length}]": growth.length,
+            f"K_I largest [{intensity}]": growth.K_max,
+            f"K_I smallest [{intensity}]": growth.K_min,
+            f"K_II [{intensity}]": growth.K_II,
+            f"range [{intensity}]": growth.delta_K,
+            f"threshold [{intensity}]": growth.threshold,
+            f"rate [{rate}]": growth.rate,
+            passes: growth.cycles,
         },
     )
 
 
-def growth_line(found: cracks.Growth) -> str:
+def growth_line(growth: cracks.Growth) -> str:
     """Return a line of text: the place of a crack, and what becomes of it."""
-    where = " in the plate round the bush" if found.crack.body == "seat" else ""
-    return f"crack{where} at {from_bottom(found.crack.theta):z.2f} deg from the bottom: {found.words}"
+    where = " in the plate round the bush" if growth.crack.body == "seat" else ""
+    return f"crack{where} at {from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}"
 
 
 def spectrum_stops(states: Sequence[State], corners: int) -> list[State]:
@@ -86,42 +86,47 @@ def case_growth(
     return cracks.planned_growth(spectrum_stops(states, len(case.history)), case.crack, True, progress)
 
 
-def document(found: cracks.Growth) -> dict[str, Any]:
+def document(growth: cracks.Growth) -> dict[str, Any]:
     """Return a growth as a JSON-ready dict. A life without end is infinite, and a length that is not known is NaN."""
-    length, law = units(found.problem)["length"].factor, found.law
-    values = {"first": found.length[0], "last": found.length[-1], "arrest": found.arrest, "fracture": found.fracture}
+    length, law = units(growth.problem)["length"].factor, growth.law
+    values = {
+        "first": growth.length[0],
+        "last": growth.length[-1],
+        "arrest": growth.arrest,
+        "fracture": growth.fracture,
+    }
     return {
-        "angle_of_mouth": from_bottom(found.crack.theta),
-        "direction": math.degrees(found.crack.angle),
-        "body": found.crack.body,
+        "angle_of_mouth": from_bottom(growth.crack.theta),
+        "direction": math.degrees(growth.crack.angle),
+        "body": growth.crack.body,
         "law": law_entries(law) if isinstance(law, Walker | Nasgro) else None,
-        "repeated": found.per,
-        "fate": found.fate.words,
-        "life": found.life,
+        "repeated": growth.per,
+        "fate": growth.fate.words,
+        "life": growth.life,
         **{name: length * float(value) for name, value in values.items()},
-        "words": found.words,
-        "doubts": [str(doubt) for doubt in found.doubts],
+        "words": growth.words,
+        "doubts": [str(doubt) for doubt in growth.doubts],
     }
 
 
-def growth_table(found: cracks.Growth) -> str:
+def growth_table(growth: cracks.Growth) -> str:
     """Return some lengths of a crack with its stress intensities, threshold, rate and cycles, as text."""
-    unit = units(found.problem)
-    at = np.unique(np.linspace(0, found.length.size - 1, ROWS).round().astype(int))
+    unit = units(growth.problem)
+    at = np.unique(np.linspace(0, growth.length.size - 1, ROWS).round().astype(int))
     columns = [
-        ("length", "length", found.length),
-        ("K_I largest", "stress intensity", found.K_max),
-        ("smallest", "stress intensity", found.K_min),
-        ("K_II", "stress intensity", found.K_II),
-        ("range", "stress intensity", found.delta_K),
-        ("threshold", "stress intensity", found.threshold),
-        ("growth", "crack growth", found.rate),
-        (passes_of(found), "life", found.cycles),
+        ("length", "length", growth.length),
+        ("K_I largest", "stress intensity", growth.K_max),
+        ("smallest", "stress intensity", growth.K_min),
+        ("K_II", "stress intensity", growth.K_II),
+        ("range", "stress intensity", growth.delta_K),
+        ("threshold", "stress intensity", growth.threshold),
+        ("growth", "crack growth", growth.rate),
+        (passes_of(growth), "life", growth.cycles),
     ]
     cells = []
     for name, kind, values in columns:
         factor, label = unit[kind].scale([float(value) for _, same, each in columns if same == kind for value in each])
         texts = [f"{factor * value:.4g}" for value in values[at].tolist()]
-        label = "" if kind == "life" else label.replace("cycle", found.per)
+        label = "" if kind == "life" else label.replace("cycle", growth.per)
         cells.append((name, label, ["never" if text == "inf" else text for text in texts]))
     return table(cells)

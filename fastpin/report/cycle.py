@@ -81,9 +81,9 @@ def spectrum_damages(states: Sequence[State], corners: int) -> list[SpectrumDama
     return [spectrum_damage(states, SWT, body) for body in bodies]
 
 
-def spectrum_line(found: SpectrumDamage) -> str:
+def spectrum_line(damage: SpectrumDamage) -> str:
     """Return a line of text: the hot spot of a body over a spectrum, with its life and plane."""
-    spot, edge = found.hot_spot, edge_body(found.problem, found.body)
+    spot, edge = damage.hot_spot, edge_body(damage.problem, damage.body)
     name = f"fatigue of the {edge} over the whole history as a spectrum, Smith-Watson-Topper"
     if math.isnan(spot.theta):
         return f"{name}: none, no plane has both tension and a changing strain"

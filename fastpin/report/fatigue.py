@@ -21,21 +21,21 @@ from fastpin.states.margins import Margin
 from fastpin.states.state import State
 
 
-def spectrum_curve(found: SpectrumDamage) -> Curve:
+def spectrum_curve(damage: SpectrumDamage) -> Curve:
     """Return angle, depth, damage, plane and life of the points, in the order of the angles, as :func:`fatigue_curve`.
 
     The damage is that of one spectrum, and the life counts spectra.
     """
-    angles = np.array([from_bottom(angle) for angle in found.theta.ravel().tolist()])
+    angles = np.array([from_bottom(angle) for angle in damage.theta.ravel().tolist()])
     columns = {
         "angle [deg]": angles,
-        f"depth [{units(found.problem)['length'].name}]": found.depth,
-        f"damage by {found.criterion}": found.damage,
-        "plane [deg]": np.degrees(found.plane),
-        "life [spectra]": found.life,
+        f"depth [{units(damage.problem)['length'].name}]": damage.depth,
+        f"damage by {damage.criterion}": damage.damage,
+        "plane [deg]": np.degrees(damage.plane),
+        "life [spectra]": damage.life,
     }
     order = np.argsort(angles, kind="stable")
-    return Curve({"body": found.body}, {name: np.ravel(values)[order] for name, values in columns.items()})
+    return Curve({"body": damage.body}, {name: np.ravel(values)[order] for name, values in columns.items()})
 
 
 def fatigue_curve(found: Fatigue) -> Curve:

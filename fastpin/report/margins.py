@@ -32,9 +32,9 @@ def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
     return ["margins of safety over all kept states, allowable/value - 1:", *aligned(cells, "lrrll")]
 
 
-def margin_rows(problem: Problem, found: Sequence[Margin]) -> list[tuple[str, ...]]:
+def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, ...]]:
     """Return rows of text under :data:`HEADS`."""
-    unit, least = units(problem), smallest_margin(found)
+    unit, least = units(problem), smallest_margin(margins)
 
     def verdict(row: Margin) -> str:
         if math.isnan(row.margin):
@@ -59,14 +59,14 @@ def margin_rows(problem: Problem, found: Sequence[Margin]) -> list[tuple[str, ..
             named_loads(problem, row.loads) if row.loads else "-",
             row.remark,
         )
-        for row in found
+        for row in margins
     ]
 
 
-def document(problem: Problem, found: Sequence[Margin]) -> list[dict[str, Any]]:
+def document(problem: Problem, margins: Sequence[Margin]) -> list[dict[str, Any]]:
     """Return margins as JSON-ready dicts, in printed units."""
-    unit, least = units(problem), smallest_margin(found)
-    factors = {row.kind: 1.0 if row.kind == "ratio" else unit[row.kind].factor for row in found}
+    unit, least = units(problem), smallest_margin(margins)
+    factors = {row.kind: 1.0 if row.kind == "ratio" else unit[row.kind].factor for row in margins}
     return [
         {
             "subject": row.subject,
@@ -81,5 +81,5 @@ def document(problem: Problem, found: Sequence[Margin]) -> list[dict[str, Any]]:
             "load_point": row.load_point,
             "remark": row.remark,
         }
-        for row in found
+        for row in margins
     ]

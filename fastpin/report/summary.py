@@ -200,17 +200,17 @@ def _margins_summary(
     return margins_document(result.problem, rows)
 
 
-def crack_document(case: Case, found: cracks.Growth) -> dict[str, Any]:
+def crack_document(case: Case, growth: cracks.Growth) -> dict[str, Any]:
     """Return the growth of a crack with its numbers at all lengths and its margins as a JSON-ready dict."""
-    columns = {name: values.tolist() for name, values in crack_growth.growth_curve(found).columns.items()}
+    columns = {name: values.tolist() for name, values in crack_growth.growth_curve(growth).columns.items()}
     return json_ready(
         {
             "fastpin": __version__,
             "title": case.title,
-            "units": unit_names(found.problem),
-            "crack": crack_growth.document(found),
+            "units": unit_names(growth.problem),
+            "crack": crack_growth.document(growth),
             "lengths": columns,
-            "margins": margins_document(found.problem, crack_margins(found)),
+            "margins": margins_document(growth.problem, crack_margins(growth)),
         }
     )
 

@@ -145,19 +145,19 @@ def cycles_curve(result: WearResult) -> Curve:
     return Curve({}, {name: np.array(values) for name, values in columns.items()})
 
 
-def damage_curve(found: WornFatigue) -> Curve:
+def damage_curve(damage: WornFatigue) -> Curve:
     """Return the damage of all material points after the last cycle, and whether they are gone."""
-    length = units(found.problem)["length"]
-    shape = found.damage[-1].shape
-    angles = np.array([from_bottom(angle) for angle in found.theta.tolist()])
+    length = units(damage.problem)["length"]
+    shape = damage.damage[-1].shape
+    angles = np.array([from_bottom(angle) for angle in damage.theta.tolist()])
     columns = {
         "angle [deg]": np.broadcast_to(angles, shape),
-        f"depth [{length.name}]": np.broadcast_to(length.factor * found.depth[:, None], shape),
-        "damage": found.damage[-1],
-        "worn off": found.is_gone[-1].astype(float),
-        "cycles to damage 1": np.where(np.isfinite(found.broken), found.broken, np.nan),
+        f"depth [{length.name}]": np.broadcast_to(length.factor * damage.depth[:, None], shape),
+        "damage": damage.damage[-1],
+        "worn off": damage.is_gone[-1].astype(float),
+        "cycles to damage 1": np.where(np.isfinite(damage.broken), damage.broken, np.nan),
     }
-    return Curve({"body": found.body}, {name: np.ravel(values) for name, values in columns.items()})
+    return Curve({"body": damage.body}, {name: np.ravel(values) for name, values in columns.items()})
 
 
 def document(result: WearResult | None, title: str = "", error: str | None = None) -> dict[str, Any]:

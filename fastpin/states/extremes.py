@@ -276,10 +276,10 @@ def exists(problem: Problem, name: str) -> bool:
     return name not in edges or edges[name] in elastic_bodies(problem)
 
 
-def marked_places(found: Found) -> dict[int, str]:
+def marked_places(extremes: Found) -> dict[int, str]:
     """Return the places of the extremes of :data:`MARKS` with words on each, in order."""
     words: dict[int, list[str]] = {}
-    for pair, extreme in found.items():
+    for pair, extreme in extremes.items():
         words.setdefault(extreme.place, []).append(MARKS[pair])
     return {place: ", ".join(words[place]) for place in sorted(words)}
 

@@ -72,7 +72,7 @@ class Margin(NamedTuple):
         return self.allowable / self.value - 1.0
 
 
-def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
+def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
     """Return the margins of the strengths and of the bush over all states.
 
     The elastic von Mises stress of each body is compared with its yield strength, and with its ultimate strength if
@@ -81,7 +81,7 @@ def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]
     Parameters
     ----------
     problem : Problem
-    found : dict
+    extremes : dict
         The extremes of all states, see :func:`fastpin.states.extremes.marked_extremes`; empty without states.
     read : callable
         ``read(places)`` gives the states at these places.
@@ -89,7 +89,7 @@ def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]
     rows = []
     for owner in dict.fromkeys(circle.owner for circle in circles(problem)):
         circle = next(each for each in circles(problem) if each.owner == owner)
-        extreme = found.get((PREFIX + owner, "largest"))
+        extreme = extremes.get((PREFIX + owner, "largest"))
         state = None if extreme is None else read([extreme.place])[0]
         strengths = {"yield": strength_of(problem, circle)}
         if (ultimate := material_of(problem, circle.body).ultimate_strength) is not None:
@@ -106,7 +106,7 @@ def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]
                 place = place_words(problem, von_mises_peak(state, owner))
                 known = "traction", extreme.value, strength, extreme.load_point, place, state.load, name, owner
                 rows.append(Margin(row.subject, *known))
-    return rows + (_of_bush(problem, found, read) if "seat" in bodies_of(problem) else [])
+    return rows + (_of_bush(problem, extremes, read) if "seat" in bodies_of(problem) else [])
 
 
 def smallest_margin(rows: Sequence[Margin]) -> Margin | None:
@@ -118,13 +118,13 @@ def smallest_margin(rows: Sequence[Margin]) -> Margin | None:
     return min(counted, key=lambda row: row.margin, default=None)
 
 
-def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
+def _of_bush(problem: Problem, extremes: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
     """Return the margins against rotation and opening of a bush in its seat. One that slips has its largest slip."""
     turning = Margin("bush: rotation, friction needed", name="rotation", owner="bush")
     opening = Margin("bush: opening, press fit needed", name="opening", owner="bush")
     if problem.bush_slips:
         turning = Margin("bush: slip in its seat", owner="bush")
-    least, slipping = found.get(("bush_open_margin", "smallest")), found.get(("bush_least_friction", "largest"))
+    least, slipping = extremes.get(("bush_open_margin", "smallest")), extremes.get(("bush_least_friction", "largest"))
     if least is None or slipping is None:
         none = "not known: there is no state"
         return [turning._replace(remark=none), opening._replace(remark=none)]
@@ -137,7 +137,7 @@ def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], lis
         kind="traction", value=needed, allowable=fit.press_fit_pressure, load_point=least.load_point, remark=where,
         loads=state.load,
     )  # fmt: skip
-    slip = found.get(("seat_slip", "largest magnitude"))
+    slip = extremes.get(("seat_slip", "largest magnitude"))
     if slip is not None and problem.bush_slips:
         sliding = read([slip.place])[0]
         seat = sliding.seat

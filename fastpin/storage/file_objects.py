@@ -33,22 +33,22 @@ class Overlay:
         self._pages: dict[int, bytearray] = {}
         self.size = os.fstat(file).st_size
 
-    def read(self, size: int, place: int) -> bytes:
-        """Return `size` bytes from `place` on, or the bytes up to the end."""
-        size = max(min(size, self.size - place), 0)
-        data = bytearray(os.pread(self._file, size, place))
+    def read(self, size: int, offset: int) -> bytes:
+        """Return `size` bytes from `offset` on, or the bytes up to the end."""
+        size = max(min(size, self.size - offset), 0)
+        data = bytearray(os.pread(self._file, size, offset))
         data.extend(bytes(size - len(data)))
-        for number in self._pages.keys() & set(_pages(place, size)):
-            _copy(self._pages[number], number * _PAGE, data, place)
+        for number in self._pages.keys() & set(_pages(offset, size)):
+            _copy(self._pages[number], number * _PAGE, data, offset)
         return bytes(data)
 
-    def put(self, data: bytes, place: int) -> None:
-        """Put other bytes at `place`."""
-        for number in _pages(place, len(data)):
+    def put(self, data: bytes, offset: int) -> None:
+        """Put other bytes at `offset`."""
+        for number in _pages(offset, len(data)):
             if number not in self._pages:
                 page = os.pread(self._file, _PAGE, number * _PAGE)
                 self._pages[number] = bytearray(page.ljust(_PAGE, b"\0"))
-            _copy(data, place, self._pages[number], number * _PAGE)
+            _copy(data, offset, self._pages[number], number * _PAGE)
 
 
 class FileObject:
@@ -61,8 +61,8 @@ class FileObject:
         """Return the size of the file, in bytes."""
         raise NotImplementedError
 
-    def read_at(self, size: int, place: int) -> bytes:
-        """Return `size` bytes from `place` on, or the bytes up to the end."""
+    def read_at(self, size: int, offset: int) -> bytes:
+        """Return `size` bytes from `offset` on, or the bytes up to the end."""
         raise NotImplementedError
 
     def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
@@ -105,9 +105,9 @@ class RestoredFile(FileObject):
         """Return the size of the file, in bytes."""
         return self._content.size
 
-    def read_at(self, size: int, place: int) -> bytes:
-        """Return `size` bytes from `place` on, or the bytes up to the end."""
-        return self._content.read(size, place)
+    def read_at(self, size: int, offset: int) -> bytes:
+        """Return `size` bytes from `offset` on, or the bytes up to the end."""
+        return self._content.read(size, offset)
 
 
 class WrittenFile(FileObject):
@@ -134,9 +134,9 @@ class WrittenFile(FileObject):
         """Return the size of the file, in bytes."""
         return os.fstat(self._file).st_size if self._unwritten is None else self._unwritten.size
 
-    def read_at(self, size: int, place: int) -> bytes:
-        """Return `size` bytes from `place` on, or the bytes up to the end."""
-        return os.pread(self._file, size, place) if self._unwritten is None else self._unwritten.read(size, place)
+    def read_at(self, size: int, offset: int) -> bytes:
+        """Return `size` bytes from `offset` on, or the bytes up to the end."""
+        return os.pread(self._file, size, offset) if self._unwritten is None else self._unwritten.read(size, offset)
 
     def write(self, data: memoryview) -> int:
         """Write `data`, and return the number of bytes."""
@@ -170,9 +170,9 @@ class WrittenFile(FileObject):
         if self._unwritten is None:
             self._unwritten = Overlay(self._file)
 
-    def write_at(self, data: memoryview, place: int) -> None:
-        """Write `data` at `place`. :class:`OSError` is raised if the disk refuses them."""
-        write_all(self._file, data, place)
+    def write_at(self, data: memoryview, offset: int) -> None:
+        """Write `data` at `offset`. :class:`OSError` is raised if the disk refuses them."""
+        write_all(self._file, data, offset)
 
     def resize(self, size: int) -> None:
         """Set the size of the file, in bytes. :class:`OSError` is raised if the disk refuses it."""
@@ -212,21 +212,21 @@ def written_h5(path: Path, large: bool = False) -> Iterator[h5py.File]:
         os.close(file)
 
 
-def write_all(file: int, data: bytes | memoryview, place: int) -> None:
-    """Write all of `data` into an open file, at `place`. :class:`OSError` is raised if the disk refuses some."""
+def write_all(file: int, data: bytes | memoryview, offset: int) -> None:
+    """Write all of `data` into an open file, at `offset`. :class:`OSError` is raised if the disk refuses some."""
     view = memoryview(data)
     while view:
-        done = os.pwrite(file, view, place)
-        view, place = view[done:], place + done
+        done = os.pwrite(file, view, offset)
+        view, offset = view[done:], offset + done
 
 
-def _pages(place: int, size: int) -> range:
-    """The numbers of the pages that hold `size` bytes from `place` on."""
-    return range(place // _PAGE, -(-(place + size) // _PAGE)) if size else range(0)
+def _pages(offset: int, size: int) -> range:
+    """The numbers of the pages that hold `size` bytes from `offset` on."""
+    return range(offset // _PAGE, -(-(offset + size) // _PAGE)) if size else range(0)
 
 
-def _copy(source: bytes | bytearray, begin: int, target: bytearray, place: int) -> None:
-    """Copy the bytes of `source`, which begins at `begin`, into the part of `target`, at `place`, that they share."""
-    first, last = max(begin, place), min(begin + len(source), place + len(target))
+def _copy(source: bytes | bytearray, begin: int, target: bytearray, offset: int) -> None:
+    """Copy the bytes of `source`, which begins at `begin`, into the part of `target`, at `offset`, that they share."""
+    first, last = max(begin, offset), min(begin + len(source), offset + len(target))
     if first < last:
-        target[first - place : last - place] = source[first - begin : last - begin]
+        target[first - offset : last - offset] = source[first - begin : last - begin]

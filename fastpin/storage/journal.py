@@ -138,18 +138,18 @@ class JournaledFile(WrittenFile):
         os.close(self._journal)
         os.close(self._file)
 
-    def _note(self, place: int, old: bytes, new: bytes) -> None:
-        record = _RECORD.pack(place, len(old), _checksum(old, place), zlib.crc32(new)) + old
+    def _note(self, offset: int, old: bytes, new: bytes) -> None:
+        record = _RECORD.pack(offset, len(old), _checksum(old, offset), zlib.crc32(new)) + old
         write_all(self._journal, record, self._written)
         self._written += len(record)
 
-    def write_at(self, data: memoryview, place: int) -> None:
-        """Write `data` at `place`. The overwritten bytes go to the journal first."""
+    def write_at(self, data: memoryview, offset: int) -> None:
+        """Write `data` at `offset`. The overwritten bytes go to the journal first."""
         self.begin()
-        old = min(len(data), self._size - place)
+        old = min(len(data), self._size - offset)
         if old > 0:
-            self._note(place, os.pread(self._file, old, place), bytes(data[:old]))
-        super().write_at(data, place)
+            self._note(offset, os.pread(self._file, old, offset), bytes(data[:old]))
+        super().write_at(data, offset)
 
     def resize(self, size: int) -> None:
         """Set the size of the file, in bytes. A removed end goes to the journal first."""
@@ -371,5 +371,5 @@ def _notes(journal: int, path: Path) -> list[Note]:
     return notes
 
 
-def _checksum(old: bytes, place: int) -> int:
-    return zlib.crc32(old, place & 0xFFFFFFFF)
+def _checksum(old: bytes, offset: int) -> int:
+    return zlib.crc32(old, offset & 0xFFFFFFFF)

@@ -274,15 +274,15 @@ def _read(
 
 
 def _read_coarse(
-    file: hdf5.Group | packed.PackedGroup, fine: Result, places: Sequence[int], found: int, after: int | None
+    file: hdf5.Group | packed.PackedGroup, fine: Result, places: Sequence[int], fine_states: int, after: int | None
 ) -> Result | None:
     """Read the states of a file that give the states `fine` their error bars, at the same places of the file.
 
-    It is None without error bars, or if their run has not come as far. `found` is the number of fine states. Up to a
-    corner `after` there is no restart on the coarse grid.
+    It is None without error bars, or if their run has not come as far. `fine_states` is the number of fine states.
+    Up to a corner `after` there is no restart on the coarse grid.
     """
     group = file.get("coarse")
-    if group is None or count(group["states"]) < found:
+    if group is None or count(group["states"]) < fine_states:
         return None
     grid, restart = read_grid(group), None
     if after is None and "restart" in group:
