@@ -125,9 +125,7 @@ def record(
             raise unknown_keyword("record", name, OPTIONS)
     solve_options = SolveOptions(**options)
     check_options(solve_options, grid, start)
-    if solve_options.error_bars and start is not None:
-        words = "a run that continues another one has none in a file; leave them or the file out"
-        raise InputError("error_bars", words)
+    _check_bars(solve_options, start)
     task = Task(problem, history, solve_options, grid, progress, save_corners)
     if solve_options.error_bars:
         check_halves(task, start)
@@ -145,6 +143,14 @@ def record(
     if solve_options.error_bars:
         _record_coarse(path, task)
     warn_of(_pressure_doubts(path, task), 2)
+
+
+def _check_bars(options: SolveOptions, start: Result | None) -> None:
+    """Refuse error bars of a run in a file that continues another one."""
+    if options.error_bars and start is not None:
+        raise InputError(
+            "error_bars", "a run that continues another one has none in a file; leave them or the file out"
+        )
 
 
 def _checked_corners(save_after: Sequence[int], count: int) -> frozenset[int]:

@@ -100,9 +100,7 @@ def residuals(
     # Composite constants over beta*, with kappa'/G of the plate.
     alpha = pair.alpha_star / pair.beta_star
     plate = 0.5 * (pair.plate_kolosov + 1.0) * pair.plate_compliance / pair.beta_star
-    gamma, gamma_prime = pair.gamma / pair.beta_star, pair.gamma_prime / pair.beta_star  # (39)
-    if problem.pin_load == "body":
-        gamma, gamma_prime = pair.gamma_body / pair.beta_star, pair.gamma_body_prime / pair.beta_star  # (56)
+    gamma, gamma_prime = _pin_constants(problem)
 
     theta, cos, sin = grid.theta, np.cos(grid.theta), np.sin(grid.theta)
     cos_moment, sin_moment = grid.trig_moments()
@@ -135,6 +133,14 @@ def _at_rest(problem: Problem, theta: np.ndarray, rest: tuple[float, float] | No
     cos, sin = np.cos(theta), np.sin(theta)
     found: np.ndarray = np.array([problem.assembled_clearance - x * cos - y * sin + gap, x * sin - y * cos + slope])
     return found
+
+
+def _pin_constants(problem: Problem) -> tuple[float, float]:
+    """Return the composite constants gamma and gamma' over beta*, (39) or (56)."""
+    pair = problem.surfaces
+    if problem.pin_load == "centre":
+        return pair.gamma / pair.beta_star, pair.gamma_prime / pair.beta_star
+    return pair.gamma_body / pair.beta_star, pair.gamma_body_prime / pair.beta_star
 
 
 def _remote_terms(plate: float, theta: np.ndarray, stress: dict[int, float]) -> np.ndarray:
