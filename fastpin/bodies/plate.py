@@ -10,11 +10,11 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from fastpin.bodies.body import WIDEST, InWords, PlateBody, Remote, Rim, Table
-from fastpin.bodies.walls import UNIT_FORCE, UNIT_STRESS, Amplitudes, Displacements, Other, force_on
+from fastpin.bodies.walls import UNIT_STRESS, Amplitudes, Displacements, Other, force_on
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.model.checks import number
-from fastpin.model.loads import REMOTE
+from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.synonyms import explains_keywords
 
 NEAREST = 1.05
@@ -79,7 +79,7 @@ class Plate(PlateBody):
         found = {place: size * np.array([D, 0.0, 0.5 * A, 0.0, 0.0]) for place, (A, D) in UNIT_STRESS.items()}
         if self.reaction is not None:
             x, y = (value / rim.radius for value in self.reaction)
-            for place, force in UNIT_FORCE.items():
+            for place, force in ((Q, 1.0 + 0.0j), (P, -1.0j)):  # the force Q - iP on the pin, per unit load
                 found[place] = _point_force(complex(x, y), -force / rim.ratio, rim.kolosov, rim.compliance)
         return found
 

@@ -15,10 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.kernels.harmonics import First
-from fastpin.model.loads import SXX, SXY, SYY, P, Q
-
-UNIT_FORCE = {Q: 1.0 + 0.0j, P: -1.0j}
-"""Complex force Q - iP on the pin, per unit load."""
+from fastpin.model.loads import SXX, SXY, SYY
 
 UNIT_STRESS = {SXX: (1.0, 1.0 + 0.0j), SYY: (1.0, -1.0 + 0.0j), SXY: (0.0, 2.0j)}
 """Sum sxx + syy and complex difference sxx - syy + 2i sxy of the remote stresses, per unit load."""

@@ -21,13 +21,6 @@ from fastpin.pages.writing import check_page
 SECTIONS = "section {n:.0f} of {total:.0f}"
 """Text of the progress bar of the page."""
 
-APPLIES = {"title": ("result", "case"), "case": ("result",), "plan": ("sweep",), "error_bars": ("case",)}
-"""Options, and the kinds of sources on which they have an effect."""
-
-KINDS = {"result": "a stored result", "case": "a case file", "sweep": "the directory of a sweep"}
-"""Words for the kinds of sources."""
-
-
 ABOUT = tuple(field.name for field in dataclasses.fields(About))
 """Options that are fields of :class:`fastpin.model.About`."""
 
@@ -35,10 +28,12 @@ ABOUT = tuple(field.name for field in dataclasses.fields(About))
 def run(options: argparse.Namespace) -> int:
     """Write the page."""
     kind = "sweep" if options.source.is_dir() else "case" if options.source.suffix == ".toml" else "result"
-    for name, kinds in APPLIES.items():
+    words = {"result": "a stored result", "case": "a case file", "sweep": "the directory of a sweep"}
+    effects = {"title": ("result", "case"), "case": ("result",), "plan": ("sweep",), "error_bars": ("case",)}
+    for name, kinds in effects.items():
         if getattr(options, name) is not None and kind not in kinds:
-            allowed = " or ".join(KINDS[each] for each in kinds)
-            raise InputError(flag(name), f"has no effect on {KINDS[kind]}; it is for {allowed}")
+            allowed = " or ".join(words[each] for each in kinds)
+            raise InputError(flag(name), f"has no effect on {words[kind]}; it is for {allowed}")
     page = Path(f"{options.source.resolve().stem}.html") if options.output is None else options.output
     check_page("--output", page)
     try:

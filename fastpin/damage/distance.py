@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,9 +28,6 @@ from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.state import State
 
 DistanceMethod = Literal["point", "line", "area"]
-
-METHODS = ("point", "line", "area")
-"""The methods of the theory of critical distances."""
 
 AREA_RADIUS = 0.5 * (4.0 * (2.0 * math.sqrt(2.0) + 1.0) / (3.0 * math.pi)) ** 2
 """Radius of the area method in units of L: 1.32.
@@ -129,7 +126,7 @@ def checked_length(
     InputError
         If the method is unknown, the length is not positive, or constants are missing.
     """
-    choice("method", method, METHODS)
+    choice("method", method, get_args(DistanceMethod))
     if length is None:
         given = (material_of(problem, body).fatigue if constants is None else constants) or FatigueConstants()
         names = ("threshold_range", "limit_range")

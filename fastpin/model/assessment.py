@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -25,8 +25,6 @@ from fastpin.model.points import (
     owner_of,
 )
 from fastpin.model.problem import Problem
-
-MinerRule = Literal["elementary", "original", "haibach"]
 
 MINER_RULES = ("elementary", "original", "haibach")
 """The variants of Miner's rule for small cycles: the curve of lives goes on, ends, or falls off beyond its knee."""

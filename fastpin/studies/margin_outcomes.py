@@ -20,12 +20,6 @@ from fastpin.studies.strength_outcomes import least_of
 LEAST = "least"
 """The smallest of all margins that are known, as tables mark it."""
 
-OWNERS = ("pin", "bush", "plate")
-"""The bodies whose margins can be chosen."""
-
-SECTIONS = {"fatigue": "fatigue", "fracture": "crack", "growth": "crack", "ply": "strength"}
-"""Kinds of margins that need a section of the case."""
-
 
 def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...], result: Result) -> float:
     """The smallest margin, or the smallest one of a kind, of all bodies or of one; NaN if none is known.

@@ -40,7 +40,7 @@ from fastpin.states.margins import MARGINS
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.crack_outcomes import CRACK_QUANTITIES, of_crack
 from fastpin.studies.fatigue_outcomes import FATIGUE_QUANTITIES, of_assessment, unit_of_life
-from fastpin.studies.margin_outcomes import LEAST, OWNERS, SECTIONS, of_margin
+from fastpin.studies.margin_outcomes import LEAST, of_margin
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
@@ -362,10 +362,11 @@ def _of_strength(source: CaseText, section: Section, default: StrengthAssessment
 def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read the smallest margin of safety, of all kinds or of one kind, with the sections of the case."""
     name = _choice(section, "margin", (LEAST, *MARGINS))
-    owner = _choice(section, "body", OWNERS) if "body" in section else None
+    owner = _choice(section, "body", ("pin", "bush", "plate")) if "body" in section else None
     if name is None or ("body" in section and owner is None):
         return None
-    needed = SECTIONS.get(name)
+    # Some kinds of margins need a section of the case.
+    needed = {"fatigue": "fatigue", "fracture": "crack", "growth": "crack", "ply": "strength"}.get(name)
     if needed is not None and needed not in beside:
         section.report(f'margin: "{name}" needs a section [{needed}] of the case', "margin")
         return None

@@ -88,7 +88,7 @@ def test_the_area_method_against_a_sum_over_small_squares(cycle, body):
 
 def test_a_small_length_gives_the_edge(cycle):
     edge = damage.fatigue(cycle, "crossland", points=fastpin.Points.at_depth(0.0, ANGLES)).parameter
-    for method in distance.METHODS:
+    for method in ("point", "line", "area"):
         found = damage.fatigue_at_distance(cycle, "crossland", method, theta=ANGLES, length=1e-9)
         np.testing.assert_allclose(found.parameter, edge, rtol=2e-3)
 

@@ -17,10 +17,10 @@ MOST = {
     "isinstance of bodies outside bodies/": 0,
     "drive is None, or not": 0,
     "classes defined twice": 0,
-    "small private functions used once": 78,
-    "constants of modules": 1_386,
+    "small private functions used once": 68,
+    "constants of modules": 1_306,
     "hidden imports": 0,
-    "lines of code": 46_590,
+    "lines of code": 46_559,
 }
 """The most that each number may be. A smaller number takes its place here."""
 
