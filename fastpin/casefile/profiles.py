@@ -74,6 +74,11 @@ def _lobes(count: object, size: object, axis: float) -> Profile:
     return Profile((Harmonic.from_bottom(order, amplitude * cos, amplitude * sin),))
 
 
+def _harmonic(order: object, cosine: object, sine: object) -> Profile:
+    count = whole_number("order", order, 0, MOST_ORDER)
+    return Profile((Harmonic.from_bottom(count, number("cosine", cosine), number("sine", sine)),))
+
+
 def _samples(angles: object, values: object) -> Profile:
     if not isinstance(angles, list):
         raise InputError("angles", f"must be a list of angles, not {as_toml(angles)}")
@@ -92,17 +97,7 @@ WORDS = {
     "lobes": Word(
         ("lobes", "size", "axis"), {"axis": 0.0}, lambda count, size, axis: _lobes(count, size, _degrees("axis", axis))
     ),
-    "harmonic": Word(
-        ("harmonic", "cosine", "sine"),
-        {"cosine": 0.0, "sine": 0.0},
-        lambda order, cosine, sine: Profile(
-            (
-                Harmonic.from_bottom(
-                    whole_number("order", order, 0, MOST_ORDER), number("cosine", cosine), number("sine", sine)
-                ),
-            )
-        ),
-    ),
+    "harmonic": Word(("harmonic", "cosine", "sine"), {"cosine": 0.0, "sine": 0.0}, _harmonic),
     "flat": Word(("flat", "centre"), {}, lambda depth, at: Profile((Flat(depth, checked_angle("centre", at)),))),
     "crown": Word(
         ("crown", "centre", "half_width"),

@@ -52,7 +52,7 @@ def _check_outputs(options: argparse.Namespace, study: studies.tolerances.Tolera
     if options.scatter is not None and not study.samples:
         raise InputError("--scatter", "draws samples, and the plan has none; give it samples = 200")
     if options.value is None:
-        return [*study.plan.outcomes][:3]
+        return [*study.plan.outcomes][:3]  # the first ones
     shown = [name.strip() for name in str(options.value).split(",")]
     try:
         report.tolerances.check_outcomes(study, shown)

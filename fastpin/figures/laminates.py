@@ -75,7 +75,7 @@ def stiffness_of(joint: Problem | Case | Result) -> Plot:
 
 def stiffness_curve(plate: Laminate, unit: str) -> Curve:
     """Young's modulus and the shear modulus by the direction, deg from the bottom, in this `unit`."""
-    degrees = np.linspace(-180.0, 180.0, 361)
+    degrees = np.linspace(-180.0, 180.0, 361)  # one direction each degree
     turned = in_axes(plate.matrix, np.radians(degrees - 90.0))
     return Curve(
         {}, {"direction [deg]": degrees, f"E [{unit}]": 1.0 / turned[:, 0, 0], f"G [{unit}]": 1.0 / turned[:, 2, 2]}
