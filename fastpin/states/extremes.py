@@ -20,6 +20,7 @@ from fastpin.errors import InputWarning
 from fastpin.model.doubts import are_given, are_loads_plausible, yield_doubt
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
+from fastpin.model.loads import REMOTE
 from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.reading.marks import Marks
@@ -72,7 +73,7 @@ MARKS: dict[tuple[str, Side], str] = {
 
 
 FAR = 2.0
-"""Yield strength over stress, in the states of the largest tractions and loads, beyond which no state is near yield."""
+"""Strength over stress beyond which no state is near yield, in the states of the largest tractions and stresses."""
 
 
 class Extreme(NamedTuple):
@@ -179,7 +180,7 @@ def yield_extremes(kept: Kept) -> Found:
     """Find the largest von Mises stress of each body that may yield.
 
     Left out is a body without a known strength, and one that is far from it in the states of the largest tractions and
-    loads: then the stresses of all other states need not be computed.
+    remote stresses: then the stresses of all other states need not be computed.
     """
     owners = yielding_owners(kept.problem)
     if not owners:
@@ -187,8 +188,10 @@ def yield_extremes(kept: Kept) -> Found:
     columns = []
     for block in kept.blocks():
         tractions = [part for each in (block, block.seat or block) for part in (each.pressure, each.shear)]
-        columns.append(np.column_stack([np.abs(block.loads), *(np.abs(part).max(axis=1) for part in tractions)]))
-    states = kept.read(sorted({int(np.argmax(column)) for column in np.concatenate(columns).T}))
+        remote = np.abs(block.loads[:, list(REMOTE)])
+        columns.append(np.column_stack([remote, *(np.abs(part).max(axis=1) for part in tractions)]))
+    places = {int(np.argmax(column)) for column in np.concatenate(columns).T if column.any()}
+    states = kept.read(sorted(places))
     near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]
     return find_extremes(kept, [(PREFIX + owner, "largest") for owner in near])
 
