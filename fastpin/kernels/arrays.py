@@ -67,7 +67,7 @@ class Contact(NamedTuple):
     slip_tally: np.ndarray
 
 
-class Values(NamedTuple):
+class ContactValues(NamedTuple):
     """Pressure, shear, gap, slip and status of each node, shape (n,), and the motion (m,): a contact or a solution."""
 
     pressure: np.ndarray

@@ -61,7 +61,7 @@ def residuals(equations, values, elastic, loaded, forces, rest_gap, concentric_g
     Parameters
     ----------
     equations : Equations
-    values : Values
+    values : ContactValues
         The contact.
     elastic, loaded : ndarray, shape (2n,)
         Elastic part of gap and slip, and the part of the loads.
@@ -178,9 +178,9 @@ def put_on_bounds(friction, solution, settled):
     Parameters
     ----------
     friction : ndarray, shape (n,)
-    solution : Values
+    solution : ContactValues
         With the statuses. The tractions of open nodes and the gaps of closed ones count as 0.
-    settled : Values
+    settled : ContactValues
         Pressure, shear and gap are set, and the slip where a node does not stick.
     """
     tiny = ON_BOUND * max(_largest(solution.pressure), SMALLEST)
@@ -228,7 +228,7 @@ def wanted_status(friction, solution, start_slip, rest_gap, tolerance, wanted):
     Parameters
     ----------
     friction : ndarray, shape (n,)
-    solution : Values
+    solution : ContactValues
         With the statuses under which it was found.
     start_slip, rest_gap : ndarray, shape (n,)
         Slip before the increment, Eqs. (48) and (49), and the rest gap.

@@ -9,7 +9,7 @@ import numpy as np
 
 from fastpin.elasticity.system import Interface, System
 from fastpin.kernels import conditions
-from fastpin.kernels.arrays import Values
+from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
 from fastpin.model.loads import P, Q
 from fastpin.reading.marks import Marks
@@ -101,9 +101,9 @@ class Configuration:
         return self.status != OPEN
 
     @property
-    def values(self) -> Values:
+    def values(self) -> ContactValues:
         """The arrays of the contact for kernels."""
-        return Values(self.pressure, self.shear, self.gap, self.slip, self.status, self.motion)
+        return ContactValues(self.pressure, self.shear, self.gap, self.slip, self.status, self.motion)
 
 
 def embedded(
@@ -159,9 +159,9 @@ class Solution:
     slip: np.ndarray
     motion: np.ndarray
 
-    def under(self, status: np.ndarray) -> Values:
+    def under(self, status: np.ndarray) -> ContactValues:
         """The arrays for kernels, with the statuses (n,) under which the solution was found."""
-        return Values(self.pressure, self.shear, self.gap, self.slip, status, self.motion)
+        return ContactValues(self.pressure, self.shear, self.gap, self.slip, status, self.motion)
 
     def part(self, nodes: slice) -> Solution:
         """The solution at some nodes. The motion is that of all."""
@@ -222,7 +222,7 @@ def solve_unknowns(
 def accept_solution(start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray) -> Configuration:
     """The configuration at `load` that the solution of its statuses gives, with the energies of `start`.
 
-    Sticking nodes keep the slip of `start`. Values beyond their bounds by rounding are put on them.
+    Sticking nodes keep the slip of `start`. ContactValues beyond their bounds by rounding are put on them.
     """
     new = start.copy()
     closed = status != OPEN

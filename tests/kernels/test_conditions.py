@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import conditions
-from fastpin.kernels.arrays import Equations, Values
+from fastpin.kernels.arrays import ContactValues, Equations
 from fastpin.kernels.status import OPEN, STICK
 
 NODES = 12
@@ -35,7 +35,9 @@ class Drawn:
         self.closed, self.stick = self.status != OPEN, self.status == STICK
         self.friction = np.where(rng.random(n) < 0.2, 0.0, rng.uniform(0.1, 1.0, n))
         pressure, shear = rng.normal(1.0, 1.0, n), rng.normal(size=n)
-        self.values = Values(pressure, shear, rng.normal(size=n), rng.normal(size=n), self.status, rng.normal(size=m))
+        self.values = ContactValues(
+            pressure, shear, rng.normal(size=n), rng.normal(size=n), self.status, rng.normal(size=m)
+        )
         self.equations = Equations(
             rng.normal(size=(2 * n, m)), rng.normal(size=(m, 2 * n)), rng.normal(size=(m, m)), self.friction
         )
@@ -144,7 +146,7 @@ def test_values_on_their_bounds(kernels, seed):
     solution, slip = drawn.values, rng.normal(size=NODES)
     solution.pressure[:3] = [1e-14, -0.3, 0.0]
     solution.gap[3:6] = [1e-14, -0.3, 0.0]
-    settled = Values(*(np.full(NODES, np.nan) for _ in range(3)), slip.copy(), drawn.status, np.zeros(3))
+    settled = ContactValues(*(np.full(NODES, np.nan) for _ in range(3)), slip.copy(), drawn.status, np.zeros(3))
     kernels["put_on_bounds"](drawn.friction, solution, settled)
     pressed = drawn.closed & (solution.pressure > 1e-12 * np.abs(solution.pressure).max())
     pressure = np.where(pressed, solution.pressure, 0.0)
