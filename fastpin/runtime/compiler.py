@@ -7,13 +7,12 @@ in :mod:`fastpin.runtime.machine`, to store machine code. Where they have change
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import functools
 from collections.abc import Callable
 from typing import Any
 
 from fastpin.runtime.extensions import numba
-from fastpin.runtime.machine import Code, helpers, load
+from fastpin.runtime.machine import Code, load, unknown_symbols
 from fastpin.runtime.source import CACHED, SETTINGS, KernelSource
 
 
@@ -57,18 +56,16 @@ def compile_kernel(
 
 def _object_code(result: Any) -> Code | None:
     """The machine code of a compiled function. None if it needs more than C, Python and the known helpers."""
-    library, description, process = result.library, result.fndesc, ctypes.CDLL(None)
+    library, description = result.library, result.fndesc
     module = library._final_module
     foreign = {one.name for one in (*module.functions, *module.global_variables) if one.is_declaration}
-    known = helpers()
-    unknown = [
-        name for name in foreign if not name.startswith("llvm.") and name not in known and not hasattr(process, name)
-    ]
-    if unknown or library.has_dynamic_globals or result.environment.consts or result.reload_init:
+    foreign = {name for name in foreign if not name.startswith("llvm.")}
+    if unknown_symbols(foreign) or library.has_dynamic_globals or result.environment.consts or result.reload_init:
         return None
     return Code(
         library._get_compiled_object(),
         description.llvm_cpython_wrapper_name,
         description.env_name,
         tuple(sorted(numba.core.intrinsics.INTR_MATH)),
+        tuple(sorted(foreign)),
     )

@@ -77,7 +77,7 @@ class Kernel(KernelSource):
         with _lock:
             if types not in self._entries:
                 place = stored.place_of(self, signature(types)) if CACHED else None
-                entry: Any = place and place.load()
+                entry: Any = place and (place.load() or stored.load_shipped(self, signature(types)))
                 if entry is None:
                     _announce()
                     entry, code = compiler.compile_kernel(self, arguments, stores=place is not None)

@@ -10,7 +10,7 @@ import ctypes
 import functools
 import platform
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from fastpin.runtime.extensions import library, llvm
@@ -30,16 +30,24 @@ class Code(NamedTuple):
         Symbols of the function that Python calls, and of the pointer to Numba's environment.
     mathematics : tuple of str
         Functions of C that are to be Numba's own, to get the same bits.
+    foreign : tuple of str
+        All symbols of Numba, Python and C that it needs.
     """
 
     machine_code: bytes
     entry: str
     environment: str
     mathematics: tuple[str, ...]
+    foreign: tuple[str, ...]
 
 
 def load(code: Code, name: str, module: str) -> Callable[..., Any]:
-    """Load a function of a module. It does not check the types of its arguments."""
+    """Load a function of a module. It does not check the types of its arguments.
+
+    :class:`ImportError` if the process lacks a symbol, with which LLVM would end the process.
+    """
+    if missing := unknown_symbols(code.foreign):
+        raise ImportError(f"no {', '.join(missing)}")
     _name_symbols(code.mathematics)
     engine = _engine()
     engine.add_object_file(llvm.ObjectFileRef.from_data(code.machine_code))
@@ -67,6 +75,12 @@ def helpers() -> dict[str, int]:
     found = {f"numba_{name}": address for name, address in library("numba._helperlib").c_helpers.items()}
     found |= {name if name.startswith("_") else f"NRT_{name}": address for name, address in memory.c_helpers.items()}
     return found
+
+
+def unknown_symbols(names: Iterable[str]) -> list[str]:
+    """Those that are neither helpers nor symbols of the process, such as functions of C and Python."""
+    known, process = helpers(), ctypes.CDLL(None)
+    return [name for name in names if name not in known and not hasattr(process, name)]
 
 
 @functools.cache

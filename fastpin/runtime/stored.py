@@ -3,6 +3,10 @@
 A file holds one kernel for one combination of types. It holds all that the code depends on, too: the text of the
 kernel's file, the types, the settings, and the versions of Python, NumPy, Numba, LLVM and the processor. A file that
 does not agree is not used. The folder may be moved or copied. ``NUMBA_CACHE_DIR`` chooses another directory.
+
+A platform wheel brings such files, in :data:`SHIPPED`. They are for all processors of a level, and are read when the
+directories hold none. They depend on the binary interface of Python and on the version of Numba. The code calls no
+other library: Numba's own helpers read NumPy's arrays, and any LLVM loads an object file.
 """
 
 from __future__ import annotations
@@ -14,6 +18,7 @@ import os
 import sys
 import zlib
 from collections.abc import Callable, Iterator
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 from typing import Any
 
@@ -25,28 +30,40 @@ from fastpin.runtime.source import SETTINGS, KernelSource
 
 SUFFIX = ".machine"
 
+SHIPPED = Path(__file__).parent / "shipped"
+"""The folder of machine code in a platform wheel. Other installations have none."""
+
+LEVELS = {
+    "x86-64-v3": "sse4.2 ssse3 popcnt cx16 sahf avx avx2 bmi bmi2 f16c fma lzcnt movbe".split(),
+    "x86-64-v2": "sse4.2 ssse3 popcnt cx16 sahf".split(),
+}
+"""Levels of processors, the best first, and the features that make them, as LLVM names both."""
+
+Environment = tuple[str, ...]
+"""What machine code depends on beside its kernel."""
+
 
 class StoredCode:
-    """The files of a kernel for arguments of some types."""
+    """The files of a kernel for arguments of some types, for this environment or another one."""
 
-    def __init__(self, kernel: KernelSource, signature: str) -> None:
+    def __init__(self, kernel: KernelSource, signature: str, environment: Environment = ()) -> None:
         self.kernel, function = kernel, kernel.py_func
         self.source = function.__code__.co_filename
         texts = tuple(Path(file).read_bytes() for file, _ in kernel.texts)
         if not kernel.is_current():
             raise OSError("the text of the kernel was replaced after its import")
-        rest = (signature, repr(SETTINGS), *_environment())
+        rest = (signature, repr(SETTINGS), *(environment or own_environment()))
         self.key = (texts, rest)
         self.name, self.module = function.__qualname__, function.__module__
         self.stem = f"{Path(self.source).stem}.{self.name}-{zlib.crc32(repr(rest).encode()):08x}-"
         self.file = f"{self.stem}{zlib.crc32(b''.join(texts)):08x}{SUFFIX}"
 
-    def load(self) -> Callable[..., Any] | None:
-        """The function from the first file that agrees; None if there is none.
+    def load(self, *directories: Path) -> Callable[..., Any] | None:
+        """The function from the first file that agrees, of these or the user's directories; None if there is none.
 
         Where code can't be stored, the function comes from the cache of Numba.
         """
-        for directory in self._directories():
+        for directory in directories or self._directories():
             try:
                 content = (directory / self.file).read_bytes()
             except OSError:
@@ -126,11 +143,42 @@ def place_of(kernel: KernelSource, signature: str) -> StoredCode | None:
         return None
 
 
+def load_shipped(kernel: KernelSource, signature: str) -> Callable[..., Any] | None:
+    """The function from the machine code of a platform wheel; None if none agrees."""
+    for level in _levels():
+        with contextlib.suppress(OSError):  # the text of the kernel was replaced after its import
+            entry = StoredCode(kernel, signature, environment_of(level)).load(SHIPPED)
+            if entry is not None:
+                return entry
+    return None
+
+
+def environment_of(level: str) -> Environment:
+    """The binary interface of Python, the version of Numba, and a level of processors, on which shipped code depends."""
+    return (level, EXTENSION_SUFFIXES[0], _version("numba"))
+
+
 @functools.cache
-def _environment() -> tuple[str, ...]:
-    """Versions, the processor, and settings of Numba on which machine code depends."""
+def own_environment() -> Environment:
+    """Versions, the processor, and settings of Numba, on which machine code of this machine depends."""
+    return (sys.version, np.__version__, _version("numba"), _version("llvmlite"), *machine.target(), *_settings())
+
+
+@functools.cache
+def _levels() -> list[str]:
+    """Levels of shipped code that this processor runs. None if Numba is to compile with settings of its own."""
+    if _settings() or not SHIPPED.is_dir():
+        return []
+    features = set(machine.target()[-1].split(","))
+    return [level for level, needed in LEVELS.items() if features.issuperset(f"+{name}" for name in needed)]
+
+
+def _settings() -> list[str]:
+    """Settings of Numba by variables, of those that may change the code."""
     settings = sorted(f"{name}={value}" for name, value in os.environ.items() if name.startswith("NUMBA_"))
-    unrelated = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")  # all others may change the code
-    chosen = [text for text in settings if text.partition("=")[0] not in unrelated]
-    compilers = [(folder(name) / "_version.py").read_text(encoding="utf-8") for name in ("numba", "llvmlite")]
-    return (sys.version, np.__version__, *compilers, *machine.target(), *chosen)
+    unrelated = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
+    return [text for text in settings if text.partition("=")[0] not in unrelated]
+
+
+def _version(package: str) -> str:
+    return (folder(package) / "_version.py").read_text(encoding="utf-8")

@@ -68,7 +68,7 @@ def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]
 
 def forget() -> None:
     """Ask Numba for its parts once more."""
-    for remembered in (machine.helpers, machine._name_symbols, stored._environment):
+    for remembered in (machine.helpers, machine._name_symbols, stored.own_environment):
         remembered.cache_clear()
 
 

@@ -27,7 +27,7 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> stored.StoredCode:
 
 def test_threads_and_processes_of_equal_number_write_whole_files(place: stored.StoredCode, tmp_path: Path) -> None:
     """All write the same file at once. It is always whole, and nothing is left behind."""
-    codes = [machine.Code(bytes([k]) * 3_000_000, "wrapper", "environment", ()) for k in range(4)]
+    codes = [machine.Code(bytes([k]) * 3_000_000, "wrapper", "environment", (), ()) for k in range(4)]
     barrier = threading.Barrier(len(codes))
 
     def write(code: machine.Code) -> None:

@@ -1,0 +1,86 @@
+"""The platform wheel: the package with machine code of its kernels, for the first run without a compilation.
+
+``python -m scripts.platform_wheel [--outdir DIST] [--python PYTHON ...]`` builds it beside the plain wheel. Code is
+compiled for each level of processors (``LEVELS`` of fastpin/runtime/stored.py) by this Python, or by the given ones,
+each with its own version of Numba. An installation with another Python, Numba or processor compiles, as the plain wheel
+does. Linux on x86-64 is needed, with a processor of the best level.
+
+The class below is the hook of hatchling that adds the files and the tag. ``pyproject.toml`` names it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+ROOT = Path(__file__).resolve().parents[1]
+
+FOLDER = "FASTPIN_MACHINE_CODE"
+"""The variable that names the folder of machine code to the hook."""
+
+TAG = "py3-none-manylinux_2_17_x86_64"
+"""Any Python, since the files name theirs. No file is linked to the system: pip's oldest tag of Numba's wheels will do."""
+
+COMPILE = """
+import sys
+from fastpin.runtime import stored
+from fastpin.cli.main import main
+level, *commands = sys.argv[1:]
+stored.own_environment = lambda: stored.environment_of(level)
+for command in commands:
+    if main(command.split()) not in (None, 0):
+        sys.exit(f"fastpin {command} failed")
+"""
+
+COMMANDS = ("run --error-bars --plot figure.png -o case.h5", "verify")
+"""Commands that call the kernels."""
+
+
+def compile_kernels(folder: Path, level: str, python: str = sys.executable, code: str = COMPILE) -> None:
+    """Compile kernels for a level of processors, and put the files of their machine code into a folder."""
+    with tempfile.TemporaryDirectory() as work:
+        chosen = {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(Path(work, "cache"))}
+        kept = {name: value for name, value in os.environ.items() if not name.startswith(("NUMBA_", "FASTPIN_"))}
+        path = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
+        words = [python, "-c", code, level, *COMMANDS]
+        subprocess.run(words, cwd=work, env={"PYTHONPATH": path} | kept | chosen, check=True, stdout=subprocess.DEVNULL)
+        folder.mkdir(parents=True, exist_ok=True)
+        for file in Path(work, "cache").glob("*.machine"):
+            shutil.copy(file, folder)
+
+
+class PlatformWheel(BuildHookInterface):
+    """Adds machine code to the wheel, and says for which systems it is."""
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        build_data["force_include"][os.environ[FOLDER]] = "fastpin/runtime/shipped"
+        build_data["pure_python"] = False
+        build_data["tag"] = TAG
+
+
+def main() -> None:
+    from fastpin.runtime.stored import LEVELS
+
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--outdir", default="dist", help="folder of the wheel (default dist)")
+    parser.add_argument("--python", nargs="+", default=[sys.executable], help="interpreters with the dependencies")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        for python in options.python:
+            for level in LEVELS:
+                compile_kernels(Path(folder), level, python)
+        words = ["-m", "build", "--wheel", "--no-isolation", "--outdir", options.outdir, str(ROOT)]
+        variables = os.environ | {FOLDER: folder, "HATCH_BUILD_HOOKS_ENABLE": "true"}
+        subprocess.run([sys.executable, *words], env=variables, check=True)
+
+
+if __name__ == "__main__":
+    main()
