@@ -217,7 +217,9 @@ def _pseudo_invert(A, diagonal, inverse):
     n = diagonal.size
     columns, turns = np.zeros((n, n)), np.zeros((n, n))  # a column each, and the columns of the rotation
     for j in range(n):
-        columns[j, :j], columns[j, j], turns[j, j] = A[j, :j], diagonal[j], 1.0
+        for i in range(j):  # a slice that takes a slice would compile for seconds: the text of its error
+            columns[j, i] = A[j, i]
+        columns[j, j], turns[j, j] = diagonal[j], 1.0
     for _ in range(SWEEPS):
         are_orthogonal = True
         for i in range(n):
@@ -250,7 +252,8 @@ def _solve(values, degree, ends, tables, coefficients, spread):
             sizes[k] = max(sizes[k], abs(A[k, i]))
         for i in range(m):
             A[k, i] /= sizes[k]
-    A[n] = values
+    for i in range(m):
+        A[n, i] = values[i]
     _factor(A, diagonal)
     misfit, least, largest = _product(A[n], A[n], n), np.inf, 0.0
     for k in range(n):
@@ -323,7 +326,8 @@ def _end_row(x, end, table, origin, least, row):
             powers[q] = power / table[GAMMAS, q]
             power *= inside
     if not math.isnan(end[PLACE]):
-        row[: terms - 1] = powers[1:terms]
+        for j in range(1, terms):
+            row[j - 1] = powers[j]
         return
     for j in range(terms):
         row[j] = 0.0
