@@ -40,7 +40,7 @@ for command in commands:
         sys.exit(f"fastpin {command} failed")
 """
 
-COMMANDS = ("run --error-bars --plot figure.png -o case.h5", "verify")
+COMMANDS = ("run --error-bars --plot figure.png -o case.h5", "report case.h5 -o case.html", "verify")
 """Commands that call the kernels."""
 
 
@@ -78,7 +78,7 @@ def main() -> None:
             for level in LEVELS:
                 compile_kernels(Path(folder), level, python)
         words = ["-m", "build", "--wheel", "--no-isolation", "--outdir", options.outdir, str(ROOT)]
-        variables = os.environ | {FOLDER: folder, "HATCH_BUILD_HOOKS_ENABLE": "true"}
+        variables = os.environ | {FOLDER: folder, "HATCH_BUILD_HOOK_ENABLE_CUSTOM": "true"}
         subprocess.run([sys.executable, *words], env=variables, check=True)
 
 

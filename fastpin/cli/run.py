@@ -32,6 +32,7 @@ from fastpin.cli.terminal import (
     write_text,
 )
 from fastpin.errors import InputError
+from fastpin.kernels import first
 from fastpin.model.beside import beside_of
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
@@ -77,6 +78,7 @@ def run(options: argparse.Namespace) -> int:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
     note_run(case)
+    first.compile_beside()
     with Bar(len(case.history), LOAD_POINTS) as progress_bar, _as_options(options):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:

@@ -20,6 +20,7 @@ import numpy as np
 from numpy import ndarray
 
 from fastpin.runtime import compiler, stored
+from fastpin.runtime.beside import start
 from fastpin.runtime.extensions import numba
 from fastpin.runtime.source import CACHED, KernelSource
 
@@ -37,7 +38,11 @@ LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 
 logger = logging.getLogger("fastpin.compiler")
 
+beside: str | None = None
+"""The module that a second process runs when this one begins to compile, to compile and store other kernels."""
+
 _lock = threading.RLock()
+_start = functools.cache(start)
 
 
 class Kernel(KernelSource):
@@ -65,6 +70,10 @@ class Kernel(KernelSource):
             entry = self._find(types, arguments)
         return entry(*arguments)
 
+    def prepare(self, *arguments: Any) -> None:
+        """Load or compile the machine code for arguments of these types. Nothing is called."""
+        self._find(argument_types(arguments), arguments)
+
     @functools.cached_property
     def _numba_type_(self) -> Any:
         """The type of the kernel in other kernels. The compiler asks for it by this name."""
@@ -80,6 +89,8 @@ class Kernel(KernelSource):
                 entry: Any = place and (place.load() or stored.load_shipped(self, signature(types)))
                 if entry is None:
                     _announce()
+                    if place and beside:
+                        _start(beside)
                     entry, code = compiler.compile_kernel(self, arguments, stores=place is not None)
                     if place:
                         place.save(code)

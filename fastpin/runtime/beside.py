@@ -1,0 +1,35 @@
+"""A second process that compiles kernels while this one compiles others. Both store them; each takes what is stored."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import sys
+from pathlib import Path
+
+from fastpin.runtime.threads import cores
+
+CODE = "import runpy, sys; sys.path.append(sys.argv[1]); runpy.run_module(sys.argv[2], run_name='__main__')"
+
+
+def start(module: str) -> None:
+    """Run a module of the package in a new process, if there is a core for it and a process can be started.
+
+    Nothing waits for the process. It reads from a pipe that the system closes when this process ends, however it ends.
+    """
+    if cores() < 2 or not sys.executable:
+        return
+    words = [sys.executable, "-P", "-c", CODE, str(Path(__file__).parents[2]), module]
+    with contextlib.suppress(OSError):
+        reading, _ = os.pipe()  # the other end stays open, and no other program inherits it
+        silent = [(os.POSIX_SPAWN_OPEN, number, os.devnull, os.O_WRONLY, 0) for number in (1, 2)]
+        try:
+            os.posix_spawn(words[0], words, os.environ, file_actions=[(os.POSIX_SPAWN_DUP2, reading, 0), *silent])
+        finally:
+            os.close(reading)
+
+
+def is_needed() -> bool:
+    """Whether the process that has started this one still runs."""
+    return not select.select([0], [], [], 0)[0]
