@@ -21,6 +21,8 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
+from fastpin.runtime.stored import LEVELS
+
 ROOT = Path(__file__).resolve().parents[1]
 
 FOLDER = "FASTPIN_MACHINE_CODE"
@@ -29,14 +31,18 @@ FOLDER = "FASTPIN_MACHINE_CODE"
 TAG = "py3-none-manylinux_2_17_x86_64"
 """Any Python, since the files name theirs. No file is linked to the system: pip's oldest tag of Numba's wheels will do."""
 
-COMPILE = """
+AS_SHIPPED = """
 import sys
 from fastpin.runtime import stored
-from fastpin.cli.main import main
 level, *commands = sys.argv[1:]
 stored.own_environment = lambda: stored.environment_of(level)
+"""
+"""The first lines of a process whose code is stored for all processors of a level."""
+
+RUN_COMMANDS = """
+from fastpin.cli.main import main
 for command in commands:
-    if main(command.split()) not in (None, 0):
+    if main(command.split()) != 0:
         sys.exit(f"fastpin {command} failed")
 """
 
@@ -44,14 +50,16 @@ COMMANDS = ("run --error-bars --plot figure.png -o case.h5", "report case.h5 -o 
 """Commands that call the kernels."""
 
 
-def compile_kernels(folder: Path, level: str, python: str = sys.executable, code: str = COMPILE) -> None:
-    """Compile kernels for a level of processors, and put the files of their machine code into a folder."""
+def compile_kernels(
+    folder: Path, level: str, python: str = sys.executable, root: Path = ROOT, calls: str = RUN_COMMANDS
+) -> None:
+    """Compile the kernels that a process calls, for a level of processors, and put their machine code into a folder."""
     with tempfile.TemporaryDirectory() as work:
-        chosen = {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(Path(work, "cache"))}
         kept = {name: value for name, value in os.environ.items() if not name.startswith(("NUMBA_", "FASTPIN_"))}
-        path = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
-        words = [python, "-c", code, level, *COMMANDS]
-        subprocess.run(words, cwd=work, env={"PYTHONPATH": path} | kept | chosen, check=True, stdout=subprocess.DEVNULL)
+        chosen = {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(Path(work, "cache"))}
+        words = [python, "-P", "-c", AS_SHIPPED + calls, level, *COMMANDS]
+        environment = kept | chosen | {"PYTHONPATH": str(root)}
+        subprocess.run(words, cwd=work, env=environment, stdout=subprocess.DEVNULL, check=True)
         folder.mkdir(parents=True, exist_ok=True)
         for file in Path(work, "cache").glob("*.machine"):
             shutil.copy(file, folder)
@@ -67,8 +75,7 @@ class PlatformWheel(BuildHookInterface):
 
 
 def main() -> None:
-    from fastpin.runtime.stored import LEVELS
-
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--outdir", default="dist", help="folder of the wheel (default dist)")
     parser.add_argument("--python", nargs="+", default=[sys.executable], help="interpreters with the dependencies")

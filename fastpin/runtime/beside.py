@@ -13,21 +13,23 @@ from fastpin.runtime.threads import cores
 CODE = "import runpy, sys; sys.path.append(sys.argv[1]); runpy.run_module(sys.argv[2], run_name='__main__')"
 
 
-def start(module: str) -> None:
-    """Run a module of the package in a new process, if there is a core for it and a process can be started.
+def start(module: str) -> int | None:
+    """Run a module of the package in a new process. Return its number; None without a core for it, or without processes.
 
     Nothing waits for the process. It reads from a pipe that the system closes when this process ends, however it ends.
     """
     if cores() < 2 or not sys.executable:
-        return
+        return None
     words = [sys.executable, "-P", "-c", CODE, str(Path(__file__).parents[2]), module]
     with contextlib.suppress(OSError):
         reading, _ = os.pipe()  # the other end stays open, and no other program inherits it
         silent = [(os.POSIX_SPAWN_OPEN, number, os.devnull, os.O_WRONLY, 0) for number in (1, 2)]
         try:
-            os.posix_spawn(words[0], words, os.environ, file_actions=[(os.POSIX_SPAWN_DUP2, reading, 0), *silent])
+            actions = [(os.POSIX_SPAWN_DUP2, reading, 0), *silent]
+            return os.posix_spawn(words[0], words, os.environ, file_actions=actions)
         finally:
             os.close(reading)
+    return None
 
 
 def is_needed() -> bool:

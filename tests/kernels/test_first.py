@@ -1,0 +1,86 @@
+"""Kernels of a first run that a second process compiles: the list is complete, and the process ends with the first."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from fastpin.kernels import first
+from fastpin.runtime import jit, machine
+from fastpin.runtime.threads import cores
+
+pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored")
+
+SEEN = """
+import sys
+from fastpin.runtime import jit
+found = []
+find = jit.Kernel._find
+def seen(kernel, types, arguments):
+    found.append(f"{kernel.__name__}: {jit.signature(types)}")
+    return find(kernel, types, arguments)
+jit.Kernel._find = seen
+from fastpin.cli.main import main
+main(["run"])
+print(*found, sep="\\n", file=sys.stderr)
+"""
+SOLVER = ["_columns", "follow", "apply_updates", "_predictor", "_fill", "exponential"]
+"""Kernels that come before the readings."""
+
+
+def test_the_list_has_the_kernels_and_types_of_a_run() -> None:
+    done = subprocess.run([sys.executable, "-c", SEEN], capture_output=True, text=True, check=True)
+    seen = [line for line in done.stderr.splitlines() if line.split(":")[0] not in SOLVER]
+    listed = [f"{kernel.__name__}: {jit.signature(jit.argument_types(given))}" for kernel, given in first.KERNELS]
+    assert sorted(listed) == sorted(seen)
+    assert listed[:5] == seen[:5]
+    assert listed[:4:-1] == seen[5:]
+
+
+MODULE = """
+from fastpin.kernels.influence import clausen
+from fastpin.runtime import beside
+import sys, time
+if __name__ == "__main__":
+    time.sleep(0.5)
+    if beside.is_needed():
+        clausen.prepare(1.0)
+"""
+PARENT = """
+import sys, time
+from pathlib import Path
+from fastpin.kernels.influence import log_kernels
+from fastpin.runtime import beside
+folder, waits = Path(sys.argv[1]), sys.argv[2] == "waits"
+print(beside.start("other"), flush=True)
+end = time.monotonic() + 120.0
+while waits and not list(folder.glob("*clausen*.machine")) and time.monotonic() < end:
+    time.sleep(0.05)
+"""
+
+
+@pytest.mark.skipif(cores() < 2, reason="no core for a second process")
+@pytest.mark.parametrize("how", ["waits", "ends"])
+def test_a_second_process_compiles_as_long_as_the_first_one_runs(how: str, tmp_path: Path) -> None:
+    (tmp_path / "other.py").write_text(MODULE)
+    path = os.pathsep.join([str(tmp_path), str(Path(__file__).resolve().parents[2])])
+    variables = os.environ | {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    words = [sys.executable, "-c", PARENT, str(tmp_path / "cache"), how]
+    done = subprocess.run(words, env=variables, capture_output=True, text=True, check=True)
+    number = int(done.stdout)
+    end = time.monotonic() + 60.0
+    while time.monotonic() < end:
+        try:
+            os.kill(number, 0)
+        except ProcessLookupError:
+            break
+        time.sleep(0.05)
+    else:
+        pytest.fail("the second process did not end")
+    files = sorted(path.name.split("-")[0] for path in (tmp_path / "cache").glob("*.machine"))
+    assert files == (["influence.clausen"] if how == "waits" else [])

@@ -1,0 +1,109 @@
+"""Machine code of a platform wheel: used where it fits, with the bits of code that is compiled for this processor."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fastpin.runtime import jit, machine, source, stored
+from scripts import platform_wheel
+from tests.support.marks import first_quick
+
+pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored")
+
+ROOT = Path(__file__).resolve().parents[2]
+SIN = """
+import math
+from fastpin.runtime.jit import compiled
+@compiled
+def waves(x, out):
+    for i in range(x.size):
+        out[i] = x[i] * 0.1 + math.sin(x[i]) * x[i] ** 2 / 7.0 + out[i]
+"""
+CALLS = """
+import hashlib, sys
+import numpy as np
+from fastpin.kernels.small import waves
+x = np.linspace(-9.0, 9.0, 1001)
+out = x / 3.0
+waves(x, out)
+print(hashlib.sha256(out.tobytes()).hexdigest(), "numba" in sys.modules)
+"""
+
+
+@pytest.fixture
+def site(tmp_path: Path) -> Path:
+    """A folder with the files of the package that compile, and one small kernel."""
+    for name in ("__init__.py", "__init__.pyi", "errors.py", "moved.py", "version.py", "kernels/__init__.py"):
+        copy(tmp_path, name)
+    for name in (*source.SHARED, *(f"runtime/{path.name}" for path in (ROOT / "fastpin/runtime").glob("*.py"))):
+        copy(tmp_path, name)
+    (tmp_path / "fastpin/kernels/small.py").write_text(SIN)
+    return tmp_path
+
+
+def copy(site: Path, name: str) -> None:
+    file = site / "fastpin" / name
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes((ROOT / "fastpin" / name).read_bytes())
+
+
+def run(site: Path, cache: Path, **more: str) -> list[str]:
+    """The digest of the kernel's values, and whether Numba was imported, in a process with this cache."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(("NUMBA_", "FASTPIN_"))}
+    variables = kept | {"PYTHONPATH": str(site), "NUMBA_CACHE_DIR": str(cache), **more}
+    words = [sys.executable, "-P", "-c", CALLS]
+    return subprocess.run(words, cwd=site, env=variables, capture_output=True, text=True, check=True).stdout.split()
+
+
+def runs(level: str) -> bool:
+    return set(machine.target()[-1].split(",")).issuperset(f"+{name}" for name in stored.LEVELS[level])
+
+
+@pytest.mark.parametrize("level", first_quick(1, stored.LEVELS))
+def test_shipped_code_needs_no_compiler_and_gives_the_same_bits(site: Path, tmp_path: Path, level: str) -> None:
+    if not runs(level):
+        pytest.skip("another processor")
+    digest, imported = run(site, tmp_path / "own")
+    assert imported == "True"
+    shipped = site / "fastpin/runtime/shipped"
+    platform_wheel.compile_kernels(shipped, level, root=site, calls=CALLS)
+    (file,) = shipped.iterdir()
+    assert run(site, tmp_path / "empty") == [digest, "False"]
+    assert not (tmp_path / "empty").exists()
+    # Code of another compiler, or with settings of the user, is not used.
+    assert run(site, tmp_path / "other", NUMBA_OPT="2") == [digest, "True"]
+    content = bytearray(file.read_bytes())
+    content[-1] ^= 1
+    file.write_bytes(content)
+    assert run(site, tmp_path / "changed") == [digest, "True"]
+
+
+def test_code_for_other_processors_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stored, "SHIPPED", tmp_path)
+    monkeypatch.setattr(stored, "_settings", list)
+    levels = stored._levels.__wrapped__
+    for features, known in {"+sse4.2": [], ",".join(f"+{name}" for name in stored.LEVELS["x86-64-v2"]): 1}.items():
+        monkeypatch.setattr(machine, "target", lambda features=features: ("x86_64", "some", features))
+        assert levels() == (["x86-64-v2"] if known else [])
+
+
+def test_code_that_needs_an_unknown_symbol_is_not_loaded() -> None:
+    """LLVM would end the process."""
+    code = machine.Code(b"", "entry", "environment", (), ("sin", "no_such_function"))
+    with pytest.raises(ImportError, match="no_such_function"):
+        machine.load(code, "name", __name__)
+
+
+def test_the_hook_adds_the_folder_and_the_tag(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(platform_wheel.FOLDER, "/code")
+    data: dict[str, Any] = {"force_include": {}}
+    hook = object.__new__(platform_wheel.PlatformWheel)
+    hook.initialize("standard", data)
+    assert data["force_include"] == {"/code": "fastpin/runtime/shipped"}
+    assert (data["pure_python"], data["tag"]) == (False, "py3-none-manylinux_2_17_x86_64")
