@@ -29,13 +29,14 @@ FOLDER = "FASTPIN_MACHINE_CODE"
 """The variable that names the folder of machine code to the hook."""
 
 TAG = "py3-none-manylinux_2_17_x86_64"
-"""Any Python, since the files name theirs. No file is linked to the system: pip's oldest tag of Numba's wheels will do."""
+"""Any Python, since each file names its own. No file is linked to the system, so an old tag will do."""
 
 AS_SHIPPED = """
 import sys
-from fastpin.runtime import stored
+from fastpin.runtime import beside, stored
 level, *commands = sys.argv[1:]
 stored.own_environment = lambda: stored.environment_of(level)
+beside.start = lambda: None
 """
 """The first lines of a process whose code is stored for all processors of a level."""
 

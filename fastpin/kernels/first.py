@@ -6,43 +6,43 @@ of their kernels are stored. ``tests/kernels/test_first.py`` compares the list w
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from fastpin.kernels.cauchy import cauchy, moments, shift_moments
 from fastpin.kernels.half_line import end_places, evaluate, least_squares, match, solve, value_errors
-from fastpin.runtime import beside, jit
+from fastpin.runtime import beside
 
-_LINE, _TABLE, _CUBE = np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1, 1))
-_FROZEN = np.frombuffer(bytes(8))
-_PLACES = np.zeros((1, 1), dtype=np.int64)
-_COMPLEX = tuple(np.zeros((1,) * k, dtype=np.complex128) for k in (1, 2, 3))
-_TREE = (True, _TABLE, 0, _PLACES, _COMPLEX[0], _LINE, _COMPLEX[2], _COMPLEX[1])
 
-KERNELS: tuple[tuple[Callable[..., Any], tuple[Any, ...]], ...] = (
-    (end_places, (_LINE, _PLACES, _TABLE, _CUBE, _TABLE)),
-    (moments, (_TABLE, _PLACES, _COMPLEX[0], _LINE, _LINE, _COMPLEX[2])),
-    (shift_moments, (_COMPLEX[1], 0j, _TABLE, _COMPLEX[1])),
-    (cauchy, (_LINE, _LINE, *_TREE)),
-    (value_errors, (_LINE, _PLACES, _TABLE, _CUBE, _LINE, _LINE)),
-    (least_squares, (_TABLE, _LINE, _LINE)),
-    (cauchy, (_FROZEN, _LINE, *_TREE)),
-    (evaluate, (_LINE, 0.0, 0, _TABLE, _CUBE, _TABLE, _TABLE)),
-    (match, (0, _TABLE, _CUBE, _LINE, _TABLE, _TABLE)),
-    (solve, (_LINE, 0, _TABLE, _CUBE, _LINE, _TABLE)),
-)
-"""Kernels, and arguments of the types of a first run. The last five are in the reverse order of their use: there the
-first process comes to meet the second one."""
+def kernels() -> list[tuple[Any, ...]]:
+    """Kernels, each before arguments of the types of a first run.
+
+    The last five are in the reverse order of their use: there the first process comes to meet the second one.
+    """
+    line, table, cube, places = np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1), dtype=np.int64)
+    row, rows, block = (np.zeros((1,) * k, dtype=np.complex128) for k in (1, 2, 3))
+    frozen = np.frombuffer(bytes(8))
+    return [
+        (end_places, line, places, table, cube, table),
+        (moments, table, places, row, line, line, block),
+        (shift_moments, rows, 0j, table, rows),
+        (cauchy, line, line, True, table, 0, places, row, line, block, rows),
+        (value_errors, line, places, table, cube, line, line),
+        (least_squares, table, line, line),
+        (cauchy, frozen, line, True, table, 0, places, row, line, block, rows),
+        (evaluate, line, 0.0, 0, table, cube, table, table),
+        (match, 0, table, cube, line, table, table),
+        (solve, line, 0, table, cube, line, table),
+    ]
 
 
 def compile_beside() -> None:
     """Let a second process compile these kernels when this one begins to compile."""
-    jit.beside = __name__
+    beside.module = __name__
 
 
 if __name__ == "__main__":
-    for kernel, arguments in KERNELS:
+    for kernel, *arguments in kernels():
         if beside.is_needed():
-            kernel.prepare(*arguments)  # type: ignore[attr-defined]
+            kernel.prepare(*arguments)

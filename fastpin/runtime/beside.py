@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import select
 import sys
@@ -12,13 +13,17 @@ from fastpin.runtime.threads import cores
 
 CODE = "import runpy, sys; sys.path.append(sys.argv[1]); runpy.run_module(sys.argv[2], run_name='__main__')"
 
+module: str | None = None
+"""The module that the second process runs, as soon as this one compiles a kernel and stores it. None: no process."""
 
-def start(module: str) -> int | None:
-    """Run a module of the package in a new process. Return its number; None without a core for it, or without processes.
 
-    Nothing waits for the process. It reads from a pipe that the system closes when this process ends, however it ends.
+@functools.cache
+def start() -> int | None:
+    """Start the second process, once. Return its number; None without a core for it, or without processes.
+
+    Nothing waits for it. It reads from a pipe that the system closes when this process ends, however it ends.
     """
-    if cores() < 2 or not sys.executable:
+    if module is None or cores() < 2 or not sys.executable:
         return None
     words = [sys.executable, "-P", "-c", CODE, str(Path(__file__).parents[2]), module]
     with contextlib.suppress(OSError):

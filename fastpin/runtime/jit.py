@@ -19,8 +19,7 @@ from typing import Any
 import numpy as np
 from numpy import ndarray
 
-from fastpin.runtime import compiler, stored
-from fastpin.runtime.beside import start
+from fastpin.runtime import beside, compiler, stored
 from fastpin.runtime.extensions import numba
 from fastpin.runtime.source import CACHED, KernelSource
 
@@ -38,11 +37,7 @@ LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 
 logger = logging.getLogger("fastpin.compiler")
 
-beside: str | None = None
-"""The module that a second process runs when this one begins to compile, to compile and store other kernels."""
-
 _lock = threading.RLock()
-_start = functools.cache(start)
 
 
 class Kernel(KernelSource):
@@ -89,8 +84,8 @@ class Kernel(KernelSource):
                 entry: Any = place and (place.load() or stored.load_shipped(self, signature(types)))
                 if entry is None:
                     _announce()
-                    if place and beside:
-                        _start(beside)
+                    if place:
+                        beside.start()
                     entry, code = compiler.compile_kernel(self, arguments, stores=place is not None)
                     if place:
                         place.save(code)

@@ -34,19 +34,16 @@ SHIPPED = Path(__file__).parent / "shipped"
 """The folder of machine code in a platform wheel. Other installations have none."""
 
 LEVELS = {
-    "x86-64-v3": "sse4.2 ssse3 popcnt cx16 sahf avx avx2 bmi bmi2 f16c fma lzcnt movbe".split(),
-    "x86-64-v2": "sse4.2 ssse3 popcnt cx16 sahf".split(),
+    "x86-64-v3": {"sse4.2", "ssse3", "popcnt", "cx16", "sahf", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe"},
+    "x86-64-v2": {"sse4.2", "ssse3", "popcnt", "cx16", "sahf"},
 }
 """Levels of processors, the best first, and the features that make them, as LLVM names both."""
-
-Environment = tuple[str, ...]
-"""What machine code depends on beside its kernel."""
 
 
 class StoredCode:
     """The files of a kernel for arguments of some types, for this environment or another one."""
 
-    def __init__(self, kernel: KernelSource, signature: str, environment: Environment = ()) -> None:
+    def __init__(self, kernel: KernelSource, signature: str, environment: tuple[str, ...] = ()) -> None:
         self.kernel, function = kernel, kernel.py_func
         self.source = function.__code__.co_filename
         texts = tuple(Path(file).read_bytes() for file, _ in kernel.texts)
@@ -153,13 +150,13 @@ def load_shipped(kernel: KernelSource, signature: str) -> Callable[..., Any] | N
     return None
 
 
-def environment_of(level: str) -> Environment:
-    """The binary interface of Python, the version of Numba, and a level of processors, on which shipped code depends."""
+def environment_of(level: str) -> tuple[str, ...]:
+    """What shipped code depends on: a level of processors, the binary interface of Python, and the version of Numba."""
     return (level, EXTENSION_SUFFIXES[0], _version("numba"))
 
 
 @functools.cache
-def own_environment() -> Environment:
+def own_environment() -> tuple[str, ...]:
     """Versions, the processor, and settings of Numba, on which machine code of this machine depends."""
     return (sys.version, np.__version__, _version("numba"), _version("llvmlite"), *machine.target(), *_settings())
 
@@ -169,8 +166,8 @@ def _levels() -> list[str]:
     """Levels of shipped code that this processor runs. None if Numba is to compile with settings of its own."""
     if _settings() or not SHIPPED.is_dir():
         return []
-    features = set(machine.target()[-1].split(","))
-    return [level for level, needed in LEVELS.items() if features.issuperset(f"+{name}" for name in needed)]
+    features = {name.removeprefix("+") for name in machine.target()[-1].split(",")}
+    return [level for level, needed in LEVELS.items() if needed <= features]
 
 
 def _settings() -> list[str]:
