@@ -52,6 +52,7 @@ from fastpin.report.states import (
     table_rows,
 )
 from fastpin.report.strength import StrengthFound, assess_strength, strength_lines
+from fastpin.runtime import beside
 from fastpin.states.choice import check_choice, span_of
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
 from fastpin.states.margins import static_margins
@@ -78,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
     note_run(case)
-    first.compile_beside()
+    beside.module = first.__name__  # compiled in a second process during a first run
     with Bar(len(case.history), LOAD_POINTS) as progress_bar, _as_options(options):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:

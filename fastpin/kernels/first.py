@@ -37,11 +37,6 @@ def kernels() -> list[tuple[Any, ...]]:
     ]
 
 
-def compile_beside() -> None:
-    """Let a second process compile these kernels when this one begins to compile."""
-    beside.module = __name__
-
-
 if __name__ == "__main__":
     for kernel, *arguments in kernels():
         if beside.is_needed():
