@@ -79,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
     note_run(case)
-    beside.module = first.__name__  # compiled in a second process during a first run
+    beside.module = first.MODULE  # compiles in a second process during a first run
     with Bar(len(case.history), LOAD_POINTS) as progress_bar, _as_options(options):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:

@@ -15,6 +15,10 @@ from fastpin.kernels.half_line import end_places, evaluate, least_squares, match
 from fastpin.runtime import beside
 
 
+MODULE = __name__
+"""The module that a second process runs."""
+
+
 def kernels() -> list[tuple[Any, ...]]:
     """Kernels, each before arguments of the types of a first run.
 
