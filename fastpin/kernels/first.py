@@ -14,7 +14,6 @@ from fastpin.kernels.cauchy import cauchy, moments, shift_moments
 from fastpin.kernels.half_line import end_places, evaluate, least_squares, match, solve, value_errors
 from fastpin.runtime import beside
 
-
 MODULE = __name__
 """The module that a second process runs."""
 
