@@ -1,4 +1,4 @@
-"""Kernels that a second process compiles in a first run: the list agrees with a run, the process ends with the first."""
+"""Kernels that a second process compiles in a first run: they are those of a run, and it ends with the first."""
 
 from __future__ import annotations
 
