@@ -101,6 +101,11 @@ class Configuration:
         return self.status != OPEN
 
     @property
+    def tractions(self) -> np.ndarray:
+        """Pressure, then shear, shape (2n,)."""
+        return np.concatenate([self.pressure, self.shear])
+
+    @property
     def values(self) -> ContactValues:
         """The arrays of the contact for kernels."""
         return ContactValues(self.pressure, self.shear, self.gap, self.slip, self.status, self.motion)
@@ -291,12 +296,15 @@ def slip_tally_between(before: Configuration, after: Configuration) -> SlipTally
     return tally
 
 
-def elastic_energy(system: System, configuration: Configuration) -> float:
-    """Elastic energy of a configuration, up to a function of the load alone (dimensionless)."""
-    tractions = np.concatenate([configuration.pressure, configuration.shear])
-    elastic = 0.5 * system.elastic(tractions) + system.held_displacement(configuration.load)
+def elastic_energy(system: System, configuration: Configuration, elastic: np.ndarray | None = None) -> float:
+    """Elastic energy of a configuration, up to a function of the load alone (dimensionless).
+
+    `elastic` (2n,) is the elastic part of gap and slip, computed unless given.
+    """
+    tractions = configuration.tractions
+    elastic = system.elastic(tractions) if elastic is None else elastic
     weights = np.concatenate([system.weights, system.weights])
-    energy = float(np.sum(weights * tractions * elastic))
+    energy = float(np.sum(weights * tractions * (0.5 * elastic + system.held_displacement(configuration.load))))
     return energy + system.drive.energy(weights, tractions, configuration.motion)
 
 
@@ -315,11 +323,15 @@ def marks_left(before: Configuration, now: Configuration, interface: Interface, 
 
 def worst_residual(system: System, configuration: Configuration) -> float:
     """The largest of the residuals of :func:`contact_residuals`."""
-    return float(np.max(list(contact_residuals(system, configuration).values())))
+    return float(
+        np.max(list(contact_residuals(system, configuration, system.elastic(configuration.tractions)).values()))
+    )
 
 
-def contact_residuals(system: System, configuration: Configuration) -> dict[str, float]:
+def contact_residuals(system: System, configuration: Configuration, elastic: np.ndarray) -> dict[str, float]:
     """Largest relative violation of each contact condition, recomputed from the matrices.
+
+    `elastic` (2n,) is the elastic part of gap and slip.
 
     Returns
     -------
@@ -327,10 +339,9 @@ def contact_residuals(system: System, configuration: Configuration) -> dict[str,
         "gap" and "slip", relative to the largest displacement; "cone" (Coulomb's law and N >= 0), relative to the
         largest pressure; "equilibrium", relative to the sum of the resultants of the absolute tractions.
     """
-    tractions = np.concatenate([configuration.pressure, configuration.shear])
     load = configuration.load
     found = conditions.residuals(
-        system.equations, configuration.values, system.elastic(tractions), system.load_displacement(load),
+        system.equations, configuration.values, elastic, system.load_displacement(load),
         system.load_forces(load), configuration.rest_gap, system.concentric_gap,
     )  # fmt: skip
     return dict(zip(("gap", "slip", "cone", "equilibrium"), found, strict=True))

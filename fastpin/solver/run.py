@@ -521,7 +521,8 @@ class Run:
 
     def _keep(self, step: int, fraction: float) -> None:
         """Check the present configuration and hand it to the recorder as a state."""
-        residuals = contact_residuals(self.system.under(self.now.load), self.now)
+        elastic = self.system.elastic(self.now.tractions)
+        residuals = contact_residuals(self.system.under(self.now.load), self.now, elastic)
         if not np.max(list(residuals.values())) <= MAX_RESIDUAL:
             worst = max(residuals, key=lambda name: residuals[name])
             raise ConvergenceError(
@@ -529,15 +530,18 @@ class Run:
             )
         self.corner_log.latest.kept.append((self.now.dissipation, self.now.work))
         assert self.recorder is not None
-        self.recorder.add(self._state(step, fraction, residuals))
+        self.recorder.add(self._state(step, fraction, residuals, elastic))
         self.slip_tally.keep(self.now.slip_tally)
 
-    def _state(self, step: int, fraction: float, residuals: dict[str, float]) -> State:
-        """The present configuration as a state, SI, with that of the seat where a bush slips."""
+    def _state(self, step: int, fraction: float, residuals: dict[str, float], elastic: np.ndarray) -> State:
+        """The present configuration as a state, SI, with that of the seat where a bush slips.
+
+        `elastic` (2n,) is the elastic part of its gap and slip.
+        """
         system, now = self.system, self.now
         drive, way = system.drive, now.rest - now.origin
-        way, tractions = np.where(np.isnan(way), 0.0, way), np.r_[now.pressure, now.shear]
-        moved = drive.position(tractions, now.motion, now.load, way[:2])
+        way = np.where(np.isnan(way), 0.0, way)
+        moved = drive.position(now.tractions, now.motion, now.load, way[:2])
         load = drive.with_reactions(now.motion, now.load)
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
         is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
@@ -546,7 +550,7 @@ class Run:
             "fraction": fraction,
             "load": named_load(np.where(is_given, self.target, load * system.scales.loads)),
             "work": (self.work + now.work) * system.scales.energy,
-            "energy": elastic_energy(system, now) * system.scales.energy,
+            "energy": elastic_energy(system, now, elastic) * system.scales.energy,
             "residuals": residuals,
         }
         seat = None
