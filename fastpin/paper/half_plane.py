@@ -48,6 +48,7 @@ from fastpin.verification import closed_forms
 LEVELS = (0.05, 0.01)
 """Relative errors at which a formula counts as right."""
 
+SIMILAR = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])
 FRICTION, LOW_FRICTION = 0.5, 0.2
 RATIO = 0.6
 """Q/(mu P)"""
@@ -57,6 +58,7 @@ REMOTE = {"balanced": {"sxx": 1.0 / 1.6, "syy": 1.4 / 1.6}, "uniaxial": {"sxx": 
 """Remote stresses whose hoop stress at the bottom of the hole is one."""
 BETA = 0.1438
 MU_OVER_BETA = (0.5, 1.0, 1.5)
+UNLIKE = {sign: MaterialPair.from_dundurs(sign * 0.5, sign * BETA, nu_pin=0.3) for sign in (1, -1)}
 
 LOAD_PARAMETERS = tuple(10.0 ** (k / 3) for k in range(-3, 13))
 UNLIKE_LOAD_PARAMETERS = tuple(10.0 ** (k / 2) for k in range(-2, 11))
@@ -143,8 +145,7 @@ def like_errors(load_parameter: float, friction: float, nodes: int, ratio: float
     Hertz and bulk stress need `friction` = FRICTION, bulk stress also `ratio` = RATIO and an L_p of at least 1. For
     smaller L_p the stress drives the stick zone to the edge.
     """
-    similar = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])
-    problem = Problem.from_load_parameter(similar, load_parameter, friction, "centre", "fixed")
+    problem = Problem.from_load_parameter(SIMILAR, load_parameter, friction, "centre", "fixed")
     Q = ratio * friction
     pushed, forward, back = solve(problem, [{"P": 1.0}, {"Q": Q}, {"Q": -Q}], nodes=nodes)
     half = float(closed_forms.hertz_half_angle(load_parameter))
@@ -209,8 +210,7 @@ def unlike_errors(
 
     `limit` is the value of half-planes, see :func:`unlike_half_planes`.
     """
-    for sign in (1, -1):
-        pair = MaterialPair.from_dundurs(sign * 0.5, sign * BETA, nu_pin=0.3)
+    for sign, pair in UNLIKE.items():
         problem = Problem.from_load_parameter(pair, load_parameter, ratio * BETA, pin_load)
         _, stick, _, contact = stick_and_contact(solve(problem, [{"P": 1.0}], nodes=nodes)[-1])
         relation = ">" if sign > 0 else "<"

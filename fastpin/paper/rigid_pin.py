@@ -31,6 +31,7 @@ PLATE = MATERIALS["aluminium"]
 PINS = {"steel": MATERIALS["steel"], "10 E": Material(10.0 * PLATE.E, 0.3), "rigid": Material.rigid()}
 RATIOS = tuple(10.0 ** (k / 2) for k in range(13))
 """E_pin / E_plate"""
+LOADS: tuple[PinLoad, PinLoad] = ("centre", "body")
 PAIRS = ("centre to body", "centre to rigid", "body to rigid")
 """Pairs of states that the lower panels compare."""
 
@@ -54,7 +55,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     rigid = pushed_pin(PINS["rigid"], "centre", nodes)
     curves, rows = [], []
     for name, pin in steps(cases, progress):
-        centre, body = pushed_pin(pin, "centre", nodes), pushed_pin(pin, "body", nodes)
+        centre, body = (pushed_pin(pin, pin_load, nodes) for pin_load in LOADS)
         if isinstance(name, str):
             curves.append(traction_curve(centre, pin=name, pin_load="centre"))
             curves.append(traction_curve(body, pin=name, pin_load="body"))
