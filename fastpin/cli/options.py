@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
+from fastpin.cli.chart_options import add_chart_options
 from fastpin.errors import printable
 from fastpin.figures.kinds import KIND_OPTIONS, KINDS, STATES_HELP
 from fastpin.model.synonyms import closest, meant
@@ -29,7 +30,7 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""
 
-SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack")
+SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack", "charts")
 """Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
 
 
@@ -76,6 +77,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_compliance(commands)
     add_paper(commands)
     add_benchmarks(commands)
+    add_charts(commands)
     add_verify(commands)
     add_schema(commands)
     add_completion(commands)
@@ -149,13 +151,8 @@ def add_run(commands: Any) -> None:
     run = _command(commands, "run", "run", "run", "solve a case and print its states")
     run.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
     _add_outputs(run)
-    run.add_argument(
-        "-o",
-        "--output",
-        metavar="FILE",
-        type=Path,
-        help="write each kept state to an HDF5 file as soon as it is solved",
-    )
+    words = "write each kept state to an HDF5 file as soon as it is solved"
+    run.add_argument("-o", "--output", metavar="FILE", type=Path, help=words)
     run.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
     _add_solver_options(run)
     run.add_argument("--start", metavar="FILE", type=Path, help="continue from the end of this result, with new loads")
@@ -312,13 +309,8 @@ def add_report(commands: Any) -> None:
         type=Path,
         help="HDF5 file (run or wear -o FILE); case file (TOML), which is solved first; or directory of a sweep",
     )
-    report.add_argument(
-        "-o",
-        "--output",
-        metavar="PAGE",
-        type=Path,
-        help="the report (html, pdf; default: the name with .html)",
-    )
+    words = "the report (html, pdf; default: the name with .html)"
+    report.add_argument("-o", "--output", metavar="PAGE", type=Path, help=words)
     report.add_argument("--title", help="title of the page of a result (default: the title of the case)")
     for name, words in _ABOUT.items():
         report.add_argument(f"--{name}", metavar="TEXT", help=f"{words} (default: that of the case)")
@@ -496,6 +488,13 @@ def add_benchmarks(commands: Any) -> None:
         help="with -o: png, pdf or svg (repeat the option for several formats; default: png)",
     )
     _add_json(benchmarks, "write the numbers as JSON")
+
+
+def add_charts(commands: Any) -> None:
+    """Add ``charts``."""
+    charts = _command(commands, "charts", "charts", "run", "look up pressures, angles and Kt in tables, with errors")
+    add_chart_options(charts, literal)
+    _add_json(charts, "write the charts, or a value with its error, as JSON")
 
 
 def add_verify(commands: Any) -> None:

@@ -13,6 +13,7 @@ from . import style as style
 from . import subjects as subjects
 from . import tractions as tractions
 from .animation import animate as animate
+from .charts import write_chart_book as write_chart_book
 from .convergence import plot_convergence as plot_convergence
 from .crack_growth import plot_crack_growth as plot_crack_growth
 from .cycles import plot_cycles as plot_cycles

@@ -47,7 +47,7 @@ def json_schema(command: str) -> Schema:
 
     Parameters
     ----------
-    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack"}
+    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack", "charts"}
         ``fastpin resume`` and ``show`` write the document of "run".
 
     Raises
@@ -355,6 +355,15 @@ def _benchmarks() -> Schema:
     return _object({"fastpin": _TEXT, "benchmarks": _map_of(_list_of(row), "rows of each benchmark")})
 
 
+def _charts() -> Schema:
+    bounds = _object({"usual": _NUMBER, "largest": _NUMBER})
+    words = {"words": _TEXT, "unit": _TEXT, "parameters": _list_of(_TEXT)}
+    chart = _object(words | {"relative": _TRUTH, "bounds": _map_of(bounds, "bounds of each table")})
+    given = {"type": "object", "description": "the parameters that were given"}
+    charts = {"fastpin": _TEXT, "charts": _map_of(chart, "the charts"), "parameters": given}
+    return _object(charts | {"value": _UNKNOWN, "error": _UNKNOWN})
+
+
 def _compliance() -> Schema:
     return _object(
         {
@@ -432,6 +441,7 @@ _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "wear": _wear,
     "tolerances": _tolerances,
     "crack": _crack_growth,
+    "charts": _charts,
 }
 
 COMMANDS = tuple(_DOCUMENTS)

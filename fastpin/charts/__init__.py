@@ -1,0 +1,8 @@
+"""Charts: tables of solved contacts with error bounds, and values between their nodes in microseconds.
+
+The public names stand in ``__init__.pyi``. They are loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

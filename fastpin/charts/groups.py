@@ -1,0 +1,182 @@
+"""The groups of charts: their axes, and the way from parameters to coordinates and back.
+
+The charts of a group share a table, whose nodes are equally spaced in a coordinate along each axis. The coordinates
+are chosen such that the values are smooth between few nodes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+WEIGHTS = {"centre": 1.0, "body": 0.5}
+"""The weight w of the load term, docs/theory.md (T7), by the load of the pin."""
+
+NEAT = 0.4563
+"""1/epsilon^2 of a neat fit of like bodies without friction, with the half-angle epsilon of 84.8 degrees."""
+
+Values = Mapping[str, Any]
+"""Parameters by name: numbers or arrays that broadcast."""
+
+
+def width_coordinate(load_parameter: Any) -> Any:
+    """The coordinate x = 1/sqrt(0.4563 + pi L_p) along the load parameter: about the frictionless half-angle, rad."""
+    return (NEAT + math.pi * load_parameter) ** -0.5
+
+
+def load_parameter_at(x: Any) -> Any:
+    """The load parameter of a coordinate of :func:`width_coordinate`."""
+    return (x**-2.0 - NEAT) / math.pi
+
+
+class Axis(NamedTuple):
+    """An axis of a table.
+
+    Attributes
+    ----------
+    name : str
+        A key of :data:`COORDINATES`.
+    least, most : float
+        First and last coordinate.
+    nodes, regions : int
+        Numbers of nodes, and of regions with an error bound of their own.
+    """
+
+    name: str
+    least: float
+    most: float
+    nodes: int
+    regions: int = 1
+
+    def coordinates(self) -> np.ndarray:
+        """The coordinates of the nodes, shape (nodes,)."""
+        return np.linspace(self.least, self.most, self.nodes)
+
+
+def _pin_term(values: Values) -> Any:
+    """1/(kappa + 1) of the pin."""
+    return 1.0 / (values["kolosov"] + 1.0)
+
+
+def _plate_term(values: Values) -> Any:
+    """1/(kappa + 1) of the plate, which follows from Dundurs' parameters and the pin's constant by (T22)."""
+    alpha = values["alpha"]
+    return (alpha - values["beta"] + (1.0 - alpha) * _pin_term(values)) / (1.0 + alpha)
+
+
+COORDINATES: dict[str, Callable[[Values], Any]] = {
+    "width": lambda values: width_coordinate(values["load_parameter"]),
+    "root of friction": lambda values: values["friction"] ** 0.5,
+    "friction": lambda values: values["friction"],
+    "alpha": lambda values: values["alpha"],
+    "pin term": _pin_term,
+    "plate term": _plate_term,
+    "load term": lambda values: WEIGHTS[values["pin_load"]] * _pin_term(values),
+    "part of sliding": lambda values: values["load_ratio"] / values["friction"],
+}
+"""The coordinate along each axis, from the parameters."""
+
+
+class Group(NamedTuple):
+    """A table of charts with the same axes.
+
+    Attributes
+    ----------
+    name : str
+    axes : tuple of Axis
+    quantities : tuple of str
+    fixed : mapping
+        Parameters that have one value in the table.
+    """
+
+    name: str
+    axes: tuple[Axis, ...]
+    quantities: tuple[str, ...]
+    fixed: Mapping[str, str]
+
+    @property
+    def is_cycle(self) -> bool:
+        """Whether the values belong to a load cycle."""
+        return "rotation" in self.fixed
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Numbers of nodes along the axes."""
+        return tuple(axis.nodes for axis in self.axes)
+
+    @property
+    def regions(self) -> tuple[int, ...]:
+        """Numbers of regions along the axes."""
+        return tuple(axis.regions for axis in self.axes)
+
+    def parameters_at(self, place: np.ndarray) -> dict[str, Any]:
+        """The parameters at the coordinates `place`, shape (axes,)."""
+        at = {axis.name: float(value) for axis, value in zip(self.axes, place, strict=True)}
+        found: dict[str, Any] = {"alpha": 0.0, "beta": 0.0, "pin_load": "centre", **self.fixed}
+        found["load_parameter"] = max(load_parameter_at(at["width"]), 0.0)
+        found["friction"] = at["friction"] if self.is_cycle else at["root of friction"] ** 2
+        term = at["pin term"] if "pin term" in at else at["load term"]
+        if self.is_cycle:
+            if found["rotation"] == "free" and term < 0.25:  # only a body load has so small a term
+                found["pin_load"], term = "body", 2.0 * term
+            found["load_ratio"] = at["part of sliding"] * found["friction"]
+        found["kolosov"] = 1.0 / term - 1.0
+        if "alpha" in at:
+            alpha = found["alpha"] = at["alpha"]
+            found["beta"] = alpha - (1.0 + alpha) * at["plate term"] + (1.0 - alpha) * term
+        return found
+
+
+FIRST_LOAD = ("peak_pressure", "peak_pressure_angle", "contact_angle", "stick_angle", "kt_bearing", "peak_hoop_angle")
+"""Quantities of the first load, in the order of :func:`fastpin.charts.runs.first_load_values`."""
+
+CYCLE = ("cycle_energy", "cycle_slip_range", "cycle_stick_angle", "cycle_peak_pressure")
+"""Quantities of a load cycle, in the order of :func:`fastpin.charts.runs.cycle_values`."""
+
+WIDTHS = width_coordinate(100.0), width_coordinate(0.0)
+"""Coordinates of the load parameters 100 and 0."""
+
+CYCLE_WIDTHS = width_coordinate(3.0), width_coordinate(0.02)
+"""Coordinates of the load parameters 3 and 0.02."""
+
+
+def _first_load_groups() -> list[Group]:
+    like = (
+        Axis("width", *WIDTHS, 41, 7),
+        Axis("root of friction", 0.0, 1.0, 33, 5),
+        Axis("pin term", 0.25, 0.5, 3),
+    )
+    unlike = (
+        Axis("width", *WIDTHS, 21, 4),
+        Axis("root of friction", 0.0, 1.0, 9, 4),
+        Axis("alpha", -0.7, 0.8, 7, 3),
+        Axis("plate term", 0.25, 0.5, 3),
+        Axis("pin term", 0.25, 0.5, 3),
+    )
+    axes = {"like": like, "unlike": unlike}
+    return [
+        Group(f"{name}_{load}", axes[name], FIRST_LOAD, {"pin_load": load}) for name in axes for load in ("body", "centre")
+    ]
+
+
+def _cycle_groups() -> list[Group]:
+    held = (
+        Axis("width", *CYCLE_WIDTHS, 12, 4),
+        Axis("friction", 0.1, 0.8, 9, 3),
+        Axis("load term", 0.25, 0.5, 3),
+        Axis("part of sliding", 0.2, 1.0, 10, 4),
+    )
+    free = (
+        Axis("width", *CYCLE_WIDTHS, 9, 4),
+        Axis("friction", 0.1, 0.8, 7, 3),
+        Axis("load term", 0.125, 0.5, 4),
+        Axis("part of sliding", 0.2, 1.0, 7, 4),
+    )
+    return [Group("held", held, CYCLE, {"rotation": "fixed"}), Group("free", free, CYCLE, {"rotation": "free"})]
+
+
+GROUPS = {group.name: group for group in (*_first_load_groups(), *_cycle_groups())}
+"""All groups by name."""

@@ -1,0 +1,303 @@
+"""Values of the charts at given parameters, with their error bounds."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
+from fastpin.charts.groups import COORDINATES, CYCLE, FIRST_LOAD, GROUPS, WEIGHTS, Axis, Group, load_parameter_at
+from fastpin.charts.tables import tables
+from fastpin.errors import InputError
+from fastpin.model.checks import choice, instance, known_name, number, numbers, positive
+from fastpin.model.problem import Problem
+from fastpin.model.synonyms import closest
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A quantity of the charts.
+
+    Attributes
+    ----------
+    name : str
+    words : str
+        Its meaning.
+    unit : str
+        Its unit in terms of the force P, the radius R and the compliance beta*; empty for a ratio.
+    is_cycle : bool
+        Whether it belongs to a load cycle; else to the first load.
+    """
+
+    name: str
+    words: str
+    unit: str
+
+    @property
+    def is_cycle(self) -> bool:
+        """Whether it belongs to a load cycle; else to the first load."""
+        return self.name in CYCLE
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of its parameters."""
+        return CYCLE_PARAMETERS if self.is_cycle else FIRST_PARAMETERS
+
+
+@dataclass(frozen=True)
+class ChartValue:
+    """A value of a chart.
+
+    Attributes
+    ----------
+    value : float or ndarray
+    error : float or ndarray
+        Bound of its error, in the same unit. Solver and discretisation are in it.
+    unit : str
+    """
+
+    value: Any
+    error: Any
+    unit: str
+
+    def __float__(self) -> float:
+        return float(self.value)
+
+
+FIRST_PARAMETERS = ("load_parameter", "friction", "alpha", "beta", "kolosov", "pin_load")
+"""Parameters of a chart of the first load."""
+
+CYCLE_PARAMETERS = ("load_parameter", "friction", "load_ratio", "kolosov", "pin_load", "rotation")
+"""Parameters of a chart of a load cycle."""
+
+DEFAULTS: dict[str, Any] = {"alpha": 0.0, "beta": 0.0, "kolosov": 1.8, "pin_load": "centre", "rotation": "free"}
+"""Parameters that may be left out: like bodies with nu = 0.3 in plane strain, load at the centre, free rotation."""
+
+CHARTS = {
+    chart.name: chart
+    for chart in (
+        Chart("peak_pressure", "largest pressure over the bearing stress P/(2 R), first load", ""),
+        Chart("peak_pressure_angle", "its place from the bottom of the hole, first load", "rad"),
+        Chart("contact_angle", "half-angle of the contact, first load", "rad"),
+        Chart("stick_angle", "half of all angles that stick, first load", "rad"),
+        Chart("kt_bearing", "largest hoop stress round the hole over P/(2 R), first load", ""),
+        Chart("peak_hoop_angle", "its place from the bottom of the hole, first load", "rad"),
+        Chart("cycle_energy", "friction energy of a cycle of Q", "P^2 beta*"),
+        Chart("cycle_slip_range", "largest slip range of a place in a cycle of Q", "P beta*"),
+        Chart("cycle_stick_angle", "half of all angles that stick at the end of a cycle of Q", "rad"),
+        Chart("cycle_peak_pressure", "largest pressure over P/(2 R) at the end of a cycle of Q", ""),
+    )
+}
+"""The charts by name."""
+
+_CHOICES = {"pin_load": ("centre", "body"), "rotation": ("free", "fixed")}
+_ROUNDING = 1e-9
+"""Part of an axis by which a place may lie outside it."""
+
+
+def lookup(quantity: str, **parameters: Any) -> ChartValue:
+    """Look up the value of a chart. It takes microseconds for numbers; arrays broadcast.
+
+    Parameters
+    ----------
+    quantity : str
+        A name of :data:`CHARTS`.
+    load_parameter : float or array_like
+        L_p = (R - R_D)/(P beta*), see :meth:`fastpin.Problem.load_parameter`.
+    friction : float or array_like
+    load_ratio : float or array_like
+        Q/P, the amplitude of the cycle; of the charts of a cycle only.
+    alpha, beta : float or array_like
+        Dundurs' parameters in the usual sign, 0 unless given; of the charts of the first load only.
+    kolosov : float or array_like
+        Kolosov's constant of the pin: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress; 1.8 unless given.
+    pin_load : {"centre", "body"}
+    rotation : {"free", "fixed"}
+        Of the charts of a cycle only. The circle of the paper is held, see :class:`fastpin.Problem`.
+
+    Returns
+    -------
+    ChartValue
+        The value and the bound of its error.
+
+    Raises
+    ------
+    InputError
+        If there is no such chart or parameter, a parameter is missing, or lies beyond the range of the chart. There is
+        no extrapolation.
+    """
+    chart = chart_of(quantity)
+    given = _checked(chart, parameters)
+    group = _group(chart, given)
+    units = [_unit(axis, given) for axis in group.axes]
+    at = given["load_parameter"]
+    if not all([isinstance(unit, float) for unit in units]):
+        try:
+            *units, at = np.broadcast_arrays(*units, at)
+        except ValueError:
+            raise InputError("load_parameter", "and the other parameters have shapes that do not fit") from None
+    value, error = tables()[group.name].value_at(quantity, units, at)
+    return ChartValue(value, error, chart.unit)
+
+
+def chart_of(quantity: object) -> Chart:
+    """The chart of a name.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such chart. The message says which name is meant.
+    """
+    if not isinstance(quantity, str) or quantity not in CHARTS:
+        known_name("chart", quantity, CHARTS)
+    return CHARTS[str(quantity)]
+
+
+def _checked(chart: Chart, parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters of a chart, checked for themselves, with those that were left out."""
+    for name in parameters:
+        if name not in chart.parameters:
+            raise InputError(name, _no_parameter(chart, name))
+    given: dict[str, Any] = {}
+    for name in chart.parameters:
+        if name not in parameters and name not in DEFAULTS:
+            raise InputError(name, f"is needed by the chart {chart.name}")
+        value = parameters.get(name, DEFAULTS.get(name))
+        if name in _CHOICES:
+            given[name] = choice(name, value, _CHOICES[name])
+        elif isinstance(value, (list, tuple, np.ndarray)):
+            given[name] = numbers(name, value)
+        else:
+            given[name] = number(name, value)
+    if given.get("rotation") == "fixed" and given["pin_load"] == "body":
+        raise InputError("rotation", 'must be "free" for a body load: uniform body forces bear no moment')
+    return given
+
+
+def _no_parameter(chart: Chart, name: str) -> str:
+    """Why a chart has no parameter of this name."""
+    if name in FIRST_PARAMETERS or name in CYCLE_PARAMETERS:
+        if name in ("alpha", "beta"):
+            return f"has no meaning in the chart {chart.name}: the charts of a cycle are for like bodies"
+        return f"has no meaning in the chart {chart.name}: it belongs to the charts of a cycle"
+    known = ", ".join(chart.parameters)
+    return f"is no parameter of the chart {chart.name}, which has {known}{closest(name, chart.parameters)}"
+
+
+def _group(chart: Chart, given: Mapping[str, Any]) -> Group:
+    """The group of the tables that has the values."""
+    if chart.is_cycle:
+        return GROUPS["held" if given["rotation"] == "fixed" else "free"]
+    like = not any(value if isinstance(value, float) else np.any(value) for value in (given["alpha"], given["beta"]))
+    return GROUPS[f"{'like' if like else 'unlike'}_{given['pin_load']}"]
+
+
+def _unit(axis: Axis, given: Mapping[str, Any]) -> Any:
+    """The place along an axis, 0 to 1: a float or an array. Raises :class:`InputError` if it is out of range."""
+    field, low, high, words = _limits(axis, given)
+    value = given[field]
+    if isinstance(value, float) and isinstance(low, float):
+        if not low - _ROUNDING <= value <= high + _ROUNDING:
+            raise InputError(field, f"must lie between {low:.6g} and {high:.6g}{words}, not {value:.6g}")
+    else:
+        value, low, high = np.broadcast_arrays(value, low, high)
+        outside = (value < low - _ROUNDING) | (value > high + _ROUNDING)
+        if outside.any():
+            k = np.flatnonzero(outside)[0]
+            raise InputError(
+                field, f"must lie between {low.flat[k]:.6g} and {high.flat[k]:.6g}{words}, not {value.flat[k]:.6g}"
+            )
+    unit = (COORDINATES[axis.name](given) - axis.least) / (axis.most - axis.least)
+    return min(max(unit, 0.0), 1.0) if isinstance(unit, float) else np.clip(unit, 0.0, 1.0)
+
+
+def _limits(axis: Axis, given: Mapping[str, Any]) -> tuple[str, Any, Any, str]:
+    """The parameter of an axis, its least and largest value, and words on the limits."""
+    if axis.name == "width":
+        return "load_parameter", *_load_parameters(axis), ""
+    if axis.name in ("root of friction", "friction", "alpha"):
+        return axis.name.split()[-1], axis.least, axis.most, ""
+    if axis.name in ("pin term", "load term"):
+        return "kolosov", 1.0, 3.0, ""
+    if axis.name == "part of sliding":
+        low, high = axis.least * given["friction"], axis.most * given["friction"]
+        return "load_ratio", low, high, f", {axis.least:g} and {axis.most:g} times the friction"
+    assert axis.name == "plate term"
+    alpha, pin = given["alpha"], COORDINATES["pin term"](given)
+    low, high = (alpha - (1.0 + alpha) * term + (1.0 - alpha) * pin for term in (axis.most, axis.least))
+    return "beta", low, high, ", which a plate with Poisson's ratio from 0 to 0.5 has for this alpha and kolosov"
+
+
+@functools.cache
+def _load_parameters(axis: Axis) -> tuple[float, float]:
+    """The least and the largest load parameter of an axis."""
+    least, most = (float(f"{load_parameter_at(x):.9g}") for x in (axis.most, axis.least))
+    return max(least, 0.0) if least > _ROUNDING else 0.0, most
+
+
+def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str, ChartValue]:
+    """The values of all charts for a joint, in SI units: Pa, rad, J/m and m.
+
+    Parameters
+    ----------
+    problem : Problem
+        A solid pin in a round hole of an infinite isotropic plate, with clearance or a neat fit and one friction.
+    P : float
+        The force on the pin, N/m, positive.
+    Q : float, optional
+        The amplitude of the force across, N/m: the charts of a load cycle then follow, for like bodies. Without it the
+        charts of the first load follow.
+
+    Returns
+    -------
+    dict of str to ChartValue
+        By the names of :data:`CHARTS`. "kt_bearing" is a ratio.
+
+    Raises
+    ------
+    InputError
+        If the charts do not cover the joint, or a parameter lies beyond their range.
+    """
+    _check_joint(instance("problem", problem, Problem, "a Problem"))
+    force, pair = positive("P", P), problem.pair
+    given: dict[str, Any] = {"load_parameter": problem.load_parameter(force), "friction": problem.uniform_friction}
+    given |= {"kolosov": pair.pin_kolosov, "pin_load": problem.pin_load}
+    alpha, beta = (value if abs(value) > _ROUNDING else 0.0 for value in pair.dundurs())
+    if Q is None:
+        names, given = FIRST_LOAD, given | {"alpha": alpha, "beta": beta}
+    elif alpha or beta:
+        raise InputError("pair", f"must be of like materials for a cycle: Dundurs' parameters 0, not {alpha:g}, {beta:g}")
+    else:
+        names, given = CYCLE, given | {"rotation": problem.rotation, "load_ratio": abs(number("Q", Q)) / force}
+    bearing, squeeze = 0.5 * force / problem.hole_radius, force * pair.beta_star
+    units = {"cycle_energy": ("J/m", force * squeeze), "cycle_slip_range": ("m", squeeze)}
+    units |= dict.fromkeys(("peak_pressure", "cycle_peak_pressure"), ("Pa", bearing))
+    found = {}
+    for name in names:
+        here = lookup(name, **given)
+        unit, scale = units.get(name, (here.unit, 1.0))
+        found[name] = ChartValue(scale * here.value, scale * here.error, unit)
+    return found
+
+
+def _check_joint(problem: Problem) -> None:
+    """Raise :class:`InputError` if the charts do not cover a joint."""
+    refused = {
+        "pin_body": problem.pin_body != SOLID_PIN,
+        "plate_body": problem.plate_body != INFINITE_PLATE,
+        "gap": bool(problem.gap),
+        "drive": problem.drive != "force",
+        "hub_radius": problem.hub_radius is not None,
+    }
+    for field, is_refused in refused.items():
+        if is_refused:
+            raise InputError(field, "is not in the charts: solve this joint")
+    if problem.rotation == "spring":
+        raise InputError("rotation", 'must be "free" or "fixed" in the charts')
+    if not problem.pair.plate.is_isotropic:
+        raise InputError("plate", "must be isotropic in the charts: solve this joint")

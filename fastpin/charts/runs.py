@@ -1,0 +1,123 @@
+"""Runs of the solver behind the charts: the values of all charts of a group at one place, or along a line of places."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MaterialPair
+from fastpin.bodies.body import PinLoad
+from fastpin.charts.groups import width_coordinate
+from fastpin.model.problem import Problem
+from fastpin.reading.zones import Interval
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+
+SPANS = (0.14, 0.3, 0.62, 1.05, 2.0)
+"""Frictionless half-angles, rad, up to which states share a grid. Each contact then has a third of its nodes or more."""
+
+WIDER = 1.2
+"""Half-angle of the arc of nodes, in parts of the widest frictionless half-angle. Friction widens by 8 % at most."""
+
+SETTLING = {"fixed": 2, "free": 6}
+"""Cycles until the values are read, by rotation. A held pin is steady after the first one."""
+
+
+def pair_of(alpha: float, beta: float, kolosov: float) -> MaterialPair:
+    """The pair of Dundurs' parameters and Kolosov's constant of the pin, in plane strain, with beta* = 1."""
+    return MaterialPair.from_dundurs(alpha, beta, (3.0 - kolosov) / 4.0)
+
+
+def first_load_values(
+    pair: MaterialPair, friction: float, pin_load: PinLoad, load_parameters: Sequence[float], nodes: int
+) -> np.ndarray:
+    """The values of the charts of the first load at load parameters in falling order.
+
+    The load P grows from zero at one clearance. So a run passes through many load parameters. Runs on wider and wider
+    arcs follow each other, because a narrow contact needs narrow nodes.
+
+    Returns
+    -------
+    ndarray, shape (k, 6)
+        Peak pressure in P/(2 R), its angle from the bottom, half-angles of contact and stick, Kt on the bearing stress,
+        the angle of the largest hoop stress; angles in rad.
+    """
+    found = []
+    widths = [width_coordinate(value) for value in load_parameters]
+    for least, most in zip((0.0, *SPANS), SPANS, strict=False):
+        chosen = [value for value, x in zip(load_parameters, widths, strict=True) if least < x <= most]
+        moving = [value for value in chosen if value > 0.0]
+        half = WIDER * most if chosen else 0.0
+        grid = Grid.arc(-0.5 * math.pi - half, -0.5 * math.pi + half, nodes | 1) if chosen else None
+        if moving:
+            problem = Problem.from_load_parameter(pair, 1.0, friction, pin_load)
+            states = solve(problem, [{"P": 1.0 / value} for value in moving], grid=grid).states
+            found += [_first_load_reading(state) for state in states]
+        if len(moving) < len(chosen):  # a neat fit has one contact at all loads
+            problem = Problem.from_load_parameter(pair, 0.0, friction, pin_load)
+            found.append(_first_load_reading(solve(problem, [{"P": 1.0}], grid=grid)[-1]))
+    return np.array(found)
+
+
+def _first_load_reading(state: State) -> list[float]:
+    """The values of the first load in a state under P alone."""
+    bearing, hoop = 0.5 * state.load["P"], state.peak_hoop_stress()
+    return [
+        state.peak_pressure / bearing,
+        abs(state.peak_pressure_angle + 0.5 * math.pi),
+        0.5 * _width(state.contact),
+        0.5 * _width(state.stick),
+        hoop.kt_bearing,
+        abs(hoop.angle + 0.5 * math.pi),
+    ]
+
+
+def cycle_values(problem: Problem, ratio: float, nodes: int) -> np.ndarray:
+    """The values of the charts of a load cycle: P, then Q = +ratio P and -ratio P again and again.
+
+    Parameters
+    ----------
+    problem : Problem
+        From :meth:`fastpin.Problem.from_load_parameter`.
+    ratio : float
+    nodes : int
+
+    Returns
+    -------
+    ndarray, shape (4,)
+        Of the last cycle of :data:`SETTLING`: the energy per cycle in P^2 beta*, the largest slip range in P beta*, the
+        half-angle of stick at its end, rad, and the peak pressure there in P/(2 R).
+    """
+    cycles = SETTLING[problem.rotation]
+    history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": ratio}, {"Q": -ratio}]).repeated(cycles)
+    result = solve(problem, history, nodes=nodes, slip_sums=True)
+    over, state = result.cycle(), result[-1]
+    return np.array(
+        [over.dissipation, over.largest_slip_range, 0.5 * _width(state.stick), 2.0 * state.peak_pressure]
+    )
+
+
+def _width(zones: Sequence[Interval]) -> float:
+    return float(sum(stop - start for start, stop in zones))
+
+
+def values_at(parameters: Mapping[str, Any], nodes: int) -> np.ndarray:
+    """The values of all charts of a group at one place, shape (quantities,).
+
+    Parameters
+    ----------
+    parameters : mapping
+        All parameters by name. With a "rotation" they belong to a load cycle.
+    nodes : int
+    """
+    pair = pair_of(parameters["alpha"], parameters["beta"], parameters["kolosov"])
+    friction, load, at = parameters["friction"], parameters["pin_load"], parameters["load_parameter"]
+    if "rotation" in parameters:
+        problem = Problem.from_load_parameter(pair, at, friction, load, parameters["rotation"])
+        return cycle_values(problem, parameters["load_ratio"], nodes)
+    return first_load_values(pair, friction, load, [at], nodes)[0]

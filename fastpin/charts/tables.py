@@ -1,0 +1,192 @@
+"""The tables of the charts: values at nodes, interpolation between them, and error bounds by region."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+import zipfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fastpin.charts.groups import GROUPS, Group, width_coordinate
+from fastpin.errors import InputError
+
+DATA = Path(__file__).parent / "charts.npz"
+"""The data of the package."""
+
+VERSION = 1
+"""Version of the data: of the axes, the quantities and their scales."""
+
+FEW = 4
+"""Numbers of nodes of an axis up to which one polynomial goes through all nodes."""
+
+CUBIC = 4
+"""Nodes of a cubic."""
+
+Scale = Callable[[Any, Any], Any]
+
+
+class Stored(NamedTuple):
+    """How a quantity is stored: smoother than it is.
+
+    Attributes
+    ----------
+    stored, value : callable
+        ``stored(value, load_parameter)`` is interpolated, and ``value(stored, load_parameter)`` is its inverse.
+    is_relative : bool
+        Whether the error bound counts in parts of the value.
+    """
+
+    stored: Scale
+    value: Scale
+    is_relative: bool
+
+
+def _pressure_scale(load_parameter: Any) -> Any:
+    """The largest pressure over the bearing stress, to some 10 %: the formula of a spreadsheet without corrections."""
+    return (1.438 + 16.0 / math.pi * load_parameter) ** 0.5
+
+
+_PRESSURE = Stored(lambda v, at: v / _pressure_scale(at), lambda s, at: s * _pressure_scale(at), True)
+_WIDTH = Stored(lambda v, at: v / width_coordinate(at), lambda s, at: s * width_coordinate(at), True)
+_STICK = _WIDTH._replace(is_relative=False)
+_PLAIN = Stored(lambda v, at: v, lambda s, at: s, False)
+
+STORED = {
+    "peak_pressure": _PRESSURE,
+    "peak_pressure_angle": _PLAIN,
+    "contact_angle": _WIDTH,
+    "stick_angle": _STICK,
+    "kt_bearing": _PLAIN._replace(is_relative=True),
+    "peak_hoop_angle": _PLAIN,
+    "cycle_energy": Stored(lambda v, at: np.cbrt(np.maximum(v, 0.0)), lambda s, at: s * s * s, False),
+    "cycle_slip_range": Stored(lambda v, at: np.sqrt(np.maximum(v, 0.0)), lambda s, at: s * s, False),
+    "cycle_stick_angle": _STICK,
+    "cycle_peak_pressure": _PRESSURE,
+}
+"""How each quantity is stored."""
+
+
+class Table:
+    """The charts of a group.
+
+    Parameters
+    ----------
+    group : Group
+    values : ndarray, shape (*group.shape, quantities)
+        What :data:`STORED` makes of the values at the nodes.
+    orders : sequence of int
+        Nodes that the interpolation of each quantity takes along an axis of many nodes: 2 or 4.
+    bounds : ndarray, shape (*group.regions, quantities)
+        Error bounds of the regions, in parts of the value or in its unit.
+    """
+
+    def __init__(self, group: Group, values: np.ndarray, orders: Sequence[int], bounds: np.ndarray) -> None:
+        self.group, self.bounds = group, bounds
+        self.values = {name: np.ascontiguousarray(values[..., k], float) for k, name in enumerate(group.quantities)}
+        self.orders = dict(zip(group.quantities, map(int, orders), strict=True))
+        self._counts = [(axis.nodes, axis.regions) for axis in group.axes]
+        self._bounds = {name: np.ascontiguousarray(bounds[..., k]) for k, name in enumerate(group.quantities)}
+
+    def stored_at(self, quantity: str, units: Sequence[Any]) -> Any:
+        """The interpolated table at places in units of the axes, 0 to 1: floats, or arrays of one shape."""
+        values, order = self.values[quantity], self.orders[quantity]
+        found = [_stencil(unit, nodes, order) for unit, (nodes, _) in zip(units, self._counts, strict=True)]
+        if isinstance(units[0], float):
+            values = values[tuple(slice(first, first + len(weights)) for first, weights in found)]
+            for _, weights in found:
+                values = np.array(weights).dot(values.reshape(len(weights), -1))
+            return float(values[0])
+        total: Any = 0.0
+        for steps in itertools.product(*(range(len(weights)) for _, weights in found)):
+            part = values[tuple(first + step for (first, _), step in zip(found, steps, strict=True))]
+            for (_, weights), step in zip(found, steps, strict=True):
+                part = part * weights[step]
+            total = total + part
+        return total
+
+    def value_at(self, quantity: str, units: Sequence[Any], load_parameter: Any) -> tuple[Any, Any]:
+        """The value and its error bound, in the unit of the value, at places as for :meth:`stored_at`."""
+        value = STORED[quantity].value(self.stored_at(quantity, units), load_parameter)
+        bound = self._bounds[quantity][self.region(units)]
+        bound = float(bound) if isinstance(value, float) else bound
+        return value, bound * abs(value) if STORED[quantity].is_relative else bound
+
+    def region(self, units: Sequence[Any]) -> tuple[Any, ...]:
+        """The indices of the region of bounds at places in units of the axes."""
+        if isinstance(units[0], float):
+            found = zip(units, self._counts, strict=True)
+            return tuple(min(int(unit * regions), regions - 1) for unit, (_, regions) in found)
+        return tuple(
+            np.minimum((unit * regions).astype(int), regions - 1)
+            for unit, (_, regions) in zip(units, self._counts, strict=True)
+        )
+
+
+def _stencil(unit: Any, nodes: int, order: int) -> tuple[Any, Sequence[Any]]:
+    """The first node and the Lagrange weights of the nodes around a place, in units of the axis."""
+    size = nodes if nodes <= FEW else order
+    if isinstance(unit, float):
+        first: Any = min(max(int(unit * (nodes - 1)) - size // 2 + 1, 0), nodes - size)
+    else:
+        first = np.clip((unit * (nodes - 1)).astype(int) - size // 2 + 1, 0, nodes - size)
+    at = unit * (nodes - 1) - first
+    if size == 2:
+        return first, (1.0 - at, at)
+    if size == 3:
+        return first, ((at - 1.0) * (at - 2.0) / 2.0, -at * (at - 2.0), at * (at - 1.0) / 2.0)
+    a, b, c, d = at, at - 1.0, at - 2.0, at - 3.0
+    return first, (-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0)
+
+
+@functools.cache
+def tables() -> dict[str, Table]:
+    """The tables of the package by the names of their groups.
+
+    Raises
+    ------
+    InputError
+        If the file of the package is damaged, or has another version.
+    """
+    return read_tables(DATA)
+
+
+def read_tables(path: Path) -> dict[str, Table]:
+    """Read tables from a file of :func:`write_tables`. Reading runs no code of the file.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged, or has another version.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            content = {name: file[name] for name in file.files}
+        if int(content["version"]) != VERSION:
+            raise InputError("charts", f"the data has the version {int(content['version'])}, not {VERSION}: {path}")
+        found = {}
+        for name, group in GROUPS.items():
+            values, orders, bounds = (content[f"{name}_{part}"] for part in ("values", "orders", "bounds"))
+            shapes = [(*group.shape, len(group.quantities)), (*group.regions, len(group.quantities))]
+            if [values.shape, bounds.shape] != shapes:
+                raise ValueError(name)
+            found[name] = Table(group, values, orders.tolist(), bounds)
+    except InputError:
+        raise
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError("charts", f"the file of the charts is damaged, install fastpin again: {path}") from error
+    return found
+
+
+def write_tables(path: Path, found: dict[str, Table]) -> None:
+    """Write tables as a compressed NumPy file without pickles, in single precision."""
+    content: dict[str, np.ndarray] = {"version": np.array(VERSION)}
+    for name, table in found.items():
+        content[f"{name}_values"] = np.stack([*table.values.values()], axis=-1).astype(np.float32)
+        content[f"{name}_orders"] = np.array([*table.orders.values()], dtype=np.int8)
+        content[f"{name}_bounds"] = table.bounds.astype(np.float64)
+    np.savez_compressed(path, **content)

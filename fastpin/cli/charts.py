@@ -1,0 +1,47 @@
+"""``fastpin charts``: tables of solved contacts with error bounds."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+
+from fastpin import figures
+from fastpin.charts.lookups import CYCLE_PARAMETERS, FIRST_PARAMETERS, chart_of, lookup
+from fastpin.cli.terminal import check_outputs, flag, say, write_files, write_text
+from fastpin.errors import InputError
+from fastpin.report.charts import chart_document, chart_list, formula_text, value_text, write_chart
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the list of charts, the value of one, or formulas; draw the book; write the nodes of a chart."""
+    names = dict.fromkeys((*FIRST_PARAMETERS, *CYCLE_PARAMETERS))
+    given = {name: value for name in names if (value := getattr(options, name)) is not None}
+    chart = None if options.chart is None else chart_of(options.chart)
+    if chart is None and given:
+        raise InputError(flag(next(iter(given))), "has a meaning with the name of a chart only")
+    if chart is None and options.csv is not None:
+        raise InputError("--csv", "has a meaning with the name of a chart only")
+    if options.book is not None and options.book.suffix.lower() != ".pdf":
+        raise InputError("--book", f'must be the name of a PDF, which ends in .pdf, not "{options.book.name}"')
+    check_outputs({"--csv": options.csv, "--json": options.json, "--book": options.book})
+    try:
+        found = lookup(chart.name, **given) if chart is not None and given else None
+    except InputError as error:
+        raise InputError(flag(error.field) if error.field in names else error.field, error.reason) from None
+    text = json.dumps(chart_document(chart, given, found), indent=2, allow_nan=False) + "\n"
+    if options.json == "-":
+        sys.stdout.write(text)
+    elif options.formulas:
+        say(*formula_text().split("\n"))
+    elif chart is not None and found is not None:
+        say(value_text(chart, found))
+    elif options.csv is None and options.book is None and options.json is None:
+        say(*chart_list().split("\n"))
+    return write_files(
+        [
+            (options.csv, lambda path: write_chart(chart_of(options.chart), path)),
+            (None if options.json == "-" else options.json, lambda path: write_text(path, text)),
+            (options.book, figures.write_chart_book),
+        ]
+    )

@@ -1,0 +1,124 @@
+"""The book of charts: a PDF with a page for each chart, and a first page of words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_pdf import PdfPages
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fastpin.charts.groups import WIDTHS, load_parameter_at
+from fastpin.charts.lookups import CHARTS, Chart, lookup
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.style import house_style, line, new_figure
+from fastpin.report.charts import chart_list
+from fastpin.storage.files import replacing
+
+FRICTIONS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
+"""Coefficients of friction of the curves of like bodies."""
+
+ALPHAS = (-0.6, -0.3, 0.0, 0.3, 0.6)
+"""Dundurs' first parameter of the curves of unlike bodies; both bodies have nu = 0.3 there."""
+
+LOAD_PARAMETERS = (0.03, 0.1, 0.3, 1.0, 3.0)
+"""Load parameters of the curves of cycles."""
+
+POINTS = 161
+"""Points of a curve."""
+
+LOADS = {"body": "body load", "centre": "load at the centre"}
+
+
+def write_chart_book(path: Path) -> None:
+    """Write the book of charts as a PDF, whole or not at all. Equal data gives equal files.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
+    """
+    with house_style(), replacing(path) as temporary, PdfPages(temporary, metadata={"CreationDate": None}) as pages:
+        for figure in _pages():
+            pages.savefig(figure)
+
+
+def _pages() -> Iterator[Figure]:
+    yield _first_page()
+    for chart in CHARTS.values():
+        if chart.is_cycle:
+            yield _cycle_page(chart).figure
+        else:
+            yield _first_load_page(chart).figure
+
+
+def _first_page() -> Figure:
+    """The list of charts with ranges and bounds, as text."""
+    figure = new_figure(8.3, 9.0)
+    figure.text(0.04, 0.97, "Charts of a pin in a hole", fontsize=14.0, va="top")
+    figure.text(0.04, 0.93, chart_list(), fontsize=5.6, family="monospace", va="top", parse_math=False)
+    return figure
+
+
+def _first_load_page(chart: Chart) -> Sheet:
+    """Curves over the load parameter: like bodies by friction above, unlike bodies by alpha below."""
+    sheet = Look(width=7.6).sheet([2.9, 2.9], columns=2, sharex=True, sharey="row")
+    at = np.maximum(load_parameter_at(np.linspace(*WIDTHS, POINTS)), 1e-3)
+    for column, load in enumerate(LOADS):
+        above, below = sheet.axes[:, column]
+        for k, friction in enumerate(FRICTIONS):
+            _draw(above, chart, at, k, load_parameter=at, friction=friction, pin_load=load)
+        for k, alpha in enumerate(ALPHAS):
+            more = {"alpha": alpha, "beta": alpha * 0.4 / 1.4} if alpha else {}
+            _draw(below, chart, at, k, load_parameter=at, friction=0.3, pin_load=load, **more)
+        above.set_title(f"{LOADS[load]}, like bodies", fontsize=8.5)
+        below.set_title(f"{LOADS[load]}, friction 0.3, $\\nu$ = 0.3 in both bodies", fontsize=8.5)
+        below.set_xlabel("load parameter $L_p$")
+        below.set_xscale("log")
+    if chart.name in ("peak_pressure",):
+        sheet.axes[0, 0].set_yscale("log")
+        sheet.axes[1, 0].set_yscale("log")
+    legend = [Line2D([], [], **line(k, k), label=f"friction {value:g}") for k, value in enumerate(FRICTIONS)]
+    legend += [Line2D([], [], **line(k, k), label=f"$\\alpha$ = {value:g}") for k, value in enumerate(ALPHAS)]
+    _finish(sheet, chart, legend, "above: like bodies; below: unlike bodies. kolosov 1.8")
+    return sheet
+
+
+def _cycle_page(chart: Chart) -> Sheet:
+    """Curves over the part of sliding, for two coefficients of friction and both rotations."""
+    sheet = Look(width=7.6).sheet([2.9, 2.9], columns=2, sharex=True)
+    part = np.linspace(0.2, 1.0, POINTS)
+    for row, friction in enumerate((0.2, 0.6)):
+        for column, rotation in enumerate(("fixed", "free")):
+            panel = sheet.axes[row, column]
+            for k, at in enumerate(LOAD_PARAMETERS):
+                given = {"friction": friction, "load_ratio": part * friction, "rotation": rotation}
+                _draw(panel, chart, part, k, load_parameter=at, **given)
+            panel.set_title(f"rotation {rotation}, friction {friction:g}", fontsize=8.5)
+    for panel in sheet.axes[-1]:
+        panel.set_xlabel("load ratio over friction $Q/\\mu P$")
+    legend = [Line2D([], [], **line(k, k), label=f"$L_p$ = {value:g}") for k, value in enumerate(LOAD_PARAMETERS)]
+    _finish(sheet, chart, legend, "like bodies, load at the centre, kolosov 1.8")
+    return sheet
+
+
+def _draw(panel: Axes, chart: Chart, across: np.ndarray, k: int, **given: Any) -> None:
+    """Draw a curve and the band of its error."""
+    found = lookup(chart.name, **given)
+    scale = np.degrees(1.0) if chart.unit == "rad" else 1.0
+    value, error = scale * found.value, scale * np.broadcast_to(found.error, found.value.shape)
+    panel.plot(across, value, **line(k, k))
+    panel.fill_between(across, np.maximum(value - error, 0.0), value + error, color=line(k)["color"], alpha=0.15, lw=0)
+
+
+def _finish(sheet: Sheet, chart: Chart, legend: Sequence[Line2D], caption: str) -> None:
+    unit = {"rad": "deg", "": "ratio"}.get(chart.unit, chart.unit.replace("beta*", "$\\beta^*$").replace("^2", "$^2$"))
+    for panel in sheet.axes[:, 0]:
+        panel.set_ylabel(f"{chart.name.replace('_', ' ')} ({unit})")
+    sheet.grid()
+    sheet.head(chart.words, caption=f"{caption}; bands: error bounds")
+    sheet.legend(legend, 6)

@@ -1,0 +1,142 @@
+"""Charts as text, JSON and CSV: their list with ranges and bounds, one value, the nodes of a chart, formulas."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fastpin.charts.formulas import HEAD, MOST_FRICTION, MOST_LOAD_PARAMETER, chart_formulas
+from fastpin.charts.groups import GROUPS
+from fastpin.charts.lookups import CHARTS, Chart, ChartValue
+from fastpin.charts.tables import STORED, Table, tables
+from fastpin.report.curves import Curve, write_csv
+from fastpin.report.table import aligned
+from fastpin.version import __version__
+
+RANGES = {
+    "like_body": "like bodies, body load",
+    "like_centre": "like bodies, load at the centre",
+    "unlike_body": "unlike bodies, body load",
+    "unlike_centre": "unlike bodies, load at the centre",
+    "held": "like bodies, cycle of Q, held rotation",
+    "free": "like bodies, cycle of Q, free rotation",
+}
+"""Words for the groups of tables."""
+
+
+def tables_of(chart: Chart) -> list[Table]:
+    """The tables that have a chart."""
+    return [table for table in tables().values() if chart.name in table.group.quantities]
+
+
+def bounds_of(table: Table, chart: Chart) -> tuple[float, float]:
+    """The middle and the largest bound of the regions of a table: parts of the value, or its unit."""
+    bounds = table.bounds[..., table.group.quantities.index(chart.name)]
+    return float(np.median(bounds)), float(bounds.max())
+
+
+def bound_text(chart: Chart, bound: float) -> str:
+    """An error bound as text: a percentage, an angle in degrees, or a number with its unit."""
+    if STORED[chart.name].is_relative:
+        return f"{100.0 * bound:.2g} %"
+    return f"{math.degrees(bound):.2g} deg" if chart.unit == "rad" else f"{bound:.2g} {chart.unit}"
+
+
+def chart_list() -> str:
+    """Return the list of all charts, with the error bounds of their tables, and the ranges of the parameters."""
+    rows = [("chart", "table", "usual bound", "largest bound")]
+    for chart in CHARTS.values():
+        for table in tables_of(chart):
+            bounds = (bound_text(chart, bound) for bound in bounds_of(table, chart))
+            rows.append((chart.name, RANGES[table.group.name], *bounds))
+    width = max(map(len, CHARTS))
+    words = [f"  {name:<{width}}  {chart.words}" for name, chart in CHARTS.items()]
+    return "\n".join([*words, "", *aligned(rows, "llrr"), "", *_range_lines()])
+
+
+def _range_lines() -> list[str]:
+    return [
+        "ranges: first load: load_parameter 0 to 100, friction 0 to 1, kolosov 1 to 3; unlike bodies: alpha -0.7 to 0.8,",
+        "        beta of every plate with Poisson's ratio 0 to 0.5; cycle: load_parameter 0.02 to 3, friction 0.1 to 0.8,",
+        "        load_ratio 0.2 to 1 times the friction. Beyond a range is an error: there is no extrapolation.",
+    ]
+
+
+def value_text(chart: Chart, found: ChartValue) -> str:
+    """Return a value with its error, as text: angles in degrees."""
+    value, error, unit = found.value, found.error, found.unit
+    if unit == "rad":
+        value, error, unit = math.degrees(value), math.degrees(error), "deg"
+    if not error > 0.0:
+        return f"{chart.name} = {value:.6g} {unit}".rstrip()
+    places = min(max(1 - math.floor(math.log10(error)), 0), 12)
+    return f"{chart.name} = {value:.{places}f} +- {error:.{places}f} {unit}".rstrip()
+
+
+def chart_document(chart: Chart | None, given: dict[str, Any], found: ChartValue | None) -> dict[str, Any]:
+    """Return the charts as a document for JSON: of all charts, or of one with the value at given parameters."""
+    listed = CHARTS.values() if chart is None else [chart]
+    document: dict[str, Any] = {"fastpin": __version__, "charts": {}}
+    for each in listed:
+        bounds = {table.group.name: bounds_of(table, each) for table in tables_of(each)}
+        document["charts"][each.name] = {
+            "words": each.words,
+            "unit": each.unit,
+            "parameters": list(each.parameters),
+            "relative": STORED[each.name].is_relative,
+            "bounds": {name: {"usual": usual, "largest": largest} for name, (usual, largest) in bounds.items()},
+        }
+    document["parameters"] = given
+    document["value"], document["error"] = (None, None) if found is None else (float(found), float(found.error))
+    return document
+
+
+def write_chart(chart: Chart, path: Path) -> None:
+    """Write the nodes of a chart as CSV: parameters, value and error bound, in SI angles.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
+    """
+    curves = []
+    for name, table in tables().items():
+        if chart.name not in table.group.quantities:
+            continue
+        units = [np.linspace(0.0, 1.0, nodes) for nodes in table.group.shape]
+        grid = [axis.ravel() for axis in np.meshgrid(*units, indexing="ij")]
+        places = itertools.product(*(axis.coordinates() for axis in table.group.axes))
+        rows = [table.group.parameters_at(np.array(place)) for place in places]
+        numbers = [key for key in chart.parameters if isinstance(rows[0][key], float)]
+        columns = {key: np.array([row[key] for row in rows]) for key in numbers}
+        value, error = table.value_at(chart.name, grid, columns["load_parameter"])
+        unit = f" ({chart.unit})" if chart.unit else ""
+        columns |= {f"{chart.name}{unit}": value, f"error{unit}": np.broadcast_to(error, value.shape)}
+        loads = np.array([row["pin_load"] for row in rows])
+        for load in dict.fromkeys(loads.tolist()):
+            chosen = {key: column[loads == load] for key, column in columns.items()}
+            curves.append(Curve({"table": RANGES[name].replace(",", ";"), "pin_load": load}, chosen))
+    write_csv(curves, path)
+
+
+def formula_text() -> str:
+    """Return the formulas for a spreadsheet, with the error of each."""
+    lines = [
+        f"Cells Lp (0 to {MOST_LOAD_PARAMETER:g}) and mu (0 to {MOST_FRICTION:g}); like bodies, nu = 0.3, plane strain.",
+        "Pressure and Kt are over the bearing stress P/(2 R); angles are in rad.",
+        "",
+        *HEAD,
+    ]
+    for formula in chart_formulas():
+        chart = CHARTS[formula.quantity]
+        size = f"{math.degrees(formula.error):.2g} deg" if chart.unit else f"{100.0 * formula.error:.2g} %"
+        load = "body load" if formula.pin_load == "body" else "load at the centre"
+        lines += ["", f"{chart.words}; {load}; error at most {size}", formula.cell]
+    return "\n".join(lines)
+
+
+assert RANGES.keys() == GROUPS.keys()

@@ -1,0 +1,181 @@
+"""Make the data of the charts: solve all nodes of the tables, set the error bounds, and write the file of the package.
+
+``python -m scripts.charts_data [--folder out/charts] [--calibration 400] [--output fastpin/charts/charts.npz]`` keeps
+what is solved in the folder, and goes on from there if it was stopped. It prints the numbers of runs and the time. The
+calibration solves random points with twice the nodes. Their differences from the tables give the bounds of the regions.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import json
+import math
+import time
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fastpin.charts.groups import GROUPS, Group, load_parameter_at
+from fastpin.charts.runs import SPANS, first_load_values, pair_of, values_at
+from fastpin.charts.tables import DATA, STORED, Table, write_tables
+from fastpin.solver.errors import SolveError
+
+NODES = {False: 201, True: 151}
+"""Nodes of the runs behind the tables: of the first load, and of a load cycle."""
+
+FINE = {False: 401, True: 301}
+"""Nodes of the runs of calibration and check."""
+
+CALIBRATION_SEED = 1
+"""Seed of the points of calibration. The check has other seeds."""
+
+SAFETY, USUAL = 2.0, 0.95
+"""Bound of a region in parts of the largest error seen near it, and the part of all errors that is the least bound."""
+
+
+def fill(group: Group, folder: Path) -> None:
+    """Solve all nodes of the table of a group that are not solved, into a file of the folder."""
+    path = folder / f"{group.name}.npy"
+    if path.exists():
+        table = np.load(path, mmap_mode="r+")
+    else:
+        table = np.lib.format.open_memmap(path, "w+", float, (*group.shape, len(group.quantities)))
+        table[:] = math.nan
+    nodes = [axis.coordinates() for axis in group.axes]
+    if group.is_cycle:
+        lines = list(itertools.product(*(range(n) for n in group.shape[:-1])))
+    else:
+        lines = list(itertools.product(*(range(n) for n in group.shape[1:])))
+    done, runs, began, failed = 0, 0, time.perf_counter(), 0
+    for count, line in enumerate(lines):
+        where = line if group.is_cycle else (slice(None), *line)
+        if np.isfinite(table[where][..., 0]).any():
+            continue
+        try:
+            if group.is_cycle:
+                for last, part in enumerate(nodes[-1]):
+                    place = np.array([*(axis[i] for axis, i in zip(nodes, line, strict=False)), part])
+                    table[(*line, last)] = values_at(group.parameters_at(place), NODES[True])
+                    runs += 1
+            else:
+                place = np.array([nodes[0][0], *(axis[i] for axis, i in zip(nodes[1:], line, strict=True))])
+                one = group.parameters_at(place)
+                widths = load_parameter_at(nodes[0])
+                widths[-1], widths[0] = 0.0, 100.0
+                pair = pair_of(one["alpha"], one["beta"], one["kolosov"])
+                table[where] = first_load_values(pair, one["friction"], one["pin_load"], widths.tolist(), NODES[False])
+                runs += len(SPANS) + 1
+        except SolveError as error:
+            failed += 1
+            print(group.name, line, error, flush=True)
+        done += 1
+        if done % 20 == 0 or count + 1 == len(lines):
+            table.flush()
+            seconds = time.perf_counter() - began
+            print(f"{group.name}: {count + 1} of {len(lines)} lines, {runs} runs, {seconds:.0f} s", flush=True)
+    if runs:
+        log(folder, group.name, runs=runs, states=int(np.prod(group.shape)), seconds=time.perf_counter() - began, failed=failed)
+
+
+def log(folder: Path, name: str, **numbers: Any) -> None:
+    """Add a line to the log of the folder."""
+    with (folder / "log.jsonl").open("a", encoding="utf-8") as file:
+        file.write(json.dumps({"name": name, **numbers}) + "\n")
+
+
+def points(group: Group, count: int, seed: int, folder: Path | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Random places in a group, shape (count, axes), and their fresh values, shape (count, quantities).
+
+    A folder keeps the values. Places are equally likely in the coordinates of the axes.
+    """
+    generator = np.random.default_rng([seed, list(GROUPS).index(group.name)])
+    low, high = np.array([(axis.least, axis.most) for axis in group.axes]).T
+    places = low + (high - low) * generator.random((count, len(group.axes)))
+    path = None if folder is None else folder / f"{group.name}_{seed}.npy"
+    values = np.full((count, len(group.quantities)), math.nan)
+    if path is not None and path.exists():
+        known = np.load(path)[:count]
+        values[: len(known)] = known
+    began, runs = time.perf_counter(), 0
+    for k in range(count):
+        if math.isnan(values[k, 0]):
+            values[k] = values_at(group.parameters_at(places[k]), FINE[group.is_cycle])
+            runs += 1
+            if path is not None and (runs % 50 == 0 or k == count - 1):
+                np.save(path, values[: k + 1])
+    if folder is not None and runs:
+        log(folder, f"{group.name}, seed {seed}", runs=runs, states=runs, seconds=time.perf_counter() - began, failed=0)
+    return places, values
+
+
+def table_of(group: Group, folder: Path, count: int) -> Table:
+    """The table of a group from the solved nodes, with the bounds of `count` points of calibration."""
+    solved = np.load(folder / f"{group.name}.npy")
+    widths = np.maximum(load_parameter_at(group.axes[0].coordinates()), 0.0)
+    at = widths.reshape(-1, *[1] * (len(group.axes) - 1))
+    stored = [STORED[name].stored(solved[..., k], at) for k, name in enumerate(group.quantities)]
+    values = np.stack(stored, axis=-1).astype(np.float32)
+    places, fresh = points(group, count, CALIBRATION_SEED, folder)
+    none = np.zeros((*group.regions, len(group.quantities)))
+    trials = {order: Table(group, values, [order] * len(group.quantities), none) for order in (2, 4)}
+    errors = {order: deviations(table, places, fresh) for order, table in trials.items()}
+    orders = [min(errors, key=lambda order: float(errors[order][:, k].max())) for k in range(len(group.quantities))]
+    bounds = none.copy()
+    for k, order in enumerate(orders):
+        bounds[..., k] = region_bounds(trials[order], places, errors[order][:, k])
+    return Table(group, values, orders, bounds)
+
+
+def deviations(table: Table, places: np.ndarray, fresh: np.ndarray) -> np.ndarray:
+    """Differences of a table from fresh values, in the measure of the bounds, shape (count, quantities)."""
+    units, at = units_of(table.group, places)
+    found = []
+    for k, name in enumerate(table.group.quantities):
+        value = table.value_at(name, units, at)[0]
+        size = np.abs(value) if STORED[name].is_relative else 1.0
+        found.append(np.abs(value - fresh[:, k]) / size)
+    return np.stack(found, axis=-1)
+
+
+def units_of(group: Group, places: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+    """The places in units of the axes, and their load parameters."""
+    units = [(places[:, k] - axis.least) / (axis.most - axis.least) for k, axis in enumerate(group.axes)]
+    return units, np.maximum(load_parameter_at(places[:, 0]), 0.0)
+
+
+def region_bounds(table: Table, places: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    """The bound of each region: :data:`SAFETY` times the largest error in it and its neighbours, and at least the
+    part :data:`USUAL` of all errors.
+    """
+    regions = np.zeros(table.group.regions)
+    np.maximum.at(regions, table.region(units_of(table.group, places)[0]), errors)
+    wide = np.pad(regions, 1, mode="edge")
+    shifts = itertools.product(range(3), repeat=regions.ndim)
+    near = [wide[tuple(slice(s, s + n) for s, n in zip(shift, regions.shape, strict=True))] for shift in shifts]
+    return np.maximum(SAFETY * np.max(near, axis=0), np.quantile(errors, USUAL))
+
+
+def main() -> None:
+    """Read the options, solve, and write the file."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--folder", type=Path, default=Path("out/charts"))
+    parser.add_argument("--calibration", type=int, default=400, help="random points of each group")
+    parser.add_argument("--output", type=Path, default=DATA)
+    options = parser.parse_args()
+    options.folder.mkdir(parents=True, exist_ok=True)
+    warnings.simplefilter("ignore")
+    for group in GROUPS.values():
+        fill(group, options.folder)
+    found = {name: table_of(group, options.folder, options.calibration) for name, group in GROUPS.items()}
+    write_tables(options.output, found)
+    lines = [json.loads(line) for line in (options.folder / "log.jsonl").read_text(encoding="utf-8").splitlines()]
+    totals = {name: sum(line[name] for line in lines) for name in ("runs", "states", "seconds", "failed")}
+    print(", ".join(f"{value:,.0f} {name}" for name, value in totals.items()))
+    print(f"{options.output}: {options.output.stat().st_size / 1e6:.2f} MB")
+
+
+if __name__ == "__main__":
+    main()
