@@ -18,9 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.charts.groups import GROUPS, Group, load_parameter_at
+from fastpin.charts.groups import GROUPS, ChartGroup, load_parameter_at
 from fastpin.charts.runs import SPANS, first_load_values, pair_of, values_at
-from fastpin.charts.tables import DATA, STORED, Table, write_tables
+from fastpin.charts.tables import DATA, STORED, ChartTable, write_tables
 from fastpin.solver.errors import SolveError
 
 NODES = {False: 201, True: 151}
@@ -36,7 +36,7 @@ SAFETY, USUAL = 2.0, 0.95
 """Bound of a region in parts of the largest error seen near it, and the part of all errors that is the least bound."""
 
 
-def fill(group: Group, folder: Path) -> None:
+def fill(group: ChartGroup, folder: Path) -> None:
     """Solve all nodes of the table of a group that are not solved, into a file of the folder."""
     path = folder / f"{group.name}.npy"
     if path.exists():
@@ -77,7 +77,14 @@ def fill(group: Group, folder: Path) -> None:
             seconds = time.perf_counter() - began
             print(f"{group.name}: {count + 1} of {len(lines)} lines, {runs} runs, {seconds:.0f} s", flush=True)
     if runs:
-        log(folder, group.name, runs=runs, states=int(np.prod(group.shape)), seconds=time.perf_counter() - began, failed=failed)
+        log(
+            folder,
+            group.name,
+            runs=runs,
+            states=int(np.prod(group.shape)),
+            seconds=time.perf_counter() - began,
+            failed=failed,
+        )
 
 
 def log(folder: Path, name: str, **numbers: Any) -> None:
@@ -86,7 +93,7 @@ def log(folder: Path, name: str, **numbers: Any) -> None:
         file.write(json.dumps({"name": name, **numbers}) + "\n")
 
 
-def points(group: Group, count: int, seed: int, folder: Path | None = None) -> tuple[np.ndarray, np.ndarray]:
+def points(group: ChartGroup, count: int, seed: int, folder: Path | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Random places in a group, shape (count, axes), and their fresh values, shape (count, quantities).
 
     A folder keeps the values. Places are equally likely in the coordinates of the axes.
@@ -111,7 +118,7 @@ def points(group: Group, count: int, seed: int, folder: Path | None = None) -> t
     return places, values
 
 
-def table_of(group: Group, folder: Path, count: int) -> Table:
+def table_of(group: ChartGroup, folder: Path, count: int) -> ChartTable:
     """The table of a group from the solved nodes, with the bounds of `count` points of calibration."""
     solved = np.load(folder / f"{group.name}.npy")
     widths = np.maximum(load_parameter_at(group.axes[0].coordinates()), 0.0)
@@ -120,16 +127,16 @@ def table_of(group: Group, folder: Path, count: int) -> Table:
     values = np.stack(stored, axis=-1).astype(np.float32)
     places, fresh = points(group, count, CALIBRATION_SEED, folder)
     none = np.zeros((*group.regions, len(group.quantities)))
-    trials = {order: Table(group, values, [order] * len(group.quantities), none) for order in (2, 4)}
+    trials = {order: ChartTable(group, values, [order] * len(group.quantities), none) for order in (2, 4)}
     errors = {order: deviations(table, places, fresh) for order, table in trials.items()}
     orders = [min(errors, key=lambda order: float(errors[order][:, k].max())) for k in range(len(group.quantities))]
     bounds = none.copy()
     for k, order in enumerate(orders):
         bounds[..., k] = region_bounds(trials[order], places, errors[order][:, k])
-    return Table(group, values, orders, bounds)
+    return ChartTable(group, values, orders, bounds)
 
 
-def deviations(table: Table, places: np.ndarray, fresh: np.ndarray) -> np.ndarray:
+def deviations(table: ChartTable, places: np.ndarray, fresh: np.ndarray) -> np.ndarray:
     """Differences of a table from fresh values, in the measure of the bounds, shape (count, quantities)."""
     units, at = units_of(table.group, places)
     found = []
@@ -140,13 +147,13 @@ def deviations(table: Table, places: np.ndarray, fresh: np.ndarray) -> np.ndarra
     return np.stack(found, axis=-1)
 
 
-def units_of(group: Group, places: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+def units_of(group: ChartGroup, places: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
     """The places in units of the axes, and their load parameters."""
     units = [(places[:, k] - axis.least) / (axis.most - axis.least) for k, axis in enumerate(group.axes)]
     return units, np.maximum(load_parameter_at(places[:, 0]), 0.0)
 
 
-def region_bounds(table: Table, places: np.ndarray, errors: np.ndarray) -> np.ndarray:
+def region_bounds(table: ChartTable, places: np.ndarray, errors: np.ndarray) -> np.ndarray:
     """The bound of each region: :data:`SAFETY` times the largest error in it and its neighbours, and at least the
     part :data:`USUAL` of all errors.
     """

@@ -91,8 +91,8 @@ STORED = ("example.h5", "fretting.h5", "corners.h5", "stopped.h5", "lug.complian
 """Files and folders that the commands write."""
 
 COMMANDS = (
-    "example check run resume show plot report live converge sweep tolerances merge compliance paper benchmarks verify"
-    " schema completion"
+    "example check run resume show plot report live converge sweep tolerances merge compliance paper benchmarks charts"
+    " verify schema completion"
 )
 """All commands."""
 
@@ -100,7 +100,7 @@ READING = (
     "--help",
     *(f"{command} --help" for command in COMMANDS.split()),
     "example",
-    *(f"schema {command}" for command in ["run", "converge", "verify", "benchmarks", "compliance"]),
+    *(f"schema {command}" for command in ["run", "converge", "verify", "benchmarks", "compliance", "charts"]),
     *(f"check {name}.toml" for name in ("example", "fretting", "bad")),
     *(f"show {name}.h5 --json" for name in ("example", "fretting", "corners", "stopped")),
     *(

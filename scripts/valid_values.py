@@ -12,7 +12,19 @@ from typing import Any
 import numpy as np
 
 import fastpin
-from fastpin import benchmarks, bodies, casefile, cracks, damage, elasticity, model, report, studies, verification
+from fastpin import (
+    benchmarks,
+    bodies,
+    casefile,
+    charts,
+    cracks,
+    damage,
+    elasticity,
+    model,
+    report,
+    studies,
+    verification,
+)
 from fastpin.errors import FastpinError
 from fastpin.report.curves import Curve
 from scripts.inline import Inline
@@ -56,6 +68,7 @@ KEYWORDS: dict[str, tuple[str, ...]] = {
     "FatigueAssessment.changed": ("criterion", "bodies", "method", "length", "angles", "small_cycles", "knee"),
     "Result.report": ("title", "about", "case", "convergence", "progress"),
     "Look.sheet": ("sharex",),
+    "lookup": ("load_parameter", "friction", "alpha", "beta", "kolosov", "pin_load"),
     "record": ("nodes", "method", "arc", "between", "keep", "slip_sums"),
 }
 """Keywords that are tried where a callable takes any."""
@@ -166,7 +179,8 @@ class Valid:
             cracks.spectrum_growth(result, crack, law, length, 2.0 * length), cracks.CrackFate.STOPS,
             LAMINATE, PLY, PLY.strengths, damage.ply_failure(LAMINATE, [1e8, 1e7, 1e7]),
             damage.first_ply_failure(LAMINATE, [1e8, 1e7, 1e7]), model.StrengthAssessment(distance=1e-3),
-            damage.joint_strength(stressed[-1], distance=1e-3),
+            damage.joint_strength(stressed[-1], distance=1e-3), charts.CHARTS["kt_bearing"],
+            charts.lookup("kt_bearing", load_parameter=0.1, friction=0.4), charts.chart_formulas()[0],
             studies.failure_load(laminated, [{"P": 1e5}], distance=1e-3, nodes=NODES),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
@@ -287,6 +301,9 @@ class Valid:
             "angle_of_largest.values": np.arange(float(n)),
             "elliptic_stress.pressure": 1.0,
             "merge.directory": "whole",
+            "charts.lookup.quantity": "kt_bearing",
+            "joint_values.P": 1.0,
+            "ChartFormula.at.friction": 0.4,
             "run.directory": "sweep",
             "run.executor": Inline(),
             "fatigue.criterion": "smith-watson-topper",

@@ -9,22 +9,30 @@ from dataclasses import dataclass
 import numpy as np
 
 from fastpin.charts.groups import width_coordinate
-from fastpin.charts.lookups import CHARTS, lookup
+from fastpin.charts.lookups import lookup
+from fastpin.charts.tables import STORED
 
 MOST_LOAD_PARAMETER, MOST_FRICTION = 10.0, 0.6
 """Largest load parameter and coefficient of friction of the formulas."""
 
-DEGREE = 4
+DEGREE = 3
 """Largest sum of powers of the polynomials."""
 
 SAMPLES = 61
 """Values of load parameter and friction at which a formula is fitted, and twice as many for its error."""
 
+ROUNDS = 15
+"""Rounds of the fit. They lower its largest error."""
+
 DIGITS = 4
 """Decimal places of the coefficients."""
 
-HEAD = ("x     =1/SQRT(0.4563+PI()*Lp)", "t     =SQRT(mu)")
+HEAD = ("x     =1/SQRT(0.4563+PI()*Lp)", "z     =mu/SQRT(mu^2+0.2*x^2)")
 """Cells that all formulas use."""
+
+
+FACTORS = {"peak_pressure": "*SQRT(1.438+16*Lp/PI())", "contact_angle": "*x", "kt_bearing": ""}
+"""The quantities with a formula, and the factor of :data:`fastpin.charts.tables.STORED` as a spreadsheet has it."""
 
 
 @dataclass(frozen=True)
@@ -39,10 +47,9 @@ class ChartFormula:
     cell : str
         The formula, with the cells Lp, mu and those of :data:`HEAD`.
     error : float
-        Bound of its error: the largest distance from the chart, and the bound of the chart there. In parts of the value
-        for ratios, rad for angles.
+        Bound of its error in parts of the value: the largest distance from the chart, with the bound of the chart.
     coefficients : dict
-        By the powers of x and t.
+        By the powers of x and z.
     """
 
     quantity: str
@@ -53,44 +60,52 @@ class ChartFormula:
 
     def at(self, load_parameter: np.ndarray, friction: np.ndarray) -> np.ndarray:
         """The value of the formula; the arguments broadcast."""
-        x, t = width_coordinate(load_parameter), friction**0.5
-        total = sum(value * x**a * t**b for (a, b), value in self.coefficients.items())
-        return np.asarray(total / x if self.quantity == "peak_pressure" else total)
+        x, z = _cells(load_parameter, friction)
+        total = sum(value * x**a * z**b for (a, b), value in self.coefficients.items())
+        return np.asarray(STORED[self.quantity].value(total, load_parameter))
 
 
 @functools.cache
 def chart_formulas() -> tuple[ChartFormula, ...]:
     """The formulas of like bodies with nu = 0.3 in plane strain, for load parameters and friction up to the limits."""
-    quantities = ("peak_pressure", "contact_angle", "kt_bearing")
-    return tuple(_fitted(*pair) for pair in itertools.product(quantities, ("body", "centre")))
+    return tuple(_fitted(*pair) for pair in itertools.product(FACTORS, ("body", "centre")))
 
 
 def _fitted(quantity: str, pin_load: str) -> ChartFormula:
-    """Fit a polynomial in x and t to a chart, by least squares of the relative distance."""
+    """Fit a polynomial in x and z to a chart. The largest relative distances get more and more weight."""
     powers = [(a, b) for a in range(DEGREE + 1) for b in range(DEGREE + 1 - a)]
     at, friction = _samples(SAMPLES)
     value = lookup(quantity, load_parameter=at, friction=friction, pin_load=pin_load).value
-    x, t = width_coordinate(at), friction**0.5
-    goal = value * x if quantity == "peak_pressure" else value  # Hertz's pressure goes like 1/x
-    columns = np.stack([x**a * t**b for a, b in powers], axis=-1) / goal[:, None]
-    found = np.round(np.linalg.lstsq(columns, np.ones(len(goal)), rcond=None)[0], DIGITS).tolist()
-    coefficients = dict(zip(powers, found, strict=True))
-    terms = "".join(f"{c:+.{DIGITS}f}{_power('x', a)}{_power('t', b)}" for (a, b), c in coefficients.items() if c)
-    cell = f"=({terms.lstrip('+')})/x" if quantity == "peak_pressure" else f"={terms.lstrip('+')}"
+    x, z = _cells(at, friction)
+    goal = STORED[quantity].stored(value, at)
+    columns = np.stack([x**a * z**b for a, b in powers], axis=-1) / goal[:, None]
+    weights = np.ones(len(goal))
+    for _ in range(ROUNDS):
+        found = np.linalg.lstsq(columns * weights[:, None], weights, rcond=None)[0]
+        away = np.abs(columns @ found - 1.0)
+        weights *= np.sqrt(away / away.max() + 0.05)
+    coefficients = {pair: round(float(value), DIGITS) for pair, value in zip(powers, found, strict=True)}
+    terms = "".join(f"{c:+.{DIGITS}f}{_power('x', a)}{_power('z', b)}" for (a, b), c in coefficients.items() if c)
+    cell = f"=({terms.lstrip('+')}){FACTORS[quantity]}"
     formula = ChartFormula(quantity, pin_load, cell, 0.0, coefficients)
     at, friction = _samples(2 * SAMPLES)
     chart = lookup(quantity, load_parameter=at, friction=friction, pin_load=pin_load)
-    away = np.abs(formula.at(at, friction) - chart.value) + chart.error
-    error = float(np.max(away if CHARTS[quantity].unit else away / chart.value))
+    error = float(np.max((np.abs(formula.at(at, friction) - chart.value) + chart.error) / chart.value))
     return ChartFormula(quantity, pin_load, cell, error, coefficients)
 
 
+def _cells(load_parameter: np.ndarray, friction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The cells x and z of :data:`HEAD`. The smaller z, the more slips."""
+    x = np.asarray(width_coordinate(load_parameter))
+    return x, friction / np.sqrt(friction**2 + 0.2 * x**2)
+
+
 def _samples(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Load parameters and frictions of a grid, each shape (count**2,), equally spaced in x and t."""
+    """Load parameters and frictions of a grid, each shape (count**2,), equally spaced in x and sqrt(mu)."""
     x = np.linspace(width_coordinate(MOST_LOAD_PARAMETER), width_coordinate(0.0), count)
     at = np.maximum((x**-2.0 - x[-1] ** -2.0) / np.pi, 0.0)
-    t = np.linspace(0.0, MOST_FRICTION**0.5, count)
-    grid = np.meshgrid(at, t**2, indexing="ij")
+    root = np.linspace(0.0, MOST_FRICTION**0.5, count)
+    grid = np.meshgrid(at, root**2, indexing="ij")
     return grid[0].ravel(), grid[1].ravel()
 
 

@@ -32,7 +32,7 @@ def load_parameter_at(x: Any) -> Any:
     return (x**-2.0 - NEAT) / math.pi
 
 
-class Axis(NamedTuple):
+class TableAxis(NamedTuple):
     """An axis of a table.
 
     Attributes
@@ -80,20 +80,20 @@ COORDINATES: dict[str, Callable[[Values], Any]] = {
 """The coordinate along each axis, from the parameters."""
 
 
-class Group(NamedTuple):
+class ChartGroup(NamedTuple):
     """A table of charts with the same axes.
 
     Attributes
     ----------
     name : str
-    axes : tuple of Axis
+    axes : tuple of TableAxis
     quantities : tuple of str
     fixed : mapping
         Parameters that have one value in the table.
     """
 
     name: str
-    axes: tuple[Axis, ...]
+    axes: tuple[TableAxis, ...]
     quantities: tuple[str, ...]
     fixed: Mapping[str, str]
 
@@ -143,39 +143,44 @@ CYCLE_WIDTHS = width_coordinate(3.0), width_coordinate(0.02)
 """Coordinates of the load parameters 3 and 0.02."""
 
 
-def _first_load_groups() -> list[Group]:
+def _first_load_groups() -> list[ChartGroup]:
     like = (
-        Axis("width", *WIDTHS, 41, 7),
-        Axis("root of friction", 0.0, 1.0, 33, 5),
-        Axis("pin term", 0.25, 0.5, 3),
+        TableAxis("width", *WIDTHS, 41, 7),
+        TableAxis("root of friction", 0.0, 1.0, 33, 5),
+        TableAxis("pin term", 0.25, 0.5, 3),
     )
     unlike = (
-        Axis("width", *WIDTHS, 21, 4),
-        Axis("root of friction", 0.0, 1.0, 9, 4),
-        Axis("alpha", -0.7, 0.8, 7, 3),
-        Axis("plate term", 0.25, 0.5, 3),
-        Axis("pin term", 0.25, 0.5, 3),
+        TableAxis("width", *WIDTHS, 21, 4),
+        TableAxis("root of friction", 0.0, 1.0, 9, 4),
+        TableAxis("alpha", -0.7, 0.8, 7, 3),
+        TableAxis("plate term", 0.25, 0.5, 3),
+        TableAxis("pin term", 0.25, 0.5, 3),
     )
     axes = {"like": like, "unlike": unlike}
     return [
-        Group(f"{name}_{load}", axes[name], FIRST_LOAD, {"pin_load": load}) for name in axes for load in ("body", "centre")
+        ChartGroup(f"{name}_{load}", axes[name], FIRST_LOAD, {"pin_load": load})
+        for name in axes
+        for load in ("body", "centre")
     ]
 
 
-def _cycle_groups() -> list[Group]:
+def _cycle_groups() -> list[ChartGroup]:
     held = (
-        Axis("width", *CYCLE_WIDTHS, 12, 4),
-        Axis("friction", 0.1, 0.8, 9, 3),
-        Axis("load term", 0.25, 0.5, 3),
-        Axis("part of sliding", 0.2, 1.0, 10, 4),
+        TableAxis("width", *CYCLE_WIDTHS, 12, 4),
+        TableAxis("friction", 0.1, 0.8, 9, 3),
+        TableAxis("load term", 0.25, 0.5, 3),
+        TableAxis("part of sliding", 0.2, 1.0, 10, 4),
     )
     free = (
-        Axis("width", *CYCLE_WIDTHS, 9, 4),
-        Axis("friction", 0.1, 0.8, 7, 3),
-        Axis("load term", 0.125, 0.5, 4),
-        Axis("part of sliding", 0.2, 1.0, 7, 4),
+        TableAxis("width", *CYCLE_WIDTHS, 9, 4),
+        TableAxis("friction", 0.1, 0.8, 7, 3),
+        TableAxis("load term", 0.125, 0.5, 4),
+        TableAxis("part of sliding", 0.2, 1.0, 7, 4),
     )
-    return [Group("held", held, CYCLE, {"rotation": "fixed"}), Group("free", free, CYCLE, {"rotation": "free"})]
+    return [
+        ChartGroup("held", held, CYCLE, {"rotation": "fixed"}),
+        ChartGroup("free", free, CYCLE, {"rotation": "free"}),
+    ]
 
 
 GROUPS = {group.name: group for group in (*_first_load_groups(), *_cycle_groups())}

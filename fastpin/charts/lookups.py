@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +10,15 @@ from typing import Any
 import numpy as np
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
-from fastpin.charts.groups import COORDINATES, CYCLE, FIRST_LOAD, GROUPS, WEIGHTS, Axis, Group, load_parameter_at
+from fastpin.charts.groups import (
+    COORDINATES,
+    CYCLE,
+    FIRST_LOAD,
+    GROUPS,
+    ChartGroup,
+    TableAxis,
+    load_parameter_at,
+)
 from fastpin.charts.tables import tables
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, known_name, number, numbers, positive
@@ -20,7 +27,7 @@ from fastpin.model.synonyms import closest
 
 
 @dataclass(frozen=True)
-class Chart:
+class ChartQuantity:
     """A quantity of the charts.
 
     Attributes
@@ -81,16 +88,16 @@ DEFAULTS: dict[str, Any] = {"alpha": 0.0, "beta": 0.0, "kolosov": 1.8, "pin_load
 CHARTS = {
     chart.name: chart
     for chart in (
-        Chart("peak_pressure", "largest pressure over the bearing stress P/(2 R), first load", ""),
-        Chart("peak_pressure_angle", "its place from the bottom of the hole, first load", "rad"),
-        Chart("contact_angle", "half-angle of the contact, first load", "rad"),
-        Chart("stick_angle", "half of all angles that stick, first load", "rad"),
-        Chart("kt_bearing", "largest hoop stress round the hole over P/(2 R), first load", ""),
-        Chart("peak_hoop_angle", "its place from the bottom of the hole, first load", "rad"),
-        Chart("cycle_energy", "friction energy of a cycle of Q", "P^2 beta*"),
-        Chart("cycle_slip_range", "largest slip range of a place in a cycle of Q", "P beta*"),
-        Chart("cycle_stick_angle", "half of all angles that stick at the end of a cycle of Q", "rad"),
-        Chart("cycle_peak_pressure", "largest pressure over P/(2 R) at the end of a cycle of Q", ""),
+        ChartQuantity("peak_pressure", "largest pressure over the bearing stress P/(2 R), first load", ""),
+        ChartQuantity("peak_pressure_angle", "its place from the bottom of the hole, first load", "rad"),
+        ChartQuantity("contact_angle", "half-angle of the contact, first load", "rad"),
+        ChartQuantity("stick_angle", "half of all angles that stick, first load", "rad"),
+        ChartQuantity("kt_bearing", "largest hoop stress round the hole over P/(2 R), first load", ""),
+        ChartQuantity("peak_hoop_angle", "its place from the bottom of the hole, first load", "rad"),
+        ChartQuantity("cycle_energy", "friction energy of a cycle of Q", "P^2 beta*"),
+        ChartQuantity("cycle_slip_range", "largest slip range of a place in a cycle of Q", "P beta*"),
+        ChartQuantity("cycle_stick_angle", "half of all angles that stick at the end of a cycle of Q", "rad"),
+        ChartQuantity("cycle_peak_pressure", "largest pressure over P/(2 R) at the end of a cycle of Q", ""),
     )
 }
 """The charts by name."""
@@ -136,7 +143,7 @@ def lookup(quantity: str, **parameters: Any) -> ChartValue:
     group = _group(chart, given)
     units = [_unit(axis, given) for axis in group.axes]
     at = given["load_parameter"]
-    if not all([isinstance(unit, float) for unit in units]):
+    if any(not isinstance(unit, float) for unit in units):
         try:
             *units, at = np.broadcast_arrays(*units, at)
         except ValueError:
@@ -145,7 +152,7 @@ def lookup(quantity: str, **parameters: Any) -> ChartValue:
     return ChartValue(value, error, chart.unit)
 
 
-def chart_of(quantity: object) -> Chart:
+def chart_of(quantity: object) -> ChartQuantity:
     """The chart of a name.
 
     Raises
@@ -158,7 +165,7 @@ def chart_of(quantity: object) -> Chart:
     return CHARTS[str(quantity)]
 
 
-def _checked(chart: Chart, parameters: Mapping[str, Any]) -> dict[str, Any]:
+def _checked(chart: ChartQuantity, parameters: Mapping[str, Any]) -> dict[str, Any]:
     """The parameters of a chart, checked for themselves, with those that were left out."""
     for name in parameters:
         if name not in chart.parameters:
@@ -179,7 +186,7 @@ def _checked(chart: Chart, parameters: Mapping[str, Any]) -> dict[str, Any]:
     return given
 
 
-def _no_parameter(chart: Chart, name: str) -> str:
+def _no_parameter(chart: ChartQuantity, name: str) -> str:
     """Why a chart has no parameter of this name."""
     if name in FIRST_PARAMETERS or name in CYCLE_PARAMETERS:
         if name in ("alpha", "beta"):
@@ -189,7 +196,7 @@ def _no_parameter(chart: Chart, name: str) -> str:
     return f"is no parameter of the chart {chart.name}, which has {known}{closest(name, chart.parameters)}"
 
 
-def _group(chart: Chart, given: Mapping[str, Any]) -> Group:
+def _group(chart: ChartQuantity, given: Mapping[str, Any]) -> ChartGroup:
     """The group of the tables that has the values."""
     if chart.is_cycle:
         return GROUPS["held" if given["rotation"] == "fixed" else "free"]
@@ -197,7 +204,7 @@ def _group(chart: Chart, given: Mapping[str, Any]) -> Group:
     return GROUPS[f"{'like' if like else 'unlike'}_{given['pin_load']}"]
 
 
-def _unit(axis: Axis, given: Mapping[str, Any]) -> Any:
+def _unit(axis: TableAxis, given: Mapping[str, Any]) -> Any:
     """The place along an axis, 0 to 1: a float or an array. Raises :class:`InputError` if it is out of range."""
     field, low, high, words = _limits(axis, given)
     value = given[field]
@@ -216,7 +223,7 @@ def _unit(axis: Axis, given: Mapping[str, Any]) -> Any:
     return min(max(unit, 0.0), 1.0) if isinstance(unit, float) else np.clip(unit, 0.0, 1.0)
 
 
-def _limits(axis: Axis, given: Mapping[str, Any]) -> tuple[str, Any, Any, str]:
+def _limits(axis: TableAxis, given: Mapping[str, Any]) -> tuple[str, Any, Any, str]:
     """The parameter of an axis, its least and largest value, and words on the limits."""
     if axis.name == "width":
         return "load_parameter", *_load_parameters(axis), ""
@@ -234,7 +241,7 @@ def _limits(axis: Axis, given: Mapping[str, Any]) -> tuple[str, Any, Any, str]:
 
 
 @functools.cache
-def _load_parameters(axis: Axis) -> tuple[float, float]:
+def _load_parameters(axis: TableAxis) -> tuple[float, float]:
     """The least and the largest load parameter of an axis."""
     least, most = (float(f"{load_parameter_at(x):.9g}") for x in (axis.most, axis.least))
     return max(least, 0.0) if least > _ROUNDING else 0.0, most
@@ -269,11 +276,15 @@ def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str
     given |= {"kolosov": pair.pin_kolosov, "pin_load": problem.pin_load}
     alpha, beta = (value if abs(value) > _ROUNDING else 0.0 for value in pair.dundurs())
     if Q is None:
-        names, given = FIRST_LOAD, given | {"alpha": alpha, "beta": beta}
+        names: tuple[str, ...] = FIRST_LOAD
+        given |= {"alpha": alpha, "beta": beta}
     elif alpha or beta:
-        raise InputError("pair", f"must be of like materials for a cycle: Dundurs' parameters 0, not {alpha:g}, {beta:g}")
+        raise InputError(
+            "pair", f"must be of like materials for a cycle: Dundurs' parameters 0, not {alpha:g}, {beta:g}"
+        )
     else:
-        names, given = CYCLE, given | {"rotation": problem.rotation, "load_ratio": abs(number("Q", Q)) / force}
+        names = CYCLE
+        given |= {"rotation": problem.rotation, "load_ratio": abs(number("Q", Q)) / force}
     bearing, squeeze = 0.5 * force / problem.hole_radius, force * pair.beta_star
     units = {"cycle_energy": ("J/m", force * squeeze), "cycle_slip_range": ("m", squeeze)}
     units |= dict.fromkeys(("peak_pressure", "cycle_peak_pressure"), ("Pa", bearing))

@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.bodies.body import PinLoad
+from fastpin.charts.groups import width_coordinate
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MaterialPair
-from fastpin.bodies.body import PinLoad
-from fastpin.charts.groups import width_coordinate
 from fastpin.model.problem import Problem
 from fastpin.reading.zones import Interval
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 
 SPANS = (0.14, 0.3, 0.62, 1.05, 2.0)
-"""Frictionless half-angles, rad, up to which states share a grid. Each contact then has a third of its nodes or more."""
+"""Frictionless half-angles, rad, up to which states share a grid. Each contact has a third of its nodes or more."""
 
 WIDER = 1.2
 """Half-angle of the arc of nodes, in parts of the widest frictionless half-angle. Friction widens by 8 % at most."""
@@ -97,9 +97,7 @@ def cycle_values(problem: Problem, ratio: float, nodes: int) -> np.ndarray:
     history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": ratio}, {"Q": -ratio}]).repeated(cycles)
     result = solve(problem, history, nodes=nodes, slip_sums=True)
     over, state = result.cycle(), result[-1]
-    return np.array(
-        [over.dissipation, over.largest_slip_range, 0.5 * _width(state.stick), 2.0 * state.peak_pressure]
-    )
+    return np.array([over.dissipation, over.largest_slip_range, 0.5 * _width(state.stick), 2.0 * state.peak_pressure])
 
 
 def _width(zones: Sequence[Interval]) -> float:

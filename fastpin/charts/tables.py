@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fastpin.charts.groups import GROUPS, Group, width_coordinate
+from fastpin.charts.groups import GROUPS, ChartGroup, width_coordinate
 from fastpin.errors import InputError
 
 DATA = Path(__file__).parent / "charts.npz"
@@ -71,12 +71,12 @@ STORED = {
 """How each quantity is stored."""
 
 
-class Table:
+class ChartTable:
     """The charts of a group.
 
     Parameters
     ----------
-    group : Group
+    group : ChartGroup
     values : ndarray, shape (*group.shape, quantities)
         What :data:`STORED` makes of the values at the nodes.
     orders : sequence of int
@@ -85,7 +85,7 @@ class Table:
         Error bounds of the regions, in parts of the value or in its unit.
     """
 
-    def __init__(self, group: Group, values: np.ndarray, orders: Sequence[int], bounds: np.ndarray) -> None:
+    def __init__(self, group: ChartGroup, values: np.ndarray, orders: Sequence[int], bounds: np.ndarray) -> None:
         self.group, self.bounds = group, bounds
         self.values = {name: np.ascontiguousarray(values[..., k], float) for k, name in enumerate(group.quantities)}
         self.orders = dict(zip(group.quantities, map(int, orders), strict=True))
@@ -144,7 +144,7 @@ def _stencil(unit: Any, nodes: int, order: int) -> tuple[Any, Sequence[Any]]:
 
 
 @functools.cache
-def tables() -> dict[str, Table]:
+def tables() -> dict[str, ChartTable]:
     """The tables of the package by the names of their groups.
 
     Raises
@@ -155,7 +155,7 @@ def tables() -> dict[str, Table]:
     return read_tables(DATA)
 
 
-def read_tables(path: Path) -> dict[str, Table]:
+def read_tables(path: Path) -> dict[str, ChartTable]:
     """Read tables from a file of :func:`write_tables`. Reading runs no code of the file.
 
     Raises
@@ -164,7 +164,7 @@ def read_tables(path: Path) -> dict[str, Table]:
         If the file is damaged, or has another version.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             content = {name: file[name] for name in file.files}
         if int(content["version"]) != VERSION:
             raise InputError("charts", f"the data has the version {int(content['version'])}, not {VERSION}: {path}")
@@ -174,17 +174,17 @@ def read_tables(path: Path) -> dict[str, Table]:
             shapes = [(*group.shape, len(group.quantities)), (*group.regions, len(group.quantities))]
             if [values.shape, bounds.shape] != shapes:
                 raise ValueError(name)
-            found[name] = Table(group, values, orders.tolist(), bounds)
+            found[name] = ChartTable(group, values, orders.tolist(), bounds)
     except InputError:
         raise
-    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
         raise InputError("charts", f"the file of the charts is damaged, install fastpin again: {path}") from error
     return found
 
 
-def write_tables(path: Path, found: dict[str, Table]) -> None:
+def write_tables(path: Path, found: dict[str, ChartTable]) -> None:
     """Write tables as a compressed NumPy file without pickles, in single precision."""
-    content: dict[str, np.ndarray] = {"version": np.array(VERSION)}
+    content: dict[str, Any] = {"version": np.array(VERSION)}
     for name, table in found.items():
         content[f"{name}_values"] = np.stack([*table.values.values()], axis=-1).astype(np.float32)
         content[f"{name}_orders"] = np.array([*table.orders.values()], dtype=np.int8)

@@ -12,7 +12,7 @@ NUMBERS = {
     "friction": "coefficient of friction",
     "alpha": "first parameter of Dundurs, in the usual sign (default 0; not for cycles)",
     "beta": "second parameter of Dundurs (default 0; not for cycles)",
-    "kolosov": "Kolosov's constant of the pin: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress (default 1.8)",
+    "kolosov": "Kolosov's constant of the pin: 3 - 4 nu or, in plane stress, (3 - nu)/(1 + nu) (default 1.8)",
     "load_ratio": "Q/P: amplitude of the cycle (cycles only)",
 }
 """Parameters of charts that are numbers, and their help."""

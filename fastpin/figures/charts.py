@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.charts.groups import WIDTHS, load_parameter_at
-from fastpin.charts.lookups import CHARTS, Chart, lookup
+from fastpin.charts.lookups import CHARTS, ChartQuantity, lookup
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import house_style, line, new_figure
 from fastpin.report.charts import chart_list
@@ -64,7 +64,7 @@ def _first_page() -> Figure:
     return figure
 
 
-def _first_load_page(chart: Chart) -> Sheet:
+def _first_load_page(chart: ChartQuantity) -> Sheet:
     """Curves over the load parameter: like bodies by friction above, unlike bodies by alpha below."""
     sheet = Look(width=7.6).sheet([2.9, 2.9], columns=2, sharex=True, sharey="row")
     at = np.maximum(load_parameter_at(np.linspace(*WIDTHS, POINTS)), 1e-3)
@@ -79,16 +79,16 @@ def _first_load_page(chart: Chart) -> Sheet:
         below.set_title(f"{LOADS[load]}, friction 0.3, $\\nu$ = 0.3 in both bodies", fontsize=8.5)
         below.set_xlabel("load parameter $L_p$")
         below.set_xscale("log")
-    if chart.name in ("peak_pressure",):
-        sheet.axes[0, 0].set_yscale("log")
-        sheet.axes[1, 0].set_yscale("log")
+    if chart.name == "peak_pressure":
+        for panel in sheet.axes[:, 0]:
+            panel.set_yscale("log")
     legend = [Line2D([], [], **line(k, k), label=f"friction {value:g}") for k, value in enumerate(FRICTIONS)]
     legend += [Line2D([], [], **line(k, k), label=f"$\\alpha$ = {value:g}") for k, value in enumerate(ALPHAS)]
     _finish(sheet, chart, legend, "above: like bodies; below: unlike bodies. kolosov 1.8")
     return sheet
 
 
-def _cycle_page(chart: Chart) -> Sheet:
+def _cycle_page(chart: ChartQuantity) -> Sheet:
     """Curves over the part of sliding, for two coefficients of friction and both rotations."""
     sheet = Look(width=7.6).sheet([2.9, 2.9], columns=2, sharex=True)
     part = np.linspace(0.2, 1.0, POINTS)
@@ -106,7 +106,7 @@ def _cycle_page(chart: Chart) -> Sheet:
     return sheet
 
 
-def _draw(panel: Axes, chart: Chart, across: np.ndarray, k: int, **given: Any) -> None:
+def _draw(panel: Axes, chart: ChartQuantity, across: np.ndarray, k: int, **given: Any) -> None:
     """Draw a curve and the band of its error."""
     found = lookup(chart.name, **given)
     scale = np.degrees(1.0) if chart.unit == "rad" else 1.0
@@ -115,7 +115,7 @@ def _draw(panel: Axes, chart: Chart, across: np.ndarray, k: int, **given: Any) -
     panel.fill_between(across, np.maximum(value - error, 0.0), value + error, color=line(k)["color"], alpha=0.15, lw=0)
 
 
-def _finish(sheet: Sheet, chart: Chart, legend: Sequence[Line2D], caption: str) -> None:
+def _finish(sheet: Sheet, chart: ChartQuantity, legend: Sequence[Line2D], caption: str) -> None:
     unit = {"rad": "deg", "": "ratio"}.get(chart.unit, chart.unit.replace("beta*", "$\\beta^*$").replace("^2", "$^2$"))
     for panel in sheet.axes[:, 0]:
         panel.set_ylabel(f"{chart.name.replace('_', ' ')} ({unit})")

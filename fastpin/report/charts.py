@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from fastpin.charts.formulas import HEAD, MOST_FRICTION, MOST_LOAD_PARAMETER, chart_formulas
-from fastpin.charts.groups import GROUPS
-from fastpin.charts.lookups import CHARTS, Chart, ChartValue
-from fastpin.charts.tables import STORED, Table, tables
+from fastpin.charts.groups import GROUPS, TableAxis, load_parameter_at
+from fastpin.charts.lookups import CHARTS, ChartQuantity, ChartValue
+from fastpin.charts.tables import STORED, ChartTable, tables
 from fastpin.report.curves import Curve, write_csv
 from fastpin.report.table import aligned
 from fastpin.version import __version__
@@ -28,18 +28,18 @@ RANGES = {
 """Words for the groups of tables."""
 
 
-def tables_of(chart: Chart) -> list[Table]:
+def tables_of(chart: ChartQuantity) -> list[ChartTable]:
     """The tables that have a chart."""
     return [table for table in tables().values() if chart.name in table.group.quantities]
 
 
-def bounds_of(table: Table, chart: Chart) -> tuple[float, float]:
+def bounds_of(table: ChartTable, chart: ChartQuantity) -> tuple[float, float]:
     """The middle and the largest bound of the regions of a table: parts of the value, or its unit."""
     bounds = table.bounds[..., table.group.quantities.index(chart.name)]
     return float(np.median(bounds)), float(bounds.max())
 
 
-def bound_text(chart: Chart, bound: float) -> str:
+def bound_text(chart: ChartQuantity, bound: float) -> str:
     """An error bound as text: a percentage, an angle in degrees, or a number with its unit."""
     if STORED[chart.name].is_relative:
         return f"{100.0 * bound:.2g} %"
@@ -51,22 +51,35 @@ def chart_list() -> str:
     rows = [("chart", "table", "usual bound", "largest bound")]
     for chart in CHARTS.values():
         for table in tables_of(chart):
-            bounds = (bound_text(chart, bound) for bound in bounds_of(table, chart))
-            rows.append((chart.name, RANGES[table.group.name], *bounds))
+            usual, largest = (bound_text(chart, bound) for bound in bounds_of(table, chart))
+            rows.append((chart.name, RANGES[table.group.name], usual, largest))
     width = max(map(len, CHARTS))
     words = [f"  {name:<{width}}  {chart.words}" for name, chart in CHARTS.items()]
     return "\n".join([*words, "", *aligned(rows, "llrr"), "", *_range_lines()])
 
 
 def _range_lines() -> list[str]:
+    """The ranges of the parameters, from the axes of the tables."""
+    first, unlike, cycle = (GROUPS[name].axes for name in ("like_body", "unlike_body", "held"))
     return [
-        "ranges: first load: load_parameter 0 to 100, friction 0 to 1, kolosov 1 to 3; unlike bodies: alpha -0.7 to 0.8,",
-        "        beta of every plate with Poisson's ratio 0 to 0.5; cycle: load_parameter 0.02 to 3, friction 0.1 to 0.8,",
-        "        load_ratio 0.2 to 1 times the friction. Beyond a range is an error: there is no extrapolation.",
+        f"first load: load_parameter {_span(first[0])}, friction {_span(first[1])}, kolosov 1 to 3;",
+        f"  unlike bodies: alpha {_span(unlike[2])}, and beta of every plate with Poisson's ratio 0 to 0.5",
+        f"cycle of Q: load_parameter {_span(cycle[0])}, friction {_span(cycle[1])},",
+        f"  load_ratio {_span(cycle[3])} times the friction",
+        "A parameter beyond its range is an error: there is no extrapolation.",
     ]
 
 
-def value_text(chart: Chart, found: ChartValue) -> str:
+def _span(axis: TableAxis) -> str:
+    """The range of the parameter of an axis, as text."""
+    least, most = axis.least, axis.most
+    if axis.name == "width":
+        least, most = max(load_parameter_at(most), 0.0), load_parameter_at(least)
+        least = least if least > 1e-9 else 0.0
+    return f"{least:.4g} to {most:.4g}"
+
+
+def value_text(chart: ChartQuantity, found: ChartValue) -> str:
     """Return a value with its error, as text: angles in degrees."""
     value, error, unit = found.value, found.error, found.unit
     if unit == "rad":
@@ -77,7 +90,7 @@ def value_text(chart: Chart, found: ChartValue) -> str:
     return f"{chart.name} = {value:.{places}f} +- {error:.{places}f} {unit}".rstrip()
 
 
-def chart_document(chart: Chart | None, given: dict[str, Any], found: ChartValue | None) -> dict[str, Any]:
+def chart_document(chart: ChartQuantity | None, given: dict[str, Any], found: ChartValue | None) -> dict[str, Any]:
     """Return the charts as a document for JSON: of all charts, or of one with the value at given parameters."""
     listed = CHARTS.values() if chart is None else [chart]
     document: dict[str, Any] = {"fastpin": __version__, "charts": {}}
@@ -95,7 +108,7 @@ def chart_document(chart: Chart | None, given: dict[str, Any], found: ChartValue
     return document
 
 
-def write_chart(chart: Chart, path: Path) -> None:
+def write_chart(chart: ChartQuantity, path: Path) -> None:
     """Write the nodes of a chart as CSV: parameters, value and error bound, in SI angles.
 
     Raises
@@ -126,16 +139,16 @@ def write_chart(chart: Chart, path: Path) -> None:
 def formula_text() -> str:
     """Return the formulas for a spreadsheet, with the error of each."""
     lines = [
-        f"Cells Lp (0 to {MOST_LOAD_PARAMETER:g}) and mu (0 to {MOST_FRICTION:g}); like bodies, nu = 0.3, plane strain.",
+        f"Cells: Lp, 0 to {MOST_LOAD_PARAMETER:g}, and mu, 0 to {MOST_FRICTION:g}.",
+        "Like bodies with nu = 0.3 in plane strain, first load.",
         "Pressure and Kt are over the bearing stress P/(2 R); angles are in rad.",
         "",
         *HEAD,
     ]
     for formula in chart_formulas():
         chart = CHARTS[formula.quantity]
-        size = f"{math.degrees(formula.error):.2g} deg" if chart.unit else f"{100.0 * formula.error:.2g} %"
         load = "body load" if formula.pin_load == "body" else "load at the centre"
-        lines += ["", f"{chart.words}; {load}; error at most {size}", formula.cell]
+        lines += ["", f"{chart.words}; {load}; error at most {100.0 * formula.error:.2g} %", formula.cell]
     return "\n".join(lines)
 
 

@@ -35,6 +35,7 @@ COMMANDS = {
     "tolerances": ["tolerances", "tolerances.toml"],
     "compliance": ["compliance", "lug.toml"],
     "benchmarks": ["benchmarks", "kirsch"],
+    "charts": ["charts", "kt_bearing"],
     "verify": ["verify"],
     "wear": ["wear", "case.toml", "--cycles", "2", "--coefficient", "1e-13"],
     "paper": ["paper", "--figure", "3"],
@@ -55,6 +56,7 @@ TEXTS: dict[str, dict[str, str]] = {
     "tolerances": {"--table": ".csv", "--plot": ".png", "--scatter": ".svg", "--json": ".json"},
     "compliance": {"--output": ".json", "--plot": ".png"},
     "benchmarks": {"--json": ".json"},
+    "charts": {"--json": ".json", "--csv": ".csv", "--book": ".pdf"},
     "verify": {"--json": ".json"},
     "wear": {"--json": ".json", "--record": ".html"},
 }
@@ -150,7 +152,7 @@ KINDS: dict[str, tuple[Callable[[Path, Path, str], object], str]] = {
 def test_no_text_or_figure_replaces_another_kind(
     command: str, option: str, ending: str, kind: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if kind == "input" and command in ("benchmarks", "verify"):
+    if kind == "input" and command in ("benchmarks", "charts", "verify"):
         return  # they have no input
     path = Path(f"keep{ending}")
     make, words = KINDS[kind]

@@ -63,7 +63,7 @@ def test_every_command_with_json_has_a_schema() -> None:
         Draft202012Validator.check_schema(json_schema(command))
     with pytest.raises(
         InputError,
-        match=r'must be "run", "converge", "verify", .*, "wear", "tolerances" or "crack", not "x"',
+        match=r'must be "run", "converge", "verify", .*, "wear", "tolerances", "crack" or "charts", not "x"',
     ):
         json_schema("x")
 
@@ -100,6 +100,13 @@ def test_checks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_benchmarks(tmp_path: Path) -> None:
     assert faults(written(tmp_path, "benchmarks", "nafems-loaded-pin"), "benchmarks") == []
+
+
+@pytest.mark.parametrize(
+    "words", [(), ("kt_bearing",), ("contact_angle", "--load-parameter", "1", "--friction", "0.3")]
+)
+def test_charts(words: tuple[str, ...], tmp_path: Path) -> None:
+    assert faults(written(tmp_path, "charts", *words), "charts") == []
 
 
 def test_a_compliance(tmp_path: Path) -> None:

@@ -95,6 +95,7 @@ WITHOUT_UNITS = {
     "paper": "is dimensionless",
     "verify": "is dimensionless, and says so in its first line",
     "benchmarks": "has problems per thickness",
+    "charts": "is dimensionless",
     "completion": "prints a script",
     "schema": "prints the form of documents",
 }

@@ -43,7 +43,7 @@ LEVELS = (
     ("states",),
     ("solver", "damage", "cracks"),
     ("verification", "storage"),
-    ("studies",),
+    ("studies", "charts"),
     ("report",),
     ("figures",),
     ("paper", "pages", "live"),

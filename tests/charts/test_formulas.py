@@ -1,0 +1,36 @@
+"""The formulas for a spreadsheet against the charts, and their text as a spreadsheet reads it."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from fastpin.charts import ChartFormula, chart_formulas, lookup
+from fastpin.charts.formulas import HEAD, MOST_FRICTION, MOST_LOAD_PARAMETER
+
+
+def cell_value(text: str, cells: dict[str, float]) -> float:
+    """The value of a cell: the text without its name and equals sign, as a spreadsheet reads it."""
+    code = text.split("=", 1)[1].replace("^", "**").replace("PI()", "pi").replace("SQRT", "sqrt")
+    return float(eval(code, {"pi": math.pi, "sqrt": math.sqrt}, cells))
+
+
+@pytest.mark.parametrize("formula", chart_formulas(), ids=lambda one: f"{one.quantity}-{one.pin_load}")
+def test_a_formula_keeps_its_error_at_random_places(formula: ChartFormula) -> None:
+    generator = np.random.default_rng(5)
+    at = MOST_LOAD_PARAMETER * generator.random(4000) ** 3
+    friction = MOST_FRICTION * generator.random(4000)
+    chart = lookup(formula.quantity, load_parameter=at, friction=friction, pin_load=formula.pin_load)
+    assert np.max(np.abs(formula.at(at, friction) / chart.value - 1.0)) <= formula.error
+
+
+@pytest.mark.parametrize("formula", chart_formulas(), ids=lambda one: f"{one.quantity}-{one.pin_load}")
+def test_the_text_is_the_formula(formula: ChartFormula) -> None:
+    cells = {"Lp": 0.4, "mu": 0.2}
+    for line in HEAD:
+        cells[line.split()[0]] = cell_value(line, cells)
+    assert not re.findall(r"--|\+-", formula.cell)
+    assert cell_value(formula.cell, cells) == pytest.approx(float(formula.at(np.array(0.4), np.array(0.2))), rel=1e-12)
