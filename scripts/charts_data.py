@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 
 from fastpin.charts.groups import GROUPS, ChartGroup, load_parameter_at
-from fastpin.charts.runs import SPANS, first_load_values, pair_of, values_at
 from fastpin.charts.tables import DATA, STORED, ChartTable, write_tables
 from fastpin.solver.errors import SolveError
+from scripts.charts_runs import SPANS, first_load_values, pair_of, values_at
 
 NODES = {False: 201, True: 151}
 """Nodes of the runs behind the tables: of the first load, and of a load cycle."""

@@ -18,9 +18,6 @@ WEIGHTS = {"centre": 1.0, "body": 0.5}
 NEAT = 0.4563
 """1/epsilon^2 of a neat fit of like bodies without friction, with the half-angle epsilon of 84.8 degrees."""
 
-Values = Mapping[str, Any]
-"""Parameters by name: numbers or arrays that broadcast."""
-
 
 def width_coordinate(load_parameter: Any) -> Any:
     """The coordinate x = 1/sqrt(0.4563 + pi L_p) along the load parameter: about the frictionless half-angle, rad."""
@@ -56,26 +53,27 @@ class TableAxis(NamedTuple):
         return np.linspace(self.least, self.most, self.nodes)
 
 
-def _pin_term(values: Values) -> Any:
-    """1/(kappa + 1) of the pin."""
-    return 1.0 / (values["kolosov"] + 1.0)
+def pin_term(given: Mapping[str, Any]) -> Any:
+    """1/(kappa + 1) of the pin, from parameters that are numbers or arrays."""
+    return 1.0 / (given["kolosov"] + 1.0)
 
 
-def _plate_term(values: Values) -> Any:
-    """1/(kappa + 1) of the plate, which follows from Dundurs' parameters and the pin's constant by (T22)."""
-    alpha = values["alpha"]
-    return (alpha - values["beta"] + (1.0 - alpha) * _pin_term(values)) / (1.0 + alpha)
+def plate_beta(alpha: Any, pin: Any, plate: Any) -> Any:
+    """Dundurs' beta from alpha and 1/(kappa + 1) of both bodies, by (T22)."""
+    return alpha - (1.0 + alpha) * plate + (1.0 - alpha) * pin
 
 
-COORDINATES: dict[str, Callable[[Values], Any]] = {
-    "width": lambda values: width_coordinate(values["load_parameter"]),
-    "root of friction": lambda values: values["friction"] ** 0.5,
-    "friction": lambda values: values["friction"],
-    "alpha": lambda values: values["alpha"],
-    "pin term": _pin_term,
-    "plate term": _plate_term,
-    "load term": lambda values: WEIGHTS[values["pin_load"]] * _pin_term(values),
-    "part of sliding": lambda values: values["load_ratio"] / values["friction"],
+COORDINATES: dict[str, Callable[[Mapping[str, Any]], Any]] = {
+    "width": lambda given: width_coordinate(given["load_parameter"]),
+    "root of friction": lambda given: given["friction"] ** 0.5,
+    "friction": lambda given: given["friction"],
+    "alpha": lambda given: given["alpha"],
+    "pin term": pin_term,
+    "plate term": lambda given: (
+        (given["alpha"] - given["beta"] + (1.0 - given["alpha"]) * pin_term(given)) / (1.0 + given["alpha"])
+    ),
+    "load term": lambda given: WEIGHTS[given["pin_load"]] * pin_term(given),
+    "part of sliding": lambda given: given["load_ratio"] / given["friction"],
 }
 """The coordinate along each axis, from the parameters."""
 
@@ -125,16 +123,15 @@ class ChartGroup(NamedTuple):
             found["load_ratio"] = at["part of sliding"] * found["friction"]
         found["kolosov"] = 1.0 / term - 1.0
         if "alpha" in at:
-            alpha = found["alpha"] = at["alpha"]
-            found["beta"] = alpha - (1.0 + alpha) * at["plate term"] + (1.0 - alpha) * term
+            found["alpha"], found["beta"] = at["alpha"], plate_beta(at["alpha"], term, at["plate term"])
         return found
 
 
 FIRST_LOAD = ("peak_pressure", "peak_pressure_angle", "contact_angle", "stick_angle", "kt_bearing", "peak_hoop_angle")
-"""Quantities of the first load, in the order of :func:`fastpin.charts.runs.first_load_values`."""
+"""Quantities of the first load, in the order of ``scripts/charts_runs.py``."""
 
 CYCLE = ("cycle_energy", "cycle_slip_range", "cycle_stick_angle", "cycle_peak_pressure")
-"""Quantities of a load cycle, in the order of :func:`fastpin.charts.runs.cycle_values`."""
+"""Quantities of a load cycle, in the order of ``scripts/charts_runs.py``."""
 
 WIDTHS = width_coordinate(100.0), width_coordinate(0.0)
 """Coordinates of the load parameters 100 and 0."""

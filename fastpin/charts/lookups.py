@@ -15,9 +15,10 @@ from fastpin.charts.groups import (
     CYCLE,
     FIRST_LOAD,
     GROUPS,
-    ChartGroup,
     TableAxis,
     load_parameter_at,
+    pin_term,
+    plate_beta,
 )
 from fastpin.charts.tables import tables
 from fastpin.errors import InputError
@@ -104,7 +105,7 @@ CHARTS = {
 
 _CHOICES = {"pin_load": ("centre", "body"), "rotation": ("free", "fixed")}
 _ROUNDING = 1e-9
-"""Part of an axis by which a place may lie outside it."""
+"""Distance beyond a limit that follows from other parameters, and counts as none."""
 
 
 def lookup(quantity: str, **parameters: Any) -> ChartValue:
@@ -140,15 +141,15 @@ def lookup(quantity: str, **parameters: Any) -> ChartValue:
     """
     chart = chart_of(quantity)
     given = _checked(chart, parameters)
-    group = _group(chart, given)
+    if chart.is_cycle:
+        group = GROUPS["held" if given["rotation"] == "fixed" else "free"]
+    else:
+        is_like = not any(
+            value if isinstance(value := given[name], float) else value.any() for name in ("alpha", "beta")
+        )
+        group = GROUPS[f"{'like' if is_like else 'unlike'}_{given['pin_load']}"]
     units = [_unit(axis, given) for axis in group.axes]
-    at = given["load_parameter"]
-    if any(not isinstance(unit, float) for unit in units):
-        try:
-            *units, at = np.broadcast_arrays(*units, at)
-        except ValueError:
-            raise InputError("load_parameter", "and the other parameters have shapes that do not fit") from None
-    value, error = tables()[group.name].value_at(quantity, units, at)
+    value, error = tables()[group.name].value_at(quantity, units, given["load_parameter"])
     return ChartValue(value, error, chart.unit)
 
 
@@ -183,6 +184,12 @@ def _checked(chart: ChartQuantity, parameters: Mapping[str, Any]) -> dict[str, A
             given[name] = number(name, value)
     if given.get("rotation") == "fixed" and given["pin_load"] == "body":
         raise InputError("rotation", 'must be "free" for a body load: uniform body forces bear no moment')
+    numeric = [name for name in chart.parameters if name not in _CHOICES]
+    if any(not isinstance(given[name], float) for name in numeric):
+        try:
+            given |= zip(numeric, np.broadcast_arrays(*(given[name] for name in numeric)), strict=True)
+        except ValueError:
+            raise InputError("load_parameter", "and the other parameters have shapes that do not fit") from None
     return given
 
 
@@ -196,29 +203,20 @@ def _no_parameter(chart: ChartQuantity, name: str) -> str:
     return f"is no parameter of the chart {chart.name}, which has {known}{closest(name, chart.parameters)}"
 
 
-def _group(chart: ChartQuantity, given: Mapping[str, Any]) -> ChartGroup:
-    """The group of the tables that has the values."""
-    if chart.is_cycle:
-        return GROUPS["held" if given["rotation"] == "fixed" else "free"]
-    like = not any(value if isinstance(value, float) else np.any(value) for value in (given["alpha"], given["beta"]))
-    return GROUPS[f"{'like' if like else 'unlike'}_{given['pin_load']}"]
-
-
 def _unit(axis: TableAxis, given: Mapping[str, Any]) -> Any:
     """The place along an axis, 0 to 1: a float or an array. Raises :class:`InputError` if it is out of range."""
     field, low, high, words = _limits(axis, given)
-    value = given[field]
-    if isinstance(value, float) and isinstance(low, float):
-        if not low - _ROUNDING <= value <= high + _ROUNDING:
+    value, slack = given[field], _ROUNDING if words else 0.0
+    if isinstance(value, float):
+        if not low - slack <= value <= high + slack:
             raise InputError(field, f"must lie between {low:.6g} and {high:.6g}{words}, not {value:.6g}")
     else:
         value, low, high = np.broadcast_arrays(value, low, high)
-        outside = (value < low - _ROUNDING) | (value > high + _ROUNDING)
+        outside = (value < low - slack) | (value > high + slack)
         if outside.any():
             k = np.flatnonzero(outside)[0]
-            raise InputError(
-                field, f"must lie between {low.flat[k]:.6g} and {high.flat[k]:.6g}{words}, not {value.flat[k]:.6g}"
-            )
+            least, most, first = (float(each.flat[k]) for each in (low, high, value))
+            raise InputError(field, f"must lie between {least:.6g} and {most:.6g}{words}, not {first:.6g}")
     unit = (COORDINATES[axis.name](given) - axis.least) / (axis.most - axis.least)
     return min(max(unit, 0.0), 1.0) if isinstance(unit, float) else np.clip(unit, 0.0, 1.0)
 
@@ -235,8 +233,7 @@ def _limits(axis: TableAxis, given: Mapping[str, Any]) -> tuple[str, Any, Any, s
         low, high = axis.least * given["friction"], axis.most * given["friction"]
         return "load_ratio", low, high, f", {axis.least:g} and {axis.most:g} times the friction"
     assert axis.name == "plate term"
-    alpha, pin = given["alpha"], COORDINATES["pin term"](given)
-    low, high = (alpha - (1.0 + alpha) * term + (1.0 - alpha) * pin for term in (axis.most, axis.least))
+    low, high = (plate_beta(given["alpha"], pin_term(given), plate) for plate in (axis.most, axis.least))
     return "beta", low, high, ", which a plate with Poisson's ratio from 0 to 0.5 has for this alpha and kolosov"
 
 
@@ -244,7 +241,7 @@ def _limits(axis: TableAxis, given: Mapping[str, Any]) -> tuple[str, Any, Any, s
 def _load_parameters(axis: TableAxis) -> tuple[float, float]:
     """The least and the largest load parameter of an axis."""
     least, most = (float(f"{load_parameter_at(x):.9g}") for x in (axis.most, axis.least))
-    return max(least, 0.0) if least > _ROUNDING else 0.0, most
+    return least if least > _ROUNDING else 0.0, most
 
 
 def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str, ChartValue]:

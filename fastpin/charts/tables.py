@@ -24,11 +24,6 @@ VERSION = 1
 FEW = 4
 """Numbers of nodes of an axis up to which one polynomial goes through all nodes."""
 
-CUBIC = 4
-"""Nodes of a cubic."""
-
-Scale = Callable[[Any, Any], Any]
-
 
 class Stored(NamedTuple):
     """How a quantity is stored: smoother than it is.
@@ -41,8 +36,8 @@ class Stored(NamedTuple):
         Whether the error bound counts in parts of the value.
     """
 
-    stored: Scale
-    value: Scale
+    stored: Callable[[Any, Any], Any]
+    value: Callable[[Any, Any], Any]
     is_relative: bool
 
 

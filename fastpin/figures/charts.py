@@ -48,20 +48,13 @@ def write_chart_book(path: Path) -> None:
 
 
 def _pages() -> Iterator[Figure]:
-    yield _first_page()
-    for chart in CHARTS.values():
-        if chart.is_cycle:
-            yield _cycle_page(chart).figure
-        else:
-            yield _first_load_page(chart).figure
-
-
-def _first_page() -> Figure:
-    """The list of charts with ranges and bounds, as text."""
+    """The list of charts with ranges and bounds as text, then a page for each chart."""
     figure = new_figure(8.3, 9.0)
     figure.text(0.04, 0.97, "Charts of a pin in a hole", fontsize=14.0, va="top")
     figure.text(0.04, 0.93, chart_list(), fontsize=5.6, family="monospace", va="top", parse_math=False)
-    return figure
+    yield figure
+    for chart in CHARTS.values():
+        yield (_cycle_page if chart.is_cycle else _first_load_page)(chart).figure
 
 
 def _first_load_page(chart: ChartQuantity) -> Sheet:
@@ -82,8 +75,12 @@ def _first_load_page(chart: ChartQuantity) -> Sheet:
     if chart.name == "peak_pressure":
         for panel in sheet.axes[:, 0]:
             panel.set_yscale("log")
-    legend = [Line2D([], [], **line(k, k), label=f"friction {value:g}") for k, value in enumerate(FRICTIONS)]
-    legend += [Line2D([], [], **line(k, k), label=f"$\\alpha$ = {value:g}") for k, value in enumerate(ALPHAS)]
+    legend = []  # columns of a legend are filled first: a friction of the row above, an alpha of the row below
+    for k, friction in enumerate(FRICTIONS):
+        legend.append(Line2D([], [], **line(k, k), label=f"friction {friction:g}"))
+        has_alpha = k < len(ALPHAS)
+        label = f"$\\alpha$ = {ALPHAS[k]:g}" if has_alpha else " "
+        legend.append(Line2D([], [], **(line(k, k) if has_alpha else {"linestyle": "none"}), label=label))
     _finish(sheet, chart, legend, "above: like bodies; below: unlike bodies. kolosov 1.8")
     return sheet
 
