@@ -136,6 +136,9 @@ CYCLE = ("cycle_energy", "cycle_slip_range", "cycle_stick_angle", "cycle_peak_pr
 WIDTHS = width_coordinate(100.0), width_coordinate(0.0)
 """Coordinates of the load parameters 100 and 0."""
 
+METALS = 1.0 / 3.2, 1.0 / 2.5
+"""1/(kappa + 1) of Kolosov's constants 2.2 and 1.5: nu from 0.2 to 0.375 in plane strain, from 0.25 in plane stress."""
+
 CYCLE_WIDTHS = width_coordinate(3.0), width_coordinate(0.02)
 """Coordinates of the load parameters 3 and 0.02."""
 
@@ -147,11 +150,11 @@ def _first_load_groups() -> list[ChartGroup]:
         TableAxis("pin term", 0.25, 0.5, 3),
     )
     unlike = (
-        TableAxis("width", *WIDTHS, 21, 4),
-        TableAxis("root of friction", 0.0, 1.0, 9, 4),
-        TableAxis("alpha", -0.7, 0.8, 7, 3),
-        TableAxis("plate term", 0.25, 0.5, 3),
-        TableAxis("pin term", 0.25, 0.5, 3),
+        TableAxis("width", width_coordinate(10.0), WIDTHS[1], 19, 4),
+        TableAxis("root of friction", 0.0, 0.6**0.5, 13, 4),
+        TableAxis("alpha", -0.6, 0.75, 6, 3),
+        TableAxis("plate term", *METALS, 3),
+        TableAxis("pin term", *METALS, 3),
     )
     axes = {"like": like, "unlike": unlike}
     return [

@@ -225,16 +225,19 @@ def _limits(axis: TableAxis, given: Mapping[str, Any]) -> tuple[str, Any, Any, s
     """The parameter of an axis, its least and largest value, and words on the limits."""
     if axis.name == "width":
         return "load_parameter", *_load_parameters(axis), ""
-    if axis.name in ("root of friction", "friction", "alpha"):
-        return axis.name.split()[-1], axis.least, axis.most, ""
+    if axis.name in ("friction", "alpha"):
+        return axis.name, axis.least, axis.most, ""
+    if axis.name == "root of friction":
+        return "friction", axis.least**2, float(f"{axis.most**2:.12g}"), ""
     if axis.name in ("pin term", "load term"):
-        return "kolosov", 1.0, 3.0, ""
+        least, most = (axis.most, axis.least) if axis.name == "pin term" else (0.5, 0.25)
+        return "kolosov", 1.0 / least - 1.0, 1.0 / most - 1.0, ""
     if axis.name == "part of sliding":
         low, high = axis.least * given["friction"], axis.most * given["friction"]
         return "load_ratio", low, high, f", {axis.least:g} and {axis.most:g} times the friction"
     assert axis.name == "plate term"
     low, high = (plate_beta(given["alpha"], pin_term(given), plate) for plate in (axis.most, axis.least))
-    return "beta", low, high, ", which a plate with Poisson's ratio from 0 to 0.5 has for this alpha and kolosov"
+    return "beta", low, high, " for this alpha and kolosov"
 
 
 @functools.cache

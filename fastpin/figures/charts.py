@@ -25,6 +25,9 @@ FRICTIONS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 ALPHAS = (-0.6, -0.3, 0.0, 0.3, 0.6)
 """Dundurs' first parameter of the curves of unlike bodies; both bodies have nu = 0.3 there."""
 
+MOST_UNLIKE = 10.0
+"""Largest load parameter of the charts of unlike bodies."""
+
 LOAD_PARAMETERS = (0.03, 0.1, 0.3, 1.0, 3.0)
 """Load parameters of the curves of cycles."""
 
@@ -61,13 +64,14 @@ def _first_load_page(chart: ChartQuantity) -> Sheet:
     """Curves over the load parameter: like bodies by friction above, unlike bodies by alpha below."""
     sheet = Look(width=7.6).sheet([2.9, 2.9], columns=2, sharex=True, sharey="row")
     at = np.maximum(load_parameter_at(np.linspace(*WIDTHS, POINTS)), 1e-3)
+    near = at[at <= MOST_UNLIKE]
     for column, load in enumerate(LOADS):
         above, below = sheet.axes[:, column]
         for k, friction in enumerate(FRICTIONS):
             _draw(above, chart, at, k, load_parameter=at, friction=friction, pin_load=load)
         for k, alpha in enumerate(ALPHAS):
             more = {"alpha": alpha, "beta": alpha * 0.4 / 1.4} if alpha else {}
-            _draw(below, chart, at, k, load_parameter=at, friction=0.3, pin_load=load, **more)
+            _draw(below, chart, near, k, load_parameter=near, friction=0.3, pin_load=load, **more)
         above.set_title(f"{LOADS[load]}, like bodies", fontsize=8.5)
         below.set_title(f"{LOADS[load]}, friction 0.3, $\\nu$ = 0.3 in both bodies", fontsize=8.5)
         below.set_xlabel("load parameter $L_p$")

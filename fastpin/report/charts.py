@@ -62,9 +62,10 @@ def _range_lines() -> list[str]:
     """The ranges of the parameters, from the axes of the tables."""
     first, unlike, cycle = (GROUPS[name].axes for name in ("like_body", "unlike_body", "held"))
     return [
-        f"first load: load_parameter {_span(first[0])}, friction {_span(first[1])}, kolosov 1 to 3;",
-        f"  unlike bodies: alpha {_span(unlike[2])}, and beta of every plate with Poisson's ratio 0 to 0.5",
-        f"cycle of Q: load_parameter {_span(cycle[0])}, friction {_span(cycle[1])},",
+        f"first load of like bodies: load_parameter {_span(first[0])}, friction {_span(first[1])}, kolosov 1 to 3",
+        f"first load of unlike bodies: load_parameter {_span(unlike[0])}, friction {_span(unlike[1])},",
+        f"  alpha {_span(unlike[2])}, kolosov of pin and plate {_span(unlike[4])}",
+        f"cycle of Q: load_parameter {_span(cycle[0])}, friction {_span(cycle[1])}, kolosov 1 to 3,",
         f"  load_ratio {_span(cycle[3])} times the friction",
         "A parameter beyond its range is an error: there is no extrapolation.",
     ]
@@ -76,6 +77,10 @@ def _span(axis: TableAxis) -> str:
     if axis.name == "width":
         least, most = max(load_parameter_at(most), 0.0), load_parameter_at(least)
         least = least if least > 1e-9 else 0.0
+    elif axis.name == "root of friction":
+        least, most = least**2, most**2
+    elif axis.name == "pin term":
+        least, most = 1.0 / most - 1.0, 1.0 / least - 1.0
     return f"{least:.4g} to {most:.4g}"
 
 
