@@ -1,6 +1,6 @@
 """Make the data of the charts: solve all nodes of the tables, set the error bounds, and write the file of the package.
 
-``python -m scripts.charts_data [--folder out/charts] [--calibration 400] [--output fastpin/charts/charts.npz]`` keeps
+``python -m scripts.charts_data [--folder out/charts] [--calibration 1000] [--output fastpin/charts/charts.npz]`` keeps
 what is solved in the folder, and goes on from there if it was stopped. It prints the numbers of runs and the time. The
 calibration solves random points with twice the nodes. Their differences from the tables give the bounds of the regions.
 """
@@ -21,7 +21,7 @@ import numpy as np
 from fastpin.charts.groups import GROUPS, ChartGroup, load_parameter_at
 from fastpin.charts.tables import DATA, STORED, ChartTable, write_tables
 from fastpin.solver.errors import SolveError
-from scripts.charts_runs import SPANS, first_load_values, pair_of, values_at
+from scripts.charts_runs import first_load_runs, first_load_values, pair_of, values_at
 
 NODES = {False: 201, True: 151}
 """Nodes of the runs behind the tables: of the first load, and of a load cycle."""
@@ -32,7 +32,7 @@ FINE = {False: 401, True: 301}
 CALIBRATION_SEED = 1
 """Seed of the points of calibration. The check has other seeds."""
 
-SAFETY, USUAL = 2.0, 0.95
+SAFETY, USUAL = 3.0, 0.98
 """Bound of a region in parts of the largest error seen near it, and the part of all errors that is the least bound."""
 
 
@@ -67,7 +67,7 @@ def fill(group: ChartGroup, folder: Path) -> None:
                 widths[-1] = 0.0  # but for rounding
                 pair = pair_of(one["alpha"], one["beta"], one["kolosov"])
                 table[where] = first_load_values(pair, one["friction"], one["pin_load"], widths.tolist(), NODES[False])
-                runs += len(SPANS) + 1
+                runs += len(first_load_runs(widths.tolist()))
         except SolveError as error:
             failed += 1
             print(group.name, line, error, flush=True)
@@ -169,7 +169,7 @@ def main() -> None:
     """Read the options, solve, and write the file."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--folder", type=Path, default=Path("out/charts"))
-    parser.add_argument("--calibration", type=int, default=400, help="random points of each group")
+    parser.add_argument("--calibration", type=int, default=1000, help="random points of each group")
     parser.add_argument("--output", type=Path, default=DATA)
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)

@@ -48,20 +48,22 @@ def first_load_values(
         the angle of the largest hoop stress; angles in rad.
     """
     found = []
-    widths = [width_coordinate(value) for value in load_parameters]
-    for least, most in zip((0.0, *SPANS), SPANS, strict=False):
-        chosen = [value for value, x in zip(load_parameters, widths, strict=True) if least < x <= most]
-        moving = [value for value in chosen if value > 0.0]
-        half = WIDER * most if chosen else 0.0
-        grid = Grid.arc(-0.5 * math.pi - half, -0.5 * math.pi + half, nodes | 1) if chosen else None
-        if moving:
-            problem = Problem.from_load_parameter(pair, 1.0, friction, pin_load)
-            states = solve(problem, [{"P": 1.0 / value} for value in moving], grid=grid).states
-            found += [_first_load_reading(state) for state in states]
-        if len(moving) < len(chosen):  # a neat fit has one contact at all loads
-            problem = Problem.from_load_parameter(pair, 0.0, friction, pin_load)
-            found.append(_first_load_reading(solve(problem, [{"P": 1.0}], grid=grid)[-1]))
+    for most, chosen in first_load_runs(load_parameters):
+        grid = Grid.arc(-0.5 * math.pi - WIDER * most, -0.5 * math.pi + WIDER * most, nodes | 1)
+        is_neat = chosen == [0.0]  # a neat fit has one contact at all loads
+        problem = Problem.from_load_parameter(pair, 0.0 if is_neat else 1.0, friction, pin_load)
+        history = [{"P": 1.0 if is_neat else 1.0 / value} for value in chosen]
+        found += [_first_load_reading(state) for state in solve(problem, history, grid=grid)]
     return np.array(found)
+
+
+def first_load_runs(load_parameters: Sequence[float]) -> list[tuple[float, list[float]]]:
+    """The runs that pass through load parameters in falling order: the span of each, and its load parameters."""
+    runs = []
+    for least, most in zip((0.0, *SPANS), SPANS, strict=False):
+        chosen = [value for value in load_parameters if least < width_coordinate(value) <= most]
+        runs += [(most, part) for part in ([v for v in chosen if v], [v for v in chosen if not v]) if part]
+    return runs
 
 
 def _first_load_reading(state: State) -> list[float]:

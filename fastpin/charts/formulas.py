@@ -7,10 +7,12 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from fastpin.charts.groups import width_coordinate
+from fastpin.charts.groups import load_parameter_at, width_coordinate
 from fastpin.charts.lookups import lookup
 from fastpin.charts.tables import STORED
+from fastpin.model.checks import in_one_shape, numbers
 
 MOST_LOAD_PARAMETER, MOST_FRICTION = 10.0, 0.6
 """Largest load parameter and coefficient of friction of the formulas."""
@@ -58,8 +60,18 @@ class ChartFormula:
     error: float
     coefficients: dict[tuple[int, int], float]
 
-    def at(self, load_parameter: np.ndarray, friction: np.ndarray) -> np.ndarray:
-        """The value of the formula; the arguments broadcast."""
+    def at(self, load_parameter: ArrayLike, friction: ArrayLike) -> np.ndarray:
+        """The value of the formula; the arguments broadcast.
+
+        Raises
+        ------
+        InputError
+            If an argument is beyond the range of the formula.
+        """
+        given = numbers("load_parameter", load_parameter, 0.0, MOST_LOAD_PARAMETER)
+        load_parameter, friction = in_one_shape(
+            "load_parameter", given, numbers("friction", friction, 0.0, MOST_FRICTION)
+        )
         x, z = _cells(load_parameter, friction)
         total = sum(value * x**a * z**b for (a, b), value in self.coefficients.items())
         return np.asarray(STORED[self.quantity].value(total, load_parameter))
@@ -103,9 +115,9 @@ def _cells(load_parameter: np.ndarray, friction: np.ndarray) -> tuple[np.ndarray
 def _samples(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Load parameters and frictions of a grid, each shape (count**2,), equally spaced in x and sqrt(mu)."""
     x = np.linspace(width_coordinate(MOST_LOAD_PARAMETER), width_coordinate(0.0), count)
-    at = np.maximum((x**-2.0 - x[-1] ** -2.0) / np.pi, 0.0)
-    root = np.linspace(0.0, MOST_FRICTION**0.5, count)
-    grid = np.meshgrid(at, root**2, indexing="ij")
+    at = np.clip(load_parameter_at(x), 0.0, MOST_LOAD_PARAMETER)
+    friction = np.minimum(np.linspace(0.0, MOST_FRICTION**0.5, count) ** 2, MOST_FRICTION)
+    grid = np.meshgrid(at, friction, indexing="ij")
     return grid[0].ravel(), grid[1].ravel()
 
 

@@ -145,14 +145,14 @@ CYCLE_WIDTHS = width_coordinate(3.0), width_coordinate(0.02)
 
 def _first_load_groups() -> list[ChartGroup]:
     like = (
-        TableAxis("width", *WIDTHS, 41, 7),
-        TableAxis("root of friction", 0.0, 1.0, 33, 5),
+        TableAxis("width", *WIDTHS, 41, 10),
+        TableAxis("root of friction", 0.0, 1.0, 33, 8),
         TableAxis("pin term", 0.25, 0.5, 3),
     )
     unlike = (
-        TableAxis("width", width_coordinate(10.0), WIDTHS[1], 19, 4),
-        TableAxis("root of friction", 0.0, 0.6**0.5, 13, 4),
-        TableAxis("alpha", -0.6, 0.75, 6, 3),
+        TableAxis("width", width_coordinate(10.0), WIDTHS[1], 19, 6),
+        TableAxis("root of friction", 0.0, 0.6**0.5, 13, 6),
+        TableAxis("alpha", -0.6, 0.75, 6, 2),
         TableAxis("plate term", *METALS, 3),
         TableAxis("pin term", *METALS, 3),
     )
@@ -166,16 +166,16 @@ def _first_load_groups() -> list[ChartGroup]:
 
 def _cycle_groups() -> list[ChartGroup]:
     held = (
-        TableAxis("width", *CYCLE_WIDTHS, 12, 4),
-        TableAxis("friction", 0.1, 0.8, 9, 3),
+        TableAxis("width", *CYCLE_WIDTHS, 12, 6),
+        TableAxis("friction", 0.1, 0.8, 9, 5),
         TableAxis("load term", 0.25, 0.5, 3),
         TableAxis("part of sliding", 0.2, 1.0, 10, 4),
     )
     free = (
-        TableAxis("width", *CYCLE_WIDTHS, 9, 4),
+        TableAxis("width", *CYCLE_WIDTHS, 9, 3),
         TableAxis("friction", 0.1, 0.8, 7, 3),
         TableAxis("load term", 0.125, 0.5, 4),
-        TableAxis("part of sliding", 0.2, 1.0, 7, 4),
+        TableAxis("part of sliding", 0.2, 1.0, 7, 2),
     )
     return [
         ChartGroup("held", held, CYCLE, {"rotation": "fixed"}),

@@ -10,6 +10,7 @@ import pytest
 
 from fastpin.charts import ChartFormula, chart_formulas, lookup
 from fastpin.charts.formulas import HEAD, MOST_FRICTION, MOST_LOAD_PARAMETER
+from fastpin.errors import InputError
 
 
 def cell_value(text: str, cells: dict[str, float]) -> float:
@@ -25,6 +26,13 @@ def test_a_formula_keeps_its_error_at_random_places(formula: ChartFormula) -> No
     friction = MOST_FRICTION * generator.random(4000)
     chart = lookup(formula.quantity, load_parameter=at, friction=friction, pin_load=formula.pin_load)
     assert np.max(np.abs(formula.at(at, friction) / chart.value - 1.0)) <= formula.error
+
+
+def test_a_formula_is_no_extrapolation() -> None:
+    with pytest.raises(InputError, match="load_parameter: must be at least 0 and at most 10, not 11"):
+        chart_formulas()[0].at(11.0, 0.3)
+    with pytest.raises(InputError, match="friction: must be at least 0 and at most 0.6, not 0.7"):
+        chart_formulas()[0].at(1.0, [0.1, 0.7])
 
 
 @pytest.mark.parametrize("formula", chart_formulas(), ids=lambda one: f"{one.quantity}-{one.pin_load}")

@@ -52,9 +52,9 @@ def test_nodes_and_ends_of_the_axes_are_exact() -> None:
 def test_each_region_has_its_own_bound() -> None:
     table = polynomial_table("held", 4)
     assert table.region([0.0] * 4) == (0, 0, 0, 0)
-    assert table.region([1.0] * 4) == (3, 2, 0, 3)
+    assert table.region([1.0] * 4) == (5, 4, 0, 3)
     units = [np.array([0.0, 1.0]) for _ in range(4)]
-    assert [index.tolist() for index in table.region(units)] == [[0, 3], [0, 2], [0, 0], [0, 3]]
+    assert [index.tolist() for index in table.region(units)] == [[0, 5], [0, 4], [0, 0], [0, 3]]
 
 
 def test_scales_and_coordinates_have_their_inverses() -> None:
