@@ -68,13 +68,11 @@ class ChartFormula:
         InputError
             If an argument is beyond the range of the formula.
         """
-        given = numbers("load_parameter", load_parameter, 0.0, MOST_LOAD_PARAMETER)
-        load_parameter, friction = in_one_shape(
-            "load_parameter", given, numbers("friction", friction, 0.0, MOST_FRICTION)
-        )
-        x, z = _cells(load_parameter, friction)
+        parameter = numbers("load_parameter", load_parameter, 0.0, MOST_LOAD_PARAMETER)
+        parameter, mu = in_one_shape("load_parameter", parameter, numbers("friction", friction, 0.0, MOST_FRICTION))
+        x, z = _cells(parameter, mu)
         total = sum(value * x**a * z**b for (a, b), value in self.coefficients.items())
-        return np.asarray(STORED[self.quantity].value(total, load_parameter))
+        return np.asarray(STORED[self.quantity].value(total, parameter))
 
 
 @functools.cache

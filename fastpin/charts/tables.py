@@ -108,7 +108,10 @@ class ChartTable:
         """The value and its error bound, in the unit of the value, at places as for :meth:`stored_at`."""
         value = STORED[quantity].value(self.stored_at(quantity, units), load_parameter)
         bound = self._bounds[quantity][self.region(units)]
-        bound = float(bound) if isinstance(value, float) else bound
+        if isinstance(value, float):
+            value, bound = max(value, 0.0), float(bound)
+        else:
+            value = np.maximum(value, 0.0)  # a cubic beside a kink may pass below 0
         return value, bound * abs(value) if STORED[quantity].is_relative else bound
 
     def region(self, units: Sequence[Any]) -> tuple[Any, ...]:

@@ -54,7 +54,7 @@ def _pages() -> Iterator[Figure]:
     """The list of charts with ranges and bounds as text, then a page for each chart."""
     figure = new_figure(8.3, 9.0)
     figure.text(0.04, 0.97, "Charts of a pin in a hole", fontsize=14.0, va="top")
-    figure.text(0.04, 0.93, chart_list(), fontsize=5.6, family="monospace", va="top", parse_math=False)
+    figure.text(0.04, 0.93, chart_list(), fontsize=7.5, family="monospace", va="top", parse_math=False)
     yield figure
     for chart in CHARTS.values():
         yield (_cycle_page if chart.is_cycle else _first_load_page)(chart).figure

@@ -31,7 +31,7 @@ def test_a_formula_keeps_its_error_at_random_places(formula: ChartFormula) -> No
 def test_a_formula_is_no_extrapolation() -> None:
     with pytest.raises(InputError, match="load_parameter: must be at least 0 and at most 10, not 11"):
         chart_formulas()[0].at(11.0, 0.3)
-    with pytest.raises(InputError, match="friction: must be at least 0 and at most 0.6, not 0.7"):
+    with pytest.raises(InputError, match=r"friction: must be at least 0 and at most 0\.6, not 0.7"):
         chart_formulas()[0].at(1.0, [0.1, 0.7])
 
 
