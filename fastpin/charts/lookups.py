@@ -90,11 +90,11 @@ CHARTS = {
     chart.name: chart
     for chart in (
         ChartQuantity("peak_pressure", "largest pressure over the bearing stress P/(2 R), first load", ""),
-        ChartQuantity("peak_pressure_angle", "its place from the bottom of the hole, first load", "rad"),
+        ChartQuantity("peak_pressure_angle", "place of the largest pressure from the bottom, first load", "rad"),
         ChartQuantity("contact_angle", "half-angle of the contact, first load", "rad"),
         ChartQuantity("stick_angle", "half of all angles that stick, first load", "rad"),
         ChartQuantity("kt_bearing", "largest hoop stress round the hole over P/(2 R), first load", ""),
-        ChartQuantity("peak_hoop_angle", "its place from the bottom of the hole, first load", "rad"),
+        ChartQuantity("peak_hoop_angle", "place of the largest hoop stress from the bottom, first load", "rad"),
         ChartQuantity("cycle_energy", "friction energy of a cycle of Q", "P^2 beta*"),
         ChartQuantity("cycle_slip_range", "largest slip range of a place in a cycle of Q", "P beta*"),
         ChartQuantity("cycle_stick_angle", "half of all angles that stick at the end of a cycle of Q", "rad"),
