@@ -29,13 +29,13 @@ NODES = {False: 201, True: 151}
 FINE = {False: 401, True: 301}
 """Nodes of the runs of calibration and check."""
 
-FEWER = {"free": 700}
-"""Points of calibration of groups whose runs take longer."""
+SHARES = {"unlike_body": 2.5, "unlike_centre": 2.5, "free": 0.7}
+"""Points of calibration in parts of the usual number: more in many dimensions, fewer of long runs."""
 
 CALIBRATION_SEED = 1
 """Seed of the points of calibration. The check has other seeds."""
 
-SAFETY, USUAL = 3.0, 0.98
+SAFETY, USUAL = 4.0, 0.98
 """Bound of a region in parts of the largest error seen near it, and the part of all errors that is the least bound."""
 
 
@@ -128,7 +128,7 @@ def table_of(group: ChartGroup, folder: Path, count: int) -> ChartTable:
     at = widths.reshape(-1, *[1] * (len(group.axes) - 1))
     stored = [STORED[name].stored(solved[..., k], at) for k, name in enumerate(group.quantities)]
     values = np.stack(stored, axis=-1).astype(np.float32)
-    places, fresh = points(group, min(count, FEWER.get(group.name, count)), CALIBRATION_SEED, folder)
+    places, fresh = points(group, round(count * SHARES.get(group.name, 1.0)), CALIBRATION_SEED, folder)
     none = np.zeros((*group.regions, len(group.quantities)))
     trials = {order: ChartTable(group, values, [order] * len(group.quantities), none) for order in (2, 4)}
     errors = {order: deviations(table, places, fresh) for order, table in trials.items()}

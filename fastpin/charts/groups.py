@@ -150,9 +150,9 @@ def _first_load_groups() -> list[ChartGroup]:
         TableAxis("pin term", 0.25, 0.5, 3),
     )
     unlike = (
-        TableAxis("width", width_coordinate(10.0), WIDTHS[1], 19, 6),
-        TableAxis("root of friction", 0.0, 0.6**0.5, 13, 6),
-        TableAxis("alpha", -0.6, 0.75, 6, 2),
+        TableAxis("width", width_coordinate(10.0), WIDTHS[1], 19, 9),
+        TableAxis("root of friction", 0.0, 0.6**0.5, 13, 8),
+        TableAxis("alpha", -0.6, 0.75, 6, 3),
         TableAxis("plate term", *METALS, 3),
         TableAxis("pin term", *METALS, 3),
     )
