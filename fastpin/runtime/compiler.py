@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import pickle
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from fastpin.runtime.extensions import numba
@@ -26,8 +28,26 @@ def dispatcher(source: KernelSource, alone: bool = True, kept: bool = False) -> 
     settings = {**SETTINGS, "no_cpython_wrapper": not alone}
     if kept and CACHED and source.is_current():
         with contextlib.suppress(RuntimeError):  # no directory can be written
-            return numba.njit(cache=True, **settings)(source.py_func)
+            function = numba.njit(cache=True, **settings)(source.py_func)
+            _forget_unreadable(source, function.stats.cache_path)
+            return function
     return numba.njit(**settings)(source.py_func)
+
+
+def _forget_unreadable(source: KernelSource, directory: str | None) -> None:
+    """Delete Numba's list of stored code of a function if it can't be read: it may name a class of an older version.
+
+    Numba reads the list before it compares the text of the function with the stored one.
+    """
+    stem, name = Path(source.py_func.__code__.co_filename).stem, source.py_func.__qualname__
+    for path in Path(directory).glob(f"{stem}.{name}-*.nbi") if directory else ():
+        try:
+            with path.open("rb") as file:
+                pickle.load(file)
+                pickle.loads(file.read())
+        except Exception:
+            with contextlib.suppress(OSError):
+                path.unlink()
 
 
 def compile_kernel(

@@ -6,6 +6,7 @@ import ast
 import importlib
 import inspect
 import os
+import pickle
 import shutil
 import subprocess
 import sys
@@ -89,6 +90,19 @@ def test_kept_beside_the_package_until_it_does_not_fit_any_more(installed: Path,
     assert compiles(moved)
     assert stored_in(cache(moved)) == ["small.doubled"]
     assert not file.exists()
+
+
+@keeps
+def test_a_list_of_numba_that_names_what_is_gone_is_compiled_anew(installed: Path) -> None:
+    """As after an upgrade to a version without a class that arguments had."""
+    assert compiles(installed)
+    (index,) = cache(installed).glob("small.product-*.nbi")
+    version = pickle.dumps(pickle.loads(index.read_bytes()))
+    index.write_bytes(version + b"cfastpin.kernels.arrays\nGone\n.")
+    for file in cache(installed).glob("*.machine"):
+        file.unlink()
+    assert compiles(installed)
+    assert not compiles(installed)
 
 
 REPLACED = """
