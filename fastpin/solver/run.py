@@ -65,7 +65,6 @@ NEXT_TO_NOTHING = 1e-6
 UNLOADED_PRESSURE = 1e-9
 """Largest pressure of a pin after a complete unloading, in parts of the force before (dimensionless)."""
 
-
 MOST_FIRST = 12
 """First contacts that are tried while the friction changes, at most. The load of the second is that of the third."""
 
@@ -534,10 +533,7 @@ class Run:
         self.slip_tally.keep(self.now.slip_tally)
 
     def _state(self, step: int, fraction: float, residuals: dict[str, float], elastic: np.ndarray) -> State:
-        """The present configuration as a state, SI, with that of the seat where a bush slips.
-
-        `elastic` (2n,) is the elastic part of its gap and slip.
-        """
+        """The present configuration, with its `elastic` gap and slip (2n,), as a state, SI; with the seat of a bush."""
         system, now = self.system, self.now
         drive, way = system.drive, now.rest - now.origin
         way = np.where(np.isnan(way), 0.0, way)
