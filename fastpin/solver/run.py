@@ -141,8 +141,7 @@ class Run:
         Whether the gap changes from step to step. Then no configuration repeats, borders have no marks, and the slip
         tally counts int N |ds|.
     is_coarse : bool
-        Whether only the nodes that are ever in contact are asked for. Then the slip of the first contact is not found,
-        and borders have no marks.
+        Whether only the nodes that ever touch are asked for. First contacts then have no slip, and borders no marks.
     """
 
     wears: ClassVar[bool] = False
@@ -424,8 +423,8 @@ class Run:
         """Find the first contact, see :func:`first_contact`. Its friction is that of the load at which it is found."""
         friction_at = before
         for _ in range(MOST_FIRST):
-            system, has_slip = self.system.under(friction_at), not self.is_coarse
-            found = first_contact(system, self.now, before, load, self.strict, has_slip)
+            system = self.system.under(friction_at)
+            found = first_contact(system, self.now, before, load, self.strict, not self.is_coarse)
             if found[0].load[FRICTION_CHANGE] == friction_at[FRICTION_CHANGE]:
                 return found
             friction_at = found[0].load
@@ -458,8 +457,7 @@ class Run:
     def _at_corner(self, configuration: Configuration) -> Configuration:
         """The configuration at a corner, with the sums and the slip tally of a step that begins there."""
         begun = replace(configuration, dissipation=0.0, work=0.0, seat_dissipation=0.0, slip_tally=self._no_slip)
-        begun.slip_tally = slip_tally_with(begun)
-        return begun
+        return replace(begun, slip_tally=slip_tally_with(begun))
 
     def _show_corner(self) -> None:
         """Tell the recorder and the progress that the run has reached a corner."""
