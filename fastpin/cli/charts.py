@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from pathlib import Path
 
 from fastpin import figures
-from fastpin.charts.lookups import CYCLE_PARAMETERS, FIRST_PARAMETERS, chart_of, lookup
+from fastpin.charts.lookups import CHARTS, CYCLE_PARAMETERS, FIRST_PARAMETERS, chart_of, lookup
+from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_files, write_text
 from fastpin.errors import InputError
 from fastpin.report.charts import chart_document, chart_list, formula_text, value_text, write_chart
@@ -42,6 +44,12 @@ def run(options: argparse.Namespace) -> int:
         [
             (options.csv, lambda path: write_chart(chart_of(options.chart), path)),
             (None if options.json == "-" else options.json, lambda path: write_text(path, text)),
-            (options.book, figures.write_chart_book),
+            (options.book, _write_book),
         ]
     )
+
+
+def _write_book(path: Path) -> None:
+    """Write the book with a progress bar."""
+    with Bar(len(CHARTS) + 1, "{whole} of {total:,} pages") as bar:
+        figures.write_chart_book(path, progress_to(bar))

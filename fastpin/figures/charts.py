@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from fastpin.charts.groups import WIDTHS, load_parameter_at
 from fastpin.charts.lookups import CHARTS, ChartQuantity, lookup
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import house_style, line, new_figure
+from fastpin.model.checks import check_callable, file_path
 from fastpin.report.charts import chart_list
 from fastpin.storage.files import replacing
 
@@ -37,17 +38,27 @@ POINTS = 161
 LOADS = {"body": "body load", "centre": "load at the centre"}
 
 
-def write_chart_book(path: Path) -> None:
+def write_chart_book(path: str | Path, progress: Callable[[float, float], None] | None = None) -> None:
     """Write the book of charts as a PDF, whole or not at all. Equal data gives equal files.
+
+    Parameters
+    ----------
+    path : path
+    progress : callable, optional
+        Called as ``progress(done, all)`` with numbers of pages.
 
     Raises
     ------
     InputError
-        If the file can't be written.
+        If an argument can't be used, or the file can't be written.
     """
-    with house_style(), replacing(path) as temporary, PdfPages(temporary, metadata={"CreationDate": None}) as pages:
-        for figure in _pages():
+    check_callable("progress", progress)
+    whole = replacing(file_path("path", path))
+    with house_style(), whole as temporary, PdfPages(temporary, metadata={"CreationDate": None}) as pages:
+        for done, figure in enumerate(_pages(), start=1):
             pages.savefig(figure)
+            if progress is not None:
+                progress(done, len(CHARTS) + 1)
 
 
 def _pages() -> Iterator[Figure]:
