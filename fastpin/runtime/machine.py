@@ -79,8 +79,14 @@ def helpers() -> dict[str, int]:
 
 def unknown_symbols(names: Iterable[str]) -> list[str]:
     """Those that are neither helpers nor symbols of the process, such as functions of C and Python."""
-    known, process = helpers(), ctypes.CDLL(None)
+    known, process = helpers(), _process()
     return [name for name in names if name not in known and not hasattr(process, name)]
+
+
+@functools.cache
+def _process() -> ctypes.CDLL:
+    """The symbols of this process. It keeps those that were found: kernels ask for the same ones."""
+    return ctypes.CDLL(None)
 
 
 @functools.cache
