@@ -6,6 +6,7 @@ are chosen such that the values are smooth between few nodes.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -14,6 +15,9 @@ import numpy as np
 
 WEIGHTS = {"centre": 1.0, "body": 0.5}
 """The weight w of the load term, docs/theory.md (T7), by the load of the pin."""
+
+ROUNDING = 1e-9
+"""Distance of a parameter from 0, or from a limit that follows from other parameters, that counts as none."""
 
 NEAT = 0.4563
 """1/epsilon^2 of a neat fit of like bodies without friction, with the half-angle epsilon of 84.8 degrees."""
@@ -53,6 +57,24 @@ class TableAxis(NamedTuple):
         return np.linspace(self.least, self.most, self.nodes)
 
 
+@functools.cache
+def parameter_range(axis: TableAxis) -> tuple[str, float, float]:
+    """The parameter of an axis, its least and its largest value; of the load ratio in parts of the friction.
+
+    The "plate term" has no such range: that of beta depends on other parameters.
+    """
+    least, most = axis.least, axis.most
+    if axis.name == "width":
+        low, high = (float(f"{load_parameter_at(x):.9g}") for x in (most, least))
+        return "load_parameter", low if low > ROUNDING else 0.0, high
+    if axis.name == "root of friction":
+        return "friction", least**2, float(f"{most**2:.12g}")
+    if axis.name in ("pin term", "load term"):
+        least, most = (least, most) if axis.name == "pin term" else (0.25, 0.5)
+        return "kolosov", 1.0 / most - 1.0, 1.0 / least - 1.0
+    return {"part of sliding": "load_ratio"}.get(axis.name, axis.name), least, most
+
+
 def pin_term(given: Mapping[str, Any]) -> Any:
     """1/(kappa + 1) of the pin, from parameters that are numbers or arrays."""
     return 1.0 / (given["kolosov"] + 1.0)
@@ -88,12 +110,15 @@ class ChartGroup(NamedTuple):
     quantities : tuple of str
     fixed : mapping
         Parameters that have one value in the table.
+    words : str
+        What the table is of.
     """
 
     name: str
     axes: tuple[TableAxis, ...]
     quantities: tuple[str, ...]
     fixed: Mapping[str, str]
+    words: str
 
     @property
     def is_cycle(self) -> bool:
@@ -156,11 +181,11 @@ def _first_load_groups() -> list[ChartGroup]:
         TableAxis("plate term", *METALS, 3),
         TableAxis("pin term", *METALS, 3),
     )
-    axes = {"like": like, "unlike": unlike}
+    axes, loads = {"like": like, "unlike": unlike}, {"body": "body load", "centre": "load at the centre"}
     return [
-        ChartGroup(f"{name}_{load}", axes[name], FIRST_LOAD, {"pin_load": load})
+        ChartGroup(f"{name}_{load}", axes[name], FIRST_LOAD, {"pin_load": load}, f"{name} bodies, {words}")
         for name in axes
-        for load in ("body", "centre")
+        for load, words in loads.items()
     ]
 
 
@@ -178,8 +203,8 @@ def _cycle_groups() -> list[ChartGroup]:
         TableAxis("part of sliding", 0.2, 1.0, 7, 2),
     )
     return [
-        ChartGroup("held", held, CYCLE, {"rotation": "fixed"}),
-        ChartGroup("free", free, CYCLE, {"rotation": "free"}),
+        ChartGroup("held", held, CYCLE, {"rotation": "fixed"}, "like bodies, cycle of Q, held rotation"),
+        ChartGroup("free", free, CYCLE, {"rotation": "free"}, "like bodies, cycle of Q, free rotation"),
     ]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -15,8 +14,9 @@ from fastpin.charts.groups import (
     CYCLE,
     FIRST_LOAD,
     GROUPS,
+    ROUNDING,
     TableAxis,
-    load_parameter_at,
+    parameter_range,
     pin_term,
     plate_beta,
 )
@@ -104,8 +104,6 @@ CHARTS = {
 """The charts by name."""
 
 _CHOICES = {"pin_load": ("centre", "body"), "rotation": ("free", "fixed")}
-_ROUNDING = 1e-9
-"""Distance beyond a limit that follows from other parameters, and counts as none."""
 
 
 def lookup(quantity: str, **parameters: Any) -> ChartValue:
@@ -206,7 +204,7 @@ def _no_parameter(chart: ChartQuantity, name: str) -> str:
 def _unit(axis: TableAxis, given: Mapping[str, Any]) -> Any:
     """The place along an axis, 0 to 1: a float or an array. Raises :class:`InputError` if it is out of range."""
     field, low, high, words = _limits(axis, given)
-    value, slack = given[field], _ROUNDING if words else 0.0
+    value, slack = given[field], ROUNDING if words else 0.0
     if isinstance(value, float):
         if not low - slack <= value <= high + slack:
             raise InputError(field, f"must lie between {low:.6g} and {high:.6g}{words}, not {value:.6g}")
@@ -223,28 +221,13 @@ def _unit(axis: TableAxis, given: Mapping[str, Any]) -> Any:
 
 def _limits(axis: TableAxis, given: Mapping[str, Any]) -> tuple[str, Any, Any, str]:
     """The parameter of an axis, its least and largest value, and words on the limits."""
-    if axis.name == "width":
-        return "load_parameter", *_load_parameters(axis), ""
-    if axis.name in ("friction", "alpha"):
-        return axis.name, axis.least, axis.most, ""
-    if axis.name == "root of friction":
-        return "friction", axis.least**2, float(f"{axis.most**2:.12g}"), ""
-    if axis.name in ("pin term", "load term"):
-        least, most = (axis.most, axis.least) if axis.name == "pin term" else (0.5, 0.25)
-        return "kolosov", 1.0 / least - 1.0, 1.0 / most - 1.0, ""
-    if axis.name == "part of sliding":
-        low, high = axis.least * given["friction"], axis.most * given["friction"]
-        return "load_ratio", low, high, f", {axis.least:g} and {axis.most:g} times the friction"
-    assert axis.name == "plate term"
-    low, high = (plate_beta(given["alpha"], pin_term(given), plate) for plate in (axis.most, axis.least))
-    return "beta", low, high, " for this alpha and kolosov"
-
-
-@functools.cache
-def _load_parameters(axis: TableAxis) -> tuple[float, float]:
-    """The least and the largest load parameter of an axis."""
-    least, most = (float(f"{load_parameter_at(x):.9g}") for x in (axis.most, axis.least))
-    return least if least > _ROUNDING else 0.0, most
+    if axis.name == "plate term":
+        low, high = (plate_beta(given["alpha"], pin_term(given), plate) for plate in (axis.most, axis.least))
+        return "beta", low, high, " for this alpha and kolosov"
+    field, low, high = parameter_range(axis)
+    if field == "load_ratio":
+        return field, low * given["friction"], high * given["friction"], f", {low:g} and {high:g} times the friction"
+    return field, low, high, ""
 
 
 def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str, ChartValue]:
@@ -274,7 +257,7 @@ def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str
     force, pair = positive("P", P), problem.pair
     given: dict[str, Any] = {"load_parameter": problem.load_parameter(force), "friction": problem.uniform_friction}
     given |= {"kolosov": pair.pin_kolosov, "pin_load": problem.pin_load}
-    alpha, beta = (value if abs(value) > _ROUNDING else 0.0 for value in pair.dundurs())
+    alpha, beta = (value if abs(value) > ROUNDING else 0.0 for value in pair.dundurs())
     if Q is None:
         names: tuple[str, ...] = FIRST_LOAD
         given |= {"alpha": alpha, "beta": beta}

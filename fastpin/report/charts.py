@@ -10,22 +10,12 @@ from typing import Any
 import numpy as np
 
 from fastpin.charts.formulas import HEAD, MOST_FRICTION, MOST_LOAD_PARAMETER, chart_formulas
-from fastpin.charts.groups import GROUPS, TableAxis, load_parameter_at
+from fastpin.charts.groups import GROUPS, TableAxis, parameter_range
 from fastpin.charts.lookups import CHARTS, ChartQuantity, ChartValue
 from fastpin.charts.tables import STORED, ChartTable, tables
 from fastpin.report.curves import Curve, write_csv
 from fastpin.report.table import aligned
 from fastpin.version import __version__
-
-RANGES = {
-    "like_body": "like bodies, body load",
-    "like_centre": "like bodies, load at the centre",
-    "unlike_body": "unlike bodies, body load",
-    "unlike_centre": "unlike bodies, load at the centre",
-    "held": "like bodies, cycle of Q, held rotation",
-    "free": "like bodies, cycle of Q, free rotation",
-}
-"""Words for the groups of tables."""
 
 
 def tables_of(chart: ChartQuantity) -> list[ChartTable]:
@@ -52,7 +42,7 @@ def chart_list() -> str:
     for chart in CHARTS.values():
         for table in tables_of(chart):
             usual, largest = (bound_text(chart, bound) for bound in bounds_of(table, chart))
-            rows.append((chart.name, RANGES[table.group.name], usual, largest))
+            rows.append((chart.name, table.group.words, usual, largest))
     width = max(map(len, CHARTS))
     words = [f"  {name:<{width}}  {chart.words}" for name, chart in CHARTS.items()]
     return "\n".join([*words, "", *aligned(rows, "llrr"), "", *_range_lines()])
@@ -62,10 +52,11 @@ def _range_lines() -> list[str]:
     """The ranges of the parameters, from the axes of the tables."""
     first, unlike, cycle = (GROUPS[name].axes for name in ("like_body", "unlike_body", "held"))
     return [
-        f"first load of like bodies: load_parameter {_span(first[0])}, friction {_span(first[1])}, kolosov 1 to 3",
+        f"first load of like bodies: load_parameter {_span(first[0])}, friction {_span(first[1])}, "
+        f"kolosov {_span(first[2])}",
         f"first load of unlike bodies: load_parameter {_span(unlike[0])}, friction {_span(unlike[1])},",
         f"  alpha {_span(unlike[2])}, kolosov of pin and plate {_span(unlike[4])}",
-        f"cycle of Q: load_parameter {_span(cycle[0])}, friction {_span(cycle[1])}, kolosov 1 to 3,",
+        f"cycle of Q: load_parameter {_span(cycle[0])}, friction {_span(cycle[1])}, kolosov {_span(cycle[2])},",
         f"  load_ratio {_span(cycle[3])} times the friction",
         "A parameter beyond its range is an error: there is no extrapolation.",
     ]
@@ -73,14 +64,7 @@ def _range_lines() -> list[str]:
 
 def _span(axis: TableAxis) -> str:
     """The range of the parameter of an axis, as text."""
-    least, most = axis.least, axis.most
-    if axis.name == "width":
-        least, most = max(load_parameter_at(most), 0.0), load_parameter_at(least)
-        least = least if least > 1e-9 else 0.0
-    elif axis.name == "root of friction":
-        least, most = least**2, most**2
-    elif axis.name == "pin term":
-        least, most = 1.0 / most - 1.0, 1.0 / least - 1.0
+    _, least, most = parameter_range(axis)
     return f"{least:.4g} to {most:.4g}"
 
 
@@ -122,7 +106,7 @@ def write_chart(chart: ChartQuantity, path: Path) -> None:
         If the file can't be written.
     """
     curves = []
-    for name, table in tables().items():
+    for table in tables().values():
         if chart.name not in table.group.quantities:
             continue
         units = [np.linspace(0.0, 1.0, nodes) for nodes in table.group.shape]
@@ -137,7 +121,7 @@ def write_chart(chart: ChartQuantity, path: Path) -> None:
         loads = np.array([row["pin_load"] for row in rows])
         for load in dict.fromkeys(loads.tolist()):
             chosen = {key: column[loads == load] for key, column in columns.items()}
-            curves.append(Curve({"table": RANGES[name].replace(",", ";"), "pin_load": load}, chosen))
+            curves.append(Curve({"table": table.group.words.replace(",", ";"), "pin_load": load}, chosen))
     write_csv(curves, path)
 
 
@@ -155,6 +139,3 @@ def formula_text() -> str:
         load = "body load" if formula.pin_load == "body" else "load at the centre"
         lines += ["", f"{chart.words}; {load}; error at most {100.0 * formula.error:.2g} %", formula.cell]
     return "\n".join(lines)
-
-
-assert RANGES.keys() == GROUPS.keys()
