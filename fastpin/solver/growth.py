@@ -189,11 +189,11 @@ class OutsideGap:
         """Whether the pin, in contact on the arc, penetrates the hole beyond it by more than rounding."""
         bent: float | np.ndarray = 0.0
         if self._joint is not None:
-            bent = self._bore @ np.r_[now.pressure, now.shear][self._joint.nodes.rows(SEAT)]
+            bent = self._bore @ now.tractions[self._joint.nodes.rows(SEAT)]
             system, now = self._own(system), part_of(self._joint, now, PIN)
         if not now.closed.any():  # a floating pin is looked after by the first contact
             return False
-        elastic = self._operator @ np.r_[now.pressure, now.shear] + bent
+        elastic = self._operator @ now.tractions + bent
         moved = self._moved @ now.motion + self._loads @ now.load[: self._loads.shape[1]]
         gap = elastic + moved + rest_gap_at(system, now, self._theta)
         return bool(gap.min() < -PENETRATION * max(float(np.abs(elastic).max()), float(np.abs(moved).max())))

@@ -61,7 +61,7 @@ class PinView:
         self._nodes, self._seat = (np.arange(joint.grid.size)[rim.nodes] for rim in joint.interfaces)
         to_pin = joint.operator.entries(joint.nodes.rows(PIN), joint.nodes.rows(SEAT))
         (of_pin, turned_of_pin), (of_load, turned_of_load) = self._held()
-        tractions = np.r_[now.pressure, now.shear][joint.nodes.rows(SEAT)]
+        tractions = now.tractions[joint.nodes.rows(SEAT)]
         residual = tractions - of_load @ now.load[: of_load.shape[1]]
         gap, slip = np.split(to_pin @ residual, 2)
         angles, bore = joint.bore_shape

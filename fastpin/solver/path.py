@@ -336,7 +336,7 @@ class PathStep:
         """Largest relative error of gap and slip at a sample of the nodes, from the matrices."""
         system, now, rows = self.system, self.now, self._sample
         load = self.before + self.fraction * self.rate
-        elastic = self._sampled @ np.concatenate([now.pressure, now.shear])
+        elastic = self._sampled @ now.tractions
         true = elastic + system.motion[rows] @ now.motion + system.load_displacement(load, rows)
         half = true.size // 2
         true[:half] += now.rest_gap[rows if isinstance(rows, slice) else rows[:half]]

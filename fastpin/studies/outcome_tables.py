@@ -27,7 +27,7 @@ from fastpin.casefile.strength import read_strength
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
-from fastpin.model.assessment import ASSESSMENT_KEYS, FatigueAssessment
+from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA, FatigueAssessment
 from fastpin.model.beside import BESIDE
 from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
 from fastpin.model.crack import CRACK_KEYS, CrackGrowth
@@ -267,7 +267,7 @@ def _choice(section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
 
 def _of_quantity(section: Section) -> StudyOutcome | None:
     quantity = _choice(section, "quantity", tuple(QUANTITIES))
-    take, span = _choice(section, "take", TAKES), _choice(section, "over", ("history", "cycle"))
+    take, span = _choice(section, "take", TAKES), _choice(section, "over", SPECTRA)
     interface = _choice(section, "interface", INTERFACES)
     if quantity is None or take is None or span is None or interface is None:
         return None
