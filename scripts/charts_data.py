@@ -67,7 +67,7 @@ def fill(group: ChartGroup, folder: Path) -> None:
                 place = np.array([nodes[0][0], *(axis[i] for axis, i in zip(nodes[1:], line, strict=True))])
                 one = group.parameters_at(place)
                 widths = load_parameter_at(nodes[0])
-                widths[-1] = 0.0  # but for rounding
+                widths[-1] = 0.0  # without the rounding of the coordinate
                 pair = pair_of(one["alpha"], one["beta"], one["kolosov"])
                 table[where] = first_load_values(pair, one["friction"], one["pin_load"], widths.tolist(), NODES[False])
                 runs += len(first_load_runs(widths.tolist()))

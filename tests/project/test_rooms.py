@@ -18,9 +18,9 @@ MOST = {
     "drive is None, or not": 0,
     "classes defined twice": 0,
     "small private functions used once": 71,
-    "constants of modules": 1_354,
+    "constants of modules": 1_353,
     "hidden imports": 0,
-    "lines of code": 47_585,
+    "lines of code": 47_575,
 }
 """The most that each number may be. A smaller number takes its place here."""
 
