@@ -159,7 +159,7 @@ def _touched_arc(
     `progress` sees each coarse run as a separate run before the fine run.
     """
     arc = None if problem.gap else _estimated_arc(problem, values)  # with a gap the pin may touch anywhere
-    history = LoadHistory.from_array(_outline(problem, values))
+    history = LoadHistory.from_array(_outline(problem, _without_repetition(values)))
     quick = _quick_arc(problem, history, arc, force, progress) if nodes < COARSE_NODES else None
     if quick is not None:
         return quick
@@ -236,6 +236,18 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
     parameter = problem.load_parameter(float(pin.max()))
     half = 1.6 if parameter <= 0.0 else min(1.6, max(LEAST_HALF, 1.3 / math.sqrt(math.pi * parameter)))
     return float(angles.min()) - 1.3 * half, float(angles.max()) + 1.3 * half
+
+
+def _without_repetition(values: np.ndarray) -> np.ndarray:
+    """The corners up to the last change of the load that was not there before, in either direction.
+
+    A repeated change can only let a contact settle. If it touches more nodes, the arc is widened.
+    """
+    corners = [np.zeros_like(values[0]).tobytes(), *(corner.tobytes() for corner in values + 0.0)]  # no -0.0
+    first: dict[frozenset[bytes], int] = {}
+    for place, change in enumerate(itertools.pairwise(corners)):
+        first.setdefault(frozenset(change), place)
+    return values[: 1 + max(first.values())]
 
 
 def _outline(problem: Problem, values: np.ndarray) -> np.ndarray:

@@ -101,3 +101,24 @@ def test_a_search_to_and_fro_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     assert touched_arc(Problem.from_load_parameter(LIKE, 0.1, 0.3), LoadHistory([{"P": 1.0}])) is not None
     assert len(lengths) == 12
     assert min(lengths) < 0.5 < max(lengths)
+
+
+def test_coarse_runs_follow_no_change_of_the_load_twice() -> None:
+    up, down, twice = {"Q": 0.1}, {"Q": -0.1}, {"P": 2.0}
+    corners = LoadHistory([{"P": 1.0}, up, down, up, down, twice, up, down, up]).distinct()
+    left = arc._without_repetition(corners)
+    assert np.array_equal(left, corners[:7])  # with P = 2 the change of Q is another one
+    assert np.array_equal(arc._without_repetition(corners[:5]), corners[:3])
+    assert np.array_equal(arc._without_repetition(corners[:1]), corners[:1])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_arc_of_cycles_is_wide_enough_after_their_first_change(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 120 random contacts, one had another arc after all cycles, by one node of the coarse run."""
+    rng = np.random.default_rng(seed)
+    problem = Problem.from_load_parameter(LIKE, 10.0 ** rng.uniform(-2.0, 1.0), rng.uniform(0.1, 0.9), "centre")
+    force = rng.uniform(0.1, 0.9) * problem.friction_at(np.zeros(1))[0]
+    history = LoadHistory([{"P": 1.0}, *4 * [{"Q": force}, {"P": rng.uniform(0.4, 1.0), "Q": -force}]])
+    first = touched_arc(problem, history)
+    monkeypatch.setattr(arc, "_without_repetition", lambda values: values)
+    assert touched_arc(problem, history) == first
