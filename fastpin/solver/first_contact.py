@@ -557,7 +557,7 @@ def _set_slip_beside(system: System, patch: Configuration, grown: Configuration,
 
 
 def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:
-    """A first guess: the part of the step's load at which a contact spans about five nodes.
+    """A first guess: the part of the step's load at which a contact spans as many nodes as the first contact aims at.
 
     A force presses a Hertz contact. A hole that shrinks on the pin overlaps the pin by half the curvature times the
     square of the contact's half-width.
@@ -566,7 +566,7 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     nearest = int(np.argmin(resting.gap))
     theta = system.grid.theta[nearest]
     gap = hole_gap(system, resting.load, theta)[0]
-    half = 2.5 * _width(system, nearest)
+    half = 0.25 * sum(FIRST_NODES) * _width(system, nearest)
     bent = max(bend(system, resting.load, theta, half), 0.0)
     if force == 0.0:
         shrinking = float(gap - hole_gap(system, resting.load + change, theta)[0])
