@@ -180,11 +180,12 @@ def _responses(
     if rows.size >= 2 * LEAST_RECURRENCES:
         responses = neighbours.responses()
         return -responses, responses.T, neighbours.complement()
-    operator = np.asarray(system.operator)
-    beside = operator[others]
-    from_held = beside[:, rows]
-    tied = from_held @ neighbours.core
-    return -tied.T, tied, beside[:, others] - from_held @ tied.T
+    acting = np.asarray(system.operator).T  # row by row: whole columns of the operator are copied
+    on_others = acting.take(rows, axis=0).take(others, axis=1)
+    tied = (neighbours.core.T @ on_others).T
+    free = -tied.T
+    complement = acting.take(others, axis=0).take(others, axis=1)
+    return free, tied, (complement + free.T @ on_others).T
 
 
 def _holds(system: System, closed: np.ndarray, table: HeldTable) -> bool:
