@@ -40,8 +40,11 @@ class Operator:
         from a copy of its entries.
     by_distance : bool
         Whether the entries of equally spaced nodes depend on their distance, up to what bodies and drive add.
+    matrix : ndarray, shape (2n, 2n), or None
+        All entries, column by column; None if they are not stored together.
     """
 
+    matrix: np.ndarray | None = None
     is_stored = False
     by_distance = True
 
@@ -77,7 +80,7 @@ class Operator:
     @cached_property
     def typical(self) -> float:
         """A typical compliance, to judge pivots: the median of the diagonal."""
-        return float(np.median(np.abs(self.diagonal())))
+        return float(np.sort(np.abs(self.diagonal()))[self.size // 2])
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         """All entries, for tests and studies of small systems."""
@@ -85,25 +88,28 @@ class Operator:
 
 
 class DenseOperator(Operator):
-    """An operator whose entries are all stored in `matrix`, shape (2n, 2n)."""
+    """An operator whose entries are all stored in `matrix`, shape (2n, 2n), column by column."""
 
+    matrix: np.ndarray
     is_stored = True
 
     def __init__(self, matrix: np.ndarray) -> None:
         super().__init__(len(matrix))
-        self.matrix = matrix
+        self.matrix = np.asfortranarray(matrix)
 
     def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
         product: np.ndarray = self.matrix @ tractions
         return product
 
     def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
-        out[...] = self.matrix[rows[:, None], columns]
+        np.take(self.matrix.T.take(columns, axis=0), rows, axis=1, out=out.T, mode="clip")
 
     def entries(self, rows: np.ndarray | None = None, columns: np.ndarray | None = None) -> np.ndarray:
         if rows is None:  # whole columns or rows are copied faster than their parts
             return self.matrix.copy() if columns is None else self.matrix[:, columns]
-        return self.matrix[rows] if columns is None else self.matrix[rows[:, None], columns]
+        if columns is None:
+            return self.matrix[rows]
+        return self.matrix.T.take(columns, axis=0).take(rows, axis=1).T
 
     def diagonal(self) -> np.ndarray:
         return np.diagonal(self.matrix)

@@ -214,6 +214,11 @@ class System:
         return (Interface(self.problem, self.grid, slice(0, self.grid.size), 0, self.radius),)
 
     @cached_property
+    def width(self) -> float:
+        """Typical weight of a node."""
+        return float(self.weights.mean())
+
+    @cached_property
     def levers(self) -> np.ndarray:
         """Moment of a unit of shear at each node, shape (n,): its weight times the radius of its rim."""
         return self.radius * self.weights

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from fastpin.elasticity.system import Interface, System
-from fastpin.kernels import conditions
+from fastpin.kernels import conditions, equations
 from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
 from fastpin.model.loads import P, Q
 from fastpin.reading.marks import Marks
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
-from fastpin.solver.unknowns import DenseUnknowns
+from fastpin.solver.unknowns import SINGULAR, DenseUnknowns
 
 MAX_RESIDUAL = 1e-9
 """Largest relative violation of the contact conditions in a returned state."""
@@ -205,8 +205,19 @@ def solve_statuses(
     Solution or None
         None if the closed nodes can't hold the pin: a mechanism.
     """
-    active = DenseUnknowns(system, status)
-    return None if active.singular else solve_unknowns(system, active, stuck_slip, load, rest_gap)
+    matrix, unknowns = system.operator.matrix, np.count_nonzero(status != OPEN) + np.count_nonzero(status == STICK)
+    if matrix is None or unknowns > equations.MOST_UNKNOWNS:
+        active = DenseUnknowns(system, status)
+        return None if active.singular else solve_unknowns(system, active, stuck_slip, load, rest_gap)
+    n = system.grid.size
+    pressure, shear, gap, slip = np.empty((4, n))
+    found = Solution(pressure, shear, gap, slip, np.empty(system.motions))
+    held = rest_gap if isinstance(rest_gap, np.ndarray) else np.full(n, rest_gap)
+    condition = equations.solve(
+        matrix, system.equations, system.load_displacement(load), system.load_forces(load), held, stuck_slip,
+        system.width, found.under(status),
+    )  # fmt: skip
+    return found if condition > SINGULAR else None
 
 
 def solve_unknowns(

@@ -148,7 +148,7 @@ class DenseUnknowns(Unknowns):
         matrix[count:, :count] = self.balance_columns()
         matrix[count:, count:] = system.motion_rows
         # The unknowns are forces, not tractions: entries are then of order one, and the condition number has a meaning.
-        self._width = float(system.weights.mean())
+        self._width = system.width
         matrix[:, :count] /= self._width
         norm = float(lapack.dlange("1", matrix))
         self._lu, self._pivots, info = lapack.dgetrf(matrix, overwrite_a=1)
