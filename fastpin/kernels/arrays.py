@@ -99,6 +99,24 @@ class Equations(NamedTuple):
     friction: np.ndarray
 
 
+class RightSides(NamedTuple):
+    """What loads and the resting pin add to the equations.
+
+    Attributes
+    ----------
+    loaded : ndarray, shape (2n,)
+        Gap and slip of the load.
+    forces : ndarray, shape (m,)
+        Right sides of the conditions of equilibrium.
+    rest_gap : ndarray, shape (n,)
+        The rest gap.
+    """
+
+    loaded: np.ndarray
+    forces: np.ndarray
+    rest_gap: np.ndarray
+
+
 class LoadTerms(NamedTuple):
     """Terms of the work of the loads.
 

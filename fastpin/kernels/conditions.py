@@ -5,11 +5,17 @@ A pass takes a few microseconds with a hundred nodes. In NumPy it takes ten time
 
 from __future__ import annotations
 
+import numpy as np
+
+from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.jit import compiled, inner
 
 SMALLEST = 1e-300
 """Least scale of a relative error."""
+
+ROUNDING = 5e-15
+"""Relative error of gap, slip and equilibrium that is rounding. Corrections end below it."""
 
 ON_BOUND = 1e-12
 """Part of the largest pressure or gap below which a pressure, a shear or a gap is put on its bound."""
@@ -219,6 +225,104 @@ def beyond_bounds(solution, settled):
         elif settled.status[i] == OPEN:
             gap = _larger(gap, settled.gap[i] - solution.gap[i])
     return traction, gap
+
+
+@inner
+def _respond(tableau, updates, given, values):
+    """Set `values` (2n+m,) to the product of the tableau of a held contact, with so many updates, and `given` (2n+m,).
+
+    `given` holds the zero-rate variables, then the m forces out of balance.
+    """
+    order, n, size = tableau.order, tableau.tied.size, given.size
+    placed = np.zeros(size)
+    for i in range(size):
+        acting = given[i]
+        if n <= i < 2 * n:
+            acting += tableau.drag[i - n] * given[i - n]
+        if acting != 0.0:
+            for row in range(size):
+                placed[row] += acting * tableau.matrix[row, order[i]]
+    for i in range(size):
+        values[i] = placed[order[i]]
+    for i in range(n):
+        values[n + i] += tableau.tied[i] * values[i]
+    for k in range(updates):
+        factor = 0.0
+        if tableau.source[k] >= 0:
+            factor = values[tableau.source[k]]
+        if tableau.slot[k] >= 0:
+            factor += tableau.delta[k] * given[tableau.slot[k]]
+        if factor != 0.0:
+            for i in range(size):
+                values[i] += factor * tableau.left[i, k]
+
+
+@inner
+def _multiply(operator, values, elastic):
+    """Set `elastic` (2n,) to gap and slip of the tractions of `values`."""
+    n = values.status.size
+    for row in range(2 * n):
+        elastic[row] = 0.0
+    for i in range(n):
+        if values.status[i] != OPEN:
+            for row in range(2 * n):
+                elastic[row] += operator[row, i] * values.pressure[i] + operator[row, n + i] * values.shear[i]
+
+
+@compiled
+def settle(tableau, updates, operator, equations, contact, sides, solution, settled):
+    """Correct a held contact until statuses, held slip and load hold to rounding, and put it on its bounds.
+
+    Parameters
+    ----------
+    tableau : Tableau
+        That of a held contact, with so many `updates`.
+    updates : int
+    operator : ndarray, shape (2n, 2n), column by column
+    equations : Equations
+    contact : Contact
+        It is not changed.
+    sides : RightSides
+    solution : ContactValues
+        Is set to the corrected values.
+    settled : ContactValues
+        With the slip of the contact. Is set to the solution within its bounds; see :func:`put_on_bounds`.
+
+    Returns
+    -------
+    (float, float, float, float)
+        The error that is left, see :func:`imbalance`; the error before, see :func:`drift`; and how far the solution
+        lies beyond its bounds, see :func:`beyond_bounds`.
+    """
+    n, motions = contact.status.size, contact.motion.size
+    elastic, true = np.empty(2 * n), np.empty(2 * n)
+    missing, change = np.empty(2 * n + motions), np.empty(2 * n + motions)
+    for i in range(n):
+        closed = contact.status[i] != OPEN
+        solution.pressure[i] = contact.pressure[i] if closed else 0.0
+        solution.shear[i] = contact.shear[i] if closed else 0.0
+    solution.motion[:] = contact.motion
+    held = ContactValues(
+        solution.pressure, solution.shear, contact.gap, contact.slip, contact.status, solution.motion
+    )  # fmt: skip
+    before, last = 0.0, np.inf
+    while True:
+        _multiply(operator, held, elastic)
+        error = imbalance(equations, held, elastic, sides.loaded, sides.forces, sides.rest_gap, true, missing)
+        if last == np.inf:
+            before = drift(elastic, true, contact.gap, contact.slip, contact.motion, _largest(contact.gap))
+        if error <= ROUNDING or not error < 0.5 * last:
+            break
+        last = error
+        _respond(tableau, updates, missing, change)
+        correct(equations.friction, contact.tie, change, held)
+    for i in range(n):
+        solution.gap[i], solution.slip[i] = true[i], true[n + i]
+    for k in range(motions):
+        settled.motion[k] = solution.motion[k]
+    put_on_bounds(equations.friction, solution, settled)
+    traction, gap = beyond_bounds(solution, settled)
+    return error, before, traction, gap
 
 
 @compiled

@@ -544,20 +544,3 @@ def follow(tableau, contact, load, queue, friction, ends, typical, stop, most_ev
             settled = False
             if counts[EVENTS] > most_events:
                 return ENDLESS
-
-
-@compiled
-def apply_updates(tableau, updates, given, values):
-    """Apply so many updates, one by one, to a response.
-
-    `values` (2n+m,) is the response to the zero-rate variables `given` (2n+m,) before them. It is changed in place.
-    """
-    for k in range(updates):
-        factor = 0.0
-        if tableau.source[k] >= 0:
-            factor = values[tableau.source[k]]
-        if tableau.slot[k] >= 0:
-            factor += tableau.delta[k] * given[tableau.slot[k]]
-        if factor != 0.0:
-            for i in range(values.size):
-                values[i] += factor * tableau.left[i, k]

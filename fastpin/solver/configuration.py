@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -171,6 +171,45 @@ class Solution:
     def part(self, nodes: slice) -> Solution:
         """The solution at some nodes. The motion is that of all."""
         return Solution(self.pressure[nodes], self.shear[nodes], self.gap[nodes], self.slip[nodes], self.motion)
+
+
+class Correction(NamedTuple):
+    """The corrected values of a configuration whose statuses hold.
+
+    Attributes
+    ----------
+    solution : Solution
+    settled : Configuration
+        The configuration with the solution, each value kept within the bounds of its status.
+    error, drift : float
+        Relative error that is left, and the one of gap and slip before the correction.
+    beyond : (float, float)
+        How far the solution lies beyond its bounds, by traction and by gap.
+    """
+
+    solution: Solution
+    settled: Configuration
+    error: float
+    drift: float
+    beyond: tuple[float, float]
+
+    @classmethod
+    def of(cls, system: System, before: Configuration, solution: Solution, error: float, drift: float) -> Correction:
+        """The correction of the configuration `before` by the solution of its statuses."""
+        settled = snap_to_bounds(system, before, solution)
+        beyond = conditions.beyond_bounds(solution.under(settled.status), settled.values)
+        return cls(solution, settled, error, drift, beyond)
+
+
+def snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:
+    """The configuration with the solution of its statuses, each value kept within the bounds of its status.
+
+    A pressure, shear or gap beyond its bound, or almost at it, is put exactly on the bound.
+    """
+    new = configuration.copy()
+    new.motion = solution.motion
+    conditions.put_on_bounds(system.friction, solution.under(new.status), new.values)
+    return new
 
 
 def reaches_end(system: System, configuration: Configuration) -> bool:

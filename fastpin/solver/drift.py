@@ -32,10 +32,11 @@ from fastpin.solver.configuration import (
     dissipation_between,
     seat_dissipation_between,
     slip_tally_between,
+    snap_to_bounds,
     solve_unknowns,
     work_between,
 )
-from fastpin.solver.path import MOST_EVENTS, StepLostError, snap_to_bounds
+from fastpin.solver.path import MOST_EVENTS, StepLostError
 from fastpin.solver.settling import settle
 from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.unknowns import DenseUnknowns

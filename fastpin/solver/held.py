@@ -16,11 +16,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.kernels import exchange, held
-from fastpin.kernels.arrays import Contact, Tableau
+from fastpin.kernels import conditions, held
+from fastpin.kernels.arrays import Contact, RightSides, Tableau
 from fastpin.kernels.exchange import WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
+from fastpin.solver.configuration import Configuration, Correction, Solution
 from fastpin.solver.neighbours import Neighbours
 from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, have_toeplitz_matrix
@@ -227,7 +228,7 @@ class HeldColumns:
         self, system: System, table: HeldTable, contact: Contact, load_rate: np.ndarray, memory: TableauMemory
     ) -> None:
         n, updates = system.grid.size, memory.left.shape[1]
-        self._table = table
+        self._system, self._operator = system, np.asfortranarray(np.asarray(system.operator))
         self.tableau = Tableau(
             matrix=table.matrix,
             order=table.order,
@@ -246,17 +247,17 @@ class HeldColumns:
             system.load_forces(load_rate), np.empty(table.order.size), self.tableau,
         )  # fmt: skip
 
-    def response(self, given: np.ndarray, updates: int) -> np.ndarray:
-        """The product (2n+m,) of the tableau and the vector `given` (2n+m,).
+    def correct(self, now: Configuration, contact: Contact, updates: int) -> Correction:
+        """Correct tractions and motion of `now` until its statuses, its held slip and its load hold to rounding.
 
-        `given` holds the zero-rate variables, then the m forces out of balance. `updates` is the number of all
-        updates so far.
+        The tableau has all `updates` so far. It makes the corrections, and the matrices check them.
         """
-        tableau = self.tableau
-        n = tableau.tied.size
-        acting = given.copy()
-        acting[n : 2 * n] += tableau.drag * given[:n]
-        values = (self._table.matrix @ acting[self._table.stack])[self._table.order]
-        values[n : 2 * n] += tableau.tied * values[:n]
-        exchange.apply_updates(tableau, updates, given, values)
-        return values
+        system, n, load = self._system, now.status.size, now.load
+        sides = RightSides(system.load_displacement(load), system.load_forces(load), now.rest_gap)
+        pressure, shear, gap, slip = np.empty((4, n))
+        solution, settled = Solution(pressure, shear, gap, slip, np.empty(system.motions)), now.copy()
+        error, drift, *beyond = conditions.settle(
+            self.tableau, updates, self._operator, system.equations, contact, sides, solution.under(now.status),
+            settled.values,
+        )  # fmt: skip
+        return Correction(solution, settled, error, drift, (beyond[0], beyond[1]))

@@ -19,7 +19,7 @@ from fastpin.kernels import conditions, exchange
 from fastpin.kernels.arrays import Contact, LoadTerms, Queue
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import P, Q
-from fastpin.solver.configuration import Configuration, Solution, solve_unknowns
+from fastpin.solver.configuration import Configuration, Correction, Solution, snap_to_bounds, solve_unknowns
 from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts
 from fastpin.solver.settling import settle
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
@@ -42,9 +42,6 @@ SEVERE_DRIFT = 1e-6
 
 CAREFUL_ROOM = (24, 7)
 """Updates of the tableau before it is rebuilt, after a first and a second severe drift."""
-
-ROUNDING = 5e-15
-"""Relative error of gap, slip and equilibrium that is rounding. Corrections end below it."""
 
 MOST_ERROR = 1e-12
 """Relative error that corrections may leave. Above it a factorisation computes the state anew."""
@@ -217,17 +214,16 @@ class PathStep:
                 checked = 0
             else:
                 self._book()
-                if (solution := self._correct()) is None:
+                if (correction := self._correct()) is None:
                     checked = 0
                     continue
-                settled = snap_to_bounds(system, self.now, solution)
                 last = settlings == MOST_SETTLINGS
-                if not _exceeds_bounds(settled, solution) or (last and _is_rounding(settled, solution)):
-                    return settled
+                if not _exceeds_bounds(correction) or (last and _is_rounding(correction)):
+                    return correction.settled
                 if last:
                     raise StepLostError(exchange.CYCLING, self.fraction)
                 # When a load is almost gone, rounding can keep a status too long. At its limit it changes at once.
-                self._take(settled)
+                self._take(correction.settled)
                 settlings += 1
 
     def _book(self) -> None:
@@ -338,15 +334,8 @@ class PathStep:
         load = self.before + self.fraction * self.rate
         elastic = self._sampled @ now.tractions
         true = elastic + system.motion[rows] @ now.motion + system.load_displacement(load, rows)
-        half = true.size // 2
-        true[:half] += now.rest_gap[rows if isinstance(rows, slice) else rows[:half]]
-        return self._error_of(elastic, true)
-
-    def _error_of(self, elastic: np.ndarray, true: np.ndarray) -> float:
-        """Largest relative error of gap and slip at the sample, whose elastic part and `true` values are given."""
-        now, nodes = self.now, self._sample
-        if not isinstance(nodes, slice):
-            nodes = nodes[: nodes.size // 2]
+        nodes = rows if isinstance(rows, slice) else rows[: rows.size // 2]
+        true[: true.size // 2] += now.rest_gap[nodes]
         return conditions.drift(elastic, true, now.gap[nodes], now.slip[nodes], now.motion, now.gap.max())
 
     def _go_back(self) -> bool:
@@ -391,10 +380,10 @@ class PathStep:
             return False
         self._book()
         before = self.rebuilds
-        solution = self._correct()
-        if solution is None:
+        correction = self._correct()
+        if correction is None:
             return False
-        self._take(snap_to_bounds(self.system, self.now, solution))
+        self._take(correction.settled)
         if self.rebuilds > before:
             return False
         self._columns.refine_rates(self._contact, self.rate, int(self._queue.counts[exchange.UPDATES]))
@@ -406,39 +395,21 @@ class PathStep:
             getattr(self.now, name)[:] = getattr(better, name)
         self.now.slip_tally.sums[:] = better.slip_tally.sums
 
-    def _correct(self) -> Solution | None:
+    def _correct(self) -> Correction | None:
         """Correct the present tractions and motion until statuses, held slip and load hold to rounding.
 
         If the corrections leave more than MOST_ERROR, a factorisation computes the solution. None after a severe drift,
         if the step could go back.
         """
-        system, now, n = self.system, self.now, self.system.grid.size
-        loaded, forces = system.load_displacement(now.load), system.load_forces(now.load)
-        found = now.values._replace(
-            pressure=np.where(now.closed, now.pressure, 0.0), shear=np.where(now.closed, now.shear, 0.0),
-            motion=now.motion.copy(),
-        )  # fmt: skip
-        true, missing = np.empty(2 * n), np.empty(2 * n + now.motion.size)
-        updates, last = int(self._queue.counts[exchange.UPDATES]), np.inf
-        while True:
-            elastic = system.operator @ np.concatenate([found.pressure, found.shear])
-            error = conditions.imbalance(
-                system.equations, found, elastic, loaded, forces, now.rest_gap, true, missing
-            )  # fmt: skip
-            if last == np.inf:
-                drift = self._error_of(elastic[self._sample], true[self._sample])
-                if drift > SEVERE_DRIFT and self._go_back():
-                    return None
-            if error <= ROUNDING or not error < 0.5 * last:
-                break
-            last = error
-            conditions.correct(system.friction, self._contact.tie, self._columns.response(missing, updates), found)
-        if not error <= MOST_ERROR:
+        correction = self._columns.correct(self.now, self._contact, int(self._queue.counts[exchange.UPDATES]))
+        if correction.drift > SEVERE_DRIFT and self._go_back():
+            return None
+        if not correction.error <= MOST_ERROR:
             exact = self._exact_solution()
             if exact is not None:
                 self.rebuilds += 1
-                return exact
-        return Solution(found.pressure, found.shear, true[:n], true[n:], found.motion)
+                return Correction.of(self.system, self.now, exact, correction.error, correction.drift)
+        return correction
 
     def _exact_solution(self) -> Solution | None:
         """The solution of the present statuses, by a factorisation; None if the closed nodes can't hold the pin."""
@@ -461,31 +432,17 @@ def _load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTer
     )
 
 
-def snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:
-    """The configuration with the solution of its statuses, each value kept within the bounds of its status.
-
-    A pressure, shear or gap beyond its bound, or almost at it, is put exactly on the bound.
-    """
-    new = configuration.copy()
-    new.motion = solution.motion
-    conditions.put_on_bounds(system.friction, solution.under(new.status), new.values)
-    return new
-
-
-def _exceeds_bounds(settled: Configuration, solution: Solution) -> bool:
-    """Whether a solution exceeds the bounds of its statuses by more than rounding.
-
-    `settled` is the configuration from :func:`snap_to_bounds`.
-    """
-    traction, gap = conditions.beyond_bounds(solution.under(settled.status), settled.values)
+def _exceeds_bounds(correction: Correction) -> bool:
+    """Whether a correction exceeds the bounds of its statuses by more than rounding."""
+    settled, (traction, gap) = correction.settled, correction.beyond
     return bool(traction > MOST_DRIFT * settled.pressure.max() or gap > MOST_DRIFT * settled.gap.max())
 
 
-def _is_rounding(settled: Configuration, solution: Solution) -> bool:
-    """Whether a solution exceeds the bounds of its gaps only, by rounding of the largest displacement.
+def _is_rounding(correction: Correction) -> bool:
+    """Whether a correction exceeds the bounds of its gaps only, by rounding of the largest displacement.
 
     At a stop where gaps have opened this instant, the largest gap is itself rounding.
     """
-    traction, gap = conditions.beyond_bounds(solution.under(settled.status), settled.values)
-    length = ROUNDING * max(float(np.abs(solution.slip).max()), float(np.abs(solution.motion).max()))
-    return bool(traction <= MOST_DRIFT * settled.pressure.max() and gap <= length)
+    solution, (traction, gap) = correction.solution, correction.beyond
+    length = conditions.ROUNDING * max(float(np.abs(solution.slip).max()), float(np.abs(solution.motion).max()))
+    return bool(traction <= MOST_DRIFT * correction.settled.pressure.max() and gap <= length)

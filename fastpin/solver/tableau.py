@@ -8,11 +8,13 @@ from __future__ import annotations
 import numpy as np
 
 from fastpin.elasticity.system import System
+from fastpin.kernels import conditions
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import CHUNK, WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
 from fastpin.runtime.products import add_product
+from fastpin.solver.configuration import Configuration, Correction, Solution
 from fastpin.solver.shortcut import TractionRows
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
 
@@ -153,6 +155,33 @@ class Columns:
         factors = self._factors(values, given[self.tableau.slot[:updates], None], 0, updates)
         add_product(values, self.tableau.left[:, :updates], factors)
         return values[:, 0]
+
+    def correct(self, now: Configuration, contact: Contact, updates: int) -> Correction:
+        """Correct tractions and motion of `now` until its statuses, its held slip and its load hold to rounding.
+
+        The tableau has all `updates` so far. It makes the corrections, and the matrices check them.
+        """
+        system, n = self._system, self._system.grid.size
+        loaded, forces = system.load_displacement(now.load), system.load_forces(now.load)
+        found = now.values._replace(
+            pressure=np.where(now.closed, now.pressure, 0.0), shear=np.where(now.closed, now.shear, 0.0),
+            motion=now.motion.copy(),
+        )  # fmt: skip
+        true, missing = np.empty(2 * n), np.empty(2 * n + now.motion.size)
+        drift, last = 0.0, np.inf
+        while True:
+            elastic = system.operator @ np.concatenate([found.pressure, found.shear])
+            error = conditions.imbalance(
+                system.equations, found, elastic, loaded, forces, now.rest_gap, true, missing
+            )  # fmt: skip
+            if last == np.inf:
+                drift = conditions.drift(elastic, true, now.gap, now.slip, now.motion, now.gap.max())
+            if error <= conditions.ROUNDING or not error < 0.5 * last:
+                break
+            last = error
+            conditions.correct(system.friction, contact.tie, self.response(missing, updates), found)
+        solution = Solution(found.pressure, found.shear, true[:n], true[n:], found.motion)
+        return Correction.of(system, now, solution, error, drift)
 
     def refine_rates(self, contact: Contact, load_rate: np.ndarray, updates: int) -> None:
         """Correct the rates by their residual from the matrices, times the tableau with all `updates`."""

@@ -10,13 +10,15 @@ import pytest
 
 from fastpin.bodies import Ring
 from fastpin.elasticity.system import System
-from fastpin.kernels import exchange
+from fastpin.kernels import conditions, exchange
 from fastpin.kernels.arrays import Contact
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver import held, path
+from fastpin.solver.assembly import unloaded_configuration
+from fastpin.solver.configuration import solve_statuses
 from fastpin.solver.errors import SolveError
 from fastpin.solver.held import HeldColumns, HeldContacts, held_table
 from fastpin.solver.slip_tally import SlipTally
@@ -70,6 +72,13 @@ def rate():
     return np.array([{"P": 1.0, "Q": 0.3}.get(name, 0.0) for name in LOADS])
 
 
+def response(columns, given, updates=0):
+    """The product of the tableau and `given`, as the corrections of a held contact compute it."""
+    values = np.empty_like(given)
+    conditions._respond.py_func(columns.tableau, updates, given, values)
+    return values
+
+
 CONTACTS = [zones((15, 45)), zones((10, 20), (30, 50)), zones((28, 32))]
 
 
@@ -88,11 +97,11 @@ def test_a_held_contact_begins_with_the_tableau_of_a_factorisation(titanium_in_a
         size = np.abs(expected.tableau.rates).max()
         assert np.abs(columns.tableau.rates - expected.tableau.rates).max() < 1e-11 * size
         given = np.random.default_rng(5).normal(size=125)
-        found, wanted = columns.response(given, 0), expected.response(given, 0)
+        found, wanted = response(columns, given), expected.response(given, 0)
         # the hats at the ends of an arc are halves, and their columns stand for whole ones: these nodes never close
         if not system.grid.closed:
             given[[0, 60, 61, 121]] = 0.0
-            found, wanted = columns.response(given, 0), expected.response(given, 0)
+            found, wanted = response(columns, given), expected.response(given, 0)
         assert np.abs(found - wanted).max() < 1e-11 * np.abs(wanted).max()
 
 
@@ -112,7 +121,7 @@ def test_columns_and_updates_of_a_held_contact_are_those_of_the_naive_way(titani
     tableau.left[:, :updates] = rng.normal(size=(125, updates))
     tableau.source[:updates], tableau.slot[:updates] = rng.integers(-1, 122, updates), rng.integers(-1, 122, updates)
     tableau.delta[:updates] = rng.normal(size=updates)
-    naive = np.column_stack([columns.response(unit, 0) for unit in units])
+    naive = np.column_stack([response(columns, unit) for unit in units])
     for k in range(updates):
         row = np.zeros(125)
         if tableau.source[k] >= 0:
@@ -121,12 +130,44 @@ def test_columns_and_updates_of_a_held_contact_are_those_of_the_naive_way(titani
             row[tableau.slot[k]] += tableau.delta[k]
         naive += np.outer(tableau.left[:, k], row)
     given = rng.normal(size=125)
-    assert np.allclose(columns.response(given, updates), naive @ given, rtol=0.0, atol=1e-9 * np.abs(naive).max())
+    assert np.allclose(response(columns, given, updates), naive @ given, rtol=0.0, atol=1e-9 * np.abs(naive).max())
     if way == "python":  # inner kernels can be called as plain Python only
         for p in (20, 10, 61 + 20, 61 + 50):
             column = np.zeros(125)
             exchange._column(tableau, updates, p, column)
             assert np.allclose(column, naive[:, p], rtol=0.0, atol=1e-9 * np.abs(naive).max())
+
+
+@pytest.mark.parametrize("way", ["compiled", "python"])
+@pytest.mark.parametrize("grid", GRIDS)
+def test_corrections_of_a_held_contact_are_those_of_whole_arrays(titanium_in_aluminium, way, grid, monkeypatch):
+    """A solution that lacks some digits is corrected to all of them, and put on its bounds."""
+    if way == "python":
+        for name, function in vars(conditions).items():
+            if hasattr(function, "py_func"):
+                monkeypatch.setattr(conditions, name, function.py_func)
+    system, closed = system_of(titanium_in_aluminium, grid=grid), zones((15, 45))
+    now = unloaded_configuration(system)
+    now.load, now.status[closed] = rate(), STICK
+    exact = solve_statuses(system, now.status, now.slip, now.load, now.rest_gap)
+    assert exact is not None
+    rng, size = np.random.default_rng(7), np.abs(exact.pressure).max()
+    now.pressure[:] = np.where(closed, exact.pressure + 1e-7 * size * rng.normal(size=61), 0.0)
+    now.shear[:] = np.where(closed, exact.shear, 0.0)
+    now.gap[:], now.motion[:] = np.where(closed, 0.0, exact.gap), exact.motion
+    contact = contact_of(closed)._replace(**now.values._asdict())
+    columns = HeldColumns(system, held_table(system, closed), contact, rate(), TableauMemory(system))
+    wanted = Columns(system, DenseUnknowns(system, now.status), contact, rate(), TableauMemory(system))
+    one, other = columns.correct(now, contact, 0), wanted.correct(now, contact, 0)
+    assert one.error < 1e-14
+    assert one.drift == pytest.approx(other.drift, rel=1e-6)
+    assert one.drift > 1e-8
+    for name in ("pressure", "shear", "gap", "slip", "motion"):
+        for found, true in ((one.solution, other.solution), (one.settled, other.settled)):
+            values, expected = getattr(found, name), getattr(true, name)
+            assert np.abs(values - expected).max() < 1e-12 * max(size, np.abs(expected).max())
+    assert one.beyond == pytest.approx(other.beyond, abs=1e-12 * size)
+    assert one.beyond[0] > 0.0  # some nodes are pulled
 
 
 def test_nodes_that_hardly_hold_the_pin_have_no_table(titanium_in_aluminium):

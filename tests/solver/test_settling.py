@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fastpin.elasticity.system import System
-from fastpin.kernels import complementarity, exchange
+from fastpin.kernels import complementarity, conditions, exchange
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
@@ -17,7 +17,7 @@ from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import path, settling
 from fastpin.solver.assembly import unloaded_configuration
-from fastpin.solver.configuration import Solution, solve_statuses, worst_residual
+from fastpin.solver.configuration import Correction, Solution, solve_statuses, worst_residual
 from fastpin.solver.errors import ConvergenceError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import implicit_step
@@ -216,8 +216,8 @@ def test_only_gaps_may_miss_their_bounds_by_the_rounding_of_displacements(titani
     settled.gap[:], settled.slip[:] = 0.0, 1.0
     names = ("pressure", "shear", "gap", "slip", "motion")
     for name, node, error, is_rounding in [
-        ("gap", 4, -0.9 * path.ROUNDING, True),
-        ("gap", 4, -1.1 * path.ROUNDING, False),
+        ("gap", 4, -0.9 * conditions.ROUNDING, True),
+        ("gap", 4, -1.1 * conditions.ROUNDING, False),
         ("pressure", 1, 1.9 * path.MOST_DRIFT, True),
         ("pressure", 1, 2.1 * path.MOST_DRIFT, False),
         ("shear", 0, -1.9 * path.MOST_DRIFT, True),
@@ -225,7 +225,8 @@ def test_only_gaps_may_miss_their_bounds_by_the_rounding_of_displacements(titani
     ]:
         solution = Solution(*(getattr(settled, one).copy() for one in names))
         getattr(solution, name)[node] += error
-        assert path._is_rounding(settled, solution) == is_rounding
+        beyond = conditions.beyond_bounds(solution.under(settled.status), settled.values)
+        assert path._is_rounding(Correction(solution, settled, 0.0, 0.0, beyond)) == is_rounding
 
 
 def test_too_many_events_are_told_from_a_snap(monkeypatch, titanium_in_aluminium):
