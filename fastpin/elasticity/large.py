@@ -26,8 +26,8 @@ MOST_DENSE = 400
 MOST_KEPT = 512
 """Most nodes of a system that is kept. It takes 8 MB."""
 
-SYSTEMS_KEPT = 2
-"""Systems that are kept: of a history and of the coarse grid of its error bars."""
+SYSTEMS_KEPT = 4
+"""Systems that are kept: of a history, of its coarse run, and the same two for its error bars or the run before."""
 
 
 class ColumnsOperator(Operator):
@@ -88,8 +88,9 @@ class LargeSystem(System):
 def build_system(problem: Problem, grid: Grid, force: float) -> System:
     """The system of `problem` on `grid` with reference force `force`, N/m; a :class:`LargeSystem` where that is due.
 
-    The latest systems with few nodes are kept, and returned again for the same problem and grid. Where a bush slips,
-    `grid` has the nodes of the pin, and as many go round the seat.
+    The latest systems with few nodes are kept, and returned again for the same problem and grid. Problems that differ
+    in friction and fit only share their matrices, as many runs of a sweep do. Where a bush slips, `grid` has the nodes
+    of the pin, and as many go round the seat.
     """
     if problem.seat is not None:
         return JointSystem.join(problem, (grid, seat_grid(problem, grid)), force)
@@ -108,16 +109,19 @@ class _LatestSystems:
     def system(self, problem: Problem, grid: Grid, force: float) -> System:
         """The system of `problem` on `grid` with reference force `force`, N/m."""
         with self._lock:
-            for known in self._systems:
-                same_grid = known.grid is grid or (
-                    known.grid.closed == grid.closed and np.array_equal(known.grid.theta, grid.theta)
-                )
-                if known.scales.force == force and same_grid and known.problem == problem:
-                    return known
-        system = System.build(problem, grid, force)
+            alike = [known for known in self._systems if known.scales.force == force and _have_same_nodes(known, grid)]
+        system = next((known for known in alike if known.problem == problem), None)
+        if system is None:
+            changed = (known.changed(problem) for known in alike)
+            system = next(filter(None, changed), None) or System.build(problem, grid, force)
         with self._lock:
-            self._systems = [system, *self._systems[: SYSTEMS_KEPT - 1]]
+            others = [known for known in self._systems if known is not system]
+            self._systems = [system, *others[: SYSTEMS_KEPT - 1]]
         return system
+
+
+def _have_same_nodes(known: System, grid: Grid) -> bool:
+    return known.grid is grid or (known.grid.closed == grid.closed and np.array_equal(known.grid.theta, grid.theta))
 
 
 _KEPT = _LatestSystems()

@@ -14,7 +14,7 @@ The remaining operator on (N, T) is symmetric.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -30,6 +30,10 @@ from fastpin.model.problem import Problem
 
 _ACTING_FORCES = min(DISPLACEMENTS) if max(DISPLACEMENTS) == ACTING - 1 else ACTING
 """Number of loads in products under forces. The displacements, where they stand last, are left out: zeros cost bits."""
+
+
+IN_PLACE = {"friction", "clearance", "gap"}
+"""Fields of a problem that the matrices do not depend on."""
 
 
 class Interface(NamedTuple):
@@ -122,8 +126,8 @@ class System:
     bodies : BodyTerms or None
         The smooth terms of hollow pins and finite plates. None for a solid pin in an infinite plate.
     held_as : System or None
-        The system whose contacts answer alike while all closed nodes stick: it differs in loads only. None for a
-        system of its own.
+        The system whose contacts answer alike while all closed nodes stick: it differs in loads, friction and fit
+        only. None for a system of its own.
     radius : float
         Radius of the contact over the R of the units.
     """
@@ -296,6 +300,20 @@ class System:
         if softness is None:
             return replace(worn, held_as=self.held_as or self)
         return replace(worn, operator=SoftOperator(self.operator, softness), held_as=None)
+
+    def changed(self, problem: Problem) -> System | None:
+        """The system of another problem with the same matrices; None if they differ."""
+        names = [each.name for each in fields(Problem) if each.name not in IN_PLACE]
+        alike = all(getattr(self.problem, name) == getattr(problem, name) for name in names)
+        if not alike or self.problem.frictionless != problem.frictionless:  # without friction nothing carries a moment
+            return None
+        if problem.seat is not None:  # the system of a joint holds systems of its parts
+            return None
+        rest_clearance = problem.assembled_clearance / self.scales.displacement
+        return replace(
+            self, problem=problem, friction=problem.friction_at(self.grid.theta), rest_clearance=rest_clearance,
+            initial_gap=problem.gap_at(self.grid.theta)[0] / self.scales.displacement, held_as=self.held_as or self,
+        )  # fmt: skip
 
     def with_friction(self, friction: np.ndarray) -> System:
         """The same system with another friction at its nodes, shape (n,); itself if it is the same."""

@@ -1,7 +1,6 @@
 """A place in a session, to which the session can go back: a problem, the loads so far, and the contact there.
 
-The loads of many places share their memory. :func:`changed_problem` leads to another problem, and
-:func:`changed_system` to its matrices where they are the same.
+The loads of many places share their memory. :func:`changed_problem` leads to another problem.
 """
 
 from __future__ import annotations
@@ -24,9 +23,6 @@ from fastpin.states.state import State
 
 ROWS = 1024
 """Loads in one block of :class:`Loads`."""
-
-IN_PLACE = {"friction", "clearance", "gap"}
-"""Fields of a problem that the matrices do not depend on."""
 
 
 class Loads:
@@ -142,25 +138,6 @@ def followed_problem(problem: Problem, changes: dict[str, Any]) -> Problem:
 def system_with_friction(system: System, problem: Problem) -> System:
     """The system of another problem that differs in its friction."""
     return replace(system, problem=problem, friction=problem.friction_at(system.grid.theta))
-
-
-def changed_system(system: System, problem: Problem) -> System | None:
-    """The system of another problem with the same matrices; None if they differ."""
-    old = system.problem
-    alike = all(
-        getattr(old, field.name) == getattr(problem, field.name)
-        for field in fields(Problem)
-        if field.name not in IN_PLACE
-    )
-    if not alike or old.frictionless != problem.frictionless:  # without friction nothing carries a moment
-        return None
-    if problem.seat is not None:  # the system of a joint holds systems of its parts
-        return None
-    rest_clearance = problem.assembled_clearance / system.scales.displacement
-    return replace(
-        system, problem=problem, friction=problem.friction_at(system.grid.theta), rest_clearance=rest_clearance,
-        initial_gap=problem.gap_at(system.grid.theta)[0] / system.scales.displacement,
-    )  # fmt: skip
 
 
 def check_nodes(problem: Problem, options: SolveOptions, grid: Grid | None) -> None:

@@ -15,7 +15,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from fastpin.elasticity.large import build_system
-from fastpin.elasticity.system import System
+from fastpin.elasticity.system import IN_PLACE, System
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, choice, true_or_false, whole_number
 from fastpin.model.doubts import doubts, warn_of
@@ -29,7 +29,7 @@ from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.growth import carried, dividing_the_circle, most_nodes, wider_grid
 from fastpin.solver.latest import LatestState, touches_outside
-from fastpin.solver.place import IN_PLACE, Loads, Place, changed_problem, changed_system, check_nodes, followed_problem
+from fastpin.solver.place import Loads, Place, changed_problem, check_nodes, followed_problem
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Run
@@ -455,7 +455,7 @@ class Session(InTurns):
         if known is not None and known.interfaces[0].grid is place.grid and known.scales.force == place.force:
             if known.problem == place.problem:
                 return known
-            changed = changed_system(known, place.problem)
+            changed = known.changed(place.problem)
             if changed is not None:
                 return changed
         return build_system(place.problem, place.grid, place.force)

@@ -72,7 +72,7 @@ class Work:
 
     def solve(self, todo: Collection[str]) -> Generator[list[RunEnd], None, None]:
         """Yield the ends of the runs of each batch when it ends."""
-        pace = Pace(self._workers)
+        pace, todo = Pace(self._workers), neighbours(self._plan, todo)
         for run in todo:
             self._path(run).unlink(missing_ok=True)  # A damaged file, or the states of a failed run.
         with closing(self._run(todo, self._submit_solve, pace.size)) as ended:
@@ -154,6 +154,15 @@ class Pace:
             return 1
         by_time = BATCH_SECONDS * self._runs / max(self._seconds, 1e-3)
         return max(1, min(int(by_time), MOST_IN_BATCH, waiting // (4 * self._workers)))
+
+
+def neighbours(plan: Plan, todo: Collection[str]) -> list[str]:
+    """Order runs so that runs follow one another which differ in friction only: such runs share their matrices."""
+    groups: dict[str, list[str]] = {}
+    for run in todo:
+        others = {name: value for name, value in plan.runs[run].values.items() if name != "contact.friction"}
+        groups.setdefault(repr(others), []).append(run)
+    return [run for group in groups.values() for run in group]
 
 
 def _arrived(end: RunEnd, path: Path) -> RunEnd:

@@ -140,6 +140,21 @@ def open_result() -> fastpin.Result:
 # -- going on --------------------------------------------------------------------------------------------------
 
 
+def test_runs_that_share_matrices_follow_one_another() -> None:
+    text = """
+    [grid]
+    "contact.friction" = [0.1, 0.2, 0.3]
+    "contact.clearance" = [1e-5, 2e-5]
+    """
+    plan = parse_plan(text)
+    values = [plan.runs[run].values for run in work.neighbours(plan, plan.runs)]
+    assert [(each["contact.clearance"], each["contact.friction"]) for each in values] == [
+        (gap, friction) for gap in (1e-5, 2e-5) for friction in (0.1, 0.2, 0.3)
+    ]
+    last = list(plan.runs)[2:]
+    assert sorted(work.neighbours(plan, last)) == sorted(last)
+
+
 def test_what_is_finished_is_skipped(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = contents(copy)
     assert set(before) == set(plan.runs)
