@@ -1,6 +1,6 @@
-"""How well a sweep uses the processors: the same runs in a loop, with one worker, and with several.
+"""How well a sweep uses the processors: the same runs in a loop, in threads, with one worker, and with several.
 
-    python bench/sweep.py                                  1,000 runs with 101 nodes, 1 and 2 workers
+    python bench/sweep.py                                  1,000 runs with 101 nodes, 2 threads, 1 and 2 workers
     python bench/sweep.py --runs 100 --nodes 201 --workers 4
     python bench/sweep.py --against ../before              a sweep here against a loop over ``solve`` of a checkout
     python bench/sweep.py --parts ../before                a run in parts, here and in a checkout, and its compiled loop
@@ -8,8 +8,8 @@
 
 Friction and clearance of the built-in case are varied. Efficiency is t(1) / (n t(n)). The time of a sweep includes the
 start of its workers. "Without the start" counts from the end of the first run. All code is compiled before. A loop
-solves every case, reads its key figures, and writes a file. Against a checkout the measurements take turns, and the
-medians count. The checkout needs its environment ``.venv``.
+solves every case, reads its key figures, and writes a file. Memory is the largest of this process, and of a worker.
+Against a checkout the measurements take turns, and the medians count. The checkout needs its environment ``.venv``.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable
+from concurrent.futures import Executor, ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 from unittest import mock
 
 import numpy as np
@@ -42,6 +43,8 @@ from fastpin.studies.run_end import key_figures
 
 HERE = Path(__file__).resolve().parents[1]
 CHILDREN = resource.RUSAGE_CHILDREN
+
+Measured = TypeVar("Measured")
 
 PLAN = """
 [grid]
@@ -163,7 +166,7 @@ def compared_parts(options: argparse.Namespace) -> None:
         print(f"{name:16}{there:10.2f}{here:10.2f}{here / there:8.3f}")
 
 
-def swept(plan: Plan, workers: int) -> tuple[float, float]:
+def swept(plan: Plan, workers: int, executor: Executor | None = None) -> tuple[float, float]:
     """Return the seconds of a sweep, and its seconds without the start of the workers.
 
     The latter count from the end of the first run, and are scaled to the number of all runs.
@@ -171,7 +174,7 @@ def swept(plan: Plan, workers: int) -> tuple[float, float]:
     ends: list[float] = []
     with tempfile.TemporaryDirectory() as directory:
         began = time.perf_counter()
-        summary = sweep.run(plan, directory, workers=workers, progress=lambda *_: ends.append(time.perf_counter()))
+        summary = sweep.run(plan, directory, executor, workers, progress=lambda *_: ends.append(time.perf_counter()))
         seconds = time.perf_counter() - began
     if summary.done != len(plan.runs):
         raise SystemExit(f"{len(summary.failed)} runs failed, the first: {summary.failed[0]}")
@@ -232,19 +235,36 @@ def main() -> None:
         (against if options.against else compared_parts)(options)
         return
     loop(plan_of(1, options.nodes))
-    serial = loop(plan)
     count = len(plan.runs)
-    print(f"{count} runs, {options.nodes} nodes, {1e3 * serial / count:.1f} ms each in a loop")
-    print(f"loop in this process   {serial:8.2f} s")
-    one, steady_one = swept(plan, 1)
-    print(f"1 worker               {one:8.2f} s, {steady_one:8.2f} s without the start")
+    serial, processor = measured(lambda: loop(plan))
+    print(f"{count} runs, {options.nodes} nodes; wall and processor time, ms a run; runs a second")
+    show("loop in this process", serial, processor, count)
+    for threads in options.workers:
+        with ThreadPoolExecutor(threads) as pool:
+            (seconds, _), processor = measured(lambda: swept(plan, threads, pool))  # noqa: B023  called at once
+        show(f"{threads} threads", seconds, processor, count, f"{serial / seconds:.2f} times the loop")
+    (one, steady_one), processor = measured(lambda: swept(plan, 1))
+    show("1 worker", one, processor, count, f"{steady_one:.2f} s without the start")
     for workers in options.workers:
-        many, steady = swept(plan, workers)
-        print(
-            f"{workers} workers              {many:8.2f} s, {steady:8.2f} s without the start; efficiency "
-            f"{one / (workers * many):.3f}, {steady_one / (workers * steady):.3f} without the start; "
-            f"{serial / many:.2f} times the loop"
-        )
+        (many, steady), processor = measured(lambda: swept(plan, workers))  # noqa: B023  called at once
+        efficiency = f"efficiency {one / (workers * many):.3f}, {steady_one / (workers * steady):.3f} without the start"
+        show(f"{workers} workers", many, processor, count, f"{efficiency}; {serial / many:.2f} times the loop")
+    megabytes = (resource.getrusage(who).ru_maxrss // 1024 for who in (resource.RUSAGE_SELF, CHILDREN))
+    print("memory: {} MB here, {} MB a worker at most".format(*megabytes))
+
+
+def measured(work: Callable[[], Measured]) -> tuple[Measured, float]:
+    """Return what `work` returns, and its processor time, s, with that of its ended children."""
+    began = _processor_time()
+    return work(), _processor_time() - began
+
+
+def show(name: str, seconds: float, processor: float, runs: int, more: str = "") -> None:
+    """Print a row."""
+    print(
+        f"{name:22}{seconds:9.2f} s {1e3 * seconds / runs:8.2f} ms {1e3 * processor / runs:8.2f} ms "
+        f"{runs / seconds:8.1f} /s  {more}"
+    )
 
 
 if __name__ == "__main__":
