@@ -88,14 +88,22 @@ class LargeSystem(System):
 def build_system(problem: Problem, grid: Grid, force: float) -> System:
     """The system of `problem` on `grid` with reference force `force`, N/m; a :class:`LargeSystem` where that is due.
 
-    The latest systems with few nodes are kept, and returned again for the same problem and grid. Problems that differ
-    in friction and fit only share their matrices, as many runs of a sweep do. Where a bush slips, `grid` has the nodes
-    of the pin, and as many go round the seat.
+    Where a bush slips, `grid` has the nodes of the pin, and as many go round the seat. Other systems with few nodes
+    are those of :func:`latest_system`.
     """
     if problem.seat is not None:
         return JointSystem.join(problem, (grid, seat_grid(problem, grid)), force)
     if grid.closed and not grid.uniform and grid.size > MOST_DENSE:
         return LargeSystem.build(problem, grid, force)
+    return latest_system(problem, grid, force)
+
+
+def latest_system(problem: Problem, grid: Grid, force: float) -> System:
+    """The system of the pin, with a bush that sticks.
+
+    The latest systems with few nodes are kept, and returned again for the same problem and grid. Problems that differ
+    in friction and fit only share their matrices, as many runs of a sweep do.
+    """
     return _KEPT.system(problem, grid, force) if grid.size <= MOST_KEPT else System.build(problem, grid, force)
 
 

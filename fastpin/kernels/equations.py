@@ -57,7 +57,7 @@ def _eliminate(matrix):
 
 
 @compiled
-def solve(operator, equations, loaded, forces, rest_gap, stuck_slip, width, solution):
+def solve_few(operator, equations, loaded, forces, rest_gap, stuck_slip, width, solution):
     """Solve for tractions and motion under given statuses.
 
     The unknowns are N at closed nodes, T at sticking nodes, and the motion. T = -status mu N where a node slips.

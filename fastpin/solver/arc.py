@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fastpin.elasticity.large import build_system
+from fastpin.elasticity.large import latest_system
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid, graded_size
 from fastpin.model.history import LoadHistory
@@ -169,7 +169,7 @@ def _touched_arc(
         circle = GAP_NODES if problem.gap else COARSE_NODES
         grid = Grid.circle(circle) if arc is None else Grid.arc(*arc, COARSE_NODES)
         try:
-            run = CoarseRun(history, build_system(problem, grid, force), SolveOptions(), progress=progress)
+            run = CoarseRun(history, latest_system(problem, grid, force), SolveOptions(), progress=progress)
             run.follow()
             margin = 4
         except ArcError:
@@ -203,7 +203,7 @@ def _quick_arc(
     """
     if arc is None or arc[1] - arc[0] >= WHOLE or history.distinct()[:, REMOTE].any():
         return None
-    system = build_system(problem, Grid.arc(*arc, QUICK_NODES), force)
+    system = latest_system(problem, Grid.arc(*arc, QUICK_NODES), force)
     run = CoarseRun(history, system, SolveOptions(), progress=progress)
     try:
         run.follow()

@@ -252,7 +252,7 @@ def solve_statuses(
     pressure, shear, gap, slip = np.empty((4, n))
     found = Solution(pressure, shear, gap, slip, np.empty(system.motions))
     held = rest_gap if isinstance(rest_gap, np.ndarray) else np.full(n, rest_gap)
-    condition = equations.solve(
+    condition = equations.solve_few(
         matrix, system.equations, system.load_displacement(load), system.load_forces(load), held, stuck_slip,
         system.width, found.under(status),
     )  # fmt: skip

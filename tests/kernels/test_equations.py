@@ -35,8 +35,8 @@ def solve(request, monkeypatch):
     if request.param == "python":
         for name in ("_norm", "_eliminate"):
             monkeypatch.setattr(equations, name, getattr(equations, name).py_func)
-        return equations.solve.py_func
-    return equations.solve
+        return equations.solve_few.py_func
+    return equations.solve_few
 
 
 def system_of(pair, case):
@@ -63,7 +63,7 @@ def drawn(system, rng):
 @pytest.mark.parametrize("case", CASES)
 def test_it_is_the_solution_by_a_factorisation(titanium_in_aluminium, solve, case, monkeypatch):
     system, rng = system_of(titanium_in_aluminium, case), np.random.default_rng(3)
-    monkeypatch.setattr(configuration.equations, "solve", solve)
+    monkeypatch.setattr(configuration.equations, "solve_few", solve)
     for _ in range(6):
         status, slip, load, gap = drawn(system, rng)
         expected = solve_unknowns(system, DenseUnknowns(system, status), slip, load, gap)
@@ -78,7 +78,7 @@ def test_many_unknowns_are_left_to_lapack(titanium_in_aluminium, monkeypatch):
     system = system_of(titanium_in_aluminium, "plain")
     status = np.full(31, OPEN, dtype=np.int8)
     status[1 : 2 + MOST_UNKNOWNS // 2] = STICK
-    monkeypatch.setattr(configuration.equations, "solve", None)
+    monkeypatch.setattr(configuration.equations, "solve_few", None)
     assert solve_statuses(system, status, np.zeros(31), np.zeros(len(LOADS)), 0.0) is not None
 
 
@@ -103,7 +103,7 @@ def test_the_condition_number_is_that_of_the_definition(titanium_in_aluminium, s
 def test_a_mechanism_has_no_solution(titanium_in_aluminium, solve, case, closed, as_status, monkeypatch):
     """All nodes slip, the pin turns about one node, or it slides off one node without friction."""
     system = system_of(titanium_in_aluminium, case)
-    monkeypatch.setattr(configuration.equations, "solve", solve)
+    monkeypatch.setattr(configuration.equations, "solve_few", solve)
     status = np.full(31, OPEN, dtype=np.int8)
     status[closed] = as_status
     assert DenseUnknowns(system, status).singular
@@ -114,7 +114,7 @@ def test_a_mechanism_has_no_solution(titanium_in_aluminium, solve, case, closed,
 def test_both_interfaces_of_a_joint(solve, monkeypatch):
     """There are six motions, and nodes of two rims."""
     system = JointSystem.join(joint(0.3, 0.25), (Grid.circle(24), Grid.circle(32)), 1.0)
-    monkeypatch.setattr(configuration.equations, "solve", solve)
+    monkeypatch.setattr(configuration.equations, "solve_few", solve)
     status = np.full(56, OPEN, dtype=np.int8)
     status[[4, 5, 6, 30, 31, 32]] = [1, STICK, STICK, STICK, STICK, -1]
     load, slip = np.ones(len(LOADS)), np.linspace(0.0, 1.0, 56)
