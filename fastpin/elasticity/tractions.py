@@ -118,24 +118,15 @@ class Tree:
             last = begin + len(patch) - 1
             leaves += [(first, min(first + LEAF, last)) for first in range(begin, last, LEAF)]
             begin = last + 1
-        blocks = [(first, last, -1, -1) for first, last in leaves]
-        places = np.exp(1j * nodes[:, 0])
-        spans = [places[first : last + 1] for first, last in leaves]
-        centres = [0.5 * (span[0] + span[-1]) for span in spans]
-        radii = [float(np.abs(span - centre).max()) for span, centre in zip(spans, centres, strict=True)]
-        filled = np.zeros((len(leaves), 2, cauchy.TERMS), dtype=complex)
-        cauchy.moments(nodes, np.array(leaves), np.array(centres), *_gauss(), filled)
-        all_moments = list(filled)
-        binomials = _binomials()
-        level = list(range(len(leaves)))
-        while len(level) > 1:
-            level = [
-                _joined(level[k : k + 2], blocks, centres, radii, all_moments, binomials)
-                for k in range(0, len(level), 2)
-            ]
+        count = 2 * len(leaves) - 1
+        blocks = np.full((count, 4), -1)
+        blocks[: len(leaves), :2] = leaves
+        centres, radii = np.empty(count, dtype=complex), np.empty(count)
+        moments = np.zeros((count, 2, cauchy.TERMS), dtype=complex)
+        cauchy.grow(nodes, len(leaves), *_gauss(), _binomials(), blocks, centres, radii, moments)
         if turn:
             nodes = np.concatenate([nodes[:-1], nodes + np.array([2.0 * math.pi, 0.0, 0.0])])
-        return cls(nodes, turn, np.array(blocks), np.array(centres), np.array(radii), np.array(all_moments))
+        return cls(nodes, turn, blocks, centres, radii, moments)
 
 
 @cache
@@ -149,25 +140,6 @@ def _gauss() -> tuple[np.ndarray, np.ndarray]:
 def _binomials() -> np.ndarray:
     """Binomial coefficients m over k of the moments, shape (TERMS, TERMS)."""
     return np.array([[float(math.comb(m, k)) for k in range(cauchy.TERMS)] for m in range(cauchy.TERMS)])
-
-
-def _joined(
-    pair: list[int], blocks: list[tuple[int, int, int, int]], centres: list[complex], radii: list[float],
-    all_moments: list[np.ndarray], binomials: np.ndarray,
-) -> int:  # fmt: skip
-    """Append the block that joins two neighbours, and return its place. A single block is returned as it is."""
-    if len(pair) == 1:
-        return pair[0]
-    one, two = pair
-    centre = 0.5 * (centres[one] + centres[two])
-    moments = np.zeros_like(all_moments[0])
-    for child in pair:
-        cauchy.shift_moments(all_moments[child], centres[child] - centre, binomials, moments)
-    blocks.append((blocks[one][0], blocks[two][1], one, two))
-    centres.append(centre)
-    radii.append(max(abs(centres[child] - centre) + radii[child] for child in pair))
-    all_moments.append(moments)
-    return len(blocks) - 1
 
 
 def cauchy_integrals(tractions: Tractions, theta: np.ndarray, away: np.ndarray, outside: bool) -> np.ndarray:

@@ -131,40 +131,29 @@ def _opposite(theta, nodes, turn):
     return low
 
 
-@compiled
-def moments(nodes, leaves, centres, points, weights, out):
-    """Fill the moments int g (t - centre)^m t dxi of leaves, for g = p and g = T.
+@inner
+def _add_moments(nodes, first, last, centre, points, weights, out):
+    """Add the moments int g (t - centre)^m t dxi of the pieces from node `first` to node `last` to `out` (2, TERMS).
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (k, 3)
-        Angle, N and T of the nodes.
-    leaves : ndarray of int, shape (b, 2)
-        First and last node of each leaf.
-    centres : ndarray of complex, shape (b,)
-    points, weights : ndarray, shape (q,)
-        Gauss points and weights on (0, 1).
-    out : ndarray of complex, shape (b, 2, TERMS)
+    The rows are for g = p and g = T. `points` and `weights` (q,) are those of Gauss on (0, 1).
     """
-    out[:] = 0.0
-    for b in range(leaves.shape[0]):
-        for j in range(leaves[b, 0], leaves[b, 1]):
-            step = nodes[j + 1, 0] - nodes[j, 0]
-            for q in range(points.size):
-                part = points[q]
-                xi = nodes[j, 0] + part * step
-                pressure = nodes[j, 1] + part * (nodes[j + 1, 1] - nodes[j, 1])
-                shear = nodes[j, 2] + part * (nodes[j + 1, 2] - nodes[j, 2])
-                t = complex(math.cos(xi), math.sin(xi))
-                power, away = weights[q] * step * t, t - centres[b]
-                for m in range(TERMS):
-                    out[b, 0, m] += complex(pressure, -shear) * power
-                    out[b, 1, m] += shear * power
-                    power = power * away
+    for j in range(first, last):
+        step = nodes[j + 1, 0] - nodes[j, 0]
+        for q in range(points.size):
+            part = points[q]
+            xi = nodes[j, 0] + part * step
+            pressure = nodes[j, 1] + part * (nodes[j + 1, 1] - nodes[j, 1])
+            shear = nodes[j, 2] + part * (nodes[j + 1, 2] - nodes[j, 2])
+            t = complex(math.cos(xi), math.sin(xi))
+            power, away = weights[q] * step * t, t - centre
+            for m in range(TERMS):
+                out[0, m] += complex(pressure, -shear) * power
+                out[1, m] += shear * power
+                power = power * away
 
 
-@compiled
-def shift_moments(child, offset, binomials, out):
+@inner
+def _shift_moments(child, offset, binomials, out):
     """Add moments `child` (2, TERMS) to `out` (2, TERMS) about another centre; `offset` is child's centre less it."""
     powers = np.empty(TERMS, dtype=np.complex128)
     powers[0] = 1.0
@@ -174,6 +163,55 @@ def shift_moments(child, offset, binomials, out):
         for m in range(TERMS):
             for k in range(m + 1):
                 out[g, m] += binomials[m, k] * powers[m - k] * child[g, k]
+
+
+@compiled
+def grow(nodes, leaves, points, weights, binomials, tree, centres, radii, moments):
+    """Build a tree of blocks from its leaves: pairs of neighbours become blocks, up to one root.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (k, 3)
+        Angle, N and T of the nodes.
+    leaves : int
+        Number l of leaves, the first blocks of the tree.
+    points, weights : ndarray, shape (q,)
+        Gauss points and weights on (0, 1).
+    binomials : ndarray, shape (TERMS, TERMS)
+    tree : ndarray of int, shape (2l-1, 4)
+        First and last node of each leaf, and -1 elsewhere. The other blocks and all children are set; see
+        :func:`cauchy`.
+    centres, radii : ndarray, shape (2l-1,)
+        Are set.
+    moments : ndarray of complex, shape (2l-1, 2, TERMS)
+        Zeros. The moments of each block about its centre are added.
+    """
+    level, size, count = np.arange(leaves), leaves, leaves
+    for b in range(leaves):
+        first, last = tree[b, 0], tree[b, 1]
+        one = complex(math.cos(nodes[first, 0]), math.sin(nodes[first, 0]))
+        two = complex(math.cos(nodes[last, 0]), math.sin(nodes[last, 0]))
+        centres[b], radii[b] = 0.5 * (one + two), 0.0
+        for j in range(first, last + 1):
+            place = complex(math.cos(nodes[j, 0]), math.sin(nodes[j, 0]))
+            radii[b] = max(radii[b], abs(place - centres[b]))
+        _add_moments(nodes, first, last, centres[b], points, weights, moments[b])
+    while size > 1:
+        for k in range(0, size - 1, 2):
+            children = level[k], level[k + 1]
+            centres[count] = 0.5 * (centres[children[0]] + centres[children[1]])
+            tree[count, 0], tree[count, 1] = tree[children[0], 0], tree[children[1], 1]
+            tree[count, 2], tree[count, 3] = children
+            radii[count] = 0.0
+            for child in children:
+                away = centres[child] - centres[count]
+                radii[count] = max(radii[count], abs(away) + radii[child])
+                _shift_moments(moments[child], away, binomials, moments[count])
+            level[k // 2] = count
+            count += 1
+        if size % 2:
+            level[size // 2] = level[size - 1]
+        size = (size + 1) // 2
 
 
 @compiled

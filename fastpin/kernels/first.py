@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.kernels.cauchy import cauchy, moments, shift_moments
+from fastpin.kernels.cauchy import cauchy, grow
 from fastpin.kernels.half_line import end_places, evaluate, least_squares, match, solve, value_errors
 from fastpin.runtime import beside
 
@@ -28,8 +28,7 @@ def kernels() -> list[tuple[Any, ...]]:
     frozen = np.frombuffer(bytes(8))
     return [
         (end_places, line, places, table, cube, table),
-        (moments, table, places, row, line, line, block),
-        (shift_moments, rows, 0j, table, rows),
+        (grow, table, 0, line, line, table, places, row, line, block),
         (cauchy, line, line, True, table, 0, places, row, line, block, rows),
         (value_errors, line, places, table, cube, line, line),
         (least_squares, table, line, line),

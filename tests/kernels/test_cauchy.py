@@ -14,8 +14,11 @@ from fastpin.elasticity.tractions import Tractions, cauchy_integrals
 from fastpin.kernels import cauchy
 from fastpin.runtime import threads
 
-KERNELS = ("cauchy", "moments", "shift_moments")
-INNER = ("_log_one_minus", "_dilogarithm", "_reduced", "_stretch", "_expansion", "_opposite")
+KERNELS = ("cauchy", "grow")
+INNER = (
+    "_add_moments", "_shift_moments", "_log_one_minus", "_dilogarithm", "_reduced", "_stretch", "_expansion",
+    "_opposite",
+)  # fmt: skip
 
 
 @pytest.fixture(params=["compiled", "python"])
