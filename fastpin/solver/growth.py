@@ -15,6 +15,7 @@ from fastpin.elasticity.system import System
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid
 from fastpin.model.loads import REMOTE
+from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration, embedded
 from fastpin.solver.interfaces import part_of
 from fastpin.solver.repeats import Repeats
@@ -176,6 +177,7 @@ class OutsideGap:
         rows, nodes = np.arange(n, around.grid.size), np.arange(n)
         self._operator = around.operator.entries(rows, np.r_[nodes, around.grid.size + nodes])
         self._moved, self._loads = around.motion[rows], around.loads[rows].copy()
+        self._rest: tuple[np.ndarray, Problem, np.ndarray] | None = None  # the latest gap at rest
         if self._joint is not None:  # the remote stress acts on the lug alone
             self._loads[:, REMOTE] = 0.0
             self._bore = self._joint.bore_at(self._theta)
@@ -195,5 +197,8 @@ class OutsideGap:
             return False
         elastic = self._operator @ now.tractions + bent
         moved = self._moved @ now.motion + self._loads @ now.load[: self._loads.shape[1]]
-        gap = elastic + moved + rest_gap_at(system, now, self._theta)
+        known = self._rest
+        if known is None or known[0] is not now.rest_gap or known[1] is not system.problem:
+            known = self._rest = now.rest_gap, system.problem, rest_gap_at(system, now, self._theta)
+        gap = elastic + moved + known[2]
         return bool(gap.min() < -PENETRATION * max(float(np.abs(elastic).max()), float(np.abs(moved).max())))

@@ -370,10 +370,10 @@ class Run:
 
     def _check_resolution(self) -> None:
         """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
-        if self.recorder is None or force_on_pin(self.system, self.now) <= NEXT_TO_NOTHING:
-            return
         closed = self._pin_closed
-        if np.any(closed[:-2] & closed[1:-1] & closed[2:]):  # three neighbours
+        if self.recorder is None or np.any(closed[:-2] & closed[1:-1] & closed[2:]):  # three neighbours
+            return
+        if force_on_pin(self.system, self.now) <= NEXT_TO_NOTHING:
             return
         most = max((patch.size for patch in runs(self.system.interfaces[0].grid, closed)), default=LEAST_CLOSED)
         if most < LEAST_CLOSED:
@@ -456,8 +456,8 @@ class Run:
 
     def _at_corner(self, configuration: Configuration) -> Configuration:
         """The configuration at a corner, with the sums and the slip tally of a step that begins there."""
-        begun = replace(configuration, dissipation=0.0, work=0.0, seat_dissipation=0.0, slip_tally=self._no_slip)
-        return replace(begun, slip_tally=slip_tally_with(begun))
+        tally = self._no_slip.with_slip(configuration.slip - configuration.rest_slip, configuration.closed)
+        return replace(configuration, dissipation=0.0, work=0.0, seat_dissipation=0.0, slip_tally=tally)
 
     def _show_corner(self) -> None:
         """Tell the recorder and the progress that the run has reached a corner."""
