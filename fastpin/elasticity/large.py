@@ -117,7 +117,11 @@ class _LatestSystems:
     def system(self, problem: Problem, grid: Grid, force: float) -> System:
         """The system of `problem` on `grid` with reference force `force`, N/m."""
         with self._lock:
-            alike = [known for known in self._systems if known.scales.force == force and _have_same_nodes(known, grid)]
+            alike = [
+                known for known in self._systems
+                if known.scales.force == force and known.grid.closed == grid.closed
+                and np.array_equal(known.grid.theta, grid.theta)
+            ]  # fmt: skip
         system = next((known for known in alike if known.problem == problem), None)
         if system is None:
             changed = (known.changed(problem) for known in alike)
@@ -126,10 +130,6 @@ class _LatestSystems:
             others = [known for known in self._systems if known is not system]
             self._systems = [system, *others[: SYSTEMS_KEPT - 1]]
         return system
-
-
-def _have_same_nodes(known: System, grid: Grid) -> bool:
-    return known.grid is grid or (known.grid.closed == grid.closed and np.array_equal(known.grid.theta, grid.theta))
 
 
 _KEPT = _LatestSystems()

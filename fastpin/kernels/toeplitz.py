@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.runtime.jit import compiled
+from fastpin.runtime.jit import compiled, inner
 
 TURNED = np.array([1.0, -1.0, -1.0, 1.0])
 """Signs of the entries of a block B in D B D."""
 
 
-@compiled
+@inner
 def _predictor(first, second, cross, F, error):
     """Compute the block column F with T F = (E, 0, ..., 0), by Whittle's recursion. F begins with the unit matrix.
 
@@ -118,37 +118,39 @@ def add_turned_column(by_distance, turn, factor, rows, column, out):
         out[i] += by_distance[abs(row - node)] * moved
 
 
+@compiled
+def _invert(first, second, cross, out):
+    """Fill `out` (2m, 2m) with the inverse; see :func:`inverse`."""
+    m = first.size
+    forward, column, error = np.empty((4, m)), np.empty((4, m)), np.empty(4)
+    _predictor(first, second, cross, forward, error)
+    size = error[0] * error[3] - error[1] * error[2]
+    for j in range(m):  # the first block column of the inverse is the block column F E^-1
+        for r in range(0, 4, 2):
+            column[r, j] = (forward[r, j] * error[3] - forward[r + 1, j] * error[2]) / size
+            column[r + 1, j] = (forward[r + 1, j] * error[0] - forward[r, j] * error[1]) / size
+    before, after = np.empty((4, m - 1)), np.empty((4, m - 1))
+    for r in range(2):
+        for s in range(2):
+            for j in range(m):  # T is symmetric: the first block row is the first block column transposed
+                out[r * m, s * m + j], out[r * m + j, s * m] = column[2 * s + r, j], column[2 * r + s, j]
+            for j in range(m - 1):
+                for k in range(2):
+                    row, place = 2 * r + k, 2 * s + k
+                    before[k, j], before[2 + k, j] = column[row, j + 1], TURNED[row] * column[row, m - 1 - j]
+                    after[k, j], after[2 + k, j] = forward[place, j + 1], -TURNED[place] * forward[place, m - 1 - j]
+            _fill(before, after, out[r * m : (r + 1) * m, s * m : (s + 1) * m])
+
+
 def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndarray:
     """Inverse of the symmetric matrix [[first, cross], [-cross, second]] of three Toeplitz matrices, shape (2m, 2m).
 
     The arguments, shape (m,) each, are the first columns of the three matrices. `first` and `second` are symmetric,
     `cross` is antisymmetric. The inverse is not finite if a leading block is singular.
     """
-    m = first.size
-    forward, error = np.empty((4, m)), np.empty(4)
-    _predictor(first, second, cross, forward, error)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        column = _divide_blocks(forward, error)
-    backward, last = (TURNED[:, np.newaxis] * blocks[:, ::-1] for blocks in (forward, column))
-    out = np.empty((2 * m, 2 * m))
-    for r in range(2):
-        for s in range(2):
-            block = out[r * m : (r + 1) * m, s * m : (s + 1) * m]
-            block[0] = column[2 * s + r]  # T is symmetric: the first block row is the first block column transposed
-            block[:, 0] = column[2 * r + s]
-            before = np.concatenate([column[2 * r : 2 * r + 2, 1:], last[2 * r : 2 * r + 2, :-1]])
-            after = np.concatenate([forward[2 * s : 2 * s + 2, 1:], -backward[2 * s : 2 * s + 2, :-1]])
-            _fill(before, after, block)
+    out = np.empty((2 * first.size, 2 * first.size))
+    _invert(first, second, cross, out)
     return out
-
-
-def _divide_blocks(column: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """The product column error^-1, block by block."""
-    a, b, c, d = error
-    one, two, three, four = column
-    return np.array([one * d - two * c, two * a - one * b, three * d - four * c, four * a - three * b]) / (
-        a * d - b * c
-    )
 
 
 class NeighbourResponses:

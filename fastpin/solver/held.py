@@ -24,7 +24,7 @@ from fastpin.runtime.extensions import blas
 from fastpin.solver.configuration import Configuration, Correction, Solution
 from fastpin.solver.neighbours import Neighbours
 from fastpin.solver.tableau import TableauMemory
-from fastpin.solver.unknowns import DenseUnknowns, have_toeplitz_matrix
+from fastpin.solver.unknowns import MOST_RESIDUAL, DenseUnknowns, have_toeplitz_matrix
 
 FEW_NODES = 512
 """Most nodes of a grid whose steps begin with a held contact. Above, columns on demand take less time."""
@@ -43,9 +43,6 @@ LEAST_RECURRENCES = 192
 
 MOST_CONDITION = 1e8
 """Largest condition number of the equations of the motion. A contact above it hardly holds the pin."""
-
-MOST_RESIDUAL = 1e-10
-"""Largest residual of a table, relative to the right side. A contact above it begins with a factorisation."""
 
 
 class HeldContacts:

@@ -32,7 +32,7 @@ def python(function):
 @pytest.fixture(params=["compiled", "python"])
 def inverse(request, monkeypatch):
     if request.param == "python":
-        for name in ("_predictor", "_fill"):
+        for name in ("_predictor", "_fill", "_invert"):
             monkeypatch.setattr(toeplitz, name, python(getattr(toeplitz, name)))
     return toeplitz.inverse
 
