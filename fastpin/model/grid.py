@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,9 @@ class Grid:
         theta.setflags(write=False)
         object.__setattr__(self, "theta", theta)
         object.__setattr__(self, "closed", true_or_false("closed", self.closed))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"theta": self.theta, "closed": self.closed}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -132,16 +136,22 @@ class Grid:
         return int(self.theta.size)
 
     def knots(self) -> tuple[np.ndarray, np.ndarray]:
-        """Left and right knots of every node's hat function, rad, shape (n,) each.
+        """Left and right knots of every node's hat function, rad, shape (n,) each. They can't be written to.
 
         The end nodes of an arc carry half hats. The outer knot of a half hat is the node itself.
         """
+        return self._knots
+
+    @cached_property
+    def _knots(self) -> tuple[np.ndarray, np.ndarray]:
         theta = self.theta
         left = np.concatenate([theta[:1], theta[:-1]])
         right = np.concatenate([theta[1:], theta[-1:]])
         if self.closed:
             left[0] = theta[-1] - 2.0 * math.pi
             right[-1] = theta[0] + 2.0 * math.pi
+        for knots in (left, right):
+            knots.setflags(write=False)
         return left, right
 
     @property
@@ -150,7 +160,7 @@ class Grid:
         left, right = self.knots()
         return 0.5 * (right - left)
 
-    @property
+    @cached_property
     def uniform(self) -> bool:
         """Whether all nodes are equally spaced; on a circle also from the last node to the first."""
         spacing = self.knots()[1] - self.theta
