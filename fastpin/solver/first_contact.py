@@ -386,7 +386,8 @@ def _first_patch(system: System, resting: Configuration, way: Way, most_part: fl
     conforming = np.ptp(resting.gap) <= _rounding(system)  # the hole closes on the pin all round
     part = 1.0 if self_similar else CONFORMING_PART if conforming else _hertz_part(system, resting, left)
     most_part = 1.0 if self_similar or conforming else most_part
-    part = min(part, most_part)
+    wide, by_hertz = min(part, most_part), not (self_similar or conforming)
+    part = max(0.36 * wide, LEAST_PART) if by_hertz else wide  # three nodes in place of five: the width squared
     driven, best = system.drive.has_displacements, None
     low, high = 0.0, math.inf  # parts with too few nodes, and with too many
     for _ in range(60):
@@ -395,6 +396,9 @@ def _first_patch(system: System, resting: Configuration, way: Way, most_part: fl
         pinched = not driven and not is_pushed(load)
         rough = self_similar or pinched or (system.problem.rotation == "free" and load[M] != 0.0)
         found = _one_step(system, resting, load, self_similar) if rough else _shearless_step(system, resting, load)
+        if by_hertz and (found is None or found.closed.sum() != wanted):  # it is another contact: come from a wider one
+            by_hertz, part = False, wide
+            continue
         if found is None or worst_residual(system, found) > MAX_RESIDUAL:
             if self_similar:  # smaller loads have the same statuses
                 break
@@ -557,7 +561,7 @@ def _set_slip_beside(system: System, patch: Configuration, grown: Configuration,
 
 
 def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:
-    """A first guess: the part of the step's load at which a contact spans as many nodes as the first contact aims at.
+    """A first guess: the part of the step's load at which a contact spans about five nodes.
 
     A force presses a Hertz contact. A hole that shrinks on the pin overlaps the pin by half the curvature times the
     square of the contact's half-width.
@@ -566,7 +570,7 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     nearest = int(np.argmin(resting.gap))
     theta = system.grid.theta[nearest]
     gap = hole_gap(system, resting.load, theta)[0]
-    half = 0.25 * sum(FIRST_NODES) * _width(system, nearest)
+    half = 2.5 * _width(system, nearest)
     bent = max(bend(system, resting.load, theta, half), 0.0)
     if force == 0.0:
         shrinking = float(gap - hole_gap(system, resting.load + change, theta)[0])
