@@ -13,7 +13,7 @@ from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
-from fastpin.model.loads import FRICTION_CHANGE, ROTATION, UX, UY, M, P, Q
+from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION, UX, UY, M, P, Q
 from fastpin.reading.zones import runs
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import (
@@ -386,9 +386,9 @@ def _first_patch(system: System, resting: Configuration, way: Way, most_part: fl
     conforming = np.ptp(resting.gap) <= _rounding(system)  # the hole closes on the pin all round
     part = 1.0 if self_similar else CONFORMING_PART if conforming else _hertz_part(system, resting, left)
     most_part = 1.0 if self_similar or conforming else most_part
-    wide, by_hertz = min(part, most_part), not (self_similar or conforming)
+    driven, best, wide = system.drive.has_displacements, None, min(part, most_part)
+    by_hertz = wide < most_part and not (conforming or driven or system.problem.gap or after[list(REMOTE)].any())
     part = max(0.36 * wide, LEAST_PART) if by_hertz else wide  # three nodes in place of five: the width squared
-    driven, best = system.drive.has_displacements, None
     low, high = 0.0, math.inf  # parts with too few nodes, and with too many
     for _ in range(60):
         fraction = begins + part * (1.0 - begins)
