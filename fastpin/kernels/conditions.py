@@ -270,7 +270,7 @@ def _multiply(operator, values, elastic):
 
 
 @compiled
-def settle(tableau, updates, operator, equations, contact, sides, solution, settled):
+def settle(tableau, updates, operator, equations, contact, sides, settled):
     """Correct a held contact until statuses, held slip and load hold to rounding, and put it on its bounds.
 
     Parameters
@@ -283,28 +283,24 @@ def settle(tableau, updates, operator, equations, contact, sides, solution, sett
     contact : Contact
         It is not changed.
     sides : RightSides
-    solution : ContactValues
-        Is set to the corrected values.
     settled : ContactValues
-        With the slip of the contact. Is set to the solution within its bounds; see :func:`put_on_bounds`.
+        All its arrays are set: to the corrected values within their bounds, see :func:`put_on_bounds`.
 
     Returns
     -------
     (float, float, float, float)
-        The error that is left, see :func:`imbalance`; the error before, see :func:`drift`; and how far the solution
-        lies beyond its bounds, see :func:`beyond_bounds`.
+        The error that is left, see :func:`imbalance`; the error before, see :func:`drift`; and how far the corrected
+        values lie beyond their bounds, see :func:`beyond_bounds`.
     """
     n, motions = contact.status.size, contact.motion.size
     elastic, true = np.empty(2 * n), np.empty(2 * n)
     missing, change = np.empty(2 * n + motions), np.empty(2 * n + motions)
+    pressure, shear, motion = np.zeros(n), np.zeros(n), contact.motion.copy()
     for i in range(n):
-        closed = contact.status[i] != OPEN
-        solution.pressure[i] = contact.pressure[i] if closed else 0.0
-        solution.shear[i] = contact.shear[i] if closed else 0.0
-    solution.motion[:] = contact.motion
-    held = ContactValues(
-        solution.pressure, solution.shear, contact.gap, contact.slip, contact.status, solution.motion
-    )  # fmt: skip
+        settled.status[i], settled.slip[i] = contact.status[i], contact.slip[i]
+        if contact.status[i] != OPEN:
+            pressure[i], shear[i] = contact.pressure[i], contact.shear[i]
+    held = ContactValues(pressure, shear, contact.gap, contact.slip, contact.status, motion)
     before, last = 0.0, np.inf
     while True:
         _multiply(operator, held, elastic)
@@ -316,10 +312,9 @@ def settle(tableau, updates, operator, equations, contact, sides, solution, sett
         last = error
         _respond(tableau, updates, missing, change)
         correct(equations.friction, contact.tie, change, held)
-    for i in range(n):
-        solution.gap[i], solution.slip[i] = true[i], true[n + i]
     for k in range(motions):
-        settled.motion[k] = solution.motion[k]
+        settled.motion[k] = motion[k]
+    solution = ContactValues(pressure, shear, true[:n], true[n:], contact.status, motion)
     put_on_bounds(equations.friction, solution, settled)
     traction, gap = beyond_bounds(solution, settled)
     return error, before, traction, gap

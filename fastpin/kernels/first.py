@@ -1,6 +1,6 @@
 """The readings' kernels of a first run. A second process compiles them, since the solver's take as long.
 
-The first run compiles :func:`fastpin.kernels.exchange.follow` for half of its time. When it comes to the readings, most
+The first run compiles :func:`fastpin.kernels.held.step` for half of its time. When it comes to the readings, most
 of their kernels are stored. ``tests/kernels/test_first.py`` compares the list with a run.
 """
 

@@ -1,13 +1,21 @@
-"""Compiled start of a step whose closed nodes are all held: the rates by the table, and the expected sense of slip."""
+"""Compiled steps whose closed nodes are all held at the start.
+
+The table of the held contact gives the rates and the expected sense of slip. Then the load is followed from event to
+event, and the contact at the stop is corrected. All this is one call.
+"""
 
 from __future__ import annotations
 
+import numpy as np
+
+from fastpin.kernels.conditions import settle
+from fastpin.kernels.exchange import EXCHANGES, QUEUED, REACHED, UPDATES, follow
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.jit import compiled
 
 
 @compiled
-def begin(table, stack, contact, friction, displaced, forces, given, tableau):
+def begin(table, stack, contact, friction, displaced, forces, tableau):
     """Set the rates, ties and couplings with which a step begins.
 
     Parameters
@@ -20,8 +28,6 @@ def begin(table, stack, contact, friction, displaced, forces, given, tableau):
     friction : ndarray, shape (n,)
     displaced, forces : ndarray, shape (2n,), (m,)
         Gap and slip, and the right sides of equilibrium, by the rate of the load.
-    given : ndarray, shape (2n+m,)
-        Memory.
     tableau : Tableau
         Its ``rates``, ``tied`` and ``drag`` are set.
 
@@ -30,9 +36,7 @@ def begin(table, stack, contact, friction, displaced, forces, given, tableau):
     bool
         Whether the load has turned: most of the slipping nodes with friction stick when the load goes on.
     """
-    n, rates, status = contact.status.size, tableau.rates, contact.status
-    for i in range(given.size):
-        given[i] = 0.0
+    n, rates, status, given = contact.status.size, tableau.rates, contact.status, np.zeros(stack.size)
     for column in range(stack.size):
         variable = stack[column]
         if variable >= 2 * n:
@@ -68,3 +72,51 @@ def begin(table, stack, contact, friction, displaced, forces, given, tableau):
             tableau.tied[i] = friction[i] * tie
             rates[n + i] += tableau.tied[i] * rates[i]
     return turned
+
+
+@compiled
+def step(
+    begins, stack, operator, equations, displaced, forces, sides, contact, tableau, load, queue, ends, typical, stop,
+    most_events, all_at_once, settled,
+):  # fmt: skip
+    """Follow the load from sums[TIME] to `stop`, and correct the contact there.
+
+    Parameters
+    ----------
+    begins : bool
+        Whether the step begins here, with all closed nodes held. Nodes that go on slipping are then let go one by one.
+    stack : ndarray of int, shape (2n+m,)
+        See ``HeldTable``.
+    operator : ndarray, shape (2n, 2n), column by column
+    equations : Equations
+    displaced, forces : ndarray, shape (2n,), (m,)
+        Gap and slip, and the right sides of equilibrium, by the rate of the load.
+    sides : RightSides
+        Those of the load at `stop`.
+    contact, tableau, load, queue, ends, typical, stop, most_events, all_at_once
+        See :func:`fastpin.kernels.exchange.follow`.
+    settled : ContactValues
+        Is set to the corrected contact if `stop` is reached.
+
+    Returns
+    -------
+    (int, bool, (float, float, float, float))
+        The code of :func:`fastpin.kernels.exchange.follow`; whether the load has turned where the step begins, see
+        :func:`begin`; and the errors at `stop`, see :func:`fastpin.kernels.conditions.settle`.
+    """
+    n, counts, turned = contact.status.size, queue.counts, False
+    if begins:
+        turned = begin(tableau.matrix, stack, contact, equations.friction, displaced, forces, tableau)
+        for i in range(n):
+            if contact.status[i] == OPEN or contact.status[i] == STICK:
+                continue
+            if not turned:
+                queue.node[counts[QUEUED]], queue.status[counts[QUEUED]] = i, contact.status[i]
+                counts[QUEUED] += 1
+                counts[EXCHANGES] -= 1
+            contact.status[i] = STICK
+    code = follow(tableau, contact, load, queue, equations.friction, ends, typical, stop, most_events, all_at_once)
+    errors = (0.0, 0.0, 0.0, 0.0)
+    if code == REACHED:
+        errors = settle(tableau, counts[UPDATES], operator, equations, contact, sides, settled)
+    return code, turned, errors

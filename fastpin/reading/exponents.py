@@ -53,8 +53,9 @@ class Coupling:
     @classmethod
     def of_isotropic(cls, friction: np.ndarray, beta: float) -> Coupling:
         """The coupling of isotropic bodies with Dundurs' parameter `beta`, with the `friction` (n,) at the nodes."""
-        values, places = np.unique(friction, return_inverse=True)
-        tilt = np.array([math.atan(value * beta) / math.pi for value in values.tolist()])[places]
+        values = friction.tolist()
+        known = {value: math.atan(value * beta) / math.pi for value in set(values)}
+        tilt = np.array([known[value] for value in values])
         ones = np.ones((3, friction.size))
         return cls(np.array([np.zeros_like(tilt), tilt, tilt]), np.full(tilt.size, beta), ones, beta * ones)
 

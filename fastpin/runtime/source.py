@@ -40,13 +40,20 @@ class KernelSource:
     py_func : callable
         The function as plain Python.
     texts : tuple
-        The files of its text, and their stamps at its import. An upgrade may replace the files in a running process.
+        The files of its text, and their stamps at its import: its own file first, then those of the kernels of other
+        files that its file imports. An upgrade may replace the files in a running process.
     """
+
+    texts: tuple[tuple[str, tuple[int, int] | None], ...]
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self.py_func = function
         file = function.__code__.co_filename
-        self.texts = ((file, stamp(file)), *_shared)
+        texts: dict[str, tuple[int, int] | None] = {file: stamp(file)}
+        for each in function.__globals__.values():
+            if isinstance(each, KernelSource):
+                texts.update((other, kept) for other, kept in each.texts if other != file)
+        self.texts = tuple({**texts, **dict(_shared)}.items())
 
     def is_current(self) -> bool:
         """Whether the files of its text are still those that were imported."""

@@ -90,6 +90,11 @@ class Configuration:
         }
         return Configuration(**copied)
 
+    def with_values(self, values: ContactValues) -> Configuration:
+        """A copy with other values. Only those of :data:`AT_REST` are shared, and the arrays of `values`."""
+        fields = {**vars(self), **values._asdict()}
+        return Configuration(**{**fields, "load": self.load.copy(), "slip_tally": self.slip_tally.copy()})
+
     def part(self, nodes: np.ndarray) -> Configuration:
         """A copy with some `nodes` only, indices of shape (k,)."""
         nodal = {name: getattr(self, name)[nodes] for name in NODAL}
@@ -178,16 +183,14 @@ class Correction(NamedTuple):
 
     Attributes
     ----------
-    solution : Solution
     settled : Configuration
-        The configuration with the solution, each value kept within the bounds of its status.
+        The configuration with its solution, each value kept within the bounds of its status.
     error, drift : float
         Relative error that is left, and the one of gap and slip before the correction.
     beyond : (float, float)
         How far the solution lies beyond its bounds, by traction and by gap.
     """
 
-    solution: Solution
     settled: Configuration
     error: float
     drift: float
@@ -198,7 +201,7 @@ class Correction(NamedTuple):
         """The correction of the configuration `before` by the solution of its statuses."""
         settled = snap_to_bounds(system, before, solution)
         beyond = conditions.beyond_bounds(solution.under(settled.status), settled.values)
-        return cls(solution, settled, error, drift, beyond)
+        return cls(settled, error, drift, beyond)
 
 
 def snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:

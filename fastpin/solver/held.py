@@ -16,12 +16,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.kernels import conditions, held
-from fastpin.kernels.arrays import Contact, RightSides, Tableau
+from fastpin.kernels import held
+from fastpin.kernels.arrays import Contact, ContactValues, LoadTerms, Queue, RightSides, Tableau
 from fastpin.kernels.exchange import WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
-from fastpin.solver.configuration import Configuration, Correction, Solution
+from fastpin.solver.configuration import Configuration, Correction
 from fastpin.solver.neighbours import Neighbours
 from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.unknowns import MOST_RESIDUAL, DenseUnknowns, have_toeplitz_matrix
@@ -200,7 +200,7 @@ def _holds(system: System, closed: np.ndarray, table: HeldTable) -> bool:
 
 
 class HeldColumns:
-    """The tableau of :func:`fastpin.kernels.exchange.follow`, begun with all closed nodes held.
+    """The tableau of :func:`fastpin.kernels.exchange.follow`, which begins with all closed nodes held.
 
     Parameters
     ----------
@@ -208,9 +208,10 @@ class HeldColumns:
     table : HeldTable
         It is not changed.
     contact : Contact
-        The configuration. The ties in it are set.
-    load_rate : ndarray, shape (loads,)
-        Dimensionless, per unit of the step.
+        The configuration.
+    before, load_rate : ndarray, shape (loads,)
+        Dimensionless load at the start, and its change along the step.
+    rest_gap : ndarray, shape (n,)
     memory : TableauMemory
         Memory for the updates. It is overwritten.
 
@@ -218,14 +219,26 @@ class HeldColumns:
     ----------
     tableau : Tableau
     turned : bool
-        Whether the load has turned: most slipping nodes stick when the load goes on.
+        Whether the load has turned: most slipping nodes stick when the load goes on. It is known once the step has
+        begun.
     """
 
     def __init__(
-        self, system: System, table: HeldTable, contact: Contact, load_rate: np.ndarray, memory: TableauMemory
+        self,
+        system: System,
+        table: HeldTable,
+        contact: Contact,
+        before: np.ndarray,
+        load_rate: np.ndarray,
+        rest_gap: np.ndarray,
+        memory: TableauMemory,
     ) -> None:
         n, updates = system.grid.size, memory.left.shape[1]
         self._system, self._operator = system, np.asfortranarray(np.asarray(system.operator))
+        self._table, self._contact, self._rest_gap = table, contact, rest_gap
+        self._before, self._rate = before, load_rate
+        self._displaced, self._forces = system.load_displacement(load_rate), system.load_forces(load_rate)
+        self._has_begun = self.turned = False
         self.tableau = Tableau(
             matrix=table.matrix,
             order=table.order,
@@ -239,22 +252,27 @@ class HeldColumns:
             drag=np.empty(n),
             chunk=updates + 1,
         )
-        self.turned = held.begin(
-            table.matrix, table.stack, contact, system.friction, system.load_displacement(load_rate),
-            system.load_forces(load_rate), np.empty(table.order.size), self.tableau,
-        )  # fmt: skip
 
-    def correct(self, now: Configuration, contact: Contact, updates: int) -> Correction:
-        """Correct tractions and motion of `now` until its statuses, its held slip and its load hold to rounding.
+    def follow(self, load: LoadTerms, queue: Queue, stop: float, most_events: int, all_at_once: int) -> int:
+        """Follow the load up to the fraction `stop` of the step, and return the code of the kernel.
 
-        The tableau has all `updates` so far. It makes the corrections, and the matrices check them.
+        The first call begins the step: it sets the ties in the contact, and lets go the nodes that go on slipping.
         """
-        system, n, load = self._system, now.status.size, now.load
-        sides = RightSides(system.load_displacement(load), system.load_forces(load), now.rest_gap)
-        pressure, shear, gap, slip = np.empty((4, n))
-        solution, settled = Solution(pressure, shear, gap, slip, np.empty(system.motions)), now.copy()
-        error, drift, *beyond = conditions.settle(
-            self.tableau, updates, self._operator, system.equations, contact, sides, solution.under(now.status),
-            settled.values,
+        system, contact, now = self._system, self._contact, self._before + stop * self._rate
+        sides = RightSides(system.load_displacement(now), system.load_forces(now), self._rest_gap)
+        pressure, shear, gap, slip = np.empty((4, contact.status.size))
+        settled = ContactValues(
+            pressure, shear, gap, slip, np.empty_like(contact.status), np.empty_like(contact.motion)
         )  # fmt: skip
-        return Correction(solution, settled, error, drift, (beyond[0], beyond[1]))
+        code, turned, self._errors = held.step(
+            not self._has_begun, self._table.stack, self._operator, system.equations, self._displaced, self._forces,
+            sides, contact, self.tableau, load, queue, system.ends, system.operator.typical, stop, most_events,
+            all_at_once, settled,
+        )  # fmt: skip
+        self.turned, self._has_begun, self._settled = self.turned or turned, True, settled
+        return int(code)
+
+    def correct(self, now: Configuration) -> Correction:
+        """Correct tractions and motion of `now`, at the stop that was reached, to rounding."""
+        error, drift, *beyond = self._errors
+        return Correction(now.with_values(self._settled), error, drift, (beyond[0], beyond[1]))

@@ -180,10 +180,7 @@ class PathStep:
         system, counts = self.system, self._queue.counts
         most_events, checked, settlings = MOST_EVENTS * system.grid.size, 0, 0
         while True:
-            code = exchange.follow(
-                self._columns.tableau, self._contact, self._load, self._queue,
-                system.friction, system.ends, system.operator.typical, stop, most_events, self._all_at_once,
-            )  # fmt: skip
+            code = self._columns.follow(self._load, self._queue, stop, most_events, self._all_at_once)
             updates = int(counts[exchange.UPDATES])
             if self._is_stuck_at_start():
                 self._start_anew()
@@ -248,7 +245,7 @@ class PathStep:
         return unknowns if has_turned(status[closed], normal, shear, self.system.friction[closed]) else None
 
     def _begin_held(self) -> bool:
-        """Begin with all closed nodes held, if there are few nodes. Nodes that go on slipping are then let go.
+        """Begin with all closed nodes held, if there are few nodes. Nodes that go on slipping are let go at once.
 
         Returns False if the held nodes can't hold the pin, or without friction.
         """
@@ -258,15 +255,10 @@ class PathStep:
         table = HeldContacts.of(self.system).table(self.system, self.now.closed)
         if table is None:
             return False
-        columns = HeldColumns(self.system, table, self._contact, self.rate, self._memory)
-        self._columns, self._all_at_once = columns, status.size  # one by one takes less time than a new tableau
-        slipping = np.flatnonzero(np.abs(status) == 1)
-        if not columns.turned:
-            self._first_status = status.copy()
-            counts = self._queue.counts
-            counts[exchange.QUEUED], counts[exchange.EXCHANGES] = slipping.size, -slipping.size
-            self._queue.node[: slipping.size], self._queue.status[: slipping.size] = slipping, status[slipping]
-        status[slipping] = STICK
+        contact, rest_gap = self._contact, self.now.rest_gap
+        self._columns = HeldColumns(self.system, table, contact, self.before, self.rate, rest_gap, self._memory)
+        self._all_at_once = status.size  # one by one takes less time than a new tableau
+        self._first_status = status.copy()
         return True
 
     def _is_stuck_at_start(self) -> bool:
@@ -274,7 +266,8 @@ class PathStep:
         if self._first_status is None:
             return False
         counts = self._queue.counts
-        settled = counts[exchange.ROUND] > 0 or counts[exchange.EVENTS] > 0
+        assert isinstance(self._columns, HeldColumns)
+        settled = self._columns.turned or counts[exchange.ROUND] > 0 or counts[exchange.EVENTS] > 0
         if settled or counts[exchange.NEXT] == counts[exchange.QUEUED]:
             self._first_status = None
         return self._first_status is not None
@@ -386,7 +379,7 @@ class PathStep:
         self._take(correction.settled)
         if self.rebuilds > before:
             return False
-        self._columns.refine_rates(self._contact, self.rate, int(self._queue.counts[exchange.UPDATES]))
+        self._columns.refine_rates(self.rate)
         return True
 
     def _take(self, better: Configuration) -> None:
@@ -401,7 +394,7 @@ class PathStep:
         If the corrections leave more than MOST_ERROR, a factorisation computes the solution. None after a severe drift,
         if the step could go back.
         """
-        correction = self._columns.correct(self.now, self._contact, int(self._queue.counts[exchange.UPDATES]))
+        correction = self._columns.correct(self.now)
         if correction.drift > SEVERE_DRIFT and self._go_back():
             return None
         if not correction.error <= MOST_ERROR:
@@ -443,6 +436,6 @@ def _is_rounding(correction: Correction) -> bool:
 
     At a stop where gaps have opened this instant, the largest gap is itself rounding.
     """
-    solution, (traction, gap) = correction.solution, correction.beyond
-    length = conditions.ROUNDING * max(float(np.abs(solution.slip).max()), float(np.abs(solution.motion).max()))
-    return bool(traction <= MOST_DRIFT * correction.settled.pressure.max() and gap <= length)
+    settled, (traction, gap) = correction.settled, correction.beyond
+    length = conditions.ROUNDING * max(float(np.abs(settled.slip).max()), float(np.abs(settled.motion).max()))
+    return bool(traction <= MOST_DRIFT * settled.pressure.max() and gap <= length)

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.kernels import conditions
-from fastpin.kernels.arrays import Contact, Tableau
+from fastpin.kernels import conditions, exchange
+from fastpin.kernels.arrays import Contact, LoadTerms, Queue, Tableau
 from fastpin.kernels.exchange import CHUNK, WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
@@ -84,6 +84,7 @@ class Columns:
         self._position = np.full(2 * n, -1)
         self._position[basis.rows] = np.arange(basis.count)
         self._rows: list[np.ndarray] = []
+        self._contact, self._updates = contact, 0
         self.tableau = Tableau(
             matrix=memory.matrix,
             fresh=np.full(-(-2 * n // WIDTH), -1),
@@ -117,6 +118,16 @@ class Columns:
         self._tied[stuck] = coupling[stuck]  # tau = T + tied N at sticking nodes
         self._drag[open_] = -coupling[open_]  # a unit of N comes with this T at open nodes
         rates[n : 2 * n] += self._tied * rates[:n]
+
+    def follow(self, load: LoadTerms, queue: Queue, stop: float, most_events: int, all_at_once: int) -> int:
+        """Follow the load up to the fraction `stop` of the step, and return the code of the kernel."""
+        system = self._system
+        code = exchange.follow(
+            self.tableau, self._contact, load, queue, system.friction, system.ends, system.operator.typical, stop,
+            most_events, all_at_once,
+        )  # fmt: skip
+        self._updates = int(queue.counts[exchange.UPDATES])
+        return int(code)
 
     def refresh(self, asked: int, updates: int) -> None:
         """Compute the block of the column `asked`, or bring it up to the last whole chunk of the updates.
@@ -156,10 +167,10 @@ class Columns:
         add_product(values, self.tableau.left[:, :updates], factors)
         return values[:, 0]
 
-    def correct(self, now: Configuration, contact: Contact, updates: int) -> Correction:
+    def correct(self, now: Configuration) -> Correction:
         """Correct tractions and motion of `now` until its statuses, its held slip and its load hold to rounding.
 
-        The tableau has all `updates` so far. It makes the corrections, and the matrices check them.
+        The tableau makes the corrections, and the matrices check them.
         """
         system, n = self._system, self._system.grid.size
         loaded, forces = system.load_displacement(now.load), system.load_forces(now.load)
@@ -179,13 +190,14 @@ class Columns:
             if error <= conditions.ROUNDING or not error < 0.5 * last:
                 break
             last = error
-            conditions.correct(system.friction, contact.tie, self.response(missing, updates), found)
+            change = self.response(missing, self._updates)
+            conditions.correct(system.friction, self._contact.tie, change, found)
         solution = Solution(found.pressure, found.shear, true[:n], true[n:], found.motion)
         return Correction.of(system, now, solution, error, drift)
 
-    def refine_rates(self, contact: Contact, load_rate: np.ndarray, updates: int) -> None:
-        """Correct the rates by their residual from the matrices, times the tableau with all `updates`."""
-        system, rates, n = self._system, self.tableau.rates, self._system.grid.size
+    def refine_rates(self, load_rate: np.ndarray) -> None:
+        """Correct the rates by their residual from the matrices, times the tableau with all updates."""
+        system, rates, n, contact = self._system, self.tableau.rates, self._system.grid.size, self._contact
         closed, stick = contact.status != OPEN, contact.status == STICK
         pressure = np.where(closed, rates[:n], 0.0)
         shear = np.where(stick, rates[n : 2 * n], 0.0) - system.friction * contact.tie * pressure
@@ -193,7 +205,7 @@ class Columns:
         displaced = system.elastic(tractions) + system.motion @ rates[2 * n :] + system.load_displacement(load_rate)
         balance = system.load_forces(load_rate) - system.equilibrium @ tractions - system.motion_rows @ rates[2 * n :]
         dependent = np.r_[closed, stick]
-        change = self.response(np.r_[np.where(dependent, -displaced, 0.0), balance], updates)
+        change = self.response(np.r_[np.where(dependent, -displaced, 0.0), balance], self._updates)
         rates[: 2 * n] = np.where(dependent, rates[: 2 * n], displaced)
         rates += change
 

@@ -57,7 +57,7 @@ def test_the_start_of_a_step(begin, seed, rough):
         matrix=table, order=order, fresh=empty, left=np.zeros((size, 0), order="F"), source=empty, slot=empty,
         delta=np.zeros(0), rates=np.full(size, np.nan), chunk=1, **numbers,
     )  # fmt: skip
-    assert begin(table, stack, contact, friction, displaced, forces, np.empty(size), tableau) == turned
+    assert begin(table, stack, contact, friction, displaced, forces, tableau) == turned
     assert tableau.rates == pytest.approx(rates, rel=1e-12, abs=1e-13)
     assert np.array_equal(contact.tie, ties)
     assert np.array_equal(tableau.tied, tied)

@@ -49,10 +49,11 @@ BREAKS = {
     "a file for later": ("nothing_hidden", "solver/arc.py", "grid = Later('fastpin.model.grid')\n"),
     "a kernel that imports the package": ("kernels_alone", "kernels/toeplitz.py", "import fastpin.errors\n"),
     "an import below the kernels": ("one_direction", "runtime/threads.py", "import fastpin.errors\n"),
-    "a kernel that calls one of another file": (
+    "a kernel of a kernel that calls one of another file": (
         "kernels_alone",
         "kernels/toeplitz.py",
-        "from fastpin.kernels.influence import clausen\n@compiled\ndef more(x):\n    return clausen(x)\n",
+        "from fastpin.kernels.influence import clausen\n@compiled\ndef more(x):\n    return clausen(x)\n"
+        "@compiled\ndef most(x):\n    return more(x)\n",
     ),
     "numba elsewhere": ("one_home", "solver/arc.py", "import numba\n"),
     "numba elsewhere, for later": ("one_home", "solver/arc.py", "numba = Later('numba')\n"),

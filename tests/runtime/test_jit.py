@@ -178,15 +178,18 @@ def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
 
 @pytest.mark.parametrize("file", sorted(path.stem for path in (PACKAGE / "kernels").glob("[a-z]*.py")))
 def test_code_depends_on_the_files_that_are_stored_with_it(file: str) -> None:
-    """Stored code is compared with the text of its own file and of the shared files only."""
+    """Stored code is compared with the texts of the files that it takes names from."""
     module = importlib.import_module(f"fastpin.kernels.{file}")
-    shared = [f"fastpin.kernels.{Path(name).stem}" for name in source.SHARED]
     imports = [node for node in ast.parse(inspect.getsource(module)).body if isinstance(node, ast.ImportFrom)]
-    others = [node for node in imports if str(node.module).startswith("fastpin") and node.module not in shared]
-    foreign = {alias.asname or alias.name for node in others for alias in node.names}
+    others = [node for node in imports if str(node.module).startswith("fastpin")]
+    home = {
+        alias.asname or alias.name: importlib.import_module(str(node.module)) for node in others for alias in node.names
+    }
     for kernel in vars(module).values():
         if isinstance(kernel, jit.Kernel):
-            assert not foreign & set(kernel.py_func.__code__.co_names), kernel
+            taken = home.keys() & set(kernel.py_func.__code__.co_names)
+            assert {home[name].__file__ for name in taken} <= dict(kernel.texts).keys(), kernel
+            assert kernel.texts[0][0] == kernel.py_func.__code__.co_filename
 
 
 def test_code_is_chosen_by_the_types_of_the_arguments() -> None:

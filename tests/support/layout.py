@@ -346,16 +346,17 @@ def nothing_hidden(tree: Tree) -> Iterator[str]:
 
 
 def kernels_alone(tree: Tree) -> Iterator[str]:
-    """Kernels import kernels and their runtime only; compiled functions call compiled functions of their own file."""
+    """Kernels import kernels and their runtime only. They call those of other files only if no kernel calls them."""
     for one in tree.imports:
         target = tree.target(one)
         if _folder(one.file) == "kernels" and target is not None and _folder(target) not in ("kernels", "runtime"):
             yield f"{one.file}:{one.line} imports {one.module}"
     kernels = {file: source for file, source in tree.sources.items() if _folder(file) == "kernels"}
     everywhere = {name for source in kernels.values() for name in source.compiled}
+    inside = {called for source in kernels.values() for _, _, called in source.called}
     for file, source in kernels.items():
         for line, name, called in source.called:
-            if called in everywhere - set(source.compiled):
+            if name in inside and called in everywhere - set(source.compiled):
                 yield f"{file}:{line} {name} calls {called} of another file"
 
 
