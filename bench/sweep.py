@@ -34,7 +34,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 import fastpin
-from fastpin.kernels import exchange
+from fastpin.kernels import exchange, held
 from fastpin.runtime.threads import in_one_thread
 from fastpin.storage import store
 from fastpin.studies import sweep
@@ -75,18 +75,20 @@ def loop(plan: Plan) -> float:
 def parts(plan: Plan) -> dict[str, float]:
     """Return the processor time of the parts of a run, ms: those of every run of a sweep, in this process.
 
-    The compiled loop is the part of "solve" inside the kernel that follows the load, coarse runs included.
+    The compiled loop is the part of "solve" inside the kernels that follow the load, coarse runs included.
     """
     times = dict.fromkeys(("plan", "case", "solve", "key figures", "store"), 0.0)
     loops = 0.0
-    kernel = exchange.follow
 
-    def follow(*arguments: Any) -> Any:
-        nonlocal loops
-        began = time.process_time()
-        code = kernel(*arguments)
-        loops += 1e3 * (time.process_time() - began) / len(plan.runs)
-        return code
+    def looped(kernel: Callable[..., Any]) -> Callable[..., Any]:
+        def follow(*arguments: Any) -> Any:
+            nonlocal loops
+            began = time.process_time()
+            found = kernel(*arguments)
+            loops += 1e3 * (time.process_time() - began) / len(plan.runs)
+            return found
+
+        return follow
 
     def timed(name: str, work: Callable[..., Any], *arguments: Any, **keywords: Any) -> Any:
         began = time.process_time()
@@ -94,12 +96,13 @@ def parts(plan: Plan) -> dict[str, float]:
         times[name] += 1e3 * (time.process_time() - began) / len(plan.runs)
         return found
 
-    pack = getattr(store, "pack", None)  # earlier checkouts have files only
+    pack = getattr(store, "pack", None)  # earlier checkouts have files only, and no compiled steps
     with (
         tempfile.TemporaryDirectory() as directory,
         threadpool_limits(limits=1),
         in_one_thread(),
-        mock.patch.object(exchange, "follow", follow),
+        mock.patch.object(exchange, "follow", looped(exchange.follow)),
+        mock.patch.object(held, "step", looped(getattr(held, "step", exchange.follow)), create=True),
     ):
         timed("plan", parse_plan, plan.text)
         for run, point in plan.runs.items():

@@ -27,7 +27,7 @@ import numpy as np
 
 import fastpin
 from fastpin.casefile import builtin_case
-from fastpin.kernels import exchange
+from fastpin.kernels import held
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
@@ -80,20 +80,20 @@ def head(*cells: str) -> None:
 
 
 def cycle() -> None:
-    """Time single cycles, with the time in the compiled path."""
-    follow, spent = exchange.follow, [0.0]
+    """Time single cycles, with the time in the compiled steps."""
+    kernel, spent = held.step, [0.0]
 
     def timed(*arguments: Any) -> Any:
         began = time.process_time()
-        code = follow(*arguments)
+        found = kernel(*arguments)
         spent[0] += time.process_time() - began
-        return code
+        return found
 
     head("cycle of two corners", "nodes", "events", "ms", "compiled, ms")
     for name in CYCLES:
         for nodes in (101, 201, 401):
             count = 40_000 // nodes
-            with mock.patch.object(exchange, "follow", timed):
+            with mock.patch.object(held, "step", timed):
                 spent[0] = 0.0
                 found = live(name, count, nodes=nodes, tolerance=0.0, at=[count], coefficient=1e-2 * COEFFICIENT)
             events = found.result.statistics["events"] / count

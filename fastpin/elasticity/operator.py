@@ -146,6 +146,10 @@ class SoftOperator(Operator):
     def diagonal(self) -> np.ndarray:
         return self._base.diagonal() + self._softness
 
+    @cached_property
+    def matrix(self) -> np.ndarray | None:  # type: ignore[override]
+        return None if self._base.matrix is None else self.entries()
+
 
 class ToeplitzOperator(Operator):
     """The operator of equally spaced nodes.

@@ -178,7 +178,8 @@ def _responses(
     if rows.size >= 2 * LEAST_RECURRENCES:
         responses = neighbours.responses()
         return -responses, responses.T, neighbours.complement()
-    acting = np.asarray(system.operator).T  # row by row: whole columns of the operator are copied
+    assert system.operator.matrix is not None  # there are few nodes
+    acting = system.operator.matrix.T  # row by row: whole columns of the operator are copied
     on_others = acting.take(rows, axis=0).take(others, axis=1)
     tied = (neighbours.core.T @ on_others).T
     free = -tied.T
@@ -234,7 +235,7 @@ class HeldColumns:
         memory: TableauMemory,
     ) -> None:
         n, updates = system.grid.size, memory.left.shape[1]
-        self._system, self._operator = system, np.asfortranarray(np.asarray(system.operator))
+        self._system, self._operator = system, system.operator.matrix
         self._table, self._contact, self._rest_gap = table, contact, rest_gap
         self._before, self._rate = before, load_rate
         self._displaced, self._forces = system.load_displacement(load_rate), system.load_forces(load_rate)

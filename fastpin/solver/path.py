@@ -250,7 +250,7 @@ class PathStep:
         Returns False if the held nodes can't hold the pin, or without friction.
         """
         status = self.now.status
-        if status.size > FEW_NODES or not self.system.has_friction:
+        if status.size > FEW_NODES or not self.system.has_friction or self.system.operator.matrix is None:
             return False
         table = HeldContacts.of(self.system).table(self.system, self.now.closed)
         if table is None:
