@@ -29,7 +29,7 @@ NODES = {False: 201, True: 151}
 FINE = {False: 401, True: 301}
 """Nodes of the runs of calibration and check."""
 
-SHARES = {"unlike_body": 2.5, "unlike_centre": 2.5, "free": 0.7}
+SHARES = {"unlike_body": 2.5, "unlike_centre": 2.5, "free": 0.7, "unlike_held": 2.5}
 """Points of calibration in parts of the usual number: more in many dimensions, fewer of long runs."""
 
 CALIBRATION_SEED = 1
@@ -61,7 +61,8 @@ def fill(group: ChartGroup, folder: Path) -> None:
             if group.is_cycle:
                 for last, part in enumerate(nodes[-1]):
                     place = np.array([*(axis[i] for axis, i in zip(nodes, line, strict=False)), part])
-                    table[(*line, last)] = values_at(group.parameters_at(place), NODES[True])
+                    values = values_at(group.parameters_at(place), NODES[True])
+                    table[(*line, last)] = values[: len(group.quantities)]
                     runs += 1
             else:
                 place = np.array([nodes[0][0], *(axis[i] for axis, i in zip(nodes[1:], line, strict=True))])
@@ -112,7 +113,7 @@ def points(group: ChartGroup, count: int, seed: int, folder: Path | None = None)
     began, runs = time.perf_counter(), 0
     for k in range(count):
         if math.isnan(values[k, 0]):
-            values[k] = values_at(group.parameters_at(places[k]), FINE[group.is_cycle])
+            values[k] = values_at(group.parameters_at(places[k]), FINE[group.is_cycle])[: len(group.quantities)]
             runs += 1
             if path is not None and (runs % 50 == 0 or k == count - 1):
                 np.save(path, values[: k + 1])

@@ -24,8 +24,8 @@ SPANS = (0.14, 0.3, 0.62, 1.05, 2.0)
 WIDER = 1.2
 """Half-angle of the arc of nodes, in parts of the widest frictionless half-angle. Friction widens by 8 % at most."""
 
-SETTLING = {"fixed": 2, "free": 6}
-"""Cycles until the values are read, by rotation. A held pin is steady after the first one."""
+SETTLING = {"fixed": 3, "free": 6}
+"""Cycles until the values are read, by rotation. A held pin is steady after the second one."""
 
 
 def pair_of(alpha: float, beta: float, kolosov: float) -> MaterialPair:
@@ -91,15 +91,18 @@ def cycle_values(problem: Problem, ratio: float, nodes: int) -> np.ndarray:
 
     Returns
     -------
-    ndarray, shape (4,)
+    ndarray, shape (5,)
         Of the last cycle of :data:`SETTLING`: the energy per cycle in P^2 beta*, the largest slip range in P beta*, the
-        half-angle of stick at its end, rad, and the peak pressure there in P/(2 R).
+        half-angle of stick at its end, rad, the peak pressure and the largest hoop stress there in P/(2 R).
     """
     cycles = SETTLING[problem.rotation]
     history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": ratio}, {"Q": -ratio}]).repeated(cycles)
     result = solve(problem, history, nodes=nodes, slip_sums=True)
     over, state = result.cycle(), result[-1]
-    return np.array([over.dissipation, over.largest_slip_range, 0.5 * _width(state.stick), 2.0 * state.peak_pressure])
+    hoop = state.peak_hoop_stress().value
+    return np.array(
+        [over.dissipation, over.largest_slip_range, 0.5 * _width(state.stick), 2.0 * state.peak_pressure, 2.0 * hoop]
+    )
 
 
 def _width(zones: Sequence[Interval]) -> float:
@@ -107,7 +110,7 @@ def _width(zones: Sequence[Interval]) -> float:
 
 
 def values_at(parameters: Mapping[str, Any], nodes: int) -> np.ndarray:
-    """The values of all charts of a group at one place, shape (quantities,).
+    """The values of the charts at one place, in the order of ``fastpin/charts/groups.py``: shape (6,), of cycles (5,).
 
     Parameters
     ----------

@@ -155,8 +155,8 @@ class ChartGroup(NamedTuple):
 FIRST_LOAD = ("peak_pressure", "peak_pressure_angle", "contact_angle", "stick_angle", "kt_bearing", "peak_hoop_angle")
 """Quantities of the first load, in the order of ``scripts/charts_runs.py``."""
 
-CYCLE = ("cycle_energy", "cycle_slip_range", "cycle_stick_angle", "cycle_peak_pressure")
-"""Quantities of a load cycle, in the order of ``scripts/charts_runs.py``."""
+CYCLE = ("cycle_energy", "cycle_slip_range", "cycle_stick_angle", "cycle_peak_pressure", "cycle_kt_bearing")
+"""Quantities of a load cycle, in the order of ``scripts/charts_runs.py``. A free pin has all but the last."""
 
 WIDTHS = width_coordinate(100.0), width_coordinate(0.0)
 """Coordinates of the load parameters 100 and 0."""
@@ -202,9 +202,19 @@ def _cycle_groups() -> list[ChartGroup]:
         TableAxis("load term", 0.125, 0.5, 4),
         TableAxis("part of sliding", 0.2, 1.0, 7, 2),
     )
+    unlike = (
+        TableAxis("width", *CYCLE_WIDTHS, 12, 9),
+        TableAxis("friction", 0.1, 0.6, 6, 5),
+        TableAxis("alpha", -0.6, 0.75, 5, 3),
+        TableAxis("plate term", *METALS, 3),
+        TableAxis("pin term", *METALS, 3),
+        TableAxis("part of sliding", 0.2, 1.0, 5, 6),
+    )
+    # the hoop stress of a free pin jumps where the load term of a body load ends: Kolosov's constant of the plate jumps
     return [
         ChartGroup("held", held, CYCLE, {"rotation": "fixed"}, "like bodies, cycle of Q, held rotation"),
-        ChartGroup("free", free, CYCLE, {"rotation": "free"}, "like bodies, cycle of Q, free rotation"),
+        ChartGroup("free", free, CYCLE[:-1], {"rotation": "free"}, "like bodies, cycle of Q, free rotation"),
+        ChartGroup("unlike_held", unlike, CYCLE, {"rotation": "fixed"}, "unlike bodies, cycle of Q, held rotation"),
     ]
 
 

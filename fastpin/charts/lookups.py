@@ -12,9 +12,9 @@ from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.charts.groups import (
     COORDINATES,
     CYCLE,
-    FIRST_LOAD,
     GROUPS,
     ROUNDING,
+    ChartGroup,
     TableAxis,
     parameter_range,
     pin_term,
@@ -80,8 +80,8 @@ class ChartValue:
 FIRST_PARAMETERS = ("load_parameter", "friction", "alpha", "beta", "kolosov", "pin_load")
 """Parameters of a chart of the first load."""
 
-CYCLE_PARAMETERS = ("load_parameter", "friction", "load_ratio", "kolosov", "pin_load", "rotation")
-"""Parameters of a chart of a load cycle."""
+CYCLE_PARAMETERS = ("load_parameter", "friction", "load_ratio", "alpha", "beta", "kolosov", "pin_load", "rotation")
+"""Parameters of a chart of a load cycle: those of the first load, and two more."""
 
 DEFAULTS: dict[str, Any] = {"alpha": 0.0, "beta": 0.0, "kolosov": 1.8, "pin_load": "centre", "rotation": "free"}
 """Parameters that may be left out: like bodies with nu = 0.3 in plane strain, load at the centre, free rotation."""
@@ -99,6 +99,7 @@ CHARTS = {
         ChartQuantity("cycle_slip_range", "largest slip range of a place in a cycle of Q", "P beta*"),
         ChartQuantity("cycle_stick_angle", "half of all angles that stick at the end of a cycle of Q", "rad"),
         ChartQuantity("cycle_peak_pressure", "largest pressure over P/(2 R) at the end of a cycle of Q", ""),
+        ChartQuantity("cycle_kt_bearing", "largest hoop stress round the hole over P/(2 R), end of a cycle of Q", ""),
     )
 }
 """The charts by name."""
@@ -119,7 +120,7 @@ def lookup(quantity: str, **parameters: Any) -> ChartValue:
     load_ratio : float or array_like
         Q/P, the amplitude of the cycle; of the charts of a cycle only.
     alpha, beta : float or array_like
-        Dundurs' parameters in the usual sign, 0 unless given; of the charts of the first load only.
+        Dundurs' parameters in the usual sign, 0 unless given; 0 in a cycle with free rotation.
     kolosov : float or array_like
         Kolosov's constant of the pin: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress; 1.8 unless given.
     pin_load : {"centre", "body"}
@@ -139,16 +140,30 @@ def lookup(quantity: str, **parameters: Any) -> ChartValue:
     """
     chart = chart_of(quantity)
     given = _checked(chart, parameters)
-    if chart.is_cycle:
-        group = GROUPS["held" if given["rotation"] == "fixed" else "free"]
-    else:
-        is_like = not any(
-            value if isinstance(value := given[name], float) else value.any() for name in ("alpha", "beta")
-        )
-        group = GROUPS[f"{'like' if is_like else 'unlike'}_{given['pin_load']}"]
+    group = _group(given)
+    if quantity not in group.quantities:
+        raise InputError("rotation", f'must be "fixed" in the chart {chart.name}')
     units = [_unit(axis, given) for axis in group.axes]
     value, error = tables()[group.name].value_at(quantity, units, given["load_parameter"])
     return ChartValue(value, error, chart.unit)
+
+
+def _group(given: Mapping[str, Any]) -> ChartGroup:
+    """The group of charts that covers parameters; a load cycle has a rotation.
+
+    Raises
+    ------
+    InputError
+        If no group covers them.
+    """
+    is_like = not any(value if isinstance(value := given[name], float) else value.any() for name in ("alpha", "beta"))
+    if "rotation" not in given:
+        return GROUPS[f"{'like' if is_like else 'unlike'}_{given['pin_load']}"]
+    if given["rotation"] == "fixed":
+        return GROUPS["held" if is_like else "unlike_held"]
+    if not is_like:
+        raise InputError("rotation", 'must be "fixed" for unlike bodies in a cycle: alpha and beta other than 0')
+    return GROUPS["free"]
 
 
 def chart_of(quantity: object) -> ChartQuantity:
@@ -167,8 +182,12 @@ def chart_of(quantity: object) -> ChartQuantity:
 def _checked(chart: ChartQuantity, parameters: Mapping[str, Any]) -> dict[str, Any]:
     """The parameters of a chart, checked for themselves, with those that were left out."""
     for name in parameters:
-        if name not in chart.parameters:
-            raise InputError(name, _no_parameter(chart, name))
+        if name in chart.parameters:
+            continue
+        if name in CYCLE_PARAMETERS:
+            raise InputError(name, f"has no meaning in the chart {chart.name}: it belongs to the charts of a cycle")
+        known = f"{', '.join(chart.parameters)}{closest(name, chart.parameters)}"
+        raise InputError(name, f"is no parameter of the chart {chart.name}, which has {known}")
     given: dict[str, Any] = {}
     for name in chart.parameters:
         if name not in parameters and name not in DEFAULTS:
@@ -189,16 +208,6 @@ def _checked(chart: ChartQuantity, parameters: Mapping[str, Any]) -> dict[str, A
         except ValueError:
             raise InputError("load_parameter", "and the other parameters have shapes that do not fit") from None
     return given
-
-
-def _no_parameter(chart: ChartQuantity, name: str) -> str:
-    """Why a chart has no parameter of this name."""
-    if name in FIRST_PARAMETERS or name in CYCLE_PARAMETERS:
-        if name in ("alpha", "beta"):
-            return f"has no meaning in the chart {chart.name}: the charts of a cycle are for like bodies"
-        return f"has no meaning in the chart {chart.name}: it belongs to the charts of a cycle"
-    known = ", ".join(chart.parameters)
-    return f"is no parameter of the chart {chart.name}, which has {known}{closest(name, chart.parameters)}"
 
 
 def _unit(axis: TableAxis, given: Mapping[str, Any]) -> Any:
@@ -240,13 +249,13 @@ def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str
     P : float
         The force on the pin, N/m, positive.
     Q : float, optional
-        The amplitude of the force across, N/m: the charts of a load cycle then follow, for like bodies. Without it the
-        charts of the first load follow.
+        The amplitude of the force across, N/m: the charts of a load cycle then follow. Without it the charts of the
+        first load follow.
 
     Returns
     -------
     dict of str to ChartValue
-        By the names of :data:`CHARTS`. "kt_bearing" is a ratio.
+        By the names of :data:`CHARTS`. "kt_bearing" and "cycle_kt_bearing" are ratios; the latter is for held rotation.
 
     Raises
     ------
@@ -258,21 +267,14 @@ def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str
     given: dict[str, Any] = {"load_parameter": problem.load_parameter(force), "friction": problem.uniform_friction}
     given |= {"kolosov": pair.pin_kolosov, "pin_load": problem.pin_load}
     alpha, beta = (value if abs(value) > ROUNDING else 0.0 for value in pair.dundurs())
-    if Q is None:
-        names: tuple[str, ...] = FIRST_LOAD
-        given |= {"alpha": alpha, "beta": beta}
-    elif alpha or beta:
-        raise InputError(
-            "pair", f"must be of like materials for a cycle: Dundurs' parameters 0, not {alpha:g}, {beta:g}"
-        )
-    else:
-        names = CYCLE
+    given |= {"alpha": alpha, "beta": beta}
+    if Q is not None:
         given |= {"rotation": problem.rotation, "load_ratio": abs(number("Q", Q)) / force}
     bearing, squeeze = 0.5 * force / problem.hole_radius, force * pair.beta_star
     units = {"cycle_energy": ("J/m", force * squeeze), "cycle_slip_range": ("m", squeeze)}
     units |= dict.fromkeys(("peak_pressure", "cycle_peak_pressure"), ("Pa", bearing))
     found = {}
-    for name in names:
+    for name in _group(given).quantities:
         here = lookup(name, **given)
         unit, scale = units.get(name, (here.unit, 1.0))
         found[name] = ChartValue(scale * here.value, scale * here.error, unit)

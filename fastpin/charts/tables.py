@@ -18,7 +18,7 @@ from fastpin.errors import InputError
 DATA = Path(__file__).parent / "charts.npz"
 """The data of the package."""
 
-VERSION = 1
+VERSION = 2
 """Version of the data: of the axes, the quantities and their scales."""
 
 FEW = 4
@@ -62,6 +62,7 @@ STORED = {
     "cycle_slip_range": Stored(lambda v, at: np.sqrt(np.maximum(v, 0.0)), lambda s, at: s * s, False),
     "cycle_stick_angle": _STICK,
     "cycle_peak_pressure": _PRESSURE,
+    "cycle_kt_bearing": _PLAIN._replace(is_relative=True),
 }
 """How each quantity is stored."""
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from fastpin import figures
-from fastpin.charts.lookups import CHARTS, CYCLE_PARAMETERS, FIRST_PARAMETERS, chart_of, lookup
+from fastpin.charts.lookups import CHARTS, CYCLE_PARAMETERS, chart_of, lookup
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_files, write_text
 from fastpin.errors import InputError
@@ -17,8 +17,7 @@ from fastpin.report.charts import chart_document, chart_list, formula_text, valu
 
 def run(options: argparse.Namespace) -> int:
     """Print the list of charts, the value of one, or formulas; draw the book; write the nodes of a chart."""
-    names = dict.fromkeys((*FIRST_PARAMETERS, *CYCLE_PARAMETERS))
-    given = {name: value for name in names if (value := getattr(options, name)) is not None}
+    given = {name: value for name in CYCLE_PARAMETERS if (value := getattr(options, name)) is not None}
     chart = None if options.chart is None else chart_of(options.chart)
     if chart is None and given:
         raise InputError(flag(next(iter(given))), "has a meaning with the name of a chart only")
@@ -30,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         found = lookup(chart.name, **given) if chart is not None and given else None
     except InputError as error:
-        raise InputError(flag(error.field) if error.field in names else error.field, error.reason) from None
+        raise InputError(flag(error.field) if error.field in CYCLE_PARAMETERS else error.field, error.reason) from None
     text = json.dumps(chart_document(chart, given, found), indent=2, allow_nan=False) + "\n"
     if options.json == "-":
         sys.stdout.write(text)

@@ -12,7 +12,7 @@ from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.charts.groups import WIDTHS, load_parameter_at
+from fastpin.charts.groups import GROUPS, WIDTHS, load_parameter_at
 from fastpin.charts.lookups import CHARTS, ChartQuantity, lookup
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import house_style, line, new_figure
@@ -101,20 +101,28 @@ def _first_load_page(chart: ChartQuantity) -> Sheet:
 
 
 def _cycle_page(chart: ChartQuantity) -> Sheet:
-    """Curves over the part of sliding, for two coefficients of friction and both rotations."""
-    sheet = Look(width=7.6).sheet([2.9, 2.9], columns=2, sharex=True)
+    """Curves over the part of sliding, for two coefficients of friction: like bodies by load parameter, then unlike
+    bodies by alpha, with held rotation; then like bodies with free rotation, if the chart has it.
+    """
+    rotations = ["fixed", "fixed", "free"] if chart.name in GROUPS["free"].quantities else ["fixed", "fixed"]
+    sheet = Look(width=7.6).sheet([2.9] * len(rotations), columns=2, sharex=True)
     part = np.linspace(0.2, 1.0, POINTS)
-    for row, friction in enumerate((0.2, 0.6)):
-        for column, rotation in enumerate(("fixed", "free")):
-            panel = sheet.axes[row, column]
-            for k, at in enumerate(LOAD_PARAMETERS):
-                given = {"friction": friction, "load_ratio": part * friction, "rotation": rotation}
+    for (row, column), panel in np.ndenumerate(sheet.axes):
+        friction, is_like = (0.2, 0.6)[column], row != 1
+        given = {"friction": friction, "load_ratio": part * friction, "rotation": rotations[row]}
+        for k, (at, alpha) in enumerate(zip(LOAD_PARAMETERS, ALPHAS, strict=True)):
+            if is_like:
                 _draw(panel, chart, part, k, load_parameter=at, **given)
-            panel.set_title(f"rotation {rotation}, friction {friction:g}", fontsize=8.5)
+            else:
+                _draw(panel, chart, part, k, load_parameter=0.3, alpha=alpha, beta=alpha * 0.4 / 1.4, **given)
+        bodies = "like bodies" if is_like else "unlike, $L_p$ = 0.3"
+        panel.set_title(f"{bodies}, rotation {rotations[row]}, friction {friction:g}", fontsize=8.5)
     for panel in sheet.axes[-1]:
         panel.set_xlabel("load ratio over friction $Q/\\mu P$")
-    legend = [Line2D([], [], **line(k, k), label=f"$L_p$ = {value:g}") for k, value in enumerate(LOAD_PARAMETERS)]
-    _finish(sheet, chart, legend, "like bodies, load at the centre, kolosov 1.8")
+    legend = []
+    for k, (at, alpha) in enumerate(zip(LOAD_PARAMETERS, ALPHAS, strict=True)):
+        legend += [Line2D([], [], **line(k, k), label=text) for text in (f"$L_p$ = {at:g}", f"$\\alpha$ = {alpha:g}")]
+    _finish(sheet, chart, legend, "load at the centre, kolosov 1.8; unlike bodies: nu = 0.3 in both")
     return sheet
 
 
@@ -133,4 +141,4 @@ def _finish(sheet: Sheet, chart: ChartQuantity, legend: Sequence[Line2D], captio
         panel.set_ylabel(f"{chart.name.replace('_', ' ')} ({unit})")
     sheet.grid()
     sheet.head(chart.words, caption=f"{caption}; bands: error bounds")
-    sheet.legend(legend, 6)
+    sheet.legend(legend, len(legend) // 2)

@@ -50,14 +50,18 @@ def chart_list() -> str:
 
 def _range_lines() -> list[str]:
     """The ranges of the parameters, from the axes of the tables."""
-    first, unlike, cycle = (GROUPS[name].axes for name in ("like_body", "unlike_body", "held"))
+    first, unlike, cycle, held = (GROUPS[name].axes for name in ("like_body", "unlike_body", "held", "unlike_held"))
     return [
         f"first load of like bodies: load_parameter {_span(first[0])}, friction {_span(first[1])}, "
         f"kolosov {_span(first[2])}",
         f"first load of unlike bodies: load_parameter {_span(unlike[0])}, friction {_span(unlike[1])},",
         f"  alpha {_span(unlike[2])}, kolosov of pin and plate {_span(unlike[4])}",
-        f"cycle of Q: load_parameter {_span(cycle[0])}, friction {_span(cycle[1])}, kolosov {_span(cycle[2])},",
+        f"cycle of Q, like bodies: load_parameter {_span(cycle[0])}, friction {_span(cycle[1])}, "
+        f"kolosov {_span(cycle[2])},",
         f"  load_ratio {_span(cycle[3])} times the friction",
+        f"cycle of Q, unlike bodies: rotation fixed, load_parameter {_span(held[0])}, friction {_span(held[1])},",
+        f"  alpha {_span(held[2])}, kolosov of pin and plate {_span(held[4])}, "
+        f"load_ratio {_span(held[5])} times the friction",
         "A parameter beyond its range is an error: there is no extrapolation.",
     ]
 

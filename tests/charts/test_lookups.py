@@ -12,7 +12,7 @@ import pytest
 from fastpin import MATERIALS, Material, MaterialPair, Problem, bodies, solve
 from fastpin.benchmarks import peak_pressure
 from fastpin.charts import CHARTS, joint_values, lookup
-from fastpin.charts.groups import GROUPS
+from fastpin.charts.groups import CYCLE, GROUPS
 from fastpin.errors import InputError
 from fastpin.model.history import LoadHistory
 from fastpin.verification import closed_forms
@@ -21,6 +21,7 @@ from scripts.charts_check import worst_of
 FIRST = {"load_parameter": 0.3, "friction": 0.3}
 UNLIKE = {**FIRST, "alpha": 0.3, "beta": 0.08, "kolosov": 1.8, "pin_load": "body"}
 CYCLED = {**FIRST, "load_ratio": 0.15, "rotation": "fixed"}
+UNLIKE_CYCLED = {**CYCLED, "alpha": 0.3, "beta": 0.08, "kolosov": 1.8}
 STEEL, TITANIUM, ALUMINIUM = (MATERIALS[name] for name in ("steel", "Ti-6Al-4V", "aluminium"))
 
 
@@ -54,7 +55,14 @@ def test_the_handbook_formula_agrees_to_its_own_error(friction: float) -> None:
 
 def test_arrays_have_the_values_of_numbers() -> None:
     at, friction = np.meshgrid([0.0, 0.2, 5.0], [0.0, 0.35], indexing="ij")
-    for name, given in (("kt_bearing", {}), ("kt_bearing", {"alpha": 0.2, "beta": 0.03})):
+    cycled = {"alpha": 0.2, "beta": 0.03, "load_ratio": 0.2, "rotation": "fixed"}
+    for name, given in (
+        ("kt_bearing", {}),
+        ("kt_bearing", {"alpha": 0.2, "beta": 0.03}),
+        ("cycle_kt_bearing", cycled),
+    ):
+        if name in CYCLE:
+            at, friction = np.meshgrid([0.02, 0.2, 3.0], [0.3, 0.6], indexing="ij")
         whole = lookup(name, load_parameter=at, friction=friction, **given)
         assert whole.value.shape == whole.error.shape == at.shape
         for place in np.ndindex(at.shape):
@@ -86,18 +94,38 @@ def test_a_value_is_that_of_its_only_parameters() -> None:
         assert found["peak_pressure"].value / bearing == pytest.approx(expected.value, rel=1e-9)
 
 
-def test_a_cycle_of_a_joint_in_si_units() -> None:
-    problem = Problem(MaterialPair(STEEL, STEEL), 0.01, 2e-5, 0.3, "centre", "fixed")
+def test_like_bodies_agree_in_the_table_of_unlike_bodies() -> None:
+    """An array with one unlike pair takes all its values from the table of unlike bodies."""
+    for name in CYCLE:
+        given = {"load_parameter": [0.1, 0.1], "friction": 0.35, "load_ratio": 0.2, "rotation": "fixed"}
+        mixed = lookup(name, alpha=[0.0, 0.3], beta=[0.0, 0.08], **given)
+        like = lookup(name, **given)
+        assert like.value[0] != mixed.value[0]
+        assert abs(like.value[0] - mixed.value[0]) <= like.error[0] + mixed.error[0]
+
+
+@pytest.mark.parametrize("pin", [ALUMINIUM, STEEL, TITANIUM])
+def test_a_cycle_of_a_joint_in_si_units(pin: Material) -> None:
+    problem = Problem(MaterialPair(pin, STEEL), 0.01, 2e-5, 0.3, "centre", "fixed")
     force = problem.clearance / (0.5 * problem.pair.beta_star)
     across = 0.6 * 0.3 * force
     found = joint_values(problem, force, across)
     history = LoadHistory([{"P": force}]) + LoadHistory([{"Q": across}, {"Q": -across}]).repeated(3)
     result = solve(problem, history, nodes=201, slip_sums=True)
-    cycle = result.cycle()
-    assert abs(cycle.dissipation - found["cycle_energy"].value) <= found["cycle_energy"].error
-    assert abs(cycle.largest_slip_range - found["cycle_slip_range"].value) <= found["cycle_slip_range"].error
-    assert abs(result[-1].peak_pressure - found["cycle_peak_pressure"].value) <= found["cycle_peak_pressure"].error
-    assert [value.unit for value in found.values()] == ["J/m", "m", "rad", "Pa"]
+    cycle, state = result.cycle(), result[-1]
+    expected = {
+        "cycle_energy": cycle.dissipation,
+        "cycle_slip_range": cycle.largest_slip_range,
+        "cycle_stick_angle": 0.5 * sum(stop - start for start, stop in state.stick),
+        "cycle_peak_pressure": state.peak_pressure,
+        "cycle_kt_bearing": state.peak_hoop_stress().value * 2.0 * problem.hole_radius / force,
+    }
+    assert list(found) == list(expected)
+    for name, value in expected.items():
+        assert abs(value - found[name].value) <= found[name].error, name
+    assert [value.unit for value in found.values()] == ["J/m", "m", "rad", "Pa", ""]
+    free = joint_values(Problem(MaterialPair(STEEL, STEEL), 0.01, 2e-5, 0.3), 1e6, 1e5)
+    assert list(free) == list(GROUPS["free"].quantities)
 
 
 @pytest.mark.parametrize(
@@ -121,7 +149,13 @@ def test_a_cycle_of_a_joint_in_si_units() -> None:
         ("kt_bearing", {**FIRST, "load_ratio": 0.1}, "load_ratio: has no meaning in the chart kt_bearing: it belongs"),
         ("kt_bearing", {**FIRST, "lp": 0.1}, "lp: is no parameter of the chart kt_bearing, which has load_parameter"),
         ("kt_bearing", {**FIRST, "pin_load": "both"}, 'pin_load: must be "centre" or "body", not "both"'),
-        ("cycle_energy", {**CYCLED, "alpha": 0.1}, "alpha: has no meaning .*: the charts of a cycle are for like"),
+        ("cycle_energy", {**UNLIKE_CYCLED, "rotation": "free"}, 'rotation: must be "fixed" for unlike bodies'),
+        ("cycle_energy", {**UNLIKE_CYCLED, "friction": 0.7}, "friction: must lie between 0.1 and 0.6, not 0.7"),
+        ("cycle_energy", {**UNLIKE_CYCLED, "alpha": -0.7}, "alpha: must lie between -0.6 and 0.75, not -0.7"),
+        ("cycle_energy", {**UNLIKE_CYCLED, "beta": 0.2}, "beta: must lie between 0.03 and 0.14375 for this alpha"),
+        ("cycle_energy", {**UNLIKE_CYCLED, "kolosov": 2.5}, "kolosov: must lie between 1.5 and 2.2, not 2.5"),
+        ("cycle_energy", {**UNLIKE_CYCLED, "load_ratio": 0.4}, "load_ratio: must lie between 0.06 and 0.3, 0.2 and 1"),
+        ("cycle_kt_bearing", {**CYCLED, "rotation": "free"}, 'rotation: must be "fixed" in the chart cycle_kt_bearing'),
         ("cycle_energy", {**CYCLED, "load_ratio": 0.31}, "load_ratio: must lie between 0.06 and 0.3, 0.2 and 1 times"),
         ("cycle_energy", {**CYCLED, "load_ratio": 0.01}, "load_ratio: must lie between 0.06 and 0.3, 0.2 and 1 times"),
         ("cycle_energy", {**CYCLED, "friction": 0.9}, "friction: must lie between 0.1 and 0.8, not 0.9"),
@@ -145,7 +179,7 @@ def test_wrong_input_is_one_sentence(quantity: Any, given: dict[str, Any], messa
         ({"friction": lambda theta: 0.3 + 0.1 * np.cos(theta)}, {}, "friction: must be one number here"),
         ({"rotation": "spring", "hub_stiffness": 1e8}, {}, 'rotation: must be "free" or "fixed"'),
         ({}, {"P": -1.0}, "P: must be positive, not -1"),
-        ({"pair": MaterialPair(STEEL, ALUMINIUM)}, {"Q": 1e5}, "pair: must be of like materials for a cycle"),
+        ({"pair": MaterialPair(STEEL, ALUMINIUM)}, {"Q": 1e5}, 'rotation: must be "fixed" for unlike bodies'),
         ({"pair": MaterialPair(Material.rigid(), ALUMINIUM)}, {}, "alpha: must lie between -0.6 and 0.75, not 1"),
     ],
 )

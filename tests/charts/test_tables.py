@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fastpin.charts.groups import GROUPS, load_parameter_at, width_coordinate
-from fastpin.charts.tables import DATA, STORED, ChartTable, read_tables, write_tables
+from fastpin.charts.tables import DATA, STORED, VERSION, ChartTable, read_tables, write_tables
 from fastpin.errors import InputError
 
 MOST_BYTES = 2_000_000
@@ -95,7 +95,7 @@ def test_a_damaged_file_is_refused(tmp_path: Path) -> None:
     np.savez(path, version=np.array(99))
     with pytest.raises(InputError, match="has the version 99, not"):
         read_tables(path)
-    np.savez(path, version=np.array(1), like_body_values=np.array([{}], dtype=object))
+    np.savez(path, version=np.array(VERSION), like_body_values=np.array([{}], dtype=object))
     with pytest.raises(InputError, match="is damaged"):
         read_tables(path)
 
