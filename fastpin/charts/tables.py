@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import itertools
 import math
 import zipfile
 from collections.abc import Callable, Sequence
@@ -97,13 +96,17 @@ class ChartTable:
             for _, weights in found:
                 values = np.array(weights).dot(values.reshape(len(weights), -1))
             return float(values[0])
-        total: Any = 0.0
-        for steps in itertools.product(*(range(len(weights)) for _, weights in found)):
-            part = values[tuple(first + step for (first, _), step in zip(found, steps, strict=True))]
-            for (_, weights), step in zip(found, steps, strict=True):
-                part = part * weights[step]
-            total = total + part
-        return total
+        firsts = np.ravel_multi_index([first.ravel() for first, _ in found], values.shape)
+        beside = np.ravel_multi_index(np.indices([len(weights) for _, weights in found]), values.shape).ravel()
+        total = np.empty(firsts.size)
+        for begin in range(0, total.size, 256):  # the nodes around so many places fit into the cache
+            part = slice(begin, begin + 256)
+            around = values.ravel().take(firsts[part, None] + beside)
+            for _, weights in found:
+                factors = np.stack([weight.ravel()[part] for weight in weights], axis=1)[:, None]
+                around = (factors @ around.reshape(len(factors), len(weights), -1))[:, 0]
+            total[part] = around[:, 0]
+        return total.reshape(units[0].shape)
 
     def value_at(self, quantity: str, units: Sequence[Any], load_parameter: Any) -> tuple[Any, Any]:
         """The value and its error bound, in the unit of the value, at places as for :meth:`stored_at`."""
