@@ -120,7 +120,10 @@ def law_of_nodes(
             free = min((cusp.at for cusp in cusps if cusp.at > 0), default=last)
             if error <= LARGEST_ERROR * abs(series[0]):
                 reach = abs(spacing) * min(REACH, last, free)
-                return Law(place, int(np.sign(spacing)), line.exponent, series.astype(complex), abs(spacing), reach)
+                law = Law(place, int(np.sign(spacing)), line.exponent, series.astype(complex), abs(spacing), reach)
+                off = np.abs(law.values(theta) - values)[law.applies(theta)]
+                if np.all(off <= OFF[0] * abs(series[0])):  # no old border lies between the end and these nodes
+                    return law
     return fit_law(place, line.exponent, theta, values)
 
 

@@ -327,6 +327,20 @@ def test_the_cusp_of_an_earlier_edge_inside_the_contact():
     assert two.hoop_stress("plate", edge + np.linspace(-0.01, 0.01, 401), True).max() < 0.57632
 
 
+def test_no_law_of_a_border_goes_beyond_an_old_border_beside_it():
+    """With 301 and 601 nodes both lie within a node distance, at a slip zone of 0.7 degrees.
+
+    The law took no notice of the old border. It missed the next node, and the peak was 12 % and 9 % too high.
+    """
+    case = Problem.from_load_parameter(MaterialPair.from_dundurs(0.0, 0.0, 0.24635), 0.2742, 0.7716, "centre", "fixed")
+    history = [{"P": 1.0}, *3 * [{"Q": 0.6001}, {"Q": -0.6001}]]
+    coarse, fine, finest = (solve(case, history, nodes=nodes)[-1].peak_hoop_stress() for nodes in (301, 601, 1001))
+    assert finest.value == pytest.approx(1.5209, abs=5e-4)
+    assert fine.value == pytest.approx(finest.value, rel=1e-3)  # measured: 5e-4
+    assert coarse.value == pytest.approx(finest.value, rel=8e-3)  # measured: 4e-3
+    assert not coarse.resolved
+
+
 def test_peaks_turn_with_the_grid():
     """The same problem on a circle, turned by an angle: the search must not lose the peak."""
     pair = MaterialPair(Material(116e9, 0.32), Material(69e9, 0.33))
