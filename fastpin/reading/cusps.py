@@ -20,7 +20,7 @@ import numpy as np
 from fastpin.model.grid import Grid
 from fastpin.reading.ends import CUSP_TERMS, end_place
 from fastpin.reading.exponents import Coupling
-from fastpin.reading.half_line import End, Fit, Tries, Try, half_line
+from fastpin.reading.half_line import End, Fit, HalfLine, Tries, Try, half_line
 from fastpin.reading.old_borders import OldBorder, old_borders
 from fastpin.reading.zones import runs, unrolled
 
@@ -354,12 +354,14 @@ class ShearNodes:
         self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], first: int, last: int, sign: int
     ) -> Iterator[tuple[tuple[End, ...], int]]:
         """Ends and degrees to try for the nodes first : last of a zone. The border itself is the first end."""
-        own = self._end(border, int(run[border.at]), first, CUSP_TERMS, sign)
+        here = (border.at, border.inwards)
         others = {(other.at, other.inwards): other for other in borders if first <= other.at < last}
-        others.pop((border.at, border.inwards), None)
-        others = {key: other for key, other in others.items() if not other.is_end(run.size)}
-        inside = [self._end(other, int(run[other.at]), first, CUSP_TERMS, sign) for other in others.values()]
+        cusps = [border] + [other for at, other in others.items() if at != here and not other.is_end(run.size)]
         met = _met(first, last, run.size)
+        least = len(met) * END_TERMS[0] if met else DEGREES[0] + 1
+        if last - first - least - sum(CUSP_TERMS - (cusp.place is not None) for cusp in cusps) < SPARE:
+            return  # too few nodes for all of these fits
+        own, *inside = [self._end(cusp, int(run[cusp.at]), first, CUSP_TERMS, sign) for cusp in cusps]
         if not met:
             yield from (((own, *inside), degree) for degree in DEGREES)
         for terms in END_TERMS if met else ():
@@ -375,12 +377,24 @@ class ShearNodes:
 
         Its outermost node is the `node` of the grid.
         """
-        exponent = self._exponent(node, border.sign, border.inwards)
-        line = half_line(exponent, float(self.coupling.beta[node]) if border.sign else None)
-        parts, share = (1.0, 0.0), float(self.coupling.share[border.sign, node])
-        if not self.coupling.is_smooth and border.sign not in (0, sign):
+        key = node, border.sign, border.inwards, sign
+        known = self._solutions.get(key)
+        if known is None:
+            known = self._solutions[key] = self._solution(*key)
+        return End(known[0], border.at - first, border.inwards, terms, border.place, known[1])
+
+    @cached_property
+    def _solutions(self) -> dict[tuple[int, int, int, int], tuple[HalfLine, tuple[float, float]]]:
+        """The solutions of borders that were read, by the arguments of :meth:`_solution`."""
+        return {}
+
+    def _solution(self, node: int, own: int, inwards: int, sign: int) -> tuple[HalfLine, tuple[float, float]]:
+        """The half line of a border with its `own` sign, and its parts in the fitted quantity, see :meth:`_end`."""
+        line = half_line(self._exponent(node, own, inwards), float(self.coupling.beta[node]) if own else None)
+        parts, share = (1.0, 0.0), float(self.coupling.share[own, node])
+        if not self.coupling.is_smooth and own not in (0, sign):
             parts = (1.0, -2.0 * share) if sign else (0.0, share)
-        return End(line, border.at - first, border.inwards, terms, border.place, parts)
+        return line, parts
 
     def _pressure_at(self, node: int, offsets: np.ndarray, inwards: int) -> tuple[np.ndarray, float] | None:
         """The pressure beside a border, and its standard error at the first place.

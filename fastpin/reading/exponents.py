@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -63,7 +64,7 @@ class Coupling:
         """The coupling at some `nodes` (k,)."""
         return Coupling(self.tilt[:, nodes], self.beta[nodes], self.share[:, nodes], self.cusp[:, nodes])
 
-    @property
+    @cached_property
     def is_smooth(self) -> bool:
         """Whether the pressure is smooth at borders, as of like bodies."""
         return not self.tilt.any() and bool(np.all(self.share == 1.0))
