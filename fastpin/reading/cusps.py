@@ -354,9 +354,8 @@ class ShearNodes:
         self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], first: int, last: int, sign: int
     ) -> Iterator[tuple[tuple[End, ...], int]]:
         """Ends and degrees to try for the nodes first : last of a zone. The border itself is the first end."""
-        here = (border.at, border.inwards)
-        others = {(other.at, other.inwards): other for other in borders if first <= other.at < last}
-        cusps = [border] + [other for at, other in others.items() if at != here and not other.is_end(run.size)]
+        others = [other for other in borders if first <= other.at < last and other[:2] != border[:2]]
+        cusps = [border, *(other for other in others if not other.is_end(run.size))]
         met = _met(first, last, run.size)
         least = len(met) * END_TERMS[0] if met else DEGREES[0] + 1
         if last - first - least - sum(CUSP_TERMS - (cusp.place is not None) for cusp in cusps) < SPARE:
