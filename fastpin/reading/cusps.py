@@ -318,7 +318,11 @@ class ShearNodes:
         return _best(windows, None, enough)
 
     def shear_laws(self, run: np.ndarray, most_pressure: float) -> Iterator[ShearLaw]:
-        """The power laws of T at the old borders in the stick zone of the nodes `run`, up to a nodal pressure."""
+        """The power laws of T at the old borders in the stick zone of the nodes `run`, up to a nodal pressure.
+
+        Among crowded borders the least squares may take a sum of huge laws that cancel each other at the nodes. A law
+        that alone breaks Coulomb's law within a node distance is none.
+        """
         borders, largest = self.old_borders(run), float(np.abs(self.shear).max())
         for border in borders:
             node = int(run[border.at])
@@ -332,6 +336,9 @@ class ShearNodes:
                 end = self._end(border, node, best.window.first, CUSP_TERMS, best.window.sign)
                 height = sum(end.parts) * float(series[0]) * (-best.window.sign or 1)
                 angle = self._angle(node, place + best.window.first - border.at)
+                beside = run[max(border.at - 2, 0) : border.at + 3]
+                if abs(height) > float((self.friction[beside] * self.pressure[beside]).max()):
+                    continue
                 yield ShearLaw(angle, border.inwards, end.half_line.exponent, height, float(self.grid.weights[node]))
 
     def _read(self, reading: _Reading, node: int, border: OldBorder, highest: int) -> Cusp | None:
