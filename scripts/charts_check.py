@@ -1,6 +1,6 @@
 """Check the charts against fresh runs at random places that no bound has seen.
 
-``python -m scripts.charts_check [--count 2100] [--seed 7] [--folder out/charts]`` solves `count` places with twice the
+``python -m scripts.charts_check [--count 3000] [--seed 8] [--folder out/charts]`` solves `count` places with twice the
 nodes of the tables, an equal share in each group. It prints the largest error of each chart, in parts of its bound, and
 the parameters there. A ratio above 1 breaks a bound, and ends with the exit code 1. A folder keeps what is solved.
 """
@@ -54,8 +54,8 @@ def worst_of(group: ChartGroup, count: int, seed: int, folder: Path | None = Non
 def main() -> int:
     """Read the options, solve and compare."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=2100)
-    parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--count", type=int, default=3000)
+    parser.add_argument("--seed", type=int, default=8)
     parser.add_argument("--folder", type=Path)
     options = parser.parse_args()
     warnings.simplefilter("ignore")

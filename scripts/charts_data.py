@@ -29,8 +29,8 @@ NODES = {False: 201, True: 151}
 FINE = {False: 401, True: 301}
 """Nodes of the runs of calibration and check."""
 
-SHARES = {"unlike_body": 2.5, "unlike_centre": 2.5, "free": 0.7, "unlike_held": 2.5}
-"""Points of calibration in parts of the usual number: more in many dimensions, fewer of long runs."""
+UNLIKE_SHARE = 2.5
+"""Points of calibration of unlike bodies, in parts of the usual number: their tables have two dimensions more."""
 
 CALIBRATION_SEED = 1
 """Seed of the points of calibration. The check has other seeds."""
@@ -129,7 +129,8 @@ def table_of(group: ChartGroup, folder: Path, count: int) -> ChartTable:
     at = widths.reshape(-1, *[1] * (len(group.axes) - 1))
     stored = [STORED[name].stored(solved[..., k], at) for k, name in enumerate(group.quantities)]
     values = np.stack(stored, axis=-1).astype(np.float32)
-    places, fresh = points(group, round(count * SHARES.get(group.name, 1.0)), CALIBRATION_SEED, folder)
+    share = UNLIKE_SHARE if group.name.startswith("unlike") else 1.0
+    places, fresh = points(group, round(count * share), CALIBRATION_SEED, folder)
     none = np.zeros((*group.regions, len(group.quantities)))
     trials = {order: ChartTable(group, values, [order] * len(group.quantities), none) for order in (2, 4)}
     errors = {order: deviations(table, places, fresh) for order, table in trials.items()}

@@ -120,7 +120,7 @@ def lookup(quantity: str, **parameters: Any) -> ChartValue:
     load_ratio : float or array_like
         Q/P, the amplitude of the cycle; of the charts of a cycle only.
     alpha, beta : float or array_like
-        Dundurs' parameters in the usual sign, 0 unless given; 0 in a cycle with free rotation.
+        Dundurs' parameters in the usual sign, 0 unless given.
     kolosov : float or array_like
         Kolosov's constant of the pin: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress; 1.8 unless given.
     pin_load : {"centre", "body"}
@@ -141,29 +141,18 @@ def lookup(quantity: str, **parameters: Any) -> ChartValue:
     chart = chart_of(quantity)
     given = _checked(chart, parameters)
     group = _group(given)
-    if quantity not in group.quantities:
-        raise InputError("rotation", f'must be "fixed" in the chart {chart.name}')
     units = [_unit(axis, given) for axis in group.axes]
     value, error = tables()[group.name].value_at(quantity, units, given["load_parameter"])
     return ChartValue(value, error, chart.unit)
 
 
 def _group(given: Mapping[str, Any]) -> ChartGroup:
-    """The group of charts that covers parameters; a load cycle has a rotation.
-
-    Raises
-    ------
-    InputError
-        If no group covers them.
-    """
+    """The group of charts of some parameters; a load cycle has a rotation."""
     is_like = not any(value if isinstance(value := given[name], float) else value.any() for name in ("alpha", "beta"))
     if "rotation" not in given:
         return GROUPS[f"{'like' if is_like else 'unlike'}_{given['pin_load']}"]
-    if given["rotation"] == "fixed":
-        return GROUPS["held" if is_like else "unlike_held"]
-    if not is_like:
-        raise InputError("rotation", 'must be "fixed" for unlike bodies in a cycle: alpha and beta other than 0')
-    return GROUPS["free"]
+    name = "held" if given["rotation"] == "fixed" else f"free_{given['pin_load']}"
+    return GROUPS[name if is_like else f"unlike_{name}"]
 
 
 def chart_of(quantity: object) -> ChartQuantity:
@@ -255,7 +244,7 @@ def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str
     Returns
     -------
     dict of str to ChartValue
-        By the names of :data:`CHARTS`. "kt_bearing" and "cycle_kt_bearing" are ratios; the latter is for held rotation.
+        By the names of :data:`CHARTS`. "kt_bearing" and "cycle_kt_bearing" are ratios.
 
     Raises
     ------

@@ -17,7 +17,7 @@ from fastpin.errors import InputError
 DATA = Path(__file__).parent / "charts.npz"
 """The data of the package."""
 
-VERSION = 2
+VERSION = 3
 """Version of the data: of the axes, the quantities and their scales."""
 
 FEW = 4

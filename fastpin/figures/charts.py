@@ -12,7 +12,7 @@ from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.charts.groups import GROUPS, WIDTHS, load_parameter_at
+from fastpin.charts.groups import WIDTHS, load_parameter_at
 from fastpin.charts.lookups import CHARTS, ChartQuantity, lookup
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import house_style, line, new_figure
@@ -63,9 +63,9 @@ def write_chart_book(path: str | Path, progress: Callable[[float, float], None] 
 
 def _pages() -> Iterator[Figure]:
     """The list of charts with ranges and bounds as text, then a page for each chart."""
-    figure = new_figure(8.3, 9.0)
+    figure = new_figure(8.3, 11.7)
     figure.text(0.04, 0.97, "Charts of a pin in a hole", fontsize=14.0, va="top")
-    figure.text(0.04, 0.93, chart_list(), fontsize=7.5, family="monospace", va="top", parse_math=False)
+    figure.text(0.04, 0.94, chart_list(), fontsize=7.5, family="monospace", va="top", parse_math=False)
     yield figure
     for chart in CHARTS.values():
         yield (_cycle_page if chart.is_cycle else _first_load_page)(chart).figure
@@ -101,22 +101,22 @@ def _first_load_page(chart: ChartQuantity) -> Sheet:
 
 
 def _cycle_page(chart: ChartQuantity) -> Sheet:
-    """Curves over the part of sliding, for two coefficients of friction: like bodies by load parameter, then unlike
-    bodies by alpha, with held rotation; then like bodies with free rotation, if the chart has it.
+    """Curves over the part of sliding, for two coefficients of friction and both rotations: like bodies by load
+    parameter, then unlike bodies by alpha.
     """
-    rotations = ["fixed", "fixed", "free"] if chart.name in GROUPS["free"].quantities else ["fixed", "fixed"]
-    sheet = Look(width=7.6).sheet([2.9] * len(rotations), columns=2, sharex=True)
+    rows = [(rotation, is_like) for rotation in ("fixed", "free") for is_like in (True, False)]
+    sheet = Look(width=7.6).sheet([2.2] * len(rows), columns=2, sharex=True)
     part = np.linspace(0.2, 1.0, POINTS)
     for (row, column), panel in np.ndenumerate(sheet.axes):
-        friction, is_like = (0.2, 0.6)[column], row != 1
-        given = {"friction": friction, "load_ratio": part * friction, "rotation": rotations[row]}
+        friction, (rotation, is_like) = (0.2, 0.6)[column], rows[row]
+        given = {"friction": friction, "load_ratio": part * friction, "rotation": rotation}
         for k, (at, alpha) in enumerate(zip(LOAD_PARAMETERS, ALPHAS, strict=True)):
             if is_like:
                 _draw(panel, chart, part, k, load_parameter=at, **given)
             else:
                 _draw(panel, chart, part, k, load_parameter=0.3, alpha=alpha, beta=alpha * 0.4 / 1.4, **given)
         bodies = "like bodies" if is_like else "unlike, $L_p$ = 0.3"
-        panel.set_title(f"{bodies}, rotation {rotations[row]}, friction {friction:g}", fontsize=8.5)
+        panel.set_title(f"{bodies}, rotation {rotation}, friction {friction:g}", fontsize=8.5)
     for panel in sheet.axes[-1]:
         panel.set_xlabel("load ratio over friction $Q/\\mu P$")
     legend = []

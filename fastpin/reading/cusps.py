@@ -337,9 +337,9 @@ class ShearNodes:
                 height = sum(end.parts) * float(series[0]) * (-best.window.sign or 1)
                 angle = self._angle(node, place + best.window.first - border.at)
                 beside = run[max(border.at - 2, 0) : border.at + 3]
-                if abs(height) > float((self.friction[beside] * self.pressure[beside]).max()):
-                    continue
-                yield ShearLaw(angle, border.inwards, end.half_line.exponent, height, float(self.grid.weights[node]))
+                if abs(height) <= float((self.friction[beside] * self.pressure[beside]).max()):
+                    spacing = float(self.grid.weights[node])
+                    yield ShearLaw(angle, border.inwards, end.half_line.exponent, height, spacing)
 
     def _read(self, reading: _Reading, node: int, border: OldBorder, highest: int) -> Cusp | None:
         """Read the cusp at an old border, whose outermost node is `node`, from the best fit beside it."""

@@ -19,8 +19,9 @@ from fastpin.version import __version__
 
 
 def tables_of(chart: ChartQuantity) -> list[ChartTable]:
-    """The tables that have a chart."""
-    return [table for table in tables().values() if chart.name in table.group.quantities]
+    """The tables that have a chart, in the order of their words."""
+    found = [table for table in tables().values() if chart.name in table.group.quantities]
+    return sorted(found, key=lambda table: table.group.words)
 
 
 def bounds_of(table: ChartTable, chart: ChartQuantity) -> tuple[float, float]:
@@ -50,7 +51,8 @@ def chart_list() -> str:
 
 def _range_lines() -> list[str]:
     """The ranges of the parameters, from the axes of the tables."""
-    first, unlike, cycle, held = (GROUPS[name].axes for name in ("like_body", "unlike_body", "held", "unlike_held"))
+    shown = ("like_body", "unlike_body", "held", "unlike_held")
+    first, unlike, cycle, unlike_cycle = (GROUPS[name].axes for name in shown)
     return [
         f"first load of like bodies: load_parameter {_span(first[0])}, friction {_span(first[1])}, "
         f"kolosov {_span(first[2])}",
@@ -59,9 +61,9 @@ def _range_lines() -> list[str]:
         f"cycle of Q, like bodies: load_parameter {_span(cycle[0])}, friction {_span(cycle[1])}, "
         f"kolosov {_span(cycle[2])},",
         f"  load_ratio {_span(cycle[3])} times the friction",
-        f"cycle of Q, unlike bodies: rotation fixed, load_parameter {_span(held[0])}, friction {_span(held[1])},",
-        f"  alpha {_span(held[2])}, kolosov of pin and plate {_span(held[4])}, "
-        f"load_ratio {_span(held[5])} times the friction",
+        f"cycle of Q, unlike bodies: load_parameter {_span(unlike_cycle[0])}, friction {_span(unlike_cycle[1])},",
+        f"  alpha {_span(unlike_cycle[2])}, kolosov of pin and plate {_span(unlike_cycle[4])}, "
+        f"load_ratio {_span(unlike_cycle[5])} times the friction",
         "A parameter beyond its range is an error: there is no extrapolation.",
     ]
 
@@ -110,9 +112,7 @@ def write_chart(chart: ChartQuantity, path: Path) -> None:
         If the file can't be written.
     """
     curves = []
-    for table in tables().values():
-        if chart.name not in table.group.quantities:
-            continue
+    for table in tables_of(chart):
         units = [np.linspace(0.0, 1.0, nodes) for nodes in table.group.shape]
         grid = [axis.ravel() for axis in np.meshgrid(*units, indexing="ij")]
         places = itertools.product(*(axis.coordinates() for axis in table.group.axes))
@@ -122,10 +122,8 @@ def write_chart(chart: ChartQuantity, path: Path) -> None:
         value, error = table.value_at(chart.name, grid, columns["load_parameter"])
         unit = f" ({chart.unit})" if chart.unit else ""
         columns |= {f"{chart.name}{unit}": value, f"error{unit}": np.broadcast_to(error, value.shape)}
-        loads = np.array([row["pin_load"] for row in rows])
-        for load in dict.fromkeys(loads.tolist()):
-            chosen = {key: column[loads == load] for key, column in columns.items()}
-            curves.append(Curve({"table": table.group.words.replace(",", ";"), "pin_load": load}, chosen))
+        words = {"table": table.group.words.replace(",", ";"), "pin_load": table.group.fixed["pin_load"]}
+        curves.append(Curve(words, columns))
     write_csv(curves, path)
 
 

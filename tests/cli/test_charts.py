@@ -20,7 +20,7 @@ def test_the_list_has_all_charts_with_bounds_and_ranges(capsys: pytest.CaptureFi
     assert all(f"  {name} " in out for name in CHARTS)
     assert "largest bound" in out
     assert "load_parameter 0 to 100" in out
-    assert "cycle of Q, unlike bodies: rotation fixed, load_parameter 0.02 to 3, friction 0.1 to 0.6" in out
+    assert "cycle of Q, unlike bodies: load_parameter 0.02 to 3, friction 0.1 to 0.6" in out
 
 
 def test_a_value_has_its_error(capsys: pytest.CaptureFixture[str]) -> None:
@@ -87,8 +87,8 @@ def test_formulas_are_printed_with_their_errors(capsys: pytest.CaptureFixture[st
         (["kt_bearing", *AT, "--friction", "much"], '--friction: must be a number, not "much"'),
         (["cycle_energy", *AT, "--load-ratio", "0.4"], "--load-ratio: must lie between 0.05 and 0.25"),
         (
-            ["cycle_energy", *AT, "--load-ratio", "0.2", "--alpha", "0.1"],
-            '--rotation: must be "fixed" for unlike bodies',
+            ["cycle_energy", *AT, "--load-ratio", "0.2", "--rotation", "fixed", "--pin-load", "body"],
+            '--rotation: must be "free" for a body load',
         ),
         (AT, "--load-parameter: has a meaning with the name of a chart only"),
         (["--csv", "a.csv"], "--csv: has a meaning with the name of a chart only"),

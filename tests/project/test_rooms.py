@@ -18,7 +18,7 @@ MOST = {
     "drive is None, or not": 0,
     "classes defined twice": 0,
     "small private functions used once": 71,
-    "constants of modules": 1_353,
+    "constants of modules": 1_352,
     "hidden imports": 0,
     "lines of code": 47_860,
 }
