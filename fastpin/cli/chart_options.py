@@ -10,8 +10,8 @@ from typing import Any
 NUMBERS = {
     "load_parameter": "L_p = (R - R_D)/(P beta*)",
     "friction": "coefficient of friction",
-    "alpha": "first parameter of Dundurs, in the usual sign (default 0; in cycles with fixed rotation only)",
-    "beta": "second parameter of Dundurs (default 0; in cycles with fixed rotation only)",
+    "alpha": "first parameter of Dundurs, in the usual sign (default 0)",
+    "beta": "second parameter of Dundurs (default 0)",
     "kolosov": "Kolosov's constant of the pin: 3 - 4 nu or, in plane stress, (3 - nu)/(1 + nu) (default 1.8)",
     "load_ratio": "Q/P: amplitude of the cycle (cycles only)",
 }
