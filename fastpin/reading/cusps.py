@@ -321,7 +321,7 @@ class ShearNodes:
         """The power laws of T at the old borders in the stick zone of the nodes `run`, up to a nodal pressure.
 
         Among crowded borders the least squares may take a sum of huge laws that cancel each other at the nodes. A law
-        that alone breaks Coulomb's law within a node distance is none.
+        that alone breaks Coulomb's law is none: T changes from -mu N to mu N at most, here within a node distance.
         """
         borders, largest = self.old_borders(run), float(np.abs(self.shear).max())
         for border in borders:
@@ -337,7 +337,7 @@ class ShearNodes:
                 height = sum(end.parts) * float(series[0]) * (-best.window.sign or 1)
                 angle = self._angle(node, place + best.window.first - border.at)
                 beside = run[max(border.at - 2, 0) : border.at + 3]
-                if abs(height) <= float((self.friction[beside] * self.pressure[beside]).max()):
+                if abs(height) <= 2.0 * float((self.friction[beside] * self.pressure[beside]).max()):
                     spacing = float(self.grid.weights[node])
                     yield ShearLaw(angle, border.inwards, end.half_line.exponent, height, spacing)
 
