@@ -376,7 +376,10 @@ def test_angles_that_are_equal_up_to_rounding_are_one(monkeypatch):
 
 
 def test_a_law_between_crowded_old_borders_keeps_coulombs_law():
-    """A free pin leaves five old borders on six nodes. Laws of 9e4 mu N cancelled each other at the nodes."""
+    """A free pin leaves five old borders on six nodes.
+
+    Laws of thousands of mu N cancelled each other at the nodes, and Kt was up to 9e4.
+    """
     pair = MaterialPair.from_dundurs(-0.2625, -0.0984375, 0.2)
     case = Problem.from_load_parameter(pair, 3.0, 0.5, "centre", "free")
     history = [{"P": 1.0}, *4 * [{"Q": 0.3}, {"Q": -0.3}]]
