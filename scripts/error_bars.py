@@ -4,7 +4,7 @@
 docs/convergence.md. It takes some five minutes. The first table is about the bars of two grids. The second one is about
 the bars of studies of four grids, 101 to 801 nodes. The third one is about the bars of the tractions, at the nodes and
 on the curves, four points an interval. With ``--classes general,narrow`` there are so many cases of each class of
-``scripts/histories.py``, and rows by class. The reference is on the same arc. Its uncertainty is the difference to a
+``tests/survey/histories.py``, and rows by class. The reference is on the same arc. Its uncertainty is the difference to a
 grid with half its intervals. *Surely held*: the bar covers the error plus this uncertainty. *Surely broken*: the bar
 does not cover the error minus this uncertainty.
 """
@@ -29,8 +29,8 @@ from fastpin.states.curves import traction_patches, tractions_at
 from fastpin.states.quantities import QUANTITIES, intervals, matching_values, size, values
 from fastpin.states.state import State
 from fastpin.studies.extrapolate import estimate
-from scripts.histories import RandomCase, generate
-from scripts.random_histories import classes
+from tests.survey.histories import RandomCase, generate
+from tests.survey.random_histories import classes
 
 NODES = 201
 TIMES = (2, 4, 8)

@@ -1,7 +1,7 @@
 """How far rounding carries: random histories under two versions of packages, or two kinds of BLAS.
 
 ``python -m scripts.rounding FILE.npz [--count 12]`` solves `count` histories of each of five classes of
-``scripts/histories.py`` with error bars. It stores pressure, shear, key figures and their bars.
+``tests/survey/histories.py`` with error bars. It stores pressure, shear, key figures and their bars.
 ``python -m scripts.rounding --compare A.npz B.npz`` prints the differences between two such files as Markdown. The
 difference of a history's tractions is the largest one of all nodes and states, in parts of the peak pressure of the
 state. Differences of figures and of their bars are in parts of the largest figure of the group in the history, for
@@ -21,7 +21,7 @@ from fastpin.solver.errors import SolveError
 from fastpin.solver.solving import solve
 from fastpin.states.quantities import ZONES, quantity, sizes, values
 from fastpin.states.state import State
-from scripts.histories import generate
+from tests.survey.histories import generate
 
 CLASSES = ("general", "remote", "fits", "fixed", "moderate_stress")
 """Classes without extremes: their histories hang on no single digit."""

@@ -12,9 +12,9 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
-from scripts.histories import NODES, random_case
-from scripts.random_histories import examine
 from tests.support.marks import first_quick
+from tests.survey.histories import NODES, random_case
+from tests.survey.random_histories import examine
 
 BOTTOM = -0.5 * np.pi
 ARC = (BOTTOM - 1.75, BOTTOM + 1.75)
@@ -224,7 +224,7 @@ def test_a_circle_with_a_wide_seam_is_not_taken_for_a_uniform_one(similar):
 
 @pytest.mark.parametrize("block", first_quick(4, range(10)))
 def test_random_histories(block):
-    """No wrong state, and no error: all of these have an equilibrium. scripts/random_histories.py runs a thousand."""
+    """No wrong state, and no error: all of these have an equilibrium. tests/survey/ runs a thousand."""
     for seed in range(1000 + 12 * block, 1012 + 12 * block):
         outcome = examine("general", seed)
         assert outcome.ending == "solved", f"seed {seed}"
