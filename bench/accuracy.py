@@ -59,8 +59,8 @@ NODES = (101, 201, 401, 801, 1601)
 
 def show(title: str, header: str, rows: Iterable[Row], orders: bool = False) -> None:
     """Print a table, with the orders of its columns in the first one: slopes of straight lines through logarithms."""
-    names, known = header.split(", "), []
-    print(f"\n### {title}\n\n| {' | '.join(names)} |\n|{'---|' * len(names)}")
+    known = []
+    print(f"\n### {title}\n\n| {header} |\n|{'---|' * (header.count(' | ') + 1)}")
     for row in rows:
         known.append(row)
         print("|", " | ".join(f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in row), "|", flush=True)
@@ -88,7 +88,7 @@ def closed_form(options: Options) -> None:
             peak.append(state.peak_pressure / closed_forms.persson_pressure(0.0, exact) - 1.0)
         return [nodes, *(math.sqrt(np.mean(np.square(each))) for each in (edge, peak))]
 
-    show("Persson", "nodes, edge (rad), peak pressure (relative)", map(row, options.sizes), orders=True)
+    show("Persson", "nodes | edge, rad | peak pressure, relative", map(row, options.sizes), orders=True)
 
 
 CASES: dict[str, tuple[Problem, list[dict[str, float]]]] = {
@@ -139,7 +139,7 @@ def reference_cases(options: Options) -> None:
             [load, SHOWN[name], *(f"{e:.1e}" for e in errors), f"{-np.polyfit(logs, np.log(errors), 1)[0]:.1f}"]
             for (load, name), errors in found[title].items()
         )
-        show(title, f"load, quantity, {', '.join(map(str, options.sizes))}, order", rows)
+        show(title, f"load | quantity | {' | '.join(map(str, options.sizes))} | order", rows)
     if options.figure is not None:
         save_drawing(lambda errors: _drawn(options.sizes, errors), found, options.figure, 160.0)
 
@@ -191,9 +191,9 @@ def finite_elements(_: Options) -> None:
                 LOADS, states, model.pressure, model.differences(states), strict=False
             ):
                 peak = abs(float(state.pressure.max() / pressure.max()) - 1.0)
-                yield [f"{name}: {load}", one.normal, one.normal_away, one.shear, one.shear_away, peak]
+                yield [f"{name}, {load}", one.normal, one.normal_away, one.shear, one.shear_away, peak]
 
-    show("Finite elements", "state, int dN, away, int dT, away, peak N", rows())
+    show("Finite elements", "case, state | int dN | away | int dT | away | peak N", rows())
 
 
 def increments(options: Options) -> None:
@@ -205,9 +205,14 @@ def increments(options: Options) -> None:
     def row(count: int) -> Row:
         state = solve(problem, [{"P": 1.0}], method="increment", increments=count, **given)[-1]
         shear = float(np.abs(state.shear - exact.shear).sum() / exact.pressure.sum())
-        return [count, abs(state.peak_pressure / exact.peak_pressure - 1.0), shear]
+        return [count, f"{state.peak_pressure:.6f}", abs(state.peak_pressure / exact.peak_pressure - 1.0), shear]
 
-    show("Increments", "increments, peak N (relative), int dT / int N", map(row, options.sizes), orders=True)
+    show(
+        "Increments",
+        "increments | peak N | difference, relative | int dT / int N",
+        map(row, options.sizes),
+        orders=True,
+    )
 
 
 def half_plane(options: Options) -> None:
@@ -219,9 +224,9 @@ def half_plane(options: Options) -> None:
         half, top = closed_forms.hertz_half_angle(parameter), closed_forms.hertz_peak_pressure(parameter)
         start, stop = result[1].stick[0]
         apart = cattaneo_mindlin_differences(result[1:], 0.6)
-        return [parameter, result[0].peak_pressure / top - 1.0, *apart, 0.5 * (stop - start) / half - math.sqrt(0.4)]
+        return [parameter, result[0].peak_pressure / top - 1.0, *apart, f"{0.5 * (stop - start) / half:.5f}"]
 
-    header = "L_p, peak N over Hertz - 1, +Q, -Q, +Q again, c/a - sqrt 0.4"
+    header = "L_p | peak N over Hertz - 1 | +Q | -Q | +Q again | c/a"
     show("Cattaneo-Mindlin", header, map(row, (2.0, 20.0, 200.0, 2000.0)), orders=True)
 
 
@@ -239,7 +244,9 @@ def sliding_terms(options: Options) -> None:
             yield float(np.abs(np.subtract(found.contact, true.contact)).max())
 
     show(
-        "Full sliding", "terms, like: peak, ends (rad), unlike: peak, ends (rad)", (list(row(n)) for n in options.sizes)
+        "Full sliding",
+        "terms | like: peak, relative | ends, rad | unlike: peak, relative | ends, rad",
+        (list(row(n)) for n in options.sizes),
     )
 
 
@@ -256,7 +263,7 @@ def sliding(options: Options) -> None:
             yield abs(state.resultants["M"] / true.moment - 1.0)
             yield float(np.abs(np.subtract(state.contact[0], true.contact)).max())
 
-    header = "nodes, like: peak, moment, ends (rad), unlike: peak, moment, ends (rad)"
+    header = "nodes | like: peak | moment | ends, rad | unlike: peak | moment | ends, rad"
     show("Full sliding by the path", header, (list(row(nodes)) for nodes in options.sizes))
 
 
@@ -264,7 +271,7 @@ def singular_equations(options: Options) -> None:
     """Largest residuals of (46) and (47) in F beta*, away from edges and borders (0.085 rad)."""
     problem, history = CASES["Ti-6Al-4V in aluminium, body load, mu = 0.4, L_p = 0.1"]
     rows = ([nodes, *residuals_away(solve(problem, history, nodes=nodes)[-1], 0.085)] for nodes in options.sizes)
-    show("Singular integral equations", "nodes, (46), (47)", rows, orders=True)
+    show("Singular integral equations", "nodes | (46) | (47)", rows, orders=True)
 
 
 # -- docs/bush.md --------------------------------------------------------------------------------------------
@@ -278,7 +285,7 @@ def seat(options: Options) -> None:
             for nodes in options.sizes
         }
         rows = ([nodes, *(f"{each:.7g}" for each in numbers.values())] for nodes, numbers in found.items())
-        show(name, ", ".join(["nodes", *found[options.sizes[0]]]), rows)
+        show(name, " | ".join(["nodes", *found[options.sizes[0]]]), rows)
 
 
 # -- docs/wear-accuracy.md -----------------------------------------------------------------------------------
@@ -293,7 +300,7 @@ def lives(options: Options) -> None:
 
     grids = [(options.sizes[0], 40), *((nodes, 160) for nodes in options.sizes)]
     rows = (row(name, *grid) for name in WEAR_CASES for grid in grids)
-    show("Lives", "life, nodes, fat cycles, volume, depth, N at the bottom, D", rows)
+    show("Lives", "life | nodes | fat cycles | volume | depth | N, bottom | D", rows)
 
 
 def path(options: Options) -> None:
@@ -321,8 +328,8 @@ def path(options: Options) -> None:
             grown = elastic_energy(run.system, run.now) - energy
             yield removal.work - grown - removal.dissipation - removal.energy
 
-    show("The wear path", "increments of the gap, N, T", map(by_increments, (10, 40, 160, 640)))
-    header = "nodes, work - energy - dissipation - removed, the same with the implicit way"
+    show("The wear path", "increments of the gap | N | T", map(by_increments, (10, 40, 160, 640)))
+    header = "nodes | work - energy - dissipation - removed | the same with the implicit way"
     show("Balance of energy", header, (list(balance(nodes)) for nodes in options.sizes))
 
 
@@ -333,7 +340,7 @@ def wear_of_half_planes(options: Options) -> None:
         for at in (200.0, 2e4, 2e6)
         for nodes in options.sizes
     )
-    show("Half-planes", "L_p, nodes, volume, depth, N in the middle", rows)
+    show("Half-planes", "L_p | nodes in half the stick zone | volume, % | depth, % | N, middle, %", rows)
 
 
 def wear_of_rigid_bodies(_: Options) -> None:
@@ -354,7 +361,7 @@ def wear_of_rigid_bodies(_: Options) -> None:
         return [f"{clearance:g}", nodes, steps, *(f"{each:.4f}" for each in (*found, *exact))]
 
     cases = [(at, *grid) for at in (1.0, 10.0) for grid in ((31, 800), (61, 1600), (61, 3200), (121, 3200))]
-    header = "clearance (F beta*), nodes, steps, depth, N0, tilt, depth of rigid bodies, N0 of rigid bodies"
+    header = "clearance, F beta* | nodes | steps | depth | N0 | tilt | depth, rigid | N0, rigid"
     show("One way", header, (row(*case) for case in cases))
 
 
@@ -375,9 +382,9 @@ def friction(options: Options) -> None:
         lost, left = last.dissipation - before.dissipation, last.work - last.energy - last.dissipation
         return [nodes, f"{last.peak_pressure:.5f}", f"{last.rotation:.5f}", f"{lost:.6f}", left]
 
-    header = "nodes, peak N, int N, int T, dx, work - energy - dissipation"
+    header = "nodes | peak N | int N | int T | dx | work - energy - dissipation"
     show("Friction along the rim", header, map(along, options.sizes))
-    header = "nodes, peak N, rotation, D of the step, work - energy - dissipation"
+    header = "nodes | peak N | rotation | D of the step | work - energy - dissipation"
     show("Friction that falls", header, map(changed, (61, 121, 241)))
 
 
@@ -445,12 +452,12 @@ def error_bars(options: Options) -> None:
             if state.in_contact:
                 _count_points(state, better, points, kind)
     print(f"{len(known) - failed} cases, {states} states, {options.sizes[0]} nodes; {failed} cases without equilibrium")
-    shares = "held (%), surely held (%), surely broken (%), bar / error (median)"
-    show("Two grids", f"quantity, values, {shares}, no bar", map(_row_of_pairs, pairs.items()))
+    shares = "held, % | surely held, % | surely broken, % | bar / error, median"
+    show("Two grids", f"quantity | values | {shares} | no bar", map(_row_of_pairs, pairs.items()))
     every = [*studies.items(), ("all", [row for each in studies.values() for row in each])]
-    header = "quantity, values, order observed (%), held if observed (%), held if not (%), bar / error (median)"
+    header = "quantity | values | order observed, % | held if observed, % | held if not, % | bar / error, median"
     show("Studies", header, map(_row_of_studies, every))
-    header = f"tractions, points, {shares}, bar / peak N (median), 95 % of bars below"
+    header = f"tractions | points | {shares} | bar / peak N, median | 95 % of bars below"
     show("Tractions", header, map(_row_of_points, points.items()))
 
 
@@ -500,9 +507,9 @@ def _count_points(state: State, better: list[State], points: Found, kind: str) -
             touched = (error[row] > ROUNDING * state.peak_pressure) & (mine[0] + true[0] > 0.0)
             numbers = np.array([error[row], doubt[row], known[row]]) / state.peak_pressure
             for group in np.unique(place[touched]):
-                points[f"{name} {what}: {group}"].append(numbers[:, touched & (place == group)])
+                points[f"{name} {what}, {group}"].append(numbers[:, touched & (place == group)])
             if kind:
-                points[f"{name} {what}: class {kind}"].append(numbers[:, touched])
+                points[f"{name} {what}, class {kind}"].append(numbers[:, touched])
 
 
 def _places(state: State, theta: np.ndarray, spacing: float) -> np.ndarray:
@@ -612,7 +619,7 @@ def compare_rounding(old: Path, new: Path) -> None:
         columns = [NAMES.index(name) for name in names]
         each = (np.concatenate([part[k][:, columns].ravel() for part in parts]) for k in range(3))
         rows.append(_row_of_differences(group, *each))
-    header = "figure, compared, the same bits, median, largest, bars: median, bars: largest, outside their bars"
+    header = " | compared | the same bits | median | largest | bars, median | bars, largest | outside their bars"
     show("Rounding", header, rows)
 
 

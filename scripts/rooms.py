@@ -63,8 +63,8 @@ def trace(frame, event, _):
             counted["now"] += 1
             counted["depth"] = max(counted["depth"], counted["now"])
             kernel = frame.f_locals["self"] if code.co_name == "__call__" else None
-            if getattr(kernel, "__module__", "") == "fastpin.kernels.held":
-                counted["frames above held.step"] = counted["now"] - 1
+            if (getattr(kernel, "__module__", ""), getattr(kernel, "__name__", "")) == ("fastpin.kernels.held", "step"):
+                counted["frames above held.step"] = max(counted["frames above held.step"], counted["now"] - 1)
         elif event == "return":
             counted["now"] -= 1
 
