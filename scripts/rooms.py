@@ -195,7 +195,7 @@ class Package:
     def small_private_functions(self) -> list[str]:
         """Private functions and methods of few lines that one place uses."""
         few = (at for at in self.used_once() if len(self.code[at[0]] & lines_of(at[1])) <= FEW_LINES)
-        return [f"{name}:{node.lineno} {node.name}" for name, node in few]
+        return [place(*at) for at in few]
 
     def constants(self) -> list[str]:
         """Constants of modules."""
@@ -220,7 +220,7 @@ class Package:
 
     def defined(self, kind: type, pattern: str = r"\w+") -> list[str]:
         """Functions or classes whose whole name matches."""
-        return [f"{name}:{n.lineno} {n.name}" for name, n in self.nodes[kind] if re.fullmatch(pattern, n.name)]
+        return [place(*at) for at in self.nodes[kind] if re.fullmatch(pattern, at[1].name)]
 
     def lines_of_code(self) -> list[str]:
         """Lines without docstrings, comments and blank lines."""
@@ -252,6 +252,11 @@ class Package:
         return sum(len(re.findall(r"^ *(?:async )?def test_", text, re.MULTILINE)) for text in texts)
 
 
+def place(name: str, node: Any) -> str:
+    """The place and the name of a function or a class."""
+    return f"{name}:{node.lineno} {node.name}"
+
+
 def lines_of(node: Any, first: Any = None) -> set[int]:
     """The numbers of the lines of a node, from its part `first` on."""
     return set(range((first or node).lineno, node.end_lineno + 1))
@@ -259,12 +264,12 @@ def lines_of(node: Any, first: Any = None) -> set[int]:
 
 def core(places: list[str]) -> list[str]:
     """The places in the core."""
-    return [place for place in places if place.partition("/")[0] in CORE]
+    return [each for each in places if each.partition("/")[0] in CORE]
 
 
 def outer(places: list[str]) -> list[str]:
     """The places outside the core."""
-    return [place for place in places if place.partition("/")[0] not in CORE]
+    return [each for each in places if each.partition("/")[0] not in CORE]
 
 
 NUMBERS: dict[str, Callable[[Package], Places]] = {
@@ -279,7 +284,7 @@ NUMBERS: dict[str, Callable[[Package], Places]] = {
     "lines of code of the core": lambda package: core(package.lines_of_code()),
     "files of the core": lambda package: core([*package.texts]),
     "functions of the core": lambda package: core(package.defined(ast.FunctionDef)),
-    "private functions of the core used once": lambda package: core([name for name, _ in package.used_once()]),
+    "private functions of the core used once": lambda package: core([place(*at) for at in package.used_once()]),
     "mean lines of a body of the core": Package.mean_body,
     "classes of the core": lambda package: core(package.defined(ast.ClassDef)),
     "constants of the core": lambda package: core(package.constants()),
