@@ -33,7 +33,7 @@ def test_fresh_runs_lie_within_the_bounds(name: str) -> None:
     assert [str(worst) for worst in worst_of(GROUPS[name], 2, 11) if worst.ratio > 1.0] == []
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 @pytest.mark.parametrize("name", GROUPS)
 def test_many_fresh_runs_lie_within_the_bounds(name: str) -> None:
     assert [str(worst) for worst in worst_of(GROUPS[name], 17, 12) if worst.ratio > 1.0] == []

@@ -1,12 +1,18 @@
-"""Rough figures for the tests of all commands."""
+"""Figures are left undrawn in the tests of all commands, unless a test asks for drawn ones."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests.support.drawing import draw_roughly
+from tests.support.drawing import leave_undrawn
+
+
+@pytest.fixture
+def drawn() -> None:
+    """Figures are drawn."""
 
 
 @pytest.fixture(autouse=True)
-def _rough_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    draw_roughly(monkeypatch)
+def _undrawn_figures(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    if "drawn" not in request.fixturenames:
+        leave_undrawn(monkeypatch)

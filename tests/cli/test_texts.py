@@ -30,6 +30,7 @@ def is_shown(text: str) -> bool:
     return all(printable(line) == line for line in text.split("\n"))
 
 
+@pytest.mark.gate
 def test_texts_become_escapes_where_the_terminal_has_ascii_only(tmp_path: Path) -> None:
     case = tmp_path / "case.toml"
     case.write_text(f'title = "Größe €"{CASE}', encoding="utf-8")

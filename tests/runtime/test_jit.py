@@ -18,7 +18,6 @@ import pytest
 
 from fastpin.kernels import exchange, influence
 from fastpin.runtime import compiler, jit, machine, source
-from tests.support.marks import first_quick
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
 KERNEL = """
@@ -115,7 +114,7 @@ print(small.doubled(1.5))
 
 
 @keeps
-@pytest.mark.parametrize("file", first_quick(1, ["kernels/small.py", *source.SHARED]))
+@pytest.mark.parametrize("file", ["kernels/small.py", *source.SHARED])
 def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file: str) -> None:
     """The text on disk is not the text that it has imported, as after an upgrade while it runs."""
     path = installed / "fastpin" / file
@@ -129,7 +128,6 @@ def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file
     assert stored_in(cache(installed)) == ["small.doubled"]
 
 
-@pytest.mark.slow
 @keeps
 def test_other_settings_need_other_code(installed: Path) -> None:
     assert compiles(installed)
@@ -138,7 +136,6 @@ def test_other_settings_need_other_code(installed: Path) -> None:
     assert stored_in(cache(installed)) == ["small.doubled"] * 2
 
 
-@pytest.mark.slow
 @keeps
 def test_in_the_cache_of_the_user_where_the_package_can_not_be_written(installed: Path) -> None:
     cache(installed).touch()  # nobody, not even root, can make a directory where a file is
@@ -235,7 +232,6 @@ print(influence.clausen(1.0), "numba" in sys.modules)
 """
 
 
-@pytest.mark.slow
 def test_numba_keeps_code_that_can_not_be_stored(tmp_path: Path) -> None:
     variables = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
 
@@ -279,7 +275,6 @@ assert numba.config.NUMBA_NUM_THREADS == 1
 """
 
 
-@pytest.mark.slow
 def test_packages_that_are_imported_later_work() -> None:
     influence.clausen(1.0)  # its machine code is stored now
     assert subprocess.run([sys.executable, "-c", AFTER], capture_output=True, text=True, check=True).stderr == ""

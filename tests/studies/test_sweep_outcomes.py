@@ -207,7 +207,6 @@ def test_a_run_that_fails_when_solved_again_shows_no_old_outcome(copy: Path) -> 
     assert [row["loss"] is None for row in sweep.rows(plan, copy)] == [True, False]
 
 
-@pytest.mark.slow
 def test_a_cluster_reads_outcomes(bare: Plan, tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 

@@ -19,19 +19,16 @@ def sample() -> list[tuple[calls.Attempt, calls.Ending]]:
     return list(calls.examine((), calls.sample))
 
 
-@pytest.mark.slow
 def test_some_odd_arguments_give_one_sentence(sample):
     assert findings(sample) == []
 
 
-@pytest.mark.slow
 def test_each_call_with_valid_arguments_is_accepted(sample):
     valid = [(attempt, ending) for attempt, ending in sample if not attempt.odd]
     assert len(valid) > 300
     assert [f"{attempt}: {ending.words}" for attempt, ending in valid if ending.kind != "accepted"] == []
 
 
-@pytest.mark.slow
 def test_the_sample_has_each_parameter_of_each_public_callable(sample):
     targets = calls.public_targets()
     assert {"fastpin.solve", "fastpin.Session.advance", "fastpin.State.peak_pressure", "fastpin.damage.miner"} <= set(
@@ -75,7 +72,6 @@ def test_a_raw_error_a_slow_call_and_a_crash_are_findings(monkeypatch):
     assert "exit code 3" in made[3][1].words
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1_000, 1_001])
 def test_odd_arguments_give_one_sentence(seed):
     made = list(calls.examine((), lambda targets, values: calls.attempts(targets, values, 2_000, seed)))

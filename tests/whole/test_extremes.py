@@ -15,7 +15,6 @@ import fastpin
 from fastpin import figures, storage
 from fastpin.cli.main import main
 from fastpin.states.extremes import READINGS, Extreme, marked_places
-from tests.support.marks import slow
 
 CASE = """
 [pin]
@@ -57,7 +56,7 @@ def case_text(kind: str) -> str:
     return CASE.format(**given) + "\n".join(steps)
 
 
-@pytest.fixture(scope="module", params=["plain", *slow("bush")])
+@pytest.fixture(scope="module", params=["plain", "bush"])
 def stored(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp(request.param) / f"{request.param}.toml"
     path.write_text(case_text(request.param), encoding="utf-8")
@@ -90,7 +89,6 @@ def sentences(stored: Path, readings: dict[str, list[float]]) -> list[str]:
     return found
 
 
-@pytest.mark.slow
 def test_python_and_json_agree_with_every_state(stored: Path, readings: dict[str, list[float]], tmp_path: Path) -> None:
     result, peak = fastpin.load(stored), PEAKS[stored.stem]
     found = result.extremes()
@@ -117,7 +115,6 @@ def test_run_and_show_tell_the_largest_of_all(
         assert any(line.split()[:2] == [str(peak), "60"] for line in text.splitlines())
 
 
-@pytest.mark.slow
 def test_the_page_tells_and_draws_the_largest_of_all(
     stored: Path, sentences: list[str], readings: dict[str, list[float]], tmp_path: Path
 ) -> None:

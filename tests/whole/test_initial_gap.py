@@ -29,7 +29,6 @@ from fastpin.verification import interference
 from fastpin.verification.comparisons import all_round_difference, residuals_away
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.sliding import solve_sliding
-from tests.support.marks import slow
 from tests.support.once import solve_once
 
 CIRCLE = Grid.circle(120)
@@ -68,9 +67,7 @@ def fit_error(pair, order, friction, nodes, **bodies):
 
 @pytest.mark.parametrize("friction", [0.0, 1e6], ids=["frictionless", "stuck"])
 @pytest.mark.parametrize("order", [1, 2, 3, 6])
-@pytest.mark.parametrize(
-    ("pair", "bodies"), [("like", "solid"), *slow(("unlike", "solid"), ("unlike", "tube in ring"))]
-)
+@pytest.mark.parametrize(("pair", "bodies"), [("like", "solid"), ("unlike", "solid"), ("unlike", "tube in ring")])
 def test_waves_of_an_interference_fit_have_closed_forms(pair, bodies, order, friction):
     """The error falls with the square of the spacing. Measured with 400 nodes: docs/accuracy-tables.md."""
     coarse, fine = (fit_error(PAIRS[pair], order, friction, nodes, **BODIES[bodies]) for nodes in (60, 120))

@@ -45,7 +45,6 @@ def test_some_changed_files_give_one_sentence(mutations, files, kind):
     assert findings(mutations, files, kind, range(3)) == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["case", "csv", "result", "unfinished", "index", "lug", "plan"])
 def test_changed_files_give_one_sentence(mutations, warm_files, kind):
     assert findings(mutations, warm_files, kind, range(1_000, 1_015)) == []

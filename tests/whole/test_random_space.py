@@ -17,7 +17,6 @@ from fastpin.solver.solving import solve
 from scripts import conditions, metamorphic, two_roads
 from scripts.histories import GENERATORS, generate, lug
 from scripts.random_histories import Outcome, examine, table
-from tests.support.marks import slow
 from tests.support.potentials import displacement_kernels
 from tests.support.slip_cases import UNLIKE
 
@@ -29,7 +28,7 @@ def assert_right(outcome: Outcome) -> None:
     assert outcome.violations() == {}, f"{outcome.kind} {outcome.seed}"
 
 
-@pytest.mark.parametrize("kind", [*(kind for kind in GENERATORS if kind != "drift"), *slow("drift")])
+@pytest.mark.parametrize("kind", [*(kind for kind in GENERATORS if kind != "drift"), "drift"])
 def test_a_few_random_histories_of_each_class(kind):
     """Friction that changes takes more time than all others, and has quick tests of its own."""
     outcomes = [examine(kind, seed) for seed in FEW]
@@ -38,7 +37,6 @@ def test_a_few_random_histories_of_each_class(kind):
     assert sum(outcome.ending == "solved" for outcome in outcomes) >= 2
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", GENERATORS)
 def test_random_histories_of_each_class(kind):
     outcomes = [examine(kind, seed) for seed in MANY]
@@ -48,7 +46,6 @@ def test_random_histories_of_each_class(kind):
     assert kind.split("_")[0] in table(outcomes)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", [371, 373])
 def test_a_contact_under_force_is_not_lost(seed):
     assert_right(examine("scales", seed))
@@ -61,21 +58,18 @@ def test_a_pin_comes_to_rest_in_a_worn_hole(kind, seed):
     assert outcome.ending == "solved"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", [47, 58])
 def test_one_more_corner_changes_no_first_contact(seed):
     (pair,) = metamorphic.compare("moderate_stress", seed, ("split",))
     assert pair.difference < metamorphic.TOLERANCE
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", GENERATORS)
 def test_the_way_between_the_corners(kind):
     for seed in FEW:
         assert_right(examine(kind, seed, dense=True))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "seeds"),
     [
@@ -94,7 +88,6 @@ def test_related_cases_have_related_states(kind, seeds):
             assert pair.difference < metamorphic.TOLERANCE, pair
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", two_roads.CLASSES)
 def test_increments_tend_to_the_path(kind):
     found = two_roads.compare(kind, 0)

@@ -64,7 +64,7 @@ def fretted(name: str, nodes: int) -> Result:
     return solve(PROBLEMS[name], FRETTED, grid=Grid.circle(nodes))
 
 
-@pytest.mark.parametrize("nodes", [240, pytest.param(960, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("nodes", [240, 960])
 @pytest.mark.parametrize("name", TABLE)
 def test_the_table_of_reference(name: str, nodes: int) -> None:
     state = fretted(name, nodes)[-1]
