@@ -12,8 +12,12 @@ from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.pages.album import Album
 from fastpin.pages.content import Picture
 from tests.support.approx import quicken
+from tests.support.drawing import outline_figures
 
 pytest_plugins = ["tests.support.tiers", "tests.support.guard"]
+
+OUTLINED = ("cli", "pages", "project", "studies")
+"""Folders of tests that need the content of figures. The tests of figures draw them."""
 
 quicken()
 gc.disable()  # until all tests are collected
@@ -39,6 +43,17 @@ def similar() -> MaterialPair:
 def titanium_in_aluminium() -> MaterialPair:
     """The paper's dissimilar pair."""
     return MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+
+
+@pytest.fixture
+def drawn() -> None:
+    """Figures are drawn, also in the tests of commands, pages, studies and documents."""
+
+
+@pytest.fixture(autouse=True)
+def _outlined_figures(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    if request.path.parent.name in OUTLINED and "drawn" not in request.fixturenames:
+        outline_figures(monkeypatch)
 
 
 @pytest.fixture

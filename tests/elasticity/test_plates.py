@@ -109,7 +109,7 @@ def test_all_tractions_do_positive_work(made):
     assert np.linalg.eigvalsh(whole).min() > 0.2 / 11.0  # about 1/2(n + 1) for the last harmonic
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_the_estimated_error_covers_the_error():
     """An edge that is held in its middle only has the strongest singularity: the square root."""
     outline = rectangle((-2.5, 2.5), (-2.5, 4.0))

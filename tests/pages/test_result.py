@@ -40,7 +40,7 @@ from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.states.quantities import QUANTITIES
 from fastpin.storage.layout import RESIDUALS
-from tests.support.drawing import leave_undrawn
+from tests.support.drawing import outline_figures
 from tests.support.html import Page
 from tests.support.samples import JOINT, sample_result
 from tests.support.tiers import gate
@@ -72,7 +72,7 @@ def text(stored: Path) -> str:
     """The page of the stored result, with its case file."""
     path = stored.with_name("page.html")
     with pytest.MonkeyPatch.context() as patch:
-        leave_undrawn(patch)
+        outline_figures(patch)
         write_report(stored, path, case=stored.with_name("case.toml"))
     return path.read_text(encoding="utf-8")
 
@@ -300,6 +300,7 @@ def test_a_branch_begins_with_the_loads_of_its_start(only: Callable[..., None], 
     assert "from no load" not in words
 
 
+@pytest.mark.usefixtures("drawn")
 def test_a_figure_has_the_same_markup_each_time_and_refers_to_its_own_elements() -> None:
     result = sample_result(nodes=21)
     first, second = (

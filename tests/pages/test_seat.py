@@ -10,14 +10,8 @@ import pytest
 from fastpin.pages import write_report
 from fastpin.report.states import seat_line
 from fastpin.states.extremes import KeptStates, marked_extremes, marked_places
-from tests.support.drawing import leave_undrawn
 from tests.support.html import Page
 from tests.support.seats import sample_seat, stored_sample
-
-
-@pytest.fixture
-def _roughly(monkeypatch: pytest.MonkeyPatch) -> None:
-    leave_undrawn(monkeypatch)
 
 
 def sentence() -> str:
@@ -28,8 +22,7 @@ def sentence() -> str:
     return f"{line[0].upper()}{line[1:]}."
 
 
-@pytest.mark.gate
-@pytest.mark.usefixtures("_roughly")
+@pytest.mark.survey
 def test_the_page_has_a_section_on_the_seat(tmp_path: Path) -> None:
     pages = []
     for source, name in ((sample_seat(), "memory.html"), (stored_sample(tmp_path / "joint.h5"), "stored.html")):
@@ -47,7 +40,6 @@ def test_the_page_has_a_section_on_the_seat(tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
-@pytest.mark.usefixtures("_roughly")
 def test_the_pdf_has_it_too(tmp_path: Path) -> None:
     sample_seat().report(tmp_path / "joint.pdf")
     outline = [

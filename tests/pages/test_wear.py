@@ -19,7 +19,6 @@ from fastpin.pages.wear import WEAR_SECTIONS, damage, numbers, overview, provena
 from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.solver.wear_result import WearResult, WornCycle
-from tests.support.drawing import leave_undrawn
 from tests.support.html import Page
 from tests.support.lives import JOINT, sample_life
 from tests.support.tiers import gate
@@ -85,8 +84,7 @@ def words_of(result: WearResult | Path, path: Path, **options: object) -> str:
 
 @pytest.mark.gate
 @pytest.mark.filterwarnings("error")
-def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult, monkeypatch: pytest.MonkeyPatch) -> None:
-    leave_undrawn(monkeypatch)
+def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult) -> None:
     calls: list[tuple[float, float]] = []
     write_report(stored, stored.with_name("page.html"), progress=lambda done, total: calls.append((done, total)))
     page = Page(stored.with_name("page.html").read_text(encoding="utf-8"))
@@ -113,7 +111,7 @@ def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult, monkeypa
     assert "nan" not in page.text.split()
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 @pytest.mark.usefixtures("undrawn")
 def test_a_life_in_memory_has_the_same_page(
     stored: Path, life: WearResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -116,7 +116,7 @@ def test_every_way_to_an_outcome_is_explained() -> None:
         assert f"`{key}`" in text, key
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_the_examples_of_fatigue_print_their_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     text = (ROOT / "docs" / "fatigue.md").read_text(encoding="utf-8")
     codes, printed = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
@@ -176,7 +176,7 @@ def test_the_riveted_joint_shows_its_files() -> None:
     assert shown == [(ROOT / "docs" / f"riveted-joint{part}.toml").read_text() for part in ("", "-plan")]
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_the_riveted_joint_prints_its_numbers(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -47,7 +47,7 @@ def _inside_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_the_tutorial_runs_as_printed() -> None:
     """Figures are left to `scripts/tutorial.py`, which draws them by the same commands."""
     run_page("tutorial.md", lambda command: "" if command.startswith("plot") else command.partition(" --plot")[0])

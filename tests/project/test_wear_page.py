@@ -67,7 +67,7 @@ def test_the_table_of_the_page_is_that_of_the_command(capsys: pytest.CaptureFixt
     assert main(["plot", "life.h5", "damage"]) == 0
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_the_fretting_map_is_drawn_by_one_command(capsys: pytest.CaptureFixture[str]) -> None:
     """The same plan on a small grid, with few nodes and cycles."""
     plan = read_plan("fretting-map.toml")

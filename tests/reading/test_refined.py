@@ -121,7 +121,7 @@ def test_a_slip_zone_narrower_than_the_nodes_is_seen():
     assert not state.peak_hoop_stress().resolved
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_peaks_of_random_states_converge():
     """Against four times as many nodes; narrow slip zones and unlike bodies among them."""
     errors = []

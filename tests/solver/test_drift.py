@@ -33,7 +33,7 @@ from fastpin.solver.session import Session
 from fastpin.solver.settling import settle
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from tests.support.tiers import some_gate
+from tests.support.tiers import some_gate, some_survey
 
 UNLIKE = MaterialPair(Material(116e9, 0.32), Material(69e9, 0.33))
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
@@ -74,7 +74,7 @@ REFERENCE = [
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize(("nodes", "peak", "rotation", "shear"), REFERENCE)
+@pytest.mark.parametrize(("nodes", "peak", "rotation", "shear"), some_survey(REFERENCE, REFERENCE[2]))
 def test_the_table_of_reference(nodes: int, peak: float, rotation: float, shear: float) -> None:
     """Loads and friction that change together, and friction that falls at constant load."""
     states = t1(nodes)

@@ -28,6 +28,7 @@ from scripts.fat_cycles import factor_of, seen
 from scripts.fat_cycles import life as random_life
 from scripts.histories import generate
 from tests.support.slip_cases import LIKE, UNLIKE
+from tests.support.tiers import some_survey
 from tests.support.wear_cases import WEAR_CASES, WearCase, lived
 
 NODES = 41
@@ -242,7 +243,7 @@ def test_gross_sliding_tends_to_rigid_bodies(clearance, depth, peak):
     assert found[2] == pytest.approx(-np.arctan(0.2), abs=1e-3)
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_implicit_jumps_of_gross_sliding_converge():
     """Explicit jumps need more than 900 steps here. Measured: 0.53, 0.144, 0.038 below the depth of small steps."""
     finest = slid(1.0, 1600)[0]
@@ -252,7 +253,9 @@ def test_implicit_jumps_of_gross_sliding_converge():
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize(("load_parameter", "nodes"), [(2e6, (6, 12)), (2e4, (6, 12)), (2e6, (24, 48))])
+@pytest.mark.parametrize(
+    ("load_parameter", "nodes"), some_survey([(2e6, (6, 12)), (2e4, (6, 12)), (2e6, (24, 48))], (2e6, (24, 48)))
+)
 def test_partial_slip_tends_to_the_final_state_of_the_half_plane(load_parameter, nodes):
     """First order. Measured with 6, 12, 24, 48 nodes: volume 9.1, 5.4, 3.0, 1.5 %, depth 5.0, 2.7, 1.7, 0.9 %."""
     coarse, fine = ([row.difference for row in half_planes(each, load_parameter, Solving())] for each in nodes)

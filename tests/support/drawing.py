@@ -1,4 +1,4 @@
-"""Figures that are not drawn: tests of commands and pages need their content. The tests of figures draw them.
+"""Outlines of figures, for tests that need their content. The tests of figures draw them.
 
 Drawing a figure takes half a second, most of it for the layout of its words.
 """
@@ -26,7 +26,7 @@ from matplotlib.text import Text
 from fastpin.figures import style
 
 
-def leave_undrawn(patch: pytest.MonkeyPatch) -> None:
+def outline_figures(patch: pytest.MonkeyPatch) -> None:
     """Save each figure as an outline: a small file of its kind with its words and a digest of its numbers."""
     draw = style.Drawing.savefig
 
