@@ -176,6 +176,7 @@ def asked(tmp_path_factory):
 
 
 @pytest.mark.gate
+@pytest.mark.usefixtures("undrawn")
 def test_all_outputs_have_the_margins_of_fatigue_and_crack(asked, capsys):
     """run, show, JSON of both and the page have the same margins as Python."""
     result, case = fastpin.load(asked / "one.h5"), fastpin.read_case(asked / "case.toml")
@@ -217,6 +218,7 @@ def test_a_wrong_life_names_its_line(tmp_path, capsys):
 
 
 @pytest.mark.gate
+@pytest.mark.usefixtures("undrawn")
 def test_a_result_in_memory_is_judged_by_the_case_file(asked):
     """A page of a result in memory has the sections of the case file that is given with it."""
     result = fastpin.load(asked / "one.h5")

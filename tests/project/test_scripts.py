@@ -82,7 +82,15 @@ def log(project: Path) -> list[str]:
 
 @pytest.mark.parametrize(
     "name",
-    ["scripts/run", "scripts/test", "scripts/docs", "scripts/oldest-versions", "scripts/other-machines", ".ci/run"],
+    [
+        "scripts/run",
+        "scripts/test",
+        "scripts/docs",
+        "scripts/oldest-versions",
+        "scripts/other-machines",
+        "scripts/test-files",
+        ".ci/run",
+    ],
 )
 def test_scripts_can_be_run_and_parsed(name: str) -> None:
     assert os.access(ROOT / name, os.X_OK)
