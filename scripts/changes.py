@@ -6,8 +6,7 @@ import ast
 import random
 import re
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 COMPARISONS: dict[type[ast.cmpop], tuple[str, tuple[str, ...]]] = {
     ast.Lt: ("<", ("<=", ">")),
@@ -40,8 +39,6 @@ class Change:
     ----------
     file : str
         Relative to the project's directory.
-    function : str
-        Qualified name of the function around the change; empty at the top level of a file.
     line : int
         The line where the change begins, from 1.
     start, stop : int
@@ -53,7 +50,6 @@ class Change:
     """
 
     file: str
-    function: str
     line: int
     start: int
     stop: int
@@ -61,28 +57,18 @@ class Change:
     before: str
     after: str
 
-    @property
-    def key(self) -> tuple[str, str, str, str]:
-        """What names the change as long as its line stays the same, wherever the line moves."""
-        return self.file, self.function, self.before, self.after
-
     def applied(self, source: bytes) -> bytes:
         """Return the changed file."""
         return source[: self.start] + self.text.encode() + source[self.stop :]
 
-    def document(self) -> dict[str, Any]:
-        """Return the change as a dict for JSON."""
-        return asdict(self)
-
 
 class _Finder(ast.NodeVisitor):
-    """Collects the changes of a file as (first byte, last byte, text), each with the name of its function."""
+    """Collects the changes of a file as (first byte, last byte, text)."""
 
     def __init__(self, source: bytes, rng: random.Random) -> None:
         self.source, self.rng = source, rng
         self.starts = [0, *(found.end() for found in re.finditer(rb"\n", source))]
-        self.names: list[str] = []
-        self.found: list[tuple[int, int, str, str]] = []
+        self.found: list[tuple[int, int, str]] = []
 
     def begin(self, node: ast.AST) -> int:
         return self.starts[node.lineno - 1] + node.col_offset  # type: ignore[attr-defined]
@@ -91,7 +77,7 @@ class _Finder(ast.NodeVisitor):
         return self.starts[node.end_lineno - 1] + node.end_col_offset  # type: ignore[attr-defined]
 
     def add(self, start: int, stop: int, text: str) -> None:
-        self.found.append((start, stop, text, ".".join(self.names)))
+        self.found.append((start, stop, text))
 
     def between(self, left: ast.AST, right: ast.AST, word: str, text: str) -> None:
         """Replace the operator between two expressions. Only brackets, spaces and comments stand beside it."""
@@ -104,7 +90,6 @@ class _Finder(ast.NodeVisitor):
     # -- unchanged parts: annotations, decorators, documentation, texts of messages, names for type checkers
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
-        self.names.append(node.name)
         for default in (*node.args.defaults, *filter(None, node.args.kw_defaults)):
             self.visit(default)
         for number, statement in enumerate(node.body):
@@ -112,13 +97,10 @@ class _Finder(ast.NodeVisitor):
             # The last statement of a function returns what the function is for: dropping it is seen at once.
             if number < len(node.body) - 1:
                 self.drop(statement)
-        self.names.pop()
 
     def visit_ClassDef(self, node: ast.ClassDef) -> None:
-        self.names.append(node.name)
         for statement in node.body:
             self.visit(statement)
-        self.names.pop()
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
         if node.value is not None:
@@ -221,8 +203,8 @@ def changes(file: str, source: bytes, rng: random.Random) -> Iterator[Change]:
     """All places of a file where one thing can be changed, with one change each."""
     finder = _Finder(source, rng)
     finder.visit(ast.parse(source))
-    for start, stop, text, function in finder.found:
+    for start, stop, text in finder.found:
         line = source.count(b"\n", 0, start) + 1
         changed = source[:start] + text.encode() + source[stop:]
         lines = [whole.split(b"\n")[line - 1].decode().strip() for whole in (source, changed)]
-        yield Change(file, function, line, start, stop, text, *lines)
+        yield Change(file, line, start, stop, text, *lines)

@@ -31,7 +31,7 @@ from fastpin.errors import FastpinError
 from fastpin.studies import identity
 from fastpin.studies.plan import read_plan
 from scripts.fingerprint import CHANGING
-from scripts.mutations import CASES
+from tests.survey.mutations import CASES
 
 FRETTING = """title = "Fretting in a bushed ring"
 [pin]

@@ -2,7 +2,7 @@
 
 The bar of a quantity is a sum of two terms. The first is Roache's grid convergence index of two grids, for an assumed
 order of one (:func:`pair_bar`). The second is a floor, because two values may agree by chance. The constants below are
-the only free choices. ``scripts/error_bars.py`` counts how often the bars hold (docs/convergence.md).
+the only free choices. ``bench/accuracy.py`` counts how often the bars hold (docs/convergence.md).
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ SHEAR_STEP = 4.0
 """Bound of the largest hoop stress beyond straight lines between the nodes, in parts of the largest step of the shear.
 
 A step is the difference over two node distances. The hoop stress was up to 1.5 steps higher in 1,165 random states
-of all classes of scripts/histories.py with 61 to 401 nodes, except for the states of :data:`ABRUPT`.
+of all classes of tests/survey/histories.py with 61 to 401 nodes, except for the states of :data:`ABRUPT`.
 """
 
 ABRUPT = 4

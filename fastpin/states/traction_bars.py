@@ -10,7 +10,7 @@ The curves of :mod:`fastpin.states.curves` are compared. The bar of a curve is a
 The bar at a node is the bar of the curve plus the distance from the curve to the nodal value. Beside an edge the
 nodal values miss the power law, which the curve follows.
 
-``scripts/error_bars.py`` counts how often the bars hold (docs/convergence.md).
+``bench/accuracy.py`` counts how often the bars hold (docs/convergence.md).
 """
 
 from __future__ import annotations

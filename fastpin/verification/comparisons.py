@@ -1,6 +1,6 @@
 """Differences of solved states from closed forms, from the singular integral equations, and of stresses from slip.
 
-``fastpin verify``, scripts/accuracy.py, figures and the tests share these measures. Problems are dimensionless
+``fastpin verify``, bench/accuracy.py, figures and the tests share these measures. Problems are dimensionless
 (R = F = beta* = 1).
 """
 

@@ -8,8 +8,8 @@ from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem, seat_grid
 from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels import harmonics
 from fastpin.model.grid import Grid
-from scripts.joint_conditions import ring_responses
-from scripts.seat_accuracy import joint
+from tests.support.joints import joint
+from tests.survey.joint_conditions import ring_responses
 
 KOLOSOV = 1.64
 

@@ -17,7 +17,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver import configuration
 from fastpin.solver.configuration import Solution, solve_statuses, solve_unknowns
 from fastpin.solver.unknowns import DenseUnknowns
-from scripts.seat_accuracy import joint
+from tests.support.joints import joint
 
 BOTTOM = -0.5 * np.pi
 CASES = {

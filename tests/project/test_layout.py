@@ -184,7 +184,7 @@ def test_importing_the_package_loads_nothing_heavy():
 
 def test_tests_lie_in_the_folders_of_the_package():
     folders = {path.name for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"}
-    assert folders - set(layout.RANKS) == {"project", "support", "whole"}
+    assert folders - set(layout.RANKS) == {"project", "support", "survey", "whole"}
 
 
 IMPORT = re.compile(r"^\s*(?:from\s+(\S+)\s+)?import\s+(\([^)]*\)|[^\n]*)", re.MULTILINE)
@@ -200,3 +200,8 @@ def test_no_test_imports_a_test_or_changes_the_path():
         assert "sys.path." + "insert" not in text, path
         assert "sys.path." + "append" not in text, path
     assert not list((ROOT / "tests" / "support").glob("test_*.py"))
+
+
+def test_every_test_of_the_survey_is_marked():
+    for path in (ROOT / "tests" / "survey").glob("test_*.py"):
+        assert "\npytestmark = pytest.mark.survey\n" in path.read_text(encoding="utf-8"), path

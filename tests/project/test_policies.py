@@ -7,14 +7,13 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-import pytest
 
+from bench import accuracy
 from fastpin import Problem, save, solve
 from fastpin.bodies import compliance
 from fastpin.cli import terminal
 from fastpin.storage import layout
 from fastpin.studies import index
-from scripts import rounding
 
 ROOT = Path(__file__).resolve().parents[2]
 POLICIES, REPRODUCIBILITY = (
@@ -54,21 +53,21 @@ def test_the_attributes_of_a_result_are_listed(titanium_in_aluminium, tmp_path: 
         assert set(file.attrs) == listed
 
 
-@pytest.mark.parametrize("script", sorted(set(re.findall(r"(?:python )((?:scripts|bench)/\w+\.py)", REPRODUCIBILITY))))
-def test_named_scripts_exist(script: str) -> None:
-    assert (ROOT / script).exists()
-
-
-@pytest.mark.parametrize("module", sorted(set(re.findall(r"python -m (scripts\.\w+)", REPRODUCIBILITY))))
-def test_named_modules_exist(module: str) -> None:
-    assert (ROOT / f"{module.replace('.', '/')}.py").exists()
+def test_named_programs_exist() -> None:
+    files = set(re.findall(r"((?:bench|tests)/[\w/]+\.py)", REPRODUCIBILITY))
+    files |= {
+        f"{name.replace('.', '/')}.py" for name in re.findall(r"python -m ((?:scripts|bench)\.\w+)", REPRODUCIBILITY)
+    }
+    assert {name for name in files if not (ROOT / name).exists()} == set()
+    tables = re.findall(r"python -m bench\.accuracy ([a-z_ ]+)", REPRODUCIBILITY)
+    assert {name for names in tables for name in names.split()} <= accuracy.TABLES.keys()
 
 
 def figures_of(values: dict[str, float], bar: float, size: float) -> list[tuple[float, float, float]]:
-    return [(values[name], bar, size) if name in values else (np.nan, np.nan, size) for name in rounding.NAMES]
+    return [(values[name], bar, size) if name in values else (np.nan, np.nan, size) for name in accuracy.NAMES]
 
 
-def test_differences_by_rounding_are_in_parts_of_peaks_and_beside_their_bars(tmp_path: Path) -> None:
+def test_differences_by_rounding_are_in_parts_of_peaks_and_beside_their_bars(tmp_path: Path, capsys) -> None:
     tractions = np.array(
         [[[2.0, 4.0], [1.0, -1.0]], [[0.0, 0.0], [0.0, 0.0]]]
     )  # two states; the second one without contact
@@ -80,14 +79,15 @@ def test_differences_by_rounding_are_in_parts_of_peaks_and_beside_their_bars(tmp
     first = np.array([figures_of(values | ends, 0.01, 1.0), figures_of(dict.fromkeys(names, 0.0), np.inf, 1.0)])
     # the peak moves within its bar, the motion beyond it; the contact is lost; the bar of the dissipation is halved
     second = np.array([figures_of(values | {"peak_pressure": 4.004, "dy": 0.05}, 0.01, 1.0), first[1]])
-    second[0, rounding.NAMES.index("dissipation"), 1] = 0.005
-    figures = rounding.FIGURES
+    second[0, accuracy.NAMES.index("dissipation"), 1] = 0.005
+    figures = accuracy.FIGURES
     before = {"same": tractions, "moved": tractions, "lost": tractions}
     np.savez(tmp_path / "a.npz", **before, **{figures + name: first for name in before})
     after = {"same": tractions, "moved": moved}
     np.savez(tmp_path / "b.npz", **after, **{figures + "same": first, figures + "moved": second})
-    lines = rounding.table(tmp_path / "a.npz", tmp_path / "b.npz").splitlines()
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+    accuracy.compare_rounding(tmp_path / "a.npz", tmp_path / "b.npz")
+    lines = capsys.readouterr().out.splitlines()
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[5:]]
     assert rows == [
         ["tractions", "3", "1", "1e-09", "inf", "", "", ""],
         ["peaks", "8", "7", "0e+00", "1e-03", "0e+00", "0e+00", "0"],

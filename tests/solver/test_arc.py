@@ -15,9 +15,9 @@ from fastpin.solver import arc
 from fastpin.solver.errors import ArcError, ResolutionError
 from fastpin.solver.run import Run
 from fastpin.solver.task import reference_force
-from scripts.histories import random_case
 from tests.support.slip_cases import LIKE
 from tests.support.tiers import seeds
+from tests.survey.histories import random_case
 
 
 def touched_arc(problem: Problem, history: LoadHistory) -> tuple[float, float] | None:

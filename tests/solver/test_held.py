@@ -26,8 +26,8 @@ from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns
-from scripts.histories import generate
 from tests.support.tiers import gate, some_gate
+from tests.survey.histories import generate
 
 BOTTOM = -0.5 * np.pi
 GRIDS = {

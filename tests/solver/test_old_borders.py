@@ -109,7 +109,7 @@ def test_a_file_of_an_earlier_version_has_no_borders(result: Result, tmp_path: P
 
 
 def test_peaks_where_old_borders_lie_beside_edges_and_new_borders() -> None:
-    """The slip zones have four to six nodes. The references are those of 3,201 nodes (scripts/cusps.py)."""
+    """The slip zones have four to six nodes. The references are those of 3,201 nodes (docs/accuracy-tables.md)."""
     for shakes, exact in (((0.02, -0.02, 0.02), 0.224835), ((0.1, -0.07, 0.04, -0.02, 0.0), 0.284967)):
         state = solve(PROBLEM, [{"P": 1.0}, *({"Q": q} for q in shakes)], nodes=401)[-1]
         assert abs(state.peak_shear) == pytest.approx(exact, rel=1e-4)

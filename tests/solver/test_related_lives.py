@@ -12,10 +12,10 @@ from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.wear import Wear
 from fastpin.solver.errors import ArcError
 from fastpin.solver.wear_result import WearResult
-from scripts import metamorphic
 from tests.support.slip_cases import LIKE, UNLIKE
 from tests.support.tiers import some_gate
 from tests.support.wear_cases import BUMPED, BUMPED_TURNS, WEAR_CASES
+from tests.survey import metamorphic
 
 TURNS = LoadHistory([{"P": 1.0, "rotation": 0.5}]) + LoadHistory([{"rotation": -0.5}, {"rotation": 0.5}]).repeated(1)
 

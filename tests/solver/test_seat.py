@@ -15,11 +15,11 @@ from fastpin.model.options import ALL_ROUND
 from fastpin.model.profile import InitialGap, Profile
 from fastpin.solver.errors import ArcError, NoEquilibriumError
 from fastpin.verification.body_cases import ring_compliance
-from scripts.histories import generate, lug
-from scripts.joint_conditions import check_joint
-from scripts.random_histories import TOLERANCES
-from scripts.seat_accuracy import ALUMINIUM, BRONZE, CASES, STEEL, joint, numbers, turns
+from tests.support.joints import ALUMINIUM, BRONZE, CASES, STEEL, joint, numbers, turns
 from tests.support.tiers import gate, seeds
+from tests.survey.histories import generate, lug
+from tests.survey.joint_conditions import check_joint
+from tests.survey.random_histories import TOLERANCES
 
 PAIR = MaterialPair(STEEL, ALUMINIUM, "strain")
 

@@ -30,8 +30,8 @@ from fastpin.solver.task import Task
 from fastpin.solver.window import Window
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load
-from scripts.histories import generate
 from tests.support.tiers import gate
+from tests.survey.histories import generate
 
 BOTTOM = -0.5 * np.pi
 PAIR = MaterialPair(Material(9.0, 0.2), Material(7.0, 0.3))

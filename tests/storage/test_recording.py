@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import errno
-import importlib.util
 import itertools
-import logging
 import os
 import shutil
 import signal
@@ -35,7 +33,6 @@ from tests.support.interrupts import StopAt
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
 from tests.support.tiers import some_gate
 
-ROOT = Path(__file__).resolve().parents[2]
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
 
 
@@ -284,23 +281,6 @@ def test_a_failure_of_any_kind_leaves_what_was_there(problem, whole, path):
         follow(problem, RANDOM, path, nodes=61, progress=progress, arc=(-3.0, -0.1))
     resume(path)
     assert_file(path, whole)
-
-
-@pytest.mark.gate
-def test_a_killed_run_has_lost_nothing(tmp_path):
-    """SIGKILL, at random moments; scripts/kills.py does it a hundred times."""
-    spec = importlib.util.spec_from_file_location("kills", ROOT / "scripts" / "kills.py")
-    kills = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(kills)
-    logging.disable()
-    try:
-        found = kills.kill_until_done(tmp_path, kills=4, longest=0.3, rounds=8)
-    finally:
-        logging.disable(logging.NOTSET)
-    assert found["kills"] >= 2
-    assert found["acknowledged"] > 0
-    assert found["lost"] == found["different"] == 0
-    assert found["states"] == 2 * (1 + 8 * 50)
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, OSError(errno.ENOSPC, "No space left on device")])

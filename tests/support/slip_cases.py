@@ -10,8 +10,8 @@ from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
-from scripts.histories import random_case
 from tests.support.snap_cases import GRIPPED, TURNED
+from tests.survey.histories import random_case
 
 LIKE = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])

@@ -97,7 +97,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def seeds(count: int, first: int = 0) -> Iterator[int]:
-    """Seeds of random cases, from `first` on: 3 in the quick tier, `count` in the gate, 100 times as many in the survey.
+    """Seeds of random cases, from `first` on: 3 in the quick tier, `count` in the gate, 100 times as many in a survey.
 
     A failure names its seed. ``FASTPIN_SEEDS=20000:20100`` chooses others, for all tests that are run. Only the test
     function itself may call this, so that its loop is seen where the test is read.

@@ -1,4 +1,4 @@
-"""Killed, stopped and starved commands lose nothing; scripts/outages.py disturbs each of them many times."""
+"""Disturbed commands lose nothing; tests/survey/test_outages.py disturbs each of them a hundred times."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from scripts import outages
+from tests.survey import outages
+
+pytestmark = pytest.mark.gate
 
 
 @pytest.fixture(scope="module")
@@ -16,19 +18,15 @@ def before(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize(
-    ("command", "ways"),
-    [
-        ("record", ["kill", "fill", "share"]),
-        ("json", ["fill"]),
-        ("sweep", ["kill", "stop"]),
-        ("dask", ["kill"]),
-        ("compliance", ["fill"]),
-        ("report", ["fill"]),
-    ],
-)
-def test_a_disturbed_command_loses_nothing(before: Path, tmp_path: Path, command: str, ways: list[str]) -> None:
-    trial = outages.Trial(command, before, tmp_path, seed=1)
-    for way in ways:
-        getattr(trial, way)()
+@pytest.mark.parametrize(("command", "way"), [("record", "share"), ("sweep", "kill"), ("report", "fill")])
+def test_a_disturbed_command_loses_nothing(before: Path, tmp_path: Path, command: str, way: str) -> None:
+    trial = outages.Trial(command, before, tmp_path)
+    trial.disturb(way, 1)
     assert trial.findings == []
+
+
+def test_a_killed_run_has_lost_nothing(tmp_path: Path) -> None:
+    """SIGKILL, at random moments."""
+    found = outages.kill_run(tmp_path, most=2, rounds=8, longest=0.3)
+    assert found.findings == []
+    assert found.hits > 0

@@ -12,9 +12,9 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
-from scripts.histories import NODES, random_case
-from scripts.random_histories import examine
 from tests.support.tiers import gate, seeds
+from tests.survey.histories import NODES, random_case
+from tests.survey.random_histories import examine
 
 BOTTOM = -0.5 * np.pi
 ARC = (BOTTOM - 1.75, BOTTOM + 1.75)

@@ -21,7 +21,7 @@ from fastpin.states.state import State
 from fastpin.verification.comparisons import residuals_away
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.sliding import solve_sliding
-from scripts.histories import generate
+from tests.survey.histories import generate
 
 FRETTED = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}, {"P": 0.5}, {"P": 1.0, "Q": 0.2}]
 

@@ -1,17 +1,15 @@
 """Change input files at random: does fastpin answer with a result or one sentence, and leave the files alone?
 
-``python -m scripts.mutations [--count 1000] [--first 0] [KIND ...]`` changes case files, CSV histories, results,
-unfinished results with their journals, the indices of sweeps, plans, and lug files. Some changes are random, and some
-are hostile (hostile.py). It reads each changed file through Python and the command line, in a process of its own. A
-finding is a raw error of Python, a traceback, a crash, a run without an end, too much memory, a long or empty message,
-or a file that was changed without a right to it. Reading may change, make or remove no file at all, also not in the
-folder beside. Changed bytes can crash the HDF5 library itself, or catch it in a loop. Such cases are counted apart: no
-code of Python can prevent them.
+:func:`examine` changes a case file, a CSV history, a result, an unfinished result with its journal, the index of a
+sweep, a plan, or a lug file. Some changes are random, and some are hostile (hostile.py). It reads the changed file
+through Python and the command line, in a process of its own. A finding is a raw error of Python, a traceback, a crash,
+a run without an end, too much memory, a long or empty message, or a file that was changed without a right to it.
+Reading may change, make or remove no file at all, also not in the folder beside. Changed bytes can crash the HDF5
+library itself, or catch it in a loop. Such cases are counted apart: no code of Python can prevent them.
 """
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import faulthandler
 import hashlib
@@ -30,7 +28,6 @@ import tempfile
 import time
 import traceback
 import warnings
-from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -49,8 +46,8 @@ from fastpin.storage.journal import JournaledFile
 from fastpin.studies import plan as plans
 from fastpin.studies import sweep, workers
 from fastpin.studies.outcome_tables import read_outcomes
-from scripts import hostile
 from scripts.inline import Inline
+from tests.survey import hostile
 
 NODES = 31
 """Nodes of all results."""
@@ -643,11 +640,8 @@ KINDS = {
 """The kinds of files."""
 
 
-def examine(kind: str, seed: int, before: Path, operators: Counter[str] | None = None) -> list[str]:
-    """Change one file in a copy of the folder `before`, try to read it in another process, and return the findings.
-
-    `operators` counts the names of the changes.
-    """
+def examine(kind: str, seed: int, before: Path) -> list[str]:
+    """Change one file in a copy of the folder `before`, try to read it in another process, and return the findings."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name) / "files"
         shutil.copytree(before, folder)
@@ -663,8 +657,6 @@ def examine(kind: str, seed: int, before: Path, operators: Counter[str] | None =
             lines = re.findall(r"/(fastpin/.*)", stack)[:1]
             return [f"{kind} {seed}: {IN_LIBRARY if first and '/h5py/' in first[1] else f'{ended} {lines}'}"]
         said = json.loads(report.read_text())
-        if operators is not None:
-            operators[said["operator"]] += 1
         return [f"{kind} {seed}: {said['operator']}: {finding}" for finding in said["findings"]]
 
 
@@ -740,33 +732,3 @@ def _wait(process: int) -> str:
             os.waitpid(process, 0)
             return f"no end after {worked:.0f} s of work in {waited:.0f} s"
         time.sleep(0.002)
-
-
-def main() -> None:
-    """Run the command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("kinds", nargs="*", metavar="KIND", help=", ".join(KINDS))
-    parser.add_argument("--count", type=int, default=1000, help="changed files of each kind")
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    options = parser.parse_args()
-    found, in_library = 0, 0
-    with tempfile.TemporaryDirectory() as name:
-        prepare(Path(name))
-        warm(Path(name))
-        for kind in options.kinds or KINDS:
-            began = time.monotonic()
-            operators: Counter[str] = Counter()
-            for seed in range(options.first, options.first + options.count):
-                for finding in examine(kind, seed, Path(name), operators):
-                    if finding.endswith(IN_LIBRARY):
-                        in_library += 1
-                    else:
-                        found += 1
-                    print(finding, flush=True)
-            print(f"{kind}: {options.count} files in {time.monotonic() - began:.0f} s", dict(operators), flush=True)
-    print(f"{found} findings; {in_library} files that the HDF5 library can't survive")
-    raise SystemExit(found > 0)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,20 +1,17 @@
 """Pairs of cases with a known relation: turned, mirrored, scaled, split and renumbered.
 
-``python -m scripts.metamorphic [--count 100] [--first 0] [--classes general,extreme] [--processes 2]`` solves `count`
-random cases of each class, each with one changed case for every relation, on the same nodes. The states must agree.
+:func:`compare` solves a random case, and a changed case for every relation, on the same nodes. The states must agree.
 """
 
 from __future__ import annotations
 
 import cmath
-import collections
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from tqdm import tqdm
 
 from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.bodies.body import PlateBody
@@ -29,11 +26,11 @@ from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Crown, Flat, Harmonic, Samples, Term, Zone
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from scripts.histories import generate
-from scripts.random_histories import ending_of, options_for, run_jobs, within_time
+from tests.survey.histories import generate
+from tests.survey.random_histories import ending_of, within_time
 
 CLASSES = ("general", "extreme", "moderate_stress", "fixed", "remote", "bodies", "gap", "drift")
-"""Classes that are run unless others are given."""
+"""Classes whose cases are compared."""
 
 MOST_NODES = 300
 """Cases with more nodes are left out."""
@@ -375,31 +372,3 @@ def compare(kind: str, seed: int, relations: tuple[str, ...] = tuple(RELATIONS))
 def compare_in_time(kind: str, seed: int) -> list[Pair]:
     """As :func:`compare`, with the ending "hang" after a long time."""
     return within_time(compare, kind, seed) or [Pair(kind, seed, "", "hang")]
-
-
-def main() -> None:
-    """Run the command line."""
-    options = options_for(__doc__, 40, CLASSES).parse_args()
-    tasks = [(k, s) for k in options.classes for s in range(options.first, options.first + options.count)]
-    pairs: list[Pair] = []
-    for some in run_jobs(compare_in_time, tasks, options.processes):
-        pairs += some
-        for pair in some:
-            if pair.difference > TOLERANCE or pair.ending.startswith(("one", "hang", "refused on")):
-                what = f"differ by {pair.difference:.1e} from state {pair.state} on, {pair.jumps:.0f} snaps"
-                tqdm.write(f"{pair.kind} {pair.seed} {pair.relation}: {what if pair.difference else pair.ending}")
-            if pair.floating > TOLERANCE:
-                tqdm.write(f"{pair.kind} {pair.seed} {pair.relation}: the floating pin differs by {pair.floating:.1e}")
-    for kind in options.classes:
-        for relation in ("", *RELATIONS):
-            some = [pair for pair in pairs if (pair.kind, pair.relation) == (kind, relation)]
-            endings = dict(collections.Counter(pair.ending.split(":")[0] for pair in some))
-            wrong, apart = (sum(getattr(p, name) > TOLERANCE for p in some) for name in ("difference", "floating"))
-            largest = max((p.difference for p in some if p.difference <= TOLERANCE), default=0.0)
-            if some:
-                counts = f"{wrong} differ, {apart} float apart, the others by {largest:.0e}"
-                print(f"{kind:16}{relation or 'left out':12}{endings}, {counts}")
-
-
-if __name__ == "__main__":
-    main()

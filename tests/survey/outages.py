@@ -1,20 +1,20 @@
-"""Kill commands, stop them, or let their disk be full, and check their files: ``python -m scripts.outages --count 10``.
+"""Kill commands, stop them, or let their disk be full, and check their files.
 
-Every command that writes is disturbed `count` times in each way:
+A :class:`Trial` disturbs a command that writes, at random moments:
 
-- killed: SIGKILL hits its main process, a worker or the scheduler at a random moment. An output is then whole: the old
-  one or the new one.
+- killed: SIGKILL hits its main process, a worker or the scheduler. An output is then whole: the old one or the new one.
 - full: no file may grow beyond a random size. The exit code is then 1. One sentence names the file. The old output is
   whole, and there is no other new file.
 - stopped: SIGSTOP holds a worker or a reader for a moment.
+- shared: a second process writes to the same output, and is refused.
 
 After each disturbance the command is called again, undisturbed. Its files must then hold the bits of a call that nobody
-has disturbed. ``scripts/kills.py`` kills one long run or sweep again and again.
+has disturbed. :func:`kill_run` and :func:`kill_sweep` kill one long run or sweep again and again.
 """
 
 from __future__ import annotations
 
-import argparse
+import logging
 import os
 import re
 import resource
@@ -28,15 +28,19 @@ from collections import Counter
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from fastpin.casefile.lug import LUG_EXAMPLE
 from fastpin.errors import InputError
-from fastpin.storage import store
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.storage import recording, store, writer
 from fastpin.storage.files import BESIDE_RESULT
 from fastpin.storage.journal import is_empty
-from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS
+from fastpin.storage.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS
 from fastpin.studies import sweep
 from fastpin.studies.plan import read_plan
 
@@ -64,11 +68,16 @@ shortcut = false
 PLAN = """
 case = "case.toml"
 [grid]
-contact.friction = { from = 0.2, to = 0.8, count = 8 }
+contact.friction = { from = 0.2, to = 0.8, count = COUNT }
 solve.nodes = [61]
 """
 
 FASTPIN = (sys.executable, "-m", "fastpin")
+
+HERE = (sys.executable, "-m", "tests.survey.outages")
+"""This file as a program, which calls :func:`cluster` or :func:`work`."""
+
+ROOT = Path(__file__).resolve().parents[2]
 
 LONGEST = 300.0
 """Seconds after which a command counts as hanging."""
@@ -114,7 +123,7 @@ COMMANDS = {
 def prepare(folder: Path) -> None:
     """Write the input files of all commands."""
     (folder / "case.toml").write_text(CASE)
-    (folder / "plan.toml").write_text(PLAN)
+    (folder / "plan.toml").write_text(PLAN.replace("COUNT", "8"))
     (folder / "lug.toml").write_text(LUG_EXAMPLE)
     call(folder, "run", "case.toml", "-o", "result.h5")
     call(folder, "sweep", "plan.toml", "-o", "done", "--workers", "1")
@@ -140,7 +149,7 @@ def call(folder: Path, *words: str) -> None:
     process = started(folder, *words)
     said = process.communicate(timeout=LONGEST)[1]
     if process.returncode:
-        raise SystemExit(f"fastpin {' '.join(words)} has failed: {said}")
+        raise RuntimeError(f"fastpin {' '.join(words)} has failed: {said}")
 
 
 def children(process: int) -> list[int]:
@@ -152,16 +161,18 @@ def children(process: int) -> list[int]:
 
 
 def content(path: Path) -> object:
-    """What must be equal in two outputs: arrays of results, rows of sweeps, pages without their date, or all bytes."""
+    """What must be equal in two outputs: states and cycles, rows of sweeps, pages without their date, or all bytes."""
     if path.is_dir():
         plan = read_plan(path.with_name("plan.toml"))
-        return {
-            row["id"]: (row["status"], content(path / "results" / f"{row['id']}.h5")) for row in sweep.rows(plan, path)
-        }
+        return {row["id"]: (row["status"], content(_result(path, row["id"]))) for row in sweep.rows(plan, path)}
     if path.suffix == ".h5":
         result = store.load(path)
-        fields = (*NODE_FIELDS, *NUMBER_FIELDS)
-        return [tuple(np.asarray(getattr(state, name)).tobytes() for name in fields) for state in result]
+        of_cycles = [name for name in CYCLE_FIELDS if name != "solved"]  # a resumed run does not know it
+        pairs = (result, (*NODE_FIELDS, *NUMBER_FIELDS)), (result.cycles, of_cycles)
+        return [
+            [tuple(np.asarray(getattr(each, name)).tobytes() for name in fields) for each in found]
+            for found, fields in pairs
+        ]
     if path.suffix == ".html":
         return re.sub(r"Made by .* on [^<]*", "", re.sub(r"\d+(\.\d+)? s\b", "", path.read_text()))
     if path.suffix == ".json":
@@ -179,12 +190,11 @@ class Trial:
         Disturbances that hit the command at work, by their kind.
     """
 
-    def __init__(self, name: str, before: Path, folder: Path, seed: int) -> None:
+    def __init__(self, name: str, before: Path, folder: Path) -> None:
         self.name, self.command = name, COMMANDS[name]
         self.findings: list[str] = []
         self.counts: Counter[str] = Counter()
         self._before, self._folder = before, folder
-        self._rng = np.random.default_rng([seed, list(COMMANDS).index(name)])
         self._number = 0
         undisturbed = self._copy()
         began = time.monotonic()
@@ -192,6 +202,11 @@ class Trial:
         self._seconds = time.monotonic() - began
         self._expected = content(undisturbed / self.command.output)
         self._bytes = max(path.stat().st_size for path in _files(undisturbed, self.command.output))
+
+    def disturb(self, way: str, seed: int) -> None:
+        """Disturb the command in one of the :data:`WAYS`."""
+        self._rng = np.random.default_rng([seed, list(COMMANDS).index(self.name)])
+        getattr(self, way)()
 
     def kill(self) -> None:
         """Kill the command, a worker or the scheduler at a random moment."""
@@ -314,8 +329,8 @@ class Trial:
         """Start the command, and for dask its cluster first. Return it and the processes of the cluster."""
         if "ADDRESS" not in self.command.words:
             return started(folder, *self.command.words), []
-        cluster = [sys.executable, "-m", "scripts.outages", "--cluster"]
-        process = subprocess.Popen(cluster, stdout=subprocess.PIPE, text=True, stderr=subprocess.DEVNULL)
+        program = [*HERE, "cluster"]
+        process = subprocess.Popen(program, cwd=ROOT, stdout=subprocess.PIPE, text=True, stderr=subprocess.DEVNULL)
         stack.callback(_end_cluster, process)
         assert process.stdout is not None
         address = process.stdout.readline().strip()
@@ -391,32 +406,111 @@ WAYS = {
 """Ways of disturbing, and the commands that each suits. Commands on dask are filled without it."""
 
 
-def main() -> None:
-    """Run the command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("commands", nargs="*", metavar="COMMAND", help=", ".join(COMMANDS))
-    parser.add_argument("--count", type=int, default=10, help="disturbances of each command, in each way")
-    parser.add_argument("--ways", nargs="+", choices=tuple(WAYS), default=tuple(WAYS))
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--cluster", action="store_true", help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.cluster:
-        cluster()
+# -- one run or sweep, killed again and again ----------------------------------------------------------------
+
+
+class Kills(NamedTuple):
+    """The number of kills that hit a process at work, and the findings."""
+
+    hits: int
+    findings: list[str]
+
+
+def history(rounds: int) -> LoadHistory:
+    """Rounds of ten equal cycles, which become periodic, and of 30 random loads."""
+    rng = np.random.default_rng(0)
+    whole = LoadHistory([{"P": 1.0}])
+    for _ in range(rounds):
+        steady = LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).repeated(10)
+        whole += steady + LoadHistory.from_array(rng.uniform(-0.28, 0.28, (30, 1)), ["Q"])
+    return whole
+
+
+def work(path: Path, rounds: int) -> None:
+    """Begin a run, or continue it if its file exists. The log on standard error tells the states in the file."""
+    logging.basicConfig(level=logging.DEBUG, format="%(message)s")
+    logging.getLogger("numba").setLevel(logging.WARNING)
+    writer.CHECKPOINT_EVERY, writer.CHECKPOINT_SHARE = 0.1, 1.0  # often: nobody waits for a killed process
+    if path.exists():
+        recording.resume(path)
         return
-    found = 0
-    with tempfile.TemporaryDirectory() as name:
-        before = Path(name) / "before"
-        before.mkdir()
-        prepare(before)
-        for command in options.commands or COMMANDS:
-            trial = Trial(command, before, Path(name), options.seed)
-            for way in options.ways:
-                for _ in range(options.count if command in WAYS[way] else 0):
-                    getattr(trial, way)()
-            found += len(trial.findings)
-            print(*trial.findings, f"{command}: {dict(trial.counts)}", sep="\n", flush=True)
-    raise SystemExit(found > 0)
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])
+    problem = Problem.from_load_parameter(pair, 0.5, 0.55, "centre", "fixed")
+    recording.record(problem, history(rounds), path, nodes=61, between=1)
+
+
+def kill_run(folder: Path, most: int, rounds: int, longest: float = 1.0, seed: int = 0) -> Kills:
+    """Kill a run up to `most` times, each time after up to `longest` seconds of work, then let it end.
+
+    All states that it had acknowledged before a kill must be in its file. In the end the file must hold the bits of an
+    undisturbed run.
+    """
+    path, whole, log, rng = folder / "killed.h5", folder / "whole.h5", folder / "said.txt", np.random.default_rng(seed)
+    hits, findings = 0, []
+    while hits < most and (not path.exists() or store.is_unfinished(path)):
+        with log.open("w") as messages:
+            process = subprocess.Popen([*HERE, "work", path, str(rounds)], cwd=ROOT, stderr=messages)
+            while process.poll() is None and "in the file" not in log.read_text():
+                time.sleep(0.01)
+            time.sleep(rng.uniform(0.0, longest))
+            process.kill()
+        code = process.wait()
+        if code not in (0, -signal.SIGKILL):
+            return Kills(hits, [*findings, f"after {hits} kills: {log.read_text()[-600:]}"])
+        hits += code != 0
+        acknowledged = int(re.findall(r"(\d+) states in the file\n", log.read_text())[-1])
+        if (stored := store.load_points(path).size) < acknowledged:
+            findings.append(f"kill {hits}: {stored} of {acknowledged} acknowledged states")
+    for each in (path, whole):
+        subprocess.run([*HERE, "work", each, str(rounds)], cwd=ROOT, check=True, stderr=subprocess.DEVNULL)
+    if content(path) != content(whole):
+        findings.append("other bits than an undisturbed run")
+    return Kills(hits, findings)
+
+
+def kill_sweep(folder: Path, most: int, runs: int, longest: float = 1.0, seed: int = 0) -> Kills:
+    """Kill the main process of a sweep up to `most` times, then let it end.
+
+    All runs that were finished before a kill must be there, with their results. In the end all results must have the
+    bits of a sweep in one process.
+    """
+    directory, rng = folder / "sweep", np.random.default_rng(seed)
+    (folder / "case.toml").write_text(CASE)
+    (folder / "plan.toml").write_text(PLAN.replace("COUNT", str(runs)))
+    plan = read_plan(folder / "plan.toml")
+
+    def finished() -> set[str]:
+        return {row["id"] for row in sweep.rows(plan, directory) if row["status"] == "done"}
+
+    hits, findings = 0, []
+    while hits < most:
+        known = finished()
+        process = started(folder, *_SWEEP, "--workers", "2")
+        while process.poll() is None and finished() == known:
+            time.sleep(0.01)
+        time.sleep(rng.uniform(0.0, longest))
+        known, is_at_work = finished(), process.poll() is None
+        process.kill()
+        process.communicate()
+        _end(process)
+        if not is_at_work:
+            break
+        hits += 1
+        there = {run for run in finished() if len(store.load(_result(directory, run)))}
+        findings += [f"kill {hits}: {run} is lost" for run in known - there]
+    call(folder, *_SWEEP, "--workers", "2")
+    call(folder, *_SWEEP[:2], "-o", "serial", "--workers", "1")
+    if content(directory) != content(folder / "serial"):
+        findings.append("other bits than a sweep in one process")
+    return Kills(hits, findings)
+
+
+def _result(directory: Path, run: str) -> Path:
+    return directory / "results" / f"{run}.h5"
 
 
 if __name__ == "__main__":
-    main()
+    if sys.argv[1] == "cluster":
+        cluster()
+    else:
+        work(Path(sys.argv[2]), int(sys.argv[3]))

@@ -1,4 +1,4 @@
-"""Valid arguments for the calls of :mod:`scripts.calls`: objects of fastpin, and values by parameter."""
+"""Valid arguments for the calls of :mod:`tests.survey.calls`: objects of fastpin, and values by parameter."""
 
 from __future__ import annotations
 
@@ -237,7 +237,7 @@ class Valid:
         if target in ("fastpin.Result.assessed_fatigue", "fastpin.Result.assessed_reserves"):
             return self._with_constants
         if owner.__name__ not in self.objects:
-            raise LookupError(f"scripts/valid_values.py has no object of the class {owner.__name__}")
+            raise LookupError(f"valid_values.py has no object of the class {owner.__name__}")
         return self.objects[owner.__name__]()
 
     def argument(self, target: str, name: str, annotation: str, is_optional: bool) -> Any:
@@ -258,7 +258,9 @@ class Valid:
                 return self.objects[key]()
         if name in BY_NAME:
             return BY_NAME[name]
-        raise LookupError(f"scripts/valid_values.py has no value for the parameter {name} of {target}, {annotation}")
+        raise LookupError(
+            f"tests/survey/valid_values.py has no value for the parameter {name} of {target}, {annotation}"
+        )
 
     def _annotations(self, result: fastpin.Result) -> dict[str, Callable[[], Any]]:
         return {

@@ -1,12 +1,7 @@
-"""The accuracy of a bush that slips: the cases of docs/bush.md on several grids.
-
-``python -m scripts.seat_accuracy [--nodes 64,128,256] [--cases A1,A3]`` prints the numbers of each case at the end of
-its history. They are dimensionless: tractions over F/R, displacements over F beta* of the pin in the bush.
-"""
+"""Joints whose bush slips, and the ten cases of another program. All are dimensionless: displacements over F beta*."""
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Callable
 from typing import Any
@@ -16,10 +11,8 @@ import numpy as np
 from fastpin.bodies import Bushing, Ring
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.options import ALL_ROUND
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
 
 STEEL, BRONZE, ALUMINIUM = Material(210.0, 0.3), Material(110.0, 0.34), Material(69.0, 0.33)
 
@@ -91,20 +84,3 @@ def numbers(result: Result) -> dict[str, float]:
         "stick": float((seat.status == STICK).mean()),
         "open": float((seat.status == OPEN).mean()),
     }
-
-
-def main() -> None:
-    """Run the command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--nodes", default="64,128,256")
-    parser.add_argument("--cases", default=",".join(CASES))
-    options = parser.parse_args()
-    for name in options.cases.split(","):
-        make, corners = CASES[name]
-        for nodes in map(int, options.nodes.split(",")):
-            found = numbers(solve(make(), corners, nodes=nodes, arc=ALL_ROUND, slip_sums=True))
-            print(f"{name:4}{nodes:5}  " + "  ".join(f"{key} {value:.7g}" for key, value in found.items()), flush=True)
-
-
-if __name__ == "__main__":
-    main()

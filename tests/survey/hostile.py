@@ -1,4 +1,4 @@
-"""Hostile parts of files, for ``scripts/mutations.py``: what a stranger could put into a result, an index or a plan.
+"""Hostile parts of files, for mutations.py: what a stranger could put into a result, an index or a plan.
 
 Each operator takes a generator of random numbers, the path of a file, and a folder of things outside that nobody may
 touch: ``precious.txt``, ``other.h5`` and ``outside.py``. It changes the file, or puts something beside it.

@@ -1,17 +1,15 @@
 """Call public names with odd arguments: does fastpin answer with a value or one sentence, and in time?
 
-``python -m scripts.calls [--count 40000] [--seed 0] [NAME ...]`` finds the public functions, classes, methods and
-properties by itself, from the lists ``__init__.pyi``. It puts a value of :mod:`scripts.odd_values`, or a wrong object
-of fastpin, in the place of one argument or of two. All other arguments are valid, see :mod:`scripts.valid_values`.
-A NAME chooses the callables whose names begin with it. The calls run in a process of their own, in a temporary folder.
+:func:`examine` finds the public functions, classes, methods and properties by itself, from the lists ``__init__.pyi``
+and from the reference. A value of :mod:`tests.survey.odd_values`, or a wrong object of fastpin, takes the place of one
+argument or of two. All other arguments are valid, see :mod:`tests.survey.valid_values`. The calls run in a process of
+their own, in a temporary folder.
 
-A raw error is an exception that is no FastpinError. A call is slow if it takes longer than :data:`LONGEST`. Each
-distinct finding is printed once, and the exit code is then 1.
+A raw error is an exception that is no FastpinError. A call is slow if it takes longer than :data:`LONGEST`.
 """
 
 from __future__ import annotations
 
-import argparse
 import ast
 import collections
 import dataclasses
@@ -26,7 +24,6 @@ import os
 import re
 import resource
 import shutil
-import sys
 import tempfile
 import time
 import traceback
@@ -44,8 +41,8 @@ import psutil
 import fastpin
 from fastpin.bodies.body import BodyBase, PinBody, PlateBody
 from fastpin.errors import FastpinError, InputError
-from scripts import odd_values, valid_values
-from scripts.valid_values import Valid
+from tests.survey import odd_values, valid_values
+from tests.survey.valid_values import Valid
 
 LONGEST = 10.0
 """Seconds of the processor for one call."""
@@ -56,8 +53,8 @@ LONGEST_WAIT = 90.0
 MOST_MEMORY = 3 << 30
 """Bytes of address space that the calls may take, beyond the process before."""
 
-PAIRS = 0.25
-"""Share of the calls with two odd arguments."""
+COUNT, PAIRS = 400, 0.25
+"""Calls of a seed, and the share of them with two odd arguments."""
 
 NOT_CALLED = {"fastpin.live.serve": "it serves until it is stopped"}
 """Callables that are left out, and why."""
@@ -192,7 +189,7 @@ def _attribute(name: str, value: Any) -> Any:
 
 
 def _parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
-    """The parameters of a callable. Keywords of any name become those that :mod:`scripts.valid_values` knows."""
+    """The parameters of a callable. Keywords of any name become those that :mod:`tests.survey.valid_values` knows."""
     found = []
     for name, one in inspect.signature(call).parameters.items():
         if one.kind == inspect.Parameter.VAR_KEYWORD:
@@ -207,25 +204,17 @@ def _parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
 # -- the attempts --------------------------------------------------------------------------------------------
 
 
-def attempts(targets: dict[str, Target], values: Iterable[str], count: int, seed: int) -> list[Attempt]:
-    """Attempts at random: each call with valid arguments, each odd value of each parameter, and pairs of them."""
-    names = list(values)
-    rng = np.random.default_rng(seed)
-    valid = [Attempt(name, ()) for name in targets]
-    single = [
-        Attempt(target.name, ((parameter.name, value),))
-        for target, value in itertools.product(targets.values(), names)
-        for parameter in target.parameters
-    ]
-    several = [target for target in targets.values() if len(target.parameters) > 1]
-    pairs = int(PAIRS * count) if several else 0
-    chosen = [single[place] for place in rng.permutation(len(single))[: max(count - pairs - len(valid), 0)]]
-    while len(valid) + len(chosen) < count and several:
-        target = several[rng.integers(len(several))]
-        places = rng.choice(len(target.parameters), 2, replace=False)
-        odd = tuple((target.parameters[place].name, names[rng.integers(len(names))]) for place in sorted(places))
+def attempts(targets: dict[str, Target], values: Iterable[str], seed: int) -> list[Attempt]:
+    """:data:`COUNT` attempts at random: an odd value of one parameter, or of two."""
+    names, rng, chosen = list(values), np.random.default_rng(seed), []
+    places = [(target, place) for target in targets.values() for place in range(len(target.parameters))]
+    for _ in range(COUNT):
+        target, first = places[rng.integers(len(places))]
+        others = [place for place in range(len(target.parameters)) if place != first]
+        both = {first, int(rng.choice(others))} if others and rng.random() < PAIRS else {first}
+        odd = tuple((target.parameters[place].name, names[rng.integers(len(names))]) for place in sorted(both))
         chosen.append(Attempt(target.name, odd))
-    return [*valid, *chosen][:count]
+    return chosen
 
 
 def sample(targets: dict[str, Target], values: Iterable[str]) -> list[Attempt]:
@@ -375,11 +364,9 @@ def _cpu_seconds(process: int | None) -> float:
         return 0.0
 
 
-def examine(names: Iterable[str], choose: Callable[[dict[str, Target], list[str]], list[Attempt]]) -> Iterator[Any]:
+def examine(choose: Callable[[dict[str, Target], list[str]], list[Attempt]]) -> Iterator[tuple[Attempt, Ending]]:
     """Yield all attempts that `choose` makes from callables and odd values, with their endings."""
-    chosen = tuple(names)
-    targets = {name: target for name, target in public_targets().items() if not chosen or name.startswith(chosen)}
-    before = Path.cwd()
+    targets, before = public_targets(), Path.cwd()
     with tempfile.TemporaryDirectory() as temporary:
         folder, work = Path(temporary) / "files", Path(temporary) / "work"
         folder.mkdir()
@@ -391,28 +378,3 @@ def examine(names: Iterable[str], choose: Callable[[dict[str, Target], list[str]
             yield from endings(caller, choose(targets, list(caller.odd)), folder)
         finally:
             os.chdir(before)
-
-
-def main() -> None:
-    """Run the command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
-    parser.add_argument("names", nargs="*", metavar="NAME", help="beginnings of the names of callables")
-    parser.add_argument("--count", type=int, default=40_000, help="number of calls")
-    parser.add_argument("--seed", type=int, default=0)
-    options = parser.parse_args()
-    counted: collections.Counter[str] = collections.Counter()
-    shown: set[tuple[str, str]] = set()
-    for attempt, ending in examine(
-        options.names, lambda targets, values: attempts(targets, values, options.count, options.seed)
-    ):
-        counted[ending.kind] += 1
-        is_finding = ending.kind in ("raw", "slow") or (not attempt.odd and ending.kind != "accepted")
-        if is_finding and (attempt.target, ending.words) not in shown:
-            shown.add((attempt.target, ending.words))
-            print(f"{ending.kind}: {attempt}: {ending.words}", flush=True)
-    print(", ".join(f"{counted[kind]:,} {kind}" for kind in ("InputError", "FastpinError", "accepted", "raw", "slow")))
-    sys.exit(counted["raw"] + counted["slow"] > 0)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,37 +1,30 @@
-"""Random histories: does the path solver return a wrong state, raise an error, or hang?
+"""Solve random histories: does the path solver return a wrong state, raise an error, or hang?
 
-``python -m scripts.random_histories [--count 300] [--first 0] [--classes general,extreme] [--dense] [--processes 2]``
-solves `count` random cases of each class of ``scripts/histories.py``. It recomputes the contact conditions of every
-state without the matrices of the solver, see ``scripts/conditions.py``. With ``--dense`` there are many states inside
-each step, and the direction of slip and the dissipation are checked too.
+:func:`examine` solves a case of a class of :mod:`tests.survey.histories`. It recomputes the contact conditions of every
+state without the matrices of the solver, see :mod:`tests.survey.conditions`. A dense examination has many states inside
+each step, and checks the direction of slip and the dissipation too.
 """
 
 from __future__ import annotations
 
-import argparse
 import collections
-import concurrent.futures
 import math
-import os
 import signal
-import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
-
-from tqdm import tqdm
 
 from fastpin.errors import FastpinError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.solver.wear_result import WearResult
 from fastpin.storage.wear_files import wear
-from scripts.conditions import TOLERANCE, check_direction, check_dissipation, check_states, floats
-from scripts.histories import GENERATORS, RandomCase, generate
-from scripts.joint_conditions import check_joint
+from tests.survey.conditions import TOLERANCE, check_direction, check_dissipation, check_states, floats
+from tests.survey.histories import RandomCase, generate
+from tests.survey.joint_conditions import check_joint
 
 BETWEEN = 39
-"""States inside each step with ``--dense``."""
+"""States inside each step of a dense examination."""
 
 TOLERANCES = collections.defaultdict(
     lambda: TOLERANCE,
@@ -67,8 +60,6 @@ class Outcome:
         Snaps of the pin.
     worst : dict of str to (float, int)
         Largest violation of each condition, and the state where it is.
-    seconds : float
-        Time of the solution.
     """
 
     kind: str
@@ -79,7 +70,6 @@ class Outcome:
     nodes: int = 0
     jumps: float = 0.0
     worst: dict[str, tuple[float, int]] = field(default_factory=dict)
-    seconds: float = 0.0
 
     def violations(self) -> dict[str, tuple[float, int]]:
         """The violations beyond their tolerances."""
@@ -96,7 +86,6 @@ def ending_of(error: FastpinError) -> str:
 def examine(kind: str, seed: int, dense: bool = False) -> Outcome:
     """Solve a case and check all its states."""
     case, outcome = generate(kind, seed), Outcome(kind, seed)
-    began = time.perf_counter()
     result: Result | WearResult | None = None
     try:
         with_stops = {"between": BETWEEN} if dense else {}
@@ -107,7 +96,6 @@ def examine(kind: str, seed: int, dense: bool = False) -> Outcome:
     except FastpinError as error:
         outcome.ending, outcome.message = ending_of(error), str(error)
         result = getattr(error, "result", None)
-    outcome.seconds = time.perf_counter() - began
     if isinstance(result, WearResult):
         _check_wear(outcome, result)
     elif result is not None and result.states:
@@ -182,83 +170,6 @@ def within_time(job: Callable[..., Any], *arguments: Any) -> Any | None:
         signal.alarm(0)
 
 
-def examine_in_time(kind: str, seed: int, dense: bool) -> Outcome:
+def examine_in_time(kind: str, seed: int, dense: bool = False) -> Outcome:
     """As :func:`examine`, with the ending "hang" after a long time."""
-    return within_time(examine, kind, seed, dense) or Outcome(kind, seed, "hang", seconds=LONGEST)
-
-
-def run_jobs(job: Callable[..., Any], tasks: list[tuple[Any, ...]], processes: int) -> Iterator[Any]:
-    """What the job returns for each task, in order, with a progress bar."""
-    bar = {"total": len(tasks), "disable": None, "delay": 2.0}
-    if processes == 1:
-        yield from tqdm((job(*task) for task in tasks), **bar)
-        return
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
-    with concurrent.futures.ProcessPoolExecutor(processes) as pool:
-        yield from tqdm(pool.map(job, *zip(*tasks, strict=True)), **bar)
-
-
-def table(outcomes: Iterable[Outcome]) -> str:
-    """The table of all classes, a column each."""
-    kinds: dict[str, list[Outcome]] = {}
-    for outcome in outcomes:
-        kinds.setdefault(outcome.kind, []).append(outcome)
-    everything = [outcome for some in kinds.values() for outcome in some]
-    rows: dict[str, Callable[[list[Outcome]], str]] = {
-        "cases": lambda some: str(len(some)),
-        "states": lambda some: str(sum(one.states for one in some)),
-        "with snaps": lambda some: str(sum(one.jumps > 0 for one in some)),
-    }
-    for ending in ["solved", *sorted({one.ending for one in everything} - {"solved"})]:
-        rows[ending] = lambda some, ending=ending: str(sum(one.ending == ending for one in some))
-    for name in dict.fromkeys(name for one in everything for name in one.worst):
-        rows[name] = lambda some, name=name: (
-            f"{max((one.worst[name][0] for one in some if name in one.worst), default=0.0):.0e}"
-        )
-    rows["slowest, s"] = lambda some: f"{max(one.seconds for one in some):.1f}"
-    rows["its seed"] = lambda some: str(max(some, key=lambda one: one.seconds).seed)
-    columns = {**kinds, "all": everything}
-    lines = [f"{'':18}" + "".join(f"{kind.split('_')[0]:>10}" for kind in columns)]
-    lines += [f"{name:18}" + "".join(f"{cell(some):>10}" for some in columns.values()) for name, cell in rows.items()]
-    return "\n".join(lines)
-
-
-def classes(text: str) -> list[str]:
-    """Names of classes, separated by commas."""
-    kinds = text.split(",")
-    unknown = set(kinds) - set(GENERATORS)
-    if unknown:
-        raise argparse.ArgumentTypeError(f"unknown: {', '.join(sorted(unknown))}; there are {', '.join(GENERATORS)}")
-    return kinds
-
-
-def options_for(description: str | None, count: int, kinds: Iterable[str]) -> argparse.ArgumentParser:
-    """The options of the commands that run random cases."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=count, help="cases of each class")
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--classes", type=classes, default=list(kinds))
-    parser.add_argument("--processes", type=int, default=1)
-    return parser
-
-
-def main() -> None:
-    """Run the command line."""
-    parser = options_for(__doc__, 300, GENERATORS)
-    parser.add_argument("--dense", action="store_true", help="check the way between the corners too")
-    options = parser.parse_args()
-    seeds = range(options.first, options.first + options.count)
-    outcomes = []
-    tasks = [(kind, seed, options.dense) for kind in options.classes for seed in seeds]
-    for outcome in run_jobs(examine_in_time, tasks, options.processes):
-        outcomes.append(outcome)
-        if outcome.ending != "solved":
-            tqdm.write(f"{outcome.kind} {outcome.seed}: {outcome.ending}: {outcome.message}")
-        for name, (value, state) in outcome.violations().items():
-            tqdm.write(f"VIOLATION {outcome.kind} {outcome.seed}, state {state}: {name} by {value:.1e}")
-    print(table(outcomes))
-
-
-if __name__ == "__main__":
-    main()
+    return within_time(examine, kind, seed, dense) or Outcome(kind, seed, "hang")

@@ -1,7 +1,7 @@
 """The contact conditions of a joint whose bush slips, recomputed at both interfaces without the matrices of the solver.
 
-Each interface alone is recomputed as in :mod:`scripts.conditions`. The displacement of one rim of the bush under the
-tractions on the other is a Fourier series of the piecewise linear tractions. Its potentials are solved harmonic by
+Each interface alone is recomputed as in :mod:`tests.survey.conditions`. The displacement of one rim of the bush under
+the tractions on the other is a Fourier series of the piecewise linear tractions. Its potentials are solved harmonic by
 harmonic.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.states.state import State
-from scripts.conditions import POINTS, WEIGHTS, Checked, integrals_of, may_lose_contact, room_of
+from tests.survey.conditions import POINTS, WEIGHTS, Checked, integrals_of, may_lose_contact, room_of
 
 HARMONICS = 400
 """Harmonics of the tractions, at most."""
@@ -118,7 +118,7 @@ def _hat_integrals(grid: Grid, count: int) -> np.ndarray:
 
 
 def check_joint(states: Sequence[State]) -> list[dict[str, float]]:
-    """Largest relative violation of each condition at each state of pin or seat; see scripts/conditions.py.
+    """Largest relative violation of each condition at each state of pin or seat; see tests/survey/conditions.py.
 
     The energy balance is that of the whole joint. The slips of the pin count from each beginning of its contact.
     """

@@ -1,26 +1,23 @@
 """The path solver against load increments, on histories that are hard.
 
-``python -m scripts.two_roads [--count 60] [--first 0] [--classes extreme,narrow] [--processes 2]`` solves `count`
-random cases of each class by path, then by increments on the same nodes. The difference of pressure and shear must fall
-as the increments shrink. It is in parts of int N, the largest of all corners.
+:func:`compare` solves a random case by path, then by increments on the same nodes. The difference of pressure and shear
+must fall as the increments shrink. It is in parts of int N, the largest of all corners.
 """
 
 from __future__ import annotations
 
-import collections
 from dataclasses import dataclass
 
 import numpy as np
-from tqdm import tqdm
 
 from fastpin.errors import FastpinError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
-from scripts.histories import generate
-from scripts.random_histories import LONGEST, options_for, run_jobs, within_time
+from tests.survey.histories import generate
+from tests.survey.random_histories import LONGEST, within_time
 
 CLASSES = ("extreme", "narrow", "rough", "moderate_stress", "fits")
-"""Classes that are run unless others are given."""
+"""Classes whose cases are compared."""
 
 INCREMENTS = (100, 400)
 """Increments of a step, first and then."""
@@ -82,24 +79,3 @@ def compare(kind: str, seed: int) -> Comparison:
 def compare_in_time(kind: str, seed: int) -> Comparison:
     """As :func:`compare`, with the verdict "too long" after a long time."""
     return within_time(compare, kind, seed) or Comparison(kind, seed, "too long", f"{LONGEST} s")
-
-
-def main() -> None:
-    """Run the command line."""
-    options = options_for(__doc__, 60, CLASSES).parse_args()
-    tasks = [(k, s) for k in options.classes for s in range(options.first, options.first + options.count)]
-    found: list[Comparison] = []
-    for one in run_jobs(compare_in_time, tasks, options.processes):
-        found.append(one)
-        if one.verdict not in ("agree", "large"):
-            numbers = " to ".join(f"{value:.2g}" for value in one.differences)
-            tqdm.write(f"{one.kind} {one.seed}: {one.verdict} {numbers} ({one.message})")
-    for kind in options.classes:
-        some = [one for one in found if one.kind == kind]
-        both = np.array([one.differences for one in some if len(one.differences) == len(INCREMENTS)]).reshape(-1, 2)
-        medians = " to ".join(f"{value:.1e}" for value in np.median(both, axis=0)) if len(both) else "none"
-        print(f"{kind:16}{dict(collections.Counter(one.verdict for one in some))}, median difference {medians}")
-
-
-if __name__ == "__main__":
-    main()
