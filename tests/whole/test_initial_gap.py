@@ -332,6 +332,7 @@ def test_a_held_displacement_grips_beside_the_room():
     assert can_float(System.build(driven, CIRCLE, 1.0), np.where(np.array(LOADS) == "ux", 0.5, 0.0))
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("drive", ["ux", "uy", "both"])
 def test_driven_pins_meet_an_oval_hole_where_they_touch_it(drive):
     """The prescribed displacement is that of the hub. A contact begins where the gap of the rigid pin is used up."""
@@ -493,6 +494,7 @@ def test_a_pin_rests_on_the_edges_of_its_flat():
         assert start - 0.01 < edge < stop + 0.01
 
 
+@pytest.mark.gate
 def test_a_neat_fit_beside_the_middle_is_a_neat_fit():
     """Complete unloading too. Measured: 2e-14."""
     neat, shifted = (

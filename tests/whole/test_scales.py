@@ -48,6 +48,7 @@ def test_a_number_without_a_float_is_refused():
         fastpin.LoadHistory([{"P": 10**400}])
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("load_parameter", [1e12, 1e50, 1e20, 1e30])
 def test_a_contact_narrower_than_the_digits_of_an_angle_is_lost(similar, load_parameter):
     problem = fastpin.Problem.from_load_parameter(similar, load_parameter, 0.1)
