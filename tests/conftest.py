@@ -2,49 +2,22 @@
 
 from __future__ import annotations
 
-import contextlib
 import gc
-import importlib
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, settings
 
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.pages.album import Album
 from fastpin.pages.content import Picture
 from tests.support.approx import quicken
+from tests.support.drawing import outline_figures
 
-PROFILE = os.environ.get("FASTPIN_HYPOTHESIS", "gate")
+pytest_plugins = ["tests.support.tiers", "tests.support.guard"]
 
-
-def forget_constants() -> None:
-    """Let hypothesis draw no constants of the package's files: reading them takes seconds in each worker.
-
-    The constants also depend on what other tests have imported. Without them the examples are the same in every run.
-    Older versions of hypothesis read no constants.
-    """
-    with contextlib.suppress(ImportError):
-        providers = importlib.import_module("hypothesis.internal.conjecture.providers")
-        if hasattr(providers, "_get_local_constants"):
-            none = providers._local_constants
-            providers._get_local_constants = lambda: none
-
-
-settings.register_profile(
-    "gate",
-    derandomize=True,  # the same examples in every run
-    database=None,
-    deadline=None,
-    max_examples=60,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
-)
-settings.register_profile("long", parent=settings.get_profile("gate"), derandomize=False, max_examples=2_000)
-settings.load_profile(PROFILE)
-if PROFILE == "gate":
-    forget_constants()
+OUTLINED = ("cli", "pages", "project", "studies")
+"""Folders of tests that need the content of figures. The tests of figures draw them."""
 
 quicken()
 gc.disable()  # until all tests are collected
@@ -70,6 +43,17 @@ def similar() -> MaterialPair:
 def titanium_in_aluminium() -> MaterialPair:
     """The paper's dissimilar pair."""
     return MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+
+
+@pytest.fixture
+def drawn() -> None:
+    """Figures are drawn, also in the tests of commands, pages, studies and documents."""
+
+
+@pytest.fixture(autouse=True)
+def _outlined_figures(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    if request.path.parent.name in OUTLINED and "drawn" not in request.fixturenames:
+        outline_figures(monkeypatch)
 
 
 @pytest.fixture

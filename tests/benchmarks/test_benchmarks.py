@@ -74,6 +74,7 @@ def test_the_tensile_stress_concentration_of_a_neat_pin(outcomes: dict[str, Outc
         assert peak == pytest.approx(0.933, abs=0.007)
 
 
+@pytest.mark.gate
 def test_klangs_figure(outcomes: dict[str, Outcome], tmp_path: Path) -> None:
     files = catalog.write("klang", outcomes["klang"], tmp_path)
     assert [file.name for file in files] == ["klang.csv", "klang-curves.png", "klang-curves.csv"]
@@ -86,6 +87,7 @@ def test_a_benchmark_without_curves_writes_its_rows_only(outcomes: dict[str, Out
     assert file.name == "kirsch.csv"
 
 
+@pytest.mark.gate
 def test_the_envelope_of_calculators_is_unsafe(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(handbook_formulas, "LOAD_PARAMETERS", tuple(10.0 ** (k / 2) for k in range(-5, 3)))
     monkeypatch.setattr(handbook_formulas, "FRICTION", (0.0, 0.3, 0.9))
@@ -109,7 +111,7 @@ def test_the_envelope_is_five_percent_low_at_the_stated_angles(half_angle_deg: f
     assert peak / handbook_formulas.envelope(np.array(place)) == pytest.approx(1.05, abs=0.002)
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_loaded_pin_of_nafems() -> None:
     outcome = catalog.BENCHMARKS["nafems-loaded-pin"].compute(lambda part: None)
     assert [row.ours for row in outcome.rows] == pytest.approx([105.35, 91.82, 284.6], rel=1e-3)

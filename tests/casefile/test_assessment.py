@@ -125,6 +125,7 @@ def test_unknown_keys_are_named():
         parse_case(text_of('criteria = "smith-watson-topper"'))
 
 
+@pytest.mark.gate
 @given(assessments())
 def test_a_written_section_is_read_back(how):
     case = parse_case(text_of())

@@ -89,6 +89,7 @@ def test_a_written_laminate_is_read_back(keys: str) -> None:
     assert case_text(again) == case_text(case)
 
 
+@pytest.mark.gate
 @given(laminates())
 def test_any_laminate_is_written_and_read_back(plate: Laminate) -> None:
     case = parse_case(text(LAYUP))
@@ -205,6 +206,7 @@ def test_a_laminate_in_words() -> None:
     assert "/ beta*" in next(line for line in describe(whole).splitlines() if line.startswith("plate"))
 
 
+@pytest.mark.gate
 def test_a_laminate_in_json() -> None:
     case = parse_case(text(LAYUP + "axis = 30"))
     result = fastpin.solve(case.problem, case.history, nodes=31)

@@ -56,11 +56,11 @@ def test_words_of_a_gap_mean_angles_from_the_bottom(words: str) -> None:
     assert problem(gap=f"hole = {words}").gap_at(ANGLES)[0] == pytest.approx(HOLES[words], abs=1e-18)
 
 
-@pytest.mark.parametrize("order", range(9))
-def test_a_lobe_on_the_vertical_has_no_rounding(order: int) -> None:
+def test_a_lobe_on_the_vertical_has_no_rounding() -> None:
     """Then a problem that is symmetric about the vertical stays so to the last bit."""
-    found = problem(gap=f"hole = {{ lobes = {order + 1}, size = 1e-5, axis = 180 }}").gap.hole.toml()
-    assert found == [{"harmonic": order + 1, "cosine": 1e-5 * (-1) ** (order + 1), "sine": 0.0}]
+    for order in range(9):
+        found = problem(gap=f"hole = {{ lobes = {order + 1}, size = 1e-5, axis = 180 }}").gap.hole.toml()
+        assert found == [{"harmonic": order + 1, "cosine": 1e-5 * (-1) ** (order + 1), "sine": 0.0}]
 
 
 def test_a_flat_counts_from_the_radius_of_the_hole() -> None:
@@ -169,10 +169,10 @@ def test_an_angle_beside_one_in_rad_is_in_degrees(angle: float) -> None:
     assert case.problem.gap.pin.terms[0].centre == angle_at(angle)
 
 
-@pytest.mark.parametrize("degrees", range(15, 375, 15))
-def test_all_angles_in_rad_are_refused(degrees: int) -> None:
-    for angle in (math.radians(degrees), -degrees * (math.pi / 180.0), round(math.radians(degrees), 5)):
-        assert "degrees in rad" in faults(gap=f"pin = {{ flat = 1e-6, centre = {angle!r} }}")[0]
+def test_all_angles_in_rad_are_refused() -> None:
+    for degrees in range(15, 375, 15):
+        for angle in (math.radians(degrees), -degrees * (math.pi / 180.0), round(math.radians(degrees), 5)):
+            assert "degrees in rad" in faults(gap=f"pin = {{ flat = 1e-6, centre = {angle!r} }}")[0]
 
 
 def test_one_of_many_samples_may_look_like_an_angle_in_rad() -> None:

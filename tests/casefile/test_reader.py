@@ -365,14 +365,14 @@ def test_inline_tables_and_dotted_keys() -> None:
     assert (number, message.split(":")[0]) == (3, "nu")
 
 
-@pytest.mark.parametrize("cut", range(0, len(EXAMPLE), 97))
-def test_a_file_cut_anywhere_is_read_or_refused_in_words(cut: int) -> None:
-    problems: list[tuple[int, str]] = []
-    try:
-        parse_case(EXAMPLE[:cut])
-    except CaseFileError as error:
-        problems = error.problems or [(-1, "")]
-    assert all(0 <= line <= EXAMPLE.count("\n", 0, cut) + 1 and message for line, message in problems)
+def test_a_file_cut_anywhere_is_read_or_refused_in_words() -> None:
+    for cut in range(0, len(EXAMPLE), 97):
+        problems: list[tuple[int, str]] = []
+        try:
+            parse_case(EXAMPLE[:cut])
+        except CaseFileError as error:
+            problems = error.problems or [(-1, "")]
+        assert all(0 <= line <= EXAMPLE.count("\n", 0, cut) + 1 and message for line, message in problems)
 
 
 def test_files_that_can_not_be_read(tmp_path: Path) -> None:

@@ -31,6 +31,7 @@ from fastpin.solver import solving
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.version import __version__
 from tests.support.samples import sample_result
+from tests.support.tiers import some_gate
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -145,7 +146,7 @@ LIGHT: dict[str, list[list[str]]] = {
 """Commands by the heavy packages that they may import."""
 
 
-@pytest.mark.parametrize("needed", LIGHT)
+@pytest.mark.parametrize("needed", some_gate(LIGHT, "numpy"))
 def test_heavy_imports_wait_until_they_are_needed(needed: str, case: Path) -> None:
     """The commands run in one process, one after the other. The first that imports more is named."""
     code = (
@@ -170,6 +171,7 @@ HEAVY = (
 """Modules that take long to import. Nothing that is loaded from disk needs them."""
 
 
+@pytest.mark.gate
 @pytest.mark.skipif(jit.PLAIN or not jit.CACHED or not machine.CAN_LOAD, reason="a run needs the compiler")
 def test_a_second_run_imports_neither_compiler_nor_large_packages() -> None:
     code = (
@@ -193,6 +195,7 @@ def test_a_user_at_a_terminal_reads_why_the_first_run_takes_long(
     assert capsys.readouterr().err == "fastpin: compiling the solver\n" * terminal
 
 
+@pytest.mark.gate
 def test_public_names_are_imported_when_they_are_asked_for() -> None:
     code = (
         "import sys, fastpin\nassert 'numpy' not in sys.modules\n"
@@ -233,6 +236,7 @@ def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: 
     assert "81 nodes" in lines[-1]
 
 
+@pytest.mark.gate
 def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> None:
     arguments = ["--nodes", "99", "--method", "increment", "--increments", "7", "--between", "0.25,0.5"]
     arguments += ["--keep", "corners", "--no-shortcut"]
@@ -323,6 +327,7 @@ def test_json_on_standard_output_is_the_only_thing_there(
         assert said["load_point"] == state.step + 1
 
 
+@pytest.mark.gate
 def test_all_outputs(case: Path, tmp_path: Path) -> None:
     from fastpin.storage.store import load
 
@@ -336,6 +341,7 @@ def test_all_outputs(case: Path, tmp_path: Path) -> None:
     assert len(load(tmp_path / "a.h5")) == len(json.loads((tmp_path / "a.json").read_text())["states"]) == 4
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("stored", [False, True])
 def test_a_lost_load_keeps_what_was_solved(
     stored: bool, case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -387,6 +393,7 @@ def test_an_interrupted_run_ends_with_one_sentence(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.gate
 def test_a_file_that_can_not_be_written_does_not_cost_the_others(
     solved: list[dict[str, Any]],
     tmp_path: Path,
@@ -424,6 +431,7 @@ def test_the_real_solver_through_the_command_line(case: Path, capsys: pytest.Cap
 # -- the figures of the paper ----------------------------------------------------------------------------------
 
 
+@pytest.mark.gate
 def test_paper_writes_a_figure_and_its_numbers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["paper", "--figure", "3", "--figure", "03", "--nodes", "101", "-o", str(tmp_path / "new")]) == 0
     captured = capsys.readouterr()
@@ -441,6 +449,8 @@ def test_paper_writes_a_figure_and_its_numbers(tmp_path: Path, capsys: pytest.Ca
         assert chosen["N"].max() == pytest.approx(peak, rel=3e-3)
 
 
+@pytest.mark.gate
+@pytest.mark.usefixtures("drawn")
 def test_paper_writes_the_formats_that_are_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     formats = ["--format", "pdf", "--format", "svg", "--format", "pdf"]
     assert main(["paper", "--figure", "11", "--nodes", "101", "-o", str(tmp_path), *formats]) == 0
@@ -552,6 +562,7 @@ def cyclic(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.gate
 def test_cycles_are_told_stored_and_drawn(cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     stored, figure = str(tmp_path / "a.h5"), str(tmp_path / "c.png")
     assert main(["run", str(cyclic), "-o", stored, "--keep", "cycles", "--cycles", figure, "--json"]) == 0
@@ -571,6 +582,7 @@ def test_cycles_are_told_stored_and_drawn(cyclic: Path, tmp_path: Path, capsys: 
     assert again["cycles"] == document["cycles"]
 
 
+@pytest.mark.gate
 def test_the_last_cycle_is_told_and_written(cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     stored, table = str(tmp_path / "a.h5"), tmp_path / "c.csv"
     held = CYCLES.replace('pin_load = "body"', 'pin_load = "centre"').replace('rotation = "free"', 'rotation = "fixed"')
@@ -596,6 +608,7 @@ def test_the_last_cycle_is_told_and_written(cyclic: Path, tmp_path: Path, capsys
 SHEET = CYCLES.replace("nu = 0.33", "").replace("E  = 69e9", 'material = "2024-T3"')
 
 
+@pytest.mark.gate
 def test_hoop_stress_and_fatigue_are_told(cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     stored = str(tmp_path / "a.h5")
     cyclic.write_text(SHEET)
@@ -614,6 +627,7 @@ def test_hoop_stress_and_fatigue_are_told(cyclic: Path, tmp_path: Path, capsys: 
     assert [state["peak_hoop_resolved"] for state in states] == [state.peak_hoop_stress().resolved for state in result]
 
 
+@pytest.mark.gate
 def test_fatigue_is_not_told_if_the_states_of_the_cycle_are_not_at_hand(
     cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -625,6 +639,7 @@ def test_fatigue_is_not_told_if_the_states_of_the_cycle_are_not_at_hand(
     assert "fatigue of the plate in the last cycle" in capsys.readouterr().out
 
 
+@pytest.mark.gate
 def test_a_cycle_whose_ends_were_not_kept_is_told(
     cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -638,6 +653,7 @@ def test_a_cycle_whose_ends_were_not_kept_is_told(
     assert json.loads(capsys.readouterr().out)["cycle"] is None
 
 
+@pytest.mark.gate
 def test_long_histories_are_told_in_short(cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     cyclic.write_text(CYCLES.replace("repeat = 12  ", "repeat = 30  "))
     assert main(["check", str(cyclic)]) == 0
@@ -661,6 +677,7 @@ def without_times(text: str) -> str:
     return re.sub(r"[\d.]+ seconds", "", text)
 
 
+@pytest.mark.gate
 def test_branches_from_the_command_line(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = EXAMPLE.replace("nodes = 401", "nodes = 61").replace("# arc =", "arc =")
     whole, branch, trunk = tmp_path / "whole.toml", tmp_path / "branch.toml", str(tmp_path / "trunk.h5")
@@ -722,7 +739,7 @@ def test_options_of_long_histories_are_checked(
     assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("background", [False, True])
 def test_signals_leave_a_run_that_goes_on(sign: signal.Signals, background: bool, tmp_path: Path) -> None:
@@ -755,6 +772,7 @@ def test_signals_leave_a_run_that_goes_on(sign: signal.Signals, background: bool
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith("a.")] == ["a.h5"]
 
 
+@pytest.mark.gate
 def test_an_older_result_is_not_shown_for_a_run_that_never_began(
     case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

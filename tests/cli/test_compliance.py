@@ -45,6 +45,7 @@ def test_the_example_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out == LUG_EXAMPLE
 
 
+@pytest.mark.gate
 def test_a_file_a_figure_and_a_report(
     lug: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -63,6 +64,7 @@ def test_a_file_a_figure_and_a_report(
     assert err == ""
 
 
+@pytest.mark.gate
 def test_the_same_file_gives_the_same_bits(lug: Path) -> None:
     outputs = [lug.with_name(name) for name in ("a.json", "b.json")]
     for output in outputs:
@@ -70,6 +72,7 @@ def test_the_same_file_gives_the_same_bits(lug: Path) -> None:
     assert outputs[0].read_bytes() == outputs[1].read_bytes()
 
 
+@pytest.mark.gate
 def test_a_doubtful_result_has_a_note(
     lug: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -105,6 +108,7 @@ def test_a_fault_names_its_line(lug: Path, capsys: pytest.CaptureFixture[str]) -
     assert capsys.readouterr().err.startswith(f'{lug}, line 10: parts: no part or hole is called "tip"')
 
 
+@pytest.mark.gate
 def test_too_few_harmonics_name_the_file(lug: Path, capsys: pytest.CaptureFixture[str]) -> None:
     lug.write_text(TEXT.replace("= 6", "= 2").replace("5.0", "1.5"), encoding="utf-8")
     assert main(["compliance", str(lug)]) == 2

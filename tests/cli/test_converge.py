@@ -32,6 +32,7 @@ def case(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.gate
 def test_the_command_prints_and_writes(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["--nodes", "51,101,151", "--increments", "4,8,16", "--corner", "2"]
     files = {name: tmp_path / f"a.{name}" for name in ("csv", "json", "png")}
@@ -63,6 +64,7 @@ def test_the_command_prints_and_writes(case: Path, tmp_path: Path, capsys: pytes
     assert files["png"].read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.gate
 def test_outcomes_are_studied_too(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "mine.py").write_text(FILE)
     written = {name: str(tmp_path / f"a.{name}") for name in ("csv", "json", "png")}

@@ -32,6 +32,7 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.gate
 def test_a_crack_at_a_place(stored, tmp_path, capsys):
     numbers, figure = tmp_path / "a.csv", tmp_path / "a.svg"
     outputs = ["-o", str(figure), "--csv", str(numbers)]
@@ -53,6 +54,7 @@ def test_a_crack_at_a_place(stored, tmp_path, capsys):
     assert "<svg" in figure.read_text()
 
 
+@pytest.mark.gate
 def test_the_fastest_crack(stored, capsys):
     assert main(["crack", str(stored), *LAW, "--threshold-range", "1e6", "--intrinsic-length", "5e-5"]) == 0
     place = float(capsys.readouterr().out.split()[2])
@@ -135,6 +137,7 @@ def planned(case: fastpin.Case, spectrum: bool = False) -> cracks.Growth:
     return cracks.planned_growth(states, case.crack, spectrum)
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_a_case_with_a_crack_is_told_by_every_command(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -161,6 +164,7 @@ def test_a_case_with_a_crack_is_told_by_every_command(tmp_path, capsys, monkeypa
     assert "Law of growth: walker, C = 1e-10, m = 3, exponent = 0.5; source: own tests." in page
 
 
+@pytest.mark.gate
 def test_options_and_another_case_replace_the_crack_of_a_result(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(CASE)
@@ -180,6 +184,7 @@ def test_options_and_another_case_replace_the_crack_of_a_result(tmp_path, capsys
     assert "--case: none.toml has no section [crack]" in capsys.readouterr().err
 
 
+@pytest.mark.gate
 def test_a_history_without_cycles_is_a_spectrum(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(CASE.replace("P = [3e6, 3e5]\nrepeat = 2", "P = [3e6, 3e5, 1.5e6, 3e5, 1.5e6, 3e5]"))
@@ -200,6 +205,7 @@ def test_a_crack_that_can_not_be_followed_is_noted(tmp_path, capsys, monkeypatch
     assert "note: no crack is followed: states: must hold all corners of the cycle" in capsys.readouterr().err
 
 
+@pytest.mark.gate
 def test_json_has_the_growth_and_its_margins(stored, tmp_path, capsys):
     law = [*LAW, "--at", "66", "--threshold-range", "1e6", "--toughness", "5e7"]
     assert main(["crack", str(stored), *law, "--csv", str(tmp_path / "a.csv"), "--json", "-"]) == 0

@@ -32,6 +32,7 @@ def test_long_work_is_announced_in_words(length: float, words: str, capsys: pyte
     assert capsys.readouterr().err == f"fastpin: note: this will take about {words}, with 9 nodes\n"
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("command", ["run", "converge", "sweep"])
 def test_each_command_announces_long_work(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -51,6 +51,7 @@ def fatigue_lines(capsys):
     return [line for line in capsys.readouterr().out.splitlines() if line.startswith("fatigue ")]
 
 
+@pytest.mark.gate
 def test_run_and_show_print_the_ranked_bodies(folder, capsys):
     capsys.readouterr()
     assert main(["run", str(folder / "case.toml")]) == 0
@@ -65,6 +66,7 @@ def test_run_and_show_print_the_ranked_bodies(folder, capsys):
     assert len(ran) == 2
 
 
+@pytest.mark.gate
 def test_json_has_the_assessment(folder, capsys):
     capsys.readouterr()
     assert main(["show", str(folder / "one.h5"), "--json", "-"]) == 0
@@ -78,6 +80,7 @@ def test_json_has_the_assessment(folder, capsys):
     assert sum(each["damage"] for each in body["cycles"]) == pytest.approx(body["damage"], rel=1e-6)
 
 
+@pytest.mark.gate
 def test_without_the_section_json_has_none(folder, capsys, tmp_path):
     plain = tmp_path / "plain.toml"
     plain.write_text(CASE.split("[fatigue]")[0] + "[solve]\nnodes = 61\n", encoding="utf-8")
@@ -88,6 +91,7 @@ def test_without_the_section_json_has_none(folder, capsys, tmp_path):
     assert document["fatigue"] is None
 
 
+@pytest.mark.gate
 def test_the_figure_follows_the_section(folder, capsys, tmp_path):
     numbers = tmp_path / "n.csv"
     capsys.readouterr()
@@ -100,6 +104,7 @@ def test_the_figure_follows_the_section(folder, capsys, tmp_path):
     assert max(float(row["damage by smith-watson-topper"]) for row in rows) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("source", ["case.toml", "one.h5"])
 def test_the_report_has_the_hot_spots(folder, source, capsys, tmp_path):
@@ -128,6 +133,7 @@ def test_stresses_that_do_not_change_end_with_one_sentence(folder, capsys, tmp_p
     assert "fatigue: not known, states: must have a turning point" in printed.out
 
 
+@pytest.mark.gate
 def test_an_unfinished_run_has_no_fatigue(folder, capsys, tmp_path):
     def interrupt(done, total):
         if done > 4.5:
@@ -169,6 +175,8 @@ def asked(tmp_path_factory):
     return folder
 
 
+@pytest.mark.gate
+@pytest.mark.usefixtures("undrawn")
 def test_all_outputs_have_the_margins_of_fatigue_and_crack(asked, capsys):
     """run, show, JSON of both and the page have the same margins as Python."""
     result, case = fastpin.load(asked / "one.h5"), fastpin.read_case(asked / "case.toml")
@@ -209,6 +217,8 @@ def test_a_wrong_life_names_its_line(tmp_path, capsys):
     assert "line 18: life: must lie between 1 and 1e+18, not 0.5" in capsys.readouterr().err
 
 
+@pytest.mark.gate
+@pytest.mark.usefixtures("undrawn")
 def test_a_result_in_memory_is_judged_by_the_case_file(asked):
     """A page of a result in memory has the sections of the case file that is given with it."""
     result = fastpin.load(asked / "one.h5")

@@ -37,6 +37,7 @@ def case(tmp_path):
     return path
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_show_says_that_a_run_is_unfinished(case, tmp_path, capsys):
     from fastpin.casefile.reader import read_case
@@ -59,6 +60,7 @@ def test_show_says_that_a_run_is_unfinished(case, tmp_path, capsys):
     assert "unfinished" not in capsys.readouterr().out.splitlines()[-1]
 
 
+@pytest.mark.gate
 def test_a_run_that_goes_on_is_told(case, tmp_path, capsys, monkeypatch):
     path = tmp_path / "a.h5"
     assert main(["run", str(case), "-o", str(path), "--nodes", "41"]) == 0
@@ -77,6 +79,7 @@ def test_a_run_that_goes_on_is_told(case, tmp_path, capsys, monkeypatch):
     assert captured.err == f"fastpin: {path}: another run is writing to it\n"
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_a_run_that_no_equilibrium_ended_is_not_to_be_resumed(case, tmp_path, capsys):
     path = tmp_path / "a.h5"
@@ -93,6 +96,7 @@ def test_a_run_that_no_equilibrium_ended_is_not_to_be_resumed(case, tmp_path, ca
     assert "fastpin resume" not in text
 
 
+@pytest.mark.gate
 def test_the_nodes_of_the_start_are_named(case, tmp_path, capsys):
     path = tmp_path / "a.h5"
     assert main(["run", str(case), "-o", str(path), "--nodes", "41"]) == 0
@@ -113,6 +117,7 @@ def test_one_fraction_of_a_step(case, capsys):
     assert points == ["0.25", "1", "1.25", "2", "2.25", "3"]
 
 
+@pytest.mark.gate
 def test_error_bars_of_a_case_file_can_be_switched_off(case, tmp_path, capsys):
     case.write_text(case.read_text().replace("nodes = 61", "nodes = 101\nerror_bars = true"))
     assert main(["run", str(case)]) == 0
@@ -139,6 +144,7 @@ def test_whole_numbers_are_checked_in_one_place(case, capsys, command, message):
     assert capsys.readouterr().err == f"fastpin: {message}\n"
 
 
+@pytest.mark.gate
 def test_more_nodes_and_snaps_are_noted(tmp_path, capsys):
     path = tmp_path / "case.toml"
     narrow = CASE.replace("clearance = 20e-6", "clearance = 2e-3").replace("P = 1e6", "P = [1e2, 1e6]")

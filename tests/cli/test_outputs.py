@@ -219,6 +219,7 @@ def test_files_that_the_case_names_are_inputs(folder: Path, capsys: pytest.Captu
     assert Path("h.csv").read_text() == "P\n1e6\n2e6\n"
 
 
+@pytest.mark.gate
 def test_an_input_may_be_written_by_a_later_command(folder: Path) -> None:
     assert main(["show", "r.h5", "--json", "a.json"]) == 0
     assert main(["show", "r.h5", "--json", "a.json"]) == 0

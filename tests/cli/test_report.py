@@ -34,6 +34,7 @@ def words(path: str) -> str:
     return Page(Path(path).read_text(encoding="utf-8")).text
 
 
+@pytest.mark.gate
 def test_a_stored_result_gets_the_name_of_its_file(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(case), "-o", "result.h5"]) == 0
     capsys.readouterr()
@@ -43,6 +44,7 @@ def test_a_stored_result_gets_the_name_of_its_file(case: Path, capsys: pytest.Ca
     assert CASE in words("result.html")
 
 
+@pytest.mark.gate
 def test_a_case_is_solved_with_error_bars(case: Path) -> None:
     assert main(["report", str(case), "-o", "page.html", "--error-bars"]) == 0
     assert "There are no error bars" not in words("page.html")
@@ -50,6 +52,7 @@ def test_a_case_is_solved_with_error_bars(case: Path) -> None:
     assert "A joint" in words("page.html")
 
 
+@pytest.mark.gate
 def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case.write_text(CASE.replace("friction = 0.4", 'friction = 0.4\npin_load = "centre"') + "[[load]]\nM = 1e5\n")
     assert main(["report", str(case), "-o", "page.html"]) == 1
@@ -92,6 +95,7 @@ def test_all_faults_of_a_case_are_listed(case: Path, capsys: pytest.CaptureFixtu
     assert len(capsys.readouterr().err.splitlines()) == 2
 
 
+@pytest.mark.gate
 def test_options_replace_who_made_the_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     about = '[about]\nproject = "<i>Hinge</i> \\";}</style>"\nrevision = "A"\nauthor = "A. Engineer"\n'
     case.write_text(CASE.replace("[pin]", f"{about}[pin]", 1))
@@ -110,6 +114,7 @@ def test_options_replace_who_made_the_case(case: Path, capsys: pytest.CaptureFix
     capsys.readouterr()
 
 
+@pytest.mark.gate
 def test_a_sweep_takes_who_made_its_base_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case.write_text(CASE.replace("[pin]", '[about]\nproject = "Hinge"\n[pin]', 1))
     Path("plan.toml").write_text('case = "case.toml"\n[grid]\n"contact.friction" = [0.1, 0.2]\nsolve.nodes = [41]\n')

@@ -18,6 +18,7 @@ from fastpin.report.schema import COMMANDS
 from fastpin.verification.rows import Check
 from tests.support import seats
 from tests.support.case_texts import PRESSED
+from tests.support.tiers import some_gate
 
 BUSHED = PRESSED + '[plate_body]\nmaterial = "C93200"\nouter_radius = 0.012\ninterference = 1e-5\n'
 CASES = {
@@ -68,7 +69,9 @@ def test_every_command_with_json_has_a_schema() -> None:
         json_schema("x")
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case", some_gate(CASES, "example", "dimensionless", "bushed", "bush that slips", "not followed")
+)
 def test_summaries(case: str, tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(CASES[case])
     found = written(tmp_path, "run", "case.toml", "--nodes", "61", "-o", "a.h5")
@@ -86,6 +89,7 @@ def test_summaries_with_error_bars_and_a_cycle(tmp_path: Path) -> None:
     assert faults(found, "run") == []
 
 
+@pytest.mark.gate
 def test_a_study(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(PRESSED)
     for more in ([], ["--increments", "5,10,20"]):
@@ -98,6 +102,7 @@ def test_checks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert faults(written(tmp_path, "verify"), "verify") == []
 
 
+@pytest.mark.gate
 def test_benchmarks(tmp_path: Path) -> None:
     assert faults(written(tmp_path, "benchmarks", "nafems-loaded-pin"), "benchmarks") == []
 
@@ -109,6 +114,7 @@ def test_charts(words: tuple[str, ...], tmp_path: Path) -> None:
     assert faults(written(tmp_path, "charts", *words), "charts") == []
 
 
+@pytest.mark.gate
 def test_a_compliance(tmp_path: Path) -> None:
     (tmp_path / "lug.toml").write_text(LUG_EXAMPLE)
     assert main(["compliance", "lug.toml", "-o", "lug.json"]) == 0

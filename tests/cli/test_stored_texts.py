@@ -124,6 +124,8 @@ def check_file(path: Path) -> str:
     return text
 
 
+@pytest.mark.gate
+@pytest.mark.usefixtures("drawn")
 def test_texts_of_a_result_harm_no_reader(path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     files = {name: tmp_path / name for name in ("a.json", "a.html", "a.svg", "a.csv", "page.html")}
     run(capsys, "show", path, "--json", files["a.json"], "--record", files["a.html"])
@@ -139,6 +141,7 @@ def test_texts_of_a_result_harm_no_reader(path: Path, tmp_path: Path, capsys: py
     assert is_printable([*repr(values).split("\n"), dict(storage.to_xarray(path).attrs)])
 
 
+@pytest.mark.gate
 def test_texts_of_an_index_harm_no_reader(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     source, folder = tmp_path / "plan.toml", tmp_path / "runs"
     source.write_text(PLAN)
@@ -195,6 +198,7 @@ def test_a_long_name_is_cut_in_figures() -> None:
     assert len(caption(problem)) < 300
 
 
+@pytest.mark.gate
 def test_the_table_of_a_sweep_has_no_formulas(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     name = "=HYPERLINK(1)"
     (tmp_path / "mine.toml").write_text(f'["{name}"]\nE = 1e11\nnu = 0.3\n')

@@ -46,6 +46,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.gate
 def test_a_case_with_a_strength_is_told_by_every_command(folder, capsys):
     case = fastpin.read_case("case.toml")
     states = fastpin.solve(case.problem, case.history, nodes=61)
@@ -85,6 +86,7 @@ def test_a_case_with_a_strength_is_told_by_every_command(folder, capsys):
     assert "plate: first ply by tsai-wu, factor on the stresses" in page
 
 
+@pytest.mark.gate
 def test_a_figure_takes_the_section_unless_options_replace_it(folder, capsys):
     assert main(["run", "case.toml", "-o", "case.h5"]) == 0
     state = fastpin.load("case.h5")[0]
@@ -100,6 +102,7 @@ def test_a_figure_takes_the_section_unless_options_replace_it(folder, capsys):
         )
 
 
+@pytest.mark.gate
 def test_states_without_a_force_have_no_curve(folder, capsys):
     Path("case.toml").write_text(CASE.replace("distance = 0.5e-3", "tension = 0.5e-3\ncompression = 1e-3"))
     assert main(["run", "case.toml", "-o", "case.h5"]) == 0

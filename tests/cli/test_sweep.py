@@ -56,6 +56,7 @@ def test_a_sweep_says_what_was_done_and_what_failed(path: Path, capsys: pytest.C
     assert "; 2 in " in capsys.readouterr().out
 
 
+@pytest.mark.gate
 def test_table_csv_and_figure_come_after_the_runs(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(path), "-o", "out", "--table", "--plot", "a.png"]) == 1
     captured = capsys.readouterr()
@@ -88,6 +89,7 @@ def test_parts_are_merged(path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert "6 runs in whole: 4 done, 2 failed, 0 waiting" in capsys.readouterr().out
 
 
+@pytest.mark.gate
 def test_outcomes_come_from_the_plan_and_from_the_option(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(path)]) == 1
     capsys.readouterr()

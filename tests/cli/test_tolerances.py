@@ -60,6 +60,7 @@ def inline(tasks: list[str], submit: Callable[..., Any]) -> Any:
         yield (task,), submit(Inline(), (task,)).result()
 
 
+@pytest.mark.gate
 def test_a_study_prints_its_effects_and_names_what_failed(plan: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["tolerances", plan, "--status"]) == 0
     assert capsys.readouterr().out.endswith("15 runs in moment: 0 done, 0 failed, 15 waiting\n")
@@ -82,6 +83,7 @@ def test_a_study_prints_its_effects_and_names_what_failed(plan: str, capsys: pyt
     assert "failed: 2 of 4 corners" in capsys.readouterr().out
 
 
+@pytest.mark.gate
 def test_files_come_after_the_runs(plan: str, capsys: pytest.CaptureFixture[str]) -> None:
     options = ["--table", "a.csv", "--plot", "a.png", "--scatter", "b.svg", "--json"]
     assert main(["tolerances", plan, "-o", "out", *options]) == 1
@@ -130,6 +132,7 @@ def test_figures_of_a_study_that_has_not_begun_are_empty(plan: str, capsys: pyte
     assert Path("a.png").stat().st_size > 0
 
 
+@pytest.mark.gate
 def test_a_study_that_is_interrupted_continues(
     plan: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

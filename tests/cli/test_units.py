@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import functools
 import io
 import json
 import math
@@ -20,7 +21,7 @@ from typing import Any
 import pytest
 from matplotlib.text import Text
 
-from fastpin import casefile
+from fastpin import casefile, figures
 from fastpin.cli import options
 from fastpin.cli.main import main
 from fastpin.figures.kinds import KINDS
@@ -29,6 +30,7 @@ from fastpin.live.protocol import Message
 from fastpin.report.summary import json_ready
 from fastpin.studies import workers
 from scripts.inline import Inline
+from tests.support.tiers import some_survey
 
 T = 2.0**-7
 
@@ -55,7 +57,7 @@ sxx = 2e6
 Q = [%r, %r]
 repeat = 2
 [solve]
-nodes = 31
+nodes = 21
 arc = [-3.1, 0.1]
 between = 1
 slip_sums = true
@@ -99,7 +101,7 @@ WITHOUT_UNITS = {
     "completion": "prints a script",
     "schema": "prints the form of documents",
 }
-"""Commands that are not walked, with a reason each. Every other command must be in the list of `walk`."""
+"""Commands that are not walked, with a reason each. Every other command must be in :data:`PARTS`."""
 
 
 def words(thick: bool) -> tuple[str, str]:
@@ -131,75 +133,112 @@ class Walk:
         return {str(path.relative_to(self.folder)): path.read_text() for path in paths}
 
 
-def walk(found: Walk, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Run every command and draw every kind of figure."""
+STATES = """
+check case.toml
+run case.toml --nodes 101 --error-bars --json run.json --cycle-csv run.csv
+run case.toml -o a.h5 --plot b.svg --record record.html --cycles a.svg
+show a.h5 --json show.json
+"""
+
+STUDY = """
+converge case.toml --nodes 51,71,91 --corner 2 --csv converge.csv --json converge.json --plot c.svg
+compliance --example
+"""
+
+RESULT = "run case.toml -o a.h5"
+LIFE = "wear case.toml --cycles 2 --coefficient 1e-13 -o life.h5 --json wear.json --record record-life.html"
+
+LAW = "--first 1e-4 --last 1e-3 --C 1e-10 --m 3 --at 80"
+
+STUDIES = """
+sweep plan.toml --table --plot heat.svg --value heat
+sweep plan.toml --table sweep.csv --plot curves.svg --value dissipation
+report plan --plan plan.toml -o sweep.html
+tolerances limits.toml --plot tornado.svg --scatter samples.svg --json limits.json
+report limits -o limits.html
+"""
+
+
+def plots(subject: str) -> list[str]:
+    """The commands that draw every kind of figure of a result, or the kinds that only a life of wear has."""
+    lines = []
+    for kind, (_, _, allowed, ending, sources, of_laminates) in KINDS.items():
+        if not of_laminates and subject == ("a.h5" if "result" in sources else "life.h5"):
+            name = f"{kind}.{'gif' if ending == 'gif' else 'svg'}"
+            states = "--states 2,3" if "states" in allowed and kind != "sketch" else ""
+            lines.append(f"plot {subject} {kind} -o {name} {states} {f'--csv {kind}.csv' if 'csv' in allowed else ''}")
+    return lines
+
+
+PARTS = {
+    "states": STATES.strip().splitlines(),
+    "study": STUDY.strip().splitlines(),
+    **{f"figures {k}": [RESULT, *plots("a.h5")[k::5]] for k in range(5)},
+    "crack": [RESULT, f"crack a.h5 {LAW} -o crack.svg --csv crack.csv"],
+    "page": [RESULT, "report a.h5 -o report.html"],
+    "life": [LIFE, *plots("life.h5")],
+    "page of a life": [LIFE, "report life.h5 -o report-life.html"],
+    "studies": STUDIES.strip().splitlines(),
+}
+"""Commands by part. Together they give every output."""
+
+
+def walk(found: Walk, part: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run the commands of a part. Pictures of an animation are drawn: their texts are heard. Others are outlined."""
     monkeypatch.chdir(found.folder)
     drawn: list[str] = []
     draw = Text.draw
     monkeypatch.setattr(
         Text, "draw", lambda self, *given, **more: drawn.append(self.get_text()) or draw(self, *given, **more)
     )
+    monkeypatch.setattr(figures.stress, "field_curves", functools.partial(figures.stress.field_curves, fineness=20))
     monkeypatch.setattr(
         workers, "through_processes",
         lambda _, tasks, submit, size: (((task,), submit(Inline(), (task,)).result()) for task in tasks),
     )  # fmt: skip
-
-    def command(*arguments: str) -> None:
+    for line in PARTS[part]:
         drawn.clear()
         said = io.StringIO()
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            assert main([*arguments]) == 0, said.getvalue()
-        found.commands[" ".join(arguments)] = "\n".join([said.getvalue(), *drawn])
+            assert main(line.split()) == 0, said.getvalue()
+        found.commands[line] = "\n".join([said.getvalue(), *drawn])
 
-    command("check", "case.toml")
-    command("run", "case.toml", "--nodes", "101", "--error-bars", "--json", "run.json", "--cycle-csv", "run.csv")
-    command("run", "case.toml", "-o", "a.h5", "--plot", "b.svg", "--record", "record.html", "--cycles", "a.svg")
-    command("show", "a.h5", "--json", "show.json")
-    life = ["--cycles", "4", "--coefficient", "1e-13", "--nodes", "61"]
-    command("wear", "case.toml", *life, "-o", "life.h5", "--json", "wear.json", "--record", "record-life.html")
-    for kind, (_, _, allowed, ending, sources, of_laminates) in KINDS.items():
-        if of_laminates:
-            continue
-        name = f"{kind}.{'gif' if ending == 'gif' else 'svg'}"
-        states = ["--states", "2,3"] if "states" in allowed and kind != "sketch" else []
-        subject = "a.h5" if "result" in sources else "life.h5"
-        command("plot", subject, kind, "-o", name, *states, *(["--csv", f"{kind}.csv"] if "csv" in allowed else []))
-    law = ["--first", "1e-4", "--last", "1e-3", "--C", "1e-10", "--m", "3", "--at", "80"]
-    command("crack", "a.h5", *law, "-o", "crack.svg", "--csv", "crack.csv")
-    command("report", "a.h5", "-o", "report.html")
-    command("report", "life.h5", "-o", "report-life.html")
-    converge = ["--nodes", "51,71,91", "--corner", "2"]
-    command("converge", "case.toml", *converge, "--csv", "converge.csv", "--json", "converge.json", "--plot", "c.svg")
-    command("sweep", "plan.toml", "--table", "--plot", "heat.svg", "--value", "heat")
-    command("sweep", "plan.toml", "--table", "sweep.csv", "--plot", "curves.svg", "--value", "dissipation")
-    command("report", "plan", "--plan", "plan.toml", "-o", "sweep.html")
-    command("tolerances", "limits.toml", "--plot", "tornado.svg", "--scatter", "samples.svg", "--json", "limits.json")
-    command("report", "limits", "-o", "limits.html")
-    command("compliance", "--example")
+
+def test_every_command_is_walked() -> None:
     known = set(re.findall(r"^    (\w+)(?:  |$)", options.parser().format_help(), re.MULTILINE))
-    assert {name.split()[0] for name in found.commands} | WITHOUT_UNITS.keys() == known
+    assert {line.split()[0] for part in PARTS.values() for line in part} | WITHOUT_UNITS.keys() == known
 
 
-@pytest.mark.slow
-def test_every_output_is_with_the_thickness_or_per_metre(tmp_path: Path) -> None:
-    """One test, so that the walks are made once, also by several workers."""
+@pytest.mark.gate
+@pytest.mark.parametrize("part", some_survey(PARTS, "page of a life"))
+def test_every_output_is_with_the_thickness_or_per_metre(part: str, tmp_path: Path) -> None:
     plain, thick = (Walk(tmp_path / name, name == "thick") for name in ("plain", "thick"))
     for found in (plain, thick):
         with pytest.MonkeyPatch.context() as monkeypatch:
-            walk(found, monkeypatch)
+            walk(found, part, monkeypatch)
     assert units_in(plain, IN_ALL) == {}
     assert units_in(thick, PER_METRE) == {}
-    check_curves(plain.files(".csv"), thick.files(".csv"))
-    check_study(plain.files(".csv")["converge.csv"], thick.files(".csv")["converge.csv"])
-    check_sweep(plain.files(".csv")["sweep.csv"], thick.files(".csv")["sweep.csv"])
-    for name in ("run.json", "show.json"):
-        check_summary(plain.files(".json")[name], thick.files(".json")[name])
-    check_printed(thick.commands)
+    tables = plain.files(".csv"), thick.files(".csv")
+    documents = plain.files(".json"), thick.files(".json")
+    if part == "states":
+        for name in ("run.json", "show.json"):
+            check_summary(*(each[name] for each in documents))
+    if part == "study":
+        check_study(*(each.pop("converge.csv") for each in tables))
+        studied = next(text for name, text in thick.commands.items() if name.startswith("converge"))
+        assert "corner 2: P = 4.096 kN, Q = 1.024 kN, sxx = 2 MPa" in studied
+        assert re.search(r"\n +P +kN +4\.096 ", studied)
+    if part == "studies":
+        check_sweep(*(each.pop("sweep.csv") for each in tables))
+        swept = next(text for name, text in thick.commands.items() if "heat.svg" in name)
+        assert re.search(r" kN +[mu]J +", swept.splitlines()[2])
+        assert " 4.096 " in swept
+    assert changed_tables(*tables) == {"loops.csv", "cycles.csv", "wear.csv"} & tables[0].keys()
 
 
 def units_in(found: Walk, wrong: re.Pattern[str]) -> dict[str, str]:
     """The first wrong unit of each output that has one."""
-    texts = found.commands | found.files(".csv") | found.files(".json")
+    texts = found.commands | found.files(".csv") | found.files(".json") | found.files(".svg")
     pages = found.files(".html").items()
     texts |= {
         name: re.sub(r"(?s)<style.*?</style>|<[^>]*>", " ", text)
@@ -220,10 +259,10 @@ def factor_of(plain: str, thick: str) -> float:
     return T if thick != plain else 1.0
 
 
-def check_curves(plain: dict[str, str], thick: dict[str, str]) -> None:
-    """The numbers of figures are equal, or times the thickness where the header says so."""
+def changed_tables(plain: dict[str, str], thick: dict[str, str]) -> set[str]:
+    """The tables of figures with numbers that are times the thickness. The others are equal, as the headers say."""
     factors = set()
-    for name in plain.keys() - {"sweep.csv", "converge.csv"}:
+    for name in plain:
         tables = (list(csv.reader(text[name].splitlines()[:MOST_ROWS])) for text in (plain, thick))
         (head, *rows), (other_head, *others) = tables
         for column, (title, other_title) in enumerate(zip(head, other_head, strict=True)):
@@ -232,7 +271,7 @@ def check_curves(plain: dict[str, str], thick: dict[str, str]) -> None:
             factors.add((name, factor := factor_of(units[0], units[1])))
             for row, other in zip(rows, others, strict=True):
                 assert is_times(row[column], other[column], factor), (name, title)
-    assert {name for name, factor in factors if factor == T} == {"loops.csv", "cycles.csv", "wear.csv"}
+    return {name for name, factor in factors if factor == T}
 
 
 def is_times(plain: Any, thick: Any, factor: float) -> bool:
@@ -301,16 +340,6 @@ def check_summary(*texts: str) -> None:
         counted += is_whole and value not in (0.0, None)
         assert is_times(value, other, T if is_whole else 1.0), path
     assert counted > 50
-
-
-def check_printed(said: dict[str, str]) -> None:
-    """Loads are printed as given."""
-    swept = next(text for name, text in said.items() if name.startswith("sweep") and "heat.svg" in name)
-    assert re.search(r" kN +[mu]J +", swept.splitlines()[2])
-    assert " 4.096 " in swept
-    studied = next(text for name, text in said.items() if name.startswith("converge"))
-    assert "corner 2: P = 4.096 kN, Q = 1.024 kN, sxx = 2 MPa" in studied
-    assert re.search(r"\n +P +kN +4\.096 ", studied)
 
 
 @pytest.mark.parametrize("thick", [True, False])

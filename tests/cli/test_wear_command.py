@@ -95,6 +95,7 @@ def test_fewer_cycles_leave_out_the_chosen_ones_beyond(cycles, stored, capsys):
     assert "--cycles: must be a number" in capsys.readouterr().err
 
 
+@pytest.mark.gate
 def test_a_file_is_begun_continued_and_kept(capsys):
     assert main(["wear", "case.toml", "-o", "life.h5"]) == 0
     first = capsys.readouterr().out
@@ -108,6 +109,7 @@ def test_a_file_is_begun_continued_and_kept(capsys):
     assert "belongs to a life of wear" in capsys.readouterr().err
 
 
+@pytest.mark.gate
 def test_a_stored_life_is_shown(capsys):
     assert main(["wear", "case.toml", "-o", "life.h5", "--json", "life.json"]) == 0
     printed = capsys.readouterr().out
@@ -137,6 +139,7 @@ def test_an_unfinished_life_says_so(capsys):
     assert capsys.readouterr().out.endswith("; continue with: fastpin wear CASE -o life.h5 --resume\n")
 
 
+@pytest.mark.gate
 def test_a_page_of_the_life_is_written_at_once_or_from_its_file(capsys):
     assert main(["wear", "case.toml", "-o", "life.h5", "--record", "page.html"]) == 0
     assert main(["show", "life.h5", "--record", "other.html"]) == 0

@@ -14,6 +14,7 @@ from fastpin.cracks import Crack, Nasgro, Walker, growth, growth_along_edge, par
 from fastpin.cracks.growing import Growth
 from fastpin.errors import InputError, InputWarning
 from tests.support.cracks import DIRECTION
+from tests.support.tiers import gate
 
 M = 1e6
 NASGRO = Nasgro(6.35e-10, 2.5, 1.0, 1.0, 0.8 * M, 35.16 * M, 2.2, 0.1, 2.0, 0.3, 38.1e-6)
@@ -28,6 +29,7 @@ def grown(cycle, name, law, first=1e-5, last=1e-2):
     return growth(cycle(name), Crack(math.radians(DIRECTION[name])), law, first, last)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     ("name", "threshold", "long", "short", "nasgro"),
     [
@@ -42,7 +44,7 @@ def test_lives(cycle, name, threshold, long, short, nasgro):
     assert grown(cycle, name, NASGRO).life == pytest.approx(nasgro, rel=1e-3)
 
 
-@pytest.mark.parametrize(("threshold", "arrest"), [(3.0, 4.000e-3), (2.0, 7.247e-3)])
+@pytest.mark.parametrize(("threshold", "arrest"), [*gate((3.0, 4.000e-3)), (2.0, 7.247e-3)])
 def test_a_crack_that_stops(cycle, threshold, arrest):
     found = grown(cycle, "small", walker(threshold))
     assert found.arrest == pytest.approx(arrest, rel=1e-3)
@@ -62,6 +64,7 @@ def test_a_crack_that_does_not_begin(cycle, name):
     assert found.words == "no growth at 10 um"
 
 
+@pytest.mark.gate
 def test_the_fastest_growth_of_an_edge(cycle):
     """The hot spot of case Q is at -8.6 deg; a crack grows several times as fast at other places."""
     found = growth_along_edge(cycle("Q"), walker(3.0), 1e-4, 3e-3, np.radians(np.arange(-100.0, 10.0, 2.0)))
@@ -148,11 +151,13 @@ def test_states_of_two_problems_are_refused(small_states, cycle):
         growth([small_states[0], cycle("lug")[0]], Crack(0.0), NASGRO, 1e-4, 1e-3)
 
 
+@pytest.mark.gate
 def test_a_crack_through_a_lug_is_refused(cycle):
     with pytest.raises(InputError, match=r"last: must end within 0\.9 of the wall of 10 mm, not be 9\.5 mm"):
         growth(cycle("ring"), Crack(-0.5), NASGRO, 1e-4, 9.5e-3)
 
 
+@pytest.mark.gate
 def test_pickles_and_figures(small_states, tmp_path):
     found = growth(small_states, Crack(-0.5), walker(0.0), 1e-4, 1e-3)
     again = pickle.loads(pickle.dumps(found))

@@ -90,6 +90,7 @@ def test_fracture_is_that_of_the_largest_intensity(levels):
     assert found.fracture == pytest.approx(1e-3, rel=1e-3)
 
 
+@pytest.mark.gate
 def test_straight_tractions_of_many_states_are_one_product(levels):
     lengths = np.geomspace(1e-4, 1e-3, 4)
     few = stress_intensity(levels, BESIDE, lengths, straight=True)
@@ -115,6 +116,7 @@ def test_remote_stresses_and_two_cracks_are_products_too():
     assert many.K_I[-3:] == pytest.approx(one.K_I, rel=1e-10)
 
 
+@pytest.mark.gate
 def test_a_planned_growth_is_the_same_one(levels):
     how = CrackGrowth(1e-4, 1e-3, LAW, BESIDE.theta, residual_stress=[(0.0, -3e7), (1e-3, 0.0)])
 

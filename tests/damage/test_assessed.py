@@ -30,6 +30,7 @@ def result():
     return fastpin.solve(problem, history, nodes=61)
 
 
+@pytest.mark.gate
 def test_the_bodies_have_the_damage_of_each_one_alone(result):
     found = result.assessed_fatigue(FatigueAssessment([SWT, FS]))
     assert [one.criterion for one in found] == [SWT] * 3 + [FS] * 3
@@ -155,6 +156,7 @@ def test_refused(result):
         result.assessed_fatigue("haibach")
 
 
+@pytest.mark.gate
 def test_straight_lines_on_a_coarse_grid_are_told(monkeypatch):
     """The worst cycle is read again with power laws, where straight lines are taken unasked."""
     rng = np.random.default_rng(1)

@@ -19,10 +19,10 @@ def test_the_repeated_history_of_the_standard():
     assert dict(zip(counted.range.tolist(), counted.mean.tolist(), strict=True)) == {9: 0.5, 7: 0.5, 4: 1.0, 3: -0.5}
 
 
-@pytest.mark.parametrize("turn", range(8))
-def test_the_beginning_of_the_period_makes_no_difference(turn):
-    values = np.roll(ASTM[:-1], turn)
-    assert sorted(damage.rainflow(values).range.tolist()) == [3.0, 4.0, 7.0, 9.0]
+def test_the_beginning_of_the_period_makes_no_difference():
+    for turn in range(8):
+        values = np.roll(ASTM[:-1], turn)
+        assert sorted(damage.rainflow(values).range.tolist()) == [3.0, 4.0, 7.0, 9.0]
 
 
 def test_simple_histories():

@@ -77,6 +77,7 @@ def test_the_plane_in_shear_lies_beside_the_plane_of_shear():
     assert min(abs(angle), 90.0 - abs(angle)) == pytest.approx(3.484, abs=5e-4)
 
 
+@pytest.mark.gate
 def test_crossland_and_dang_van_hold_both_limits():
     bending, torsion = history([300, -300], 0), history(0, [180, -180])
     alpha, limit = damage.crossland_limit(300.0 * MPA, 180.0 * MPA)
@@ -140,6 +141,7 @@ def test_the_largest_value_of_a_scan_of_planes():
         np.testing.assert_allclose(found[name], scanned.max(axis=0), rtol=1e-5)
 
 
+@pytest.mark.gate
 def test_the_sphere_of_the_deviator_against_an_iteration():
     """Badoiu and Clarkson (2003): steps of 1/(k + 1) towards the farthest point, k = 1, 2, ..., close in from above."""
     stresses = random_histories(seed=9, points=2)

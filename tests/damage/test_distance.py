@@ -53,6 +53,7 @@ def test_the_point_method_takes_the_depth_of_half_the_length(cycle):
     np.testing.assert_allclose(found.depth, 0.5 * length)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("body", ["plate", "pin"])
 def test_the_line_method_against_a_sum_over_many_depths(cycle, body):
     length, count = 2e-4, 8_000
@@ -65,6 +66,7 @@ def test_the_line_method_against_a_sum_over_many_depths(cycle, body):
     np.testing.assert_allclose(found.parameter, expected, rtol=2e-4, atol=1e-4 * expected.max())
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("body", ["plate", "pin"])
 def test_the_area_method_against_a_sum_over_small_squares(cycle, body):
     """Squares whose middles lie in the body, within 1.32 L of the point; a long L, so that the edge is curved."""

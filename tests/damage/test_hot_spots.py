@@ -139,6 +139,7 @@ def test_a_mirrored_history_mirrors_the_parameter():
     np.testing.assert_allclose(np.cos(2 * found[0].plane), np.cos(2 * found[1].plane), atol=1e-5)
 
 
+@pytest.mark.gate
 def test_damage_sum_is_that_of_its_cycles(fretting):
     cycles = fretting.cycles[1:]
     theta, total = damage.damage_sum(fretting, cycles, "smith-watson-topper", repeats=100)
@@ -187,6 +188,7 @@ def test_a_copy_and_a_text(fretting):
     assert repr(found).endswith(" cycles>")
 
 
+@pytest.mark.gate
 def test_bad_input(fretting, cycle):
     rigid = fastpin.MaterialPair(fastpin.Material.rigid(), fastpin.MATERIALS["steel"])
     other = dataclasses.replace(cycle[0], problem=dataclasses.replace(cycle[0].problem, pair=rigid))

@@ -36,6 +36,7 @@ def peak(count):
         tracemalloc.stop()
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("what", ["damage", "reserve"])
 def test_the_memory_of_a_count_does_not_grow_with_the_points(states, what, monkeypatch):
     """Each block has a few points. All points at once would need 5 MB for the stresses, and 14 MB beside them."""
@@ -52,6 +53,7 @@ def test_the_memory_of_a_count_does_not_grow_with_the_points(states, what, monke
     assert few > 5e5
 
 
+@pytest.mark.gate
 def test_blocks_change_no_damage(states, monkeypatch):
     angles = np.linspace(-170.0, 170.0, 6).tolist()
     how = FatigueAssessment(bodies="plate", angles=angles, straight=True, life=10.0)

@@ -60,6 +60,7 @@ def test_the_seat_alone_has_the_fatigue_of_the_lug_and_none_of_the_bush() -> Non
     assert str(caught.value) == words
 
 
+@pytest.mark.gate
 def test_states_of_the_seat_have_error_bars() -> None:
     case = sample_case()
     result = fastpin.solve(case.problem, [{"P": 4e6}, {"Q": 2e6}], nodes=101, error_bars=True)

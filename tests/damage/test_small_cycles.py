@@ -13,6 +13,7 @@ from fastpin.damage.lives import curve_with_knee, fatemi_socie_curve, smith_wats
 from fastpin.errors import InputError
 from fastpin.kernels import planes, rainflow
 from fastpin.model import FatigueConstants
+from tests.support.tiers import seeds
 
 SWT, FS = "smith-watson-topper", "fatemi-socie"
 E, B, STRENGTH = 70e9, -0.124, 1100e6
@@ -179,12 +180,12 @@ def _joined(rng, counted):
     return both / alone if alone else 1.0
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_laws_of_random_histories(seed):
-    laws(seed)
+def test_laws_of_random_histories():
+    for seed in seeds(40):
+        laws(seed)
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_laws_of_500_random_histories():
     for seed in range(100, 600):
         laws(seed)

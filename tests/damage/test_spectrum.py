@@ -15,6 +15,7 @@ from fastpin.damage.histories import different_states, history_blocks
 from fastpin.damage.lives import smith_watson_topper_life
 from fastpin.errors import InputError
 from fastpin.model import FatigueConstants
+from tests.support.tiers import seeds
 
 SWT, FS = "smith-watson-topper", "fatemi-socie"
 LIFE = {
@@ -73,6 +74,7 @@ CASES = {
 }
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("name", CASES)
 def test_the_product_gives_the_stresses_of_each_state(name):
     """Straight lines: to 1e-9 of the largest stress. Refined tractions: the reading of the state, to the last bit."""
@@ -93,6 +95,7 @@ def test_the_product_gives_the_stresses_of_each_state(name):
                     np.testing.assert_array_equal(found[k], one)
 
 
+@pytest.mark.gate
 def test_blocks_of_points_and_points_deep_in_the_pin(monkeypatch):
     states = list(fastpin.solve(problem_of(), random_loads(45), nodes=31))
     points = fastpin.Points.at_depth(np.array([[0.0], [9e-3]]), np.linspace(-3.0, 1.0, 5))
@@ -167,31 +170,31 @@ def test_fatemi_socie_under_pure_shear():
 # -- laws ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("seed", range(300))
-def test_laws_of_random_histories(seed):
+def test_laws_of_random_histories():
     """The beginning makes no difference, repeats multiply, and slow stops on the way do nothing."""
-    rng = np.random.default_rng(seed)
-    size = int(rng.integers(2, 40))
-    values = rng.uniform(-2e8, 3e8, size)
-    found, _ = sum_of(values)
-    ranges = damage.rainflow(values)
-    tops = ranges.mean + 0.5 * ranges.range
-    expected = sum(by_hand(top - size, top) for size, top in zip(ranges.range, tops, strict=True) if top > 0.0)
-    assert found == pytest.approx(expected, rel=1e-9)
-    assert sum_of(np.roll(values, int(rng.integers(size))))[0] == pytest.approx(found, rel=1e-12)
-    for times in (2, 3, 7):
-        assert sum_of(values, np.tile(np.arange(size), times))[0] == pytest.approx(times * found, rel=1e-9)
-    between = 0.5 * (values + np.roll(values, -1))
-    assert sum_of(np.column_stack([values, between]).ravel())[0] == pytest.approx(found, rel=1e-12)
+    for seed in seeds(300):
+        rng = np.random.default_rng(seed)
+        size = int(rng.integers(2, 40))
+        values = rng.uniform(-2e8, 3e8, size)
+        found, _ = sum_of(values)
+        ranges = damage.rainflow(values)
+        tops = ranges.mean + 0.5 * ranges.range
+        expected = sum(by_hand(top - size, top) for size, top in zip(ranges.range, tops, strict=True) if top > 0.0)
+        assert found == pytest.approx(expected, rel=1e-9)
+        assert sum_of(np.roll(values, int(rng.integers(size))))[0] == pytest.approx(found, rel=1e-12)
+        for times in (2, 3, 7):
+            assert sum_of(values, np.tile(np.arange(size), times))[0] == pytest.approx(times * found, rel=1e-9)
+        between = 0.5 * (values + np.roll(values, -1))
+        assert sum_of(np.column_stack([values, between]).ravel())[0] == pytest.approx(found, rel=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_parts_add_up_where_cycles_do_not_cross(seed):
+def test_parts_add_up_where_cycles_do_not_cross():
     """Two spectra that begin and end at the same highest peak: no cycle has a reversal in both."""
-    rng = np.random.default_rng(seed)
-    one, two = (np.append(4e8, rng.uniform(-3e8, 3.9e8, 25)) for _ in range(2))
-    both = sum_of(np.concatenate([one, two]))[0]
-    assert both == pytest.approx(sum_of(one)[0] + sum_of(two)[0], rel=1e-9)
+    for seed in seeds(20):
+        rng = np.random.default_rng(seed)
+        one, two = (np.append(4e8, rng.uniform(-3e8, 3.9e8, 25)) for _ in range(2))
+        both = sum_of(np.concatenate([one, two]))[0]
+        assert both == pytest.approx(sum_of(one)[0] + sum_of(two)[0], rel=1e-9)
 
 
 def searched(history, plane):
@@ -206,34 +209,34 @@ def searched(history, plane):
     return (1.0 / smith_watson_topper_life(parameters, 70e9, **LIFE)).sum()
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_a_brute_search_finds_no_worse_plane(seed):
+def test_a_brute_search_finds_no_worse_plane():
     """Stresses of one load: every quarter of a degree, counted by pylife, with the stress at the upper reversals."""
-    rng = np.random.default_rng(seed)
-    history = rng.uniform(-1.0, 2.0, (25, 1, 1)) * rng.uniform(-1e8, 2e8, 4)
-    counted, spectrum = CountedMaterial.of(SWT, MATERIAL, None, "plate"), Spectrum.of(np.arange(25))
-    (found,), (plane,) = counted.worst(history, spectrum)
-    sums = [searched(history[:, 0], x) for x in np.radians(np.arange(-90.0, 90.0, 0.25))]
-    assert max(sums) * (1.0 - 1e-9) <= found <= max(sums) * 1.001  # the scan is the coarser search
-    assert found == pytest.approx(searched(history[:, 0], plane), rel=1e-9)
+    for seed in seeds(10):
+        rng = np.random.default_rng(seed)
+        history = rng.uniform(-1.0, 2.0, (25, 1, 1)) * rng.uniform(-1e8, 2e8, 4)
+        counted, spectrum = CountedMaterial.of(SWT, MATERIAL, None, "plate"), Spectrum.of(np.arange(25))
+        (found,), (plane,) = counted.worst(history, spectrum)
+        sums = [searched(history[:, 0], x) for x in np.radians(np.arange(-90.0, 90.0, 0.25))]
+        assert max(sums) * (1.0 - 1e-9) <= found <= max(sums) * 1.001  # the scan is the coarser search
+        assert found == pytest.approx(searched(history[:, 0], plane), rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_a_plane_of_turning_stresses_is_counted_as_by_pylife(seed):
-    rng = np.random.default_rng(seed)
-    history = rng.uniform(-2e8, 3e8, (25, 1, 4))
-    history[..., 2] = 0.33 * (history[..., 0] + history[..., 1])
-    counted, spectrum = CountedMaterial.of(SWT, MATERIAL, None, "plate"), Spectrum.of(np.arange(25))
-    (found,), (plane,) = counted.worst(history, spectrum)
-    scanned = [counted.cycles(history, spectrum, x)[1][:, 2].sum() for x in np.radians(np.arange(0.0, 180.0, 2.5))]
-    assert found >= max(scanned) * (1.0 - 1e-12)
-    assert found == pytest.approx(counted.cycles(history, spectrum, plane)[1][:, 2].sum(), rel=1e-12)
-    sxx, syy, szz, sxy = history[:, 0].T
-    normal = sxx * math.cos(plane) ** 2 + syy * math.sin(plane) ** 2 + sxy * math.sin(2.0 * plane)
-    strain = (1.33 * normal - 0.33 * (sxx + syy + szz)) / 70e9
-    places, _ = counted.cycles(history, spectrum, plane)
-    ranges = np.abs(strain[places[:, 0]] - strain[places[:, 1]])
-    np.testing.assert_allclose(np.sort(ranges), np.sort(damage.rainflow(strain).range), rtol=1e-9, atol=1e-12)
+def test_a_plane_of_turning_stresses_is_counted_as_by_pylife():
+    for seed in seeds(10):
+        rng = np.random.default_rng(seed)
+        history = rng.uniform(-2e8, 3e8, (25, 1, 4))
+        history[..., 2] = 0.33 * (history[..., 0] + history[..., 1])
+        counted, spectrum = CountedMaterial.of(SWT, MATERIAL, None, "plate"), Spectrum.of(np.arange(25))
+        (found,), (plane,) = counted.worst(history, spectrum)
+        scanned = [counted.cycles(history, spectrum, x)[1][:, 2].sum() for x in np.radians(np.arange(0.0, 180.0, 2.5))]
+        assert found >= max(scanned) * (1.0 - 1e-12)
+        assert found == pytest.approx(counted.cycles(history, spectrum, plane)[1][:, 2].sum(), rel=1e-12)
+        sxx, syy, szz, sxy = history[:, 0].T
+        normal = sxx * math.cos(plane) ** 2 + syy * math.sin(plane) ** 2 + sxy * math.sin(2.0 * plane)
+        strain = (1.33 * normal - 0.33 * (sxx + syy + szz)) / 70e9
+        places, _ = counted.cycles(history, spectrum, plane)
+        ranges = np.abs(strain[places[:, 0]] - strain[places[:, 1]])
+        np.testing.assert_allclose(np.sort(ranges), np.sort(damage.rainflow(strain).range), rtol=1e-9, atol=1e-12)
 
 
 def test_blocks_of_a_spectrum():
@@ -263,6 +266,7 @@ def test_one_cycle_does_the_damage_of_the_criterion(fretting):
         assert found.hot_spot.life == pytest.approx(found.life.min())
 
 
+@pytest.mark.gate
 def test_the_damage_of_a_result(fretting):
     found = fretting.spectrum_damage()
     spot, cycles = found.hot_spot, found.cycles

@@ -34,6 +34,7 @@ def _life(states, worn):
     return [WornCycle(n, 1, n, nothing, nothing + depth, 0.0, 0.0, states) for n, depth in worn.items()]
 
 
+@pytest.mark.gate
 def test_without_wear_the_life_is_that_of_the_cycle(states):
     today = fatigue(states, "smith-watson-topper").hot_spot
     life = int(2 * today.life)
@@ -49,6 +50,7 @@ def test_without_wear_the_life_is_that_of_the_cycle(states):
     assert worn_fatigue(_life(states, {0: 0.0, life // 3: 0.0})).race is Race.OPEN
 
 
+@pytest.mark.gate
 def test_damage_under_a_surface_that_wears_at_a_constant_rate_is_an_integral(states):
     """Seen from the material at the depth z, the surface comes nearer: D = int dn / N_f(z - w' n)."""
     spot = fatigue(states, "smith-watson-topper").hot_spot
@@ -98,6 +100,7 @@ def test_material_that_is_gone_neither_breaks_nor_sums_up_more(states):
     assert f"on the first profile one after {life:.4g}" in repr(shallow)
 
 
+@pytest.mark.gate
 def test_each_body_wears_by_its_own_depth(states):
     pin = replace(_life(states, {0: 0.0})[0], cycle=1000, pin_depth=np.full(41, 3e-6), plate_depth=np.full(41, 1e-6))
     cycles = [*_life(states, {0: 0.0}), pin]

@@ -15,6 +15,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from tests.support.laminates import RIGID, STEEL, TURNED, orthotropic
+from tests.support.tiers import gate
 
 GRIDS = {"circle": Grid.circle(90), "odd circle": Grid.circle(91), "arc": Grid.arc(-2.5, 0.7, 77)}
 
@@ -23,7 +24,7 @@ def problem(pin=STEEL, plate=TURNED, **fields) -> Problem:
     return Problem.from_load_parameter(MaterialPair(pin, plate, "stress"), 0.1, 0.3, **fields)
 
 
-@pytest.mark.parametrize("body", [{}, {"pin_body": Tube(0.4)}], ids=["solid", "tube"])
+@pytest.mark.parametrize("body", [*gate({}), {"pin_body": Tube(0.4)}], ids=["solid", "tube"])
 @pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS.keys())
 def test_an_operator_without_stored_entries_is_the_same(monkeypatch, grid, body):
     stored = System.build(problem(**body), grid, 1.0).operator

@@ -77,6 +77,7 @@ def test_the_kernel_as_plain_python(titanium_in_aluminium, monkeypatch):
     assert np.array_equal(np.asarray(found), matrix)
 
 
+@pytest.mark.gate
 def test_entries_of_an_operator_that_only_has_products(titanium_in_aluminium):
     """The entries of unequal nodes from products with unit vectors. Measured: 3e-17."""
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4)
@@ -94,6 +95,7 @@ def _transforms(monkeypatch):
     monkeypatch.setattr(shortcut, "WORTHWHILE", 1)
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("_transforms")
 @pytest.mark.parametrize("drive", ["force", "both"])
 def test_histories_are_those_of_the_stored_operator(titanium_in_aluminium, monkeypatch, drive):
@@ -115,6 +117,7 @@ def test_histories_are_those_of_the_stored_operator(titanium_in_aluminium, monke
         assert max(one.residuals.values()) < 1e-13
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("_transforms")
 def test_corrections_in_the_middle_of_a_step_change_nothing(titanium_in_aluminium, monkeypatch):
     """Configuration and rates are corrected after every chunk of updates. Measured: 2e-13 of the largest traction."""

@@ -65,6 +65,7 @@ def test_a_held_ring_agrees_with_its_closed_form(plane):
     assert np.abs(made - expected).max() < 1e-9  # measured: 3e-10
 
 
+@pytest.mark.gate
 def test_a_free_ring_agrees_with_its_closed_form(monkeypatch):
     """The ring is held on a tiny arc. It takes up no force while the tractions are in equilibrium."""
     make_rough(monkeypatch)
@@ -108,7 +109,7 @@ def test_all_tractions_do_positive_work(made):
     assert np.linalg.eigvalsh(whole).min() > 0.2 / 11.0  # about 1/2(n + 1) for the last harmonic
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_the_estimated_error_covers_the_error():
     """An edge that is held in its middle only has the strongest singularity: the square root."""
     outline = rectangle((-2.5, 2.5), (-2.5, 4.0))
@@ -121,6 +122,7 @@ def test_the_estimated_error_covers_the_error():
     assert error < 1e-6  # measured: 2e-7
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("hold", ["both", "x", "y"])
 def test_loads_and_displacements_are_reciprocal(hold):
     """The work of the load on the displacement of the pin's tractions, and the other way round."""
@@ -133,6 +135,7 @@ def test_loads_and_displacements_are_reciprocal(hold):
     assert np.abs(of_load - of_pin).max() < 1e-7 * np.abs(of_pin).max()  # measured: 8e-9
 
 
+@pytest.mark.gate
 def test_held_components_do_not_move():
     found = respond(plate(supports={"top": "normal", "left": "x"}), 2, COARSE, nothing)
     names = np.array([part.name for part in found.edges.parts])[found.edges.part_of_node]
@@ -141,6 +144,7 @@ def test_held_components_do_not_move():
     assert np.abs(found.u[0, names == "top"]).max() > 0.1
 
 
+@pytest.mark.gate
 def test_a_wide_plate_under_tension_has_the_displacement_of_the_infinite_plate(monkeypatch):
     make_coarse(monkeypatch)
     supports, load = {"left": "x", "bottom": "y"}, (PartLoad("sxx", ("right",), x=1.0),)
@@ -153,6 +157,7 @@ def test_a_wide_plate_under_tension_has_the_displacement_of_the_infinite_plate(m
     assert np.abs(column - expected)[inner].max() < 3e-3 * size * 2.0  # (R/30 R)^2, and some
 
 
+@pytest.mark.gate
 def test_lengths_and_modulus_do_not_matter(monkeypatch):
     make_coarse(monkeypatch)
     load = (PartLoad("syy", ("bottom",), normal=1.0),)
@@ -163,6 +168,7 @@ def test_lengths_and_modulus_do_not_matter(monkeypatch):
     assert np.allclose(small.columns["syy"], large.columns["syy"], atol=1e-9, rtol=0.0)
 
 
+@pytest.mark.gate
 def test_a_turned_plate_turns_its_matrix():
     lug = plate((-2.0, 3.0), (-2.0, 2.5))
     turned = tuple(Part(part.name, 1j * part.start, 1j * part.end) for part in lug.outline)
@@ -175,6 +181,7 @@ def test_a_turned_plate_turns_its_matrix():
     assert np.abs(other - turn @ one @ turn.T).max() < 1e-8
 
 
+@pytest.mark.gate
 def test_an_incompressible_plate_that_is_held_all_round_keeps_its_hole(monkeypatch):
     make_rough(monkeypatch)
     made = plate_compliance(plate(nu=0.5, supports=dict.fromkeys(("top", "left", "right", "bottom"), "both")), 6)
@@ -182,6 +189,7 @@ def test_an_incompressible_plate_that_is_held_all_round_keeps_its_hole(monkeypat
     assert made.error < 1e-5  # measured: 5e-7; 4e-9 with all nodes
 
 
+@pytest.mark.gate
 def test_harmonics_are_taken_until_they_have_decayed(monkeypatch):
     monkeypatch.setattr(plates, "FINE", COARSE)
     lug = plate((-4.0, 4.0), (-4.0, 4.0))
@@ -194,6 +202,7 @@ def test_harmonics_are_taken_until_they_have_decayed(monkeypatch):
     assert plates.harmonic_sizes(longer)[-1] < KEPT
 
 
+@pytest.mark.gate
 def test_more_harmonics_are_tried_near_an_edge(monkeypatch):
     make_coarse(monkeypatch)
     monkeypatch.setattr(plates, "FIRST_TRIED", 4)
@@ -201,6 +210,7 @@ def test_more_harmonics_are_tried_near_an_edge(monkeypatch):
     assert 4 < plate_compliance(plate((-4.0, 4.0), (-4.0, 4.0))).compliance.order <= 8
 
 
+@pytest.mark.gate
 def test_progress_goes_from_zero_to_one(monkeypatch):
     make_coarse(monkeypatch)
     steps = []
@@ -218,6 +228,7 @@ def test_a_wrong_number_of_harmonics_is_refused(order, message):
         plate_compliance(plate(), order)
 
 
+@pytest.mark.gate
 def test_too_few_harmonics_are_refused(monkeypatch):
     make_coarse(monkeypatch)
     with pytest.raises(InputError, match=r"harmonics: its last harmonic 2 is .* take more harmonics"):
@@ -253,6 +264,7 @@ def test_panels_shrink_towards_corners_and_other_edges():
     assert 2.0 * edges.half[edges.panel[ligament]].max() < 1.3
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("kolosov", [1.0001, 1.8, 3.0])
 def test_the_matrices_reproduce_linear_and_quadratic_fields(kolosov):
     """2G u = k phi - z conj(phi') - conj(psi) with phi = a z^2 + b z, psi = c z satisfies Somigliana's identity."""

@@ -152,6 +152,7 @@ def exact(body, pin_load, tractions, theta, depth):
     return [float(mp.re(radial)), float(total - mp.re(radial)), float(-mp.im(radial))]
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("body", "pin_load"), BODIES)
 def test_no_digit_is_lost_near_the_edge(body, pin_load):
     """At depths of 1e-12 to 0.1, at nodes and beside them, against 50 digits. The largest slope is 42."""
@@ -168,6 +169,7 @@ def test_no_digit_is_lost_near_the_edge(body, pin_load):
 # --- the edges ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("body", "pin_load"), BODIES)
 def test_hoop_stress_on_the_edge_by_clausens_function(body, pin_load):
     """The principal value of the shear's integral is a sum of Clausen's function over the jumps of slope."""

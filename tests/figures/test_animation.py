@@ -21,6 +21,7 @@ def result():
     return sample_result(CORNERS, nodes=41)
 
 
+@pytest.mark.gate
 def test_a_gif_has_a_picture_for_each_state_of_the_last_cycle(result, tmp_path):
     result.cycles = (Cycle(3, 2, 1, 0.0, 0.0, 0.0, 0.0, True),)
     done = []
@@ -34,6 +35,7 @@ def test_a_gif_has_a_picture_for_each_state_of_the_last_cycle(result, tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.gate
 def test_without_a_path_a_notebook_shows_the_animation(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     result = sample_result(CORNERS[:2], nodes=41)
@@ -45,6 +47,7 @@ def test_without_a_path_a_notebook_shows_the_animation(tmp_path, monkeypatch):
     assert [path.name for path in tmp_path.iterdir()] == ["a.gif"]
 
 
+@pytest.mark.gate
 def test_axes_keep_their_limits_and_the_heading_names_the_loads(result):
     scene = animation._Scene(figures.states.drawn_states(result), figures.sheet.Look(title="Joint"))
     limits = []
@@ -86,6 +89,7 @@ def test_a_film(result, tmp_path):
     assert (tmp_path / "a.mp4").read_bytes()[4:8] == b"ftyp"
 
 
+@pytest.mark.gate
 def test_an_interrupted_animation_leaves_the_old_file(result, tmp_path):
     path = tmp_path / "a.gif"
     path.write_bytes(b"old")

@@ -16,6 +16,7 @@ def study():
     return converge(Problem(PAIR, 0.01, 2e-5, 0.4, "body"), [{"P": 1e6}, {"Q": 2e5}], nodes=(51, 101, 201))
 
 
+@pytest.mark.gate
 def test_panels_show_the_distance_to_the_limit(study, tmp_path):
     figure = figures.plot_convergence(study, tmp_path / "a.png", title="Study")
     panels = [panel for panel in figure.axes if panel.get_visible()]

@@ -75,6 +75,7 @@ def test_directions_of_the_plies_in_the_hole() -> None:
     assert angles == pytest.approx([0.0, 45.0, 90.0, 135.0])
 
 
+@pytest.mark.gate
 def test_kinds_on_the_command_line(tmp_path: Path, capsys) -> None:
     stored, numbers = tmp_path / "run.h5", tmp_path / "strength.csv"
     save(result(), stored)
@@ -95,6 +96,7 @@ def test_an_isotropic_plate_has_neither() -> None:
         plot_strength(solve(ISOTROPIC, [{"P": 1e6}], nodes=41))
 
 
+@pytest.mark.gate
 def test_a_map_of_the_used_strength(tmp_path: Path) -> None:
     """At a point it is the inverse of the ratio; it is a number, not a stress."""
     state = result()[-1]

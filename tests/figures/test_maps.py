@@ -41,6 +41,7 @@ def test_the_map_has_a_box_for_each_zone_of_each_state():
         assert slips[SLIP_NEGATIVE].start == pytest.approx(stick.stop)
 
 
+@pytest.mark.gate
 def test_the_map_is_drawn_below_the_loads_that_change(tmp_path):
     figure = figures.plot_stick_slip(sample_result(), tmp_path / "map.png", title="A map")
     loads, panel = figure.axes
@@ -149,6 +150,7 @@ def test_a_long_history_has_a_column_for_some_cycles_each_and_hides_no_extreme()
     assert set(found[~closed]) == {OPEN}
 
 
+@pytest.mark.gate
 def test_the_map_of_a_long_history_is_drawn_with_the_range_of_the_loads(tmp_path):
     states, _, _ = long_result()
     figure = figures.plot_stick_slip(states, tmp_path / "long.png")

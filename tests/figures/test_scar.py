@@ -118,6 +118,7 @@ def test_numbers_over_the_cycles(life: WearResult) -> None:
     assert curves(pressure)[0][1] == pytest.approx(1e-6 * np.array([each.largest_pressure for each in life]))
 
 
+@pytest.mark.gate
 def test_few_cycles_have_plain_axes_and_one_has_a_point(life: WearResult) -> None:
     for count in (1, 2):
         figure = replace(life, cycles=life.cycles[:count]).plot(kind="wear")
@@ -127,6 +128,7 @@ def test_few_cycles_have_plain_axes_and_one_has_a_point(life: WearResult) -> Non
         assert replace(life, cycles=life.cycles[:count]).plot().axes
 
 
+@pytest.mark.gate
 def test_an_unfinished_life_says_so_in_each_figure(life: WearResult) -> None:
     ended = replace(life, cycles=life.cycles[:3], complete=False)
     for kind in ("scar", "wear", "damage"):
@@ -157,6 +159,7 @@ def cracked() -> Callable[[float], WearResult]:
     return lived
 
 
+@pytest.mark.gate
 def test_damage_is_drawn_under_the_worn_surface(life: WearResult) -> None:
     found = life.fatigue()
     figure = Look().drawn(damage_of(life, found))
@@ -174,6 +177,7 @@ def test_damage_is_drawn_under_the_worn_surface(life: WearResult) -> None:
     assert growth.get_ylim()[1] < 1.0  # a crack is far
 
 
+@pytest.mark.gate
 def test_a_crack_is_marked(cracked: Callable[[float], WearResult]) -> None:
     life = cracked(60e6)
     found = life.fatigue()

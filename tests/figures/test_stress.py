@@ -34,6 +34,7 @@ def coarse(monkeypatch):
     monkeypatch.setattr(figures.stress, "field_curves", functools.partial(field_curves, fineness=40))
 
 
+@pytest.mark.gate
 def test_hoop_stress_with_its_peaks(result, tmp_path):
     figure = figures.plot_hoop_stress(list(result)[-2:], tmp_path / "hoop.png", title="joint")
     plate, pin = figure.axes
@@ -69,6 +70,7 @@ def test_curves_far_from_zero_are_not_flattened_for_it():
     assert pin.get_ylim()[0] < 0.0 < pin.get_ylim()[1]
 
 
+@pytest.mark.gate
 def test_solid_lines_of_an_svg_have_no_dashes_of_no_length(result, tmp_path):
     """Some readers, and what makes a PDF of a report, draw nothing for "stroke-dasharray: ;"."""
     figures.plot_hoop_stress(result, tmp_path / "hoop.svg")
@@ -105,6 +107,7 @@ def test_profiles_end_at_the_far_rim():
         assert str(refused.value) == f"depth: must be above 0 and at most {wall} radii, the wall of the {body}, not 3"
 
 
+@pytest.mark.gate
 def test_the_edge_of_the_hole_may_be_that_of_a_bush():
     pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
     bush = Bushing(MATERIALS["2024-T3"], 12e-3, 10e-6)
@@ -188,6 +191,7 @@ def test_hoop_curves_are_of_both_bodies(result):
     assert [curve.parameters["body"] for curve in hoop_curves([result[-1]])] == ["plate", "pin"]
 
 
+@pytest.mark.gate
 def test_slip_and_loops_of_a_cycle(result, tmp_path):
     cycle = result.cycle()
     slip = figures.plot_slip(cycle, tmp_path / "slip.pdf")

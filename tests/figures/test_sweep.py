@@ -48,6 +48,7 @@ def test_edges_of_cells(values: list[float], log: bool, edges: list[float]) -> N
     assert cell_edges(Axis("", np.array(values), log)) == pytest.approx(edges)
 
 
+@pytest.mark.gate
 def test_a_map_shows_every_value_and_hatches_failures(plan: Plan, rows: list[dict[str, Any]]) -> None:
     figure = plot_sweep(chart(plan, rows, "peak_pressure"))
     maps, bar = figure.axes[:2], figure.axes[-1]
@@ -77,6 +78,7 @@ def test_curves_have_gaps_and_crosses_where_runs_failed(plan: Plan, rows: list[d
     assert names[-1] == "failed run"
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("x", [None, "contact.clearance"])
 def test_figures_are_saved_without_a_trace(
     plan: Plan, rows: list[dict[str, Any]], x: str | None, tmp_path: Path
@@ -89,11 +91,13 @@ def test_figures_are_saved_without_a_trace(
     assert [file.name for file in tmp_path.iterdir()] == ["a.pdf"]
 
 
+@pytest.mark.gate
 def test_figures_without_any_value(plan: Plan, tmp_path: Path) -> None:
     for x in (None, "contact.friction"):
         plot_sweep(chart(plan, sweep.rows(plan, tmp_path), "dx", x), tmp_path / "a.png")
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("value", "scale"), [(31.0, "log"), (29.0, "linear"), (-31.0, "linear")])
 def test_values_that_span_decades_have_a_logarithmic_scale(
     value: float, scale: str, plan: Plan, rows: list[dict[str, Any]]
@@ -109,6 +113,7 @@ def test_values_that_span_decades_have_a_logarithmic_scale(
     assert curves.axes[0].get_yscale() == scale
 
 
+@pytest.mark.gate
 def test_parameters_that_do_not_vary_are_in_the_caption(plan: Plan, rows: list[dict[str, Any]]) -> None:
     found = chart(plan, rows, "peak_pressure")
     assert found.varied == ("pin.material", "pin.E", "contact.friction", "contact.clearance")
@@ -231,6 +236,7 @@ def test_curves_of_classes_have_names_on_their_axis() -> None:
     assert [tick.get_text() for tick in panel.get_yticklabels()] == ["none", "a part", "all"]
 
 
+@pytest.mark.gate
 def test_labels_of_contour_lines_do_not_overlap() -> None:
     x, y = np.meshgrid(np.linspace(0.0, 1.0, 30), np.linspace(0.0, 1.0, 30))
     steep = 100.0 / (1.0 + np.exp(-60.0 * (x - 0.5))) + 5.0 * y  # all lines in a narrow band
@@ -256,6 +262,7 @@ def test_curves_have_error_bars() -> None:
     assert "largest error bar: 0.5 m, 17 % of the range; not known in 1 runs" in figure.get_suptitle()
 
 
+@pytest.mark.gate
 def test_a_map_marks_cells_whose_bar_hides_the_differences(smooth: Chart) -> None:
     numbers = smooth.parts[0][1]
     bars = np.full(numbers.shape, 1e-6)
@@ -287,6 +294,7 @@ def dots(figure: Figure) -> list[tuple[float, float]]:
     return [place for line in lines for place in zip(line.get_xdata(), line.get_ydata(), strict=True)]
 
 
+@pytest.mark.gate
 def test_charts_side_by_side_say_what_each_shows(plan: Plan, rows: list[dict[str, Any]]) -> None:
     charts = [chart(plan, rows, name) for name in ("peak_pressure", "stick_width")]
     one = [replace(each, parts=each.parts[:1]) for each in charts]
@@ -302,6 +310,7 @@ def test_charts_side_by_side_say_what_each_shows(plan: Plan, rows: list[dict[str
         plot_sweep(one, ax=figure.axes[0])
 
 
+@pytest.mark.gate
 def test_several_charts_stand_side_by_side(smooth: Chart, plan: Plan, rows: list[dict[str, Any]]) -> None:
     given = chart(plan, rows, "peak_pressure", "contact.clearance")
     curves = replace(given, parts=[(f"P = {k}", *part[1:]) for k, part in enumerate(given.parts)])

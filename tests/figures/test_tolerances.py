@@ -70,6 +70,7 @@ def test_samples_stand_over_each_field_in_the_order_of_the_correlations() -> Non
         samples_of([chart(samples=np.empty(0))])
 
 
+@pytest.mark.gate
 def test_many_fields_show_the_strongest() -> None:
     figure = plot_samples([chart(12)] * 3)
     assert len([panel for panel in figure.axes if panel.get_visible()]) == 24

@@ -23,6 +23,7 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.cycles import Cycle
 from tests.support.samples import PAIR, sample_result, with_values
+from tests.support.tiers import gate
 
 
 def curves(panel: mpl.axes.Axes, thicker_than: float = 0.8) -> list[np.ndarray]:
@@ -46,7 +47,7 @@ def test_tractions_are_drawn_in_degrees_from_the_bottom_and_in_megapascal() -> N
     assert zones.get_xlabel() == "angle from the bottom of the hole, counter-clockwise (deg)"
 
 
-@pytest.mark.parametrize("half", [0.02, 0.3, 1.0, 1.4])
+@pytest.mark.parametrize("half", [0.02, *gate(0.3), 1.0, 1.4])
 def test_both_ends_of_the_axis_of_angles_have_numbers(half: float) -> None:
     result = sample_result(nodes=401)
     away = np.abs(result[0].theta + 0.5 * np.pi)
@@ -110,6 +111,7 @@ def test_numbers_in_captions_are_rounded_and_rounding_is_zero() -> None:
     assert labels(figure)[:2] == ["1:  P = 1 MN/m,  Q = 0", "2:  P = 2 MN/m,  Q = 0"]
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6])
 def test_legend_lies_within_the_figure(count: int) -> None:
     corners = [{"P": 1e6 + k, "Q": 1.234e5 * k, "sxx": 1.234e7 * k} for k in range(count)]
@@ -164,6 +166,7 @@ def test_dimensionless_units() -> None:
     assert "F/R" in figure.axes[0].get_ylabel()
 
 
+@pytest.mark.gate
 def test_many_states_are_thinned_to_curves_that_can_be_told_apart() -> None:
     result = sample_result([{"P": 1e6 * (k + 1)} for k in range(50)])
     figure = plot_tractions(result)
@@ -194,6 +197,7 @@ def test_axes_of_the_caller() -> None:
         plot_tractions(sample_result(), ax=figure)
 
 
+@pytest.mark.gate
 def test_notebooks_show_a_figure_without_pyplot() -> None:
     assert plot_tractions(sample_result())._repr_png_().startswith(b"\x89PNG")
     for plot in (plot_polar, plot_stick_slip, plot_sketch, plot_hoop_stress):
@@ -224,6 +228,7 @@ def test_contact_all_round() -> None:
     assert high - low == pytest.approx(360.0)
 
 
+@pytest.mark.gate
 def test_states_without_contact(tmp_path: Path) -> None:
     result = sample_result()
     result.states = [with_values(state, pressure=0.0, shear=0.0, status=2) for state in result]
@@ -231,6 +236,7 @@ def test_states_without_contact(tmp_path: Path) -> None:
     assert (tmp_path / "a.png").stat().st_size > 0
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("suffix", "magic"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])
 def test_formats(suffix: str, magic: bytes, tmp_path: Path) -> None:
     path = tmp_path / f"a.{suffix}"
@@ -239,6 +245,7 @@ def test_formats(suffix: str, magic: bytes, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.gate
 def test_print_quality(tmp_path: Path) -> None:
     figure = plot_tractions(sample_result(), tmp_path / "a.svg")
     assert "<text" not in (tmp_path / "a.svg").read_text(encoding="utf-8")  # letters are paths
@@ -308,6 +315,7 @@ def with_cycles(*cycles: Cycle) -> Result:
 UNKNOWN = float("nan")
 
 
+@pytest.mark.gate
 def test_cycles(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no repeated blocks"):
         plot_cycles(sample_result())

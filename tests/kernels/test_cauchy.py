@@ -13,6 +13,7 @@ from fastpin.elasticity import tractions as module
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
 from fastpin.kernels import cauchy
 from fastpin.runtime import threads
+from tests.support.tiers import gate
 
 KERNELS = ("cauchy", "grow")
 INNER = (
@@ -107,6 +108,7 @@ def test_integrals_against_quadrature(way, name, outside):
         assert integrals == pytest.approx(quadrature(tractions, angle, distance, outside), abs=rounding(tractions))
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("outside", [True, False])
 def test_integrals_against_quadrature_with_25_digits(outside):
     """Of random tractions at uneven nodes, 0.002 to 0.5 from the edge."""
@@ -165,7 +167,7 @@ def test_integrals_against_the_plain_sum_near_the_edge(way, name, outside):
 
 
 @pytest.mark.parametrize("name", ["arc", "circle"])
-@pytest.mark.parametrize("outside", [True, False])
+@pytest.mark.parametrize("outside", [*gate(True), False])
 def test_integrals_at_nodes_on_the_edge_are_finite_and_continuous(way, name, outside):
     """Also at the first node of a patch all round, where its list of nodes begins and ends."""
     tractions = samples()[name]

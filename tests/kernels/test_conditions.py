@@ -8,6 +8,7 @@ import pytest
 from fastpin.kernels import conditions
 from fastpin.kernels.arrays import ContactValues, Equations
 from fastpin.kernels.status import OPEN, STICK
+from tests.support.tiers import seeds
 
 NODES = 12
 INNER = ("_larger", "_largest", "_displaced", "_balance")
@@ -63,25 +64,31 @@ class Drawn:
         return np.abs(self.equations.equilibrium) @ np.abs(self.tractions)
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_residuals(kernels, seed):
-    drawn = Drawn(seed)
-    found = kernels["residuals"](
-        drawn.equations, drawn.values, drawn.elastic, drawn.loaded, drawn.forces, drawn.rest_gap, drawn.concentric_gap
-    )
-    (gap, slip), (pressure, shear) = np.split(drawn.true, 2), drawn.values[:2]
-    size = np.abs(shear)
-    sliding = np.abs(shear + drawn.status * drawn.friction * pressure)
-    cone = np.where(drawn.stick, size - drawn.friction * pressure, sliding)
-    cone = np.where(drawn.closed, np.maximum(cone, -pressure), np.maximum(np.abs(pressure), size))
-    length = max(np.abs(drawn.elastic).max(), np.abs(drawn.values.motion).max())
-    expected = (
-        np.where(drawn.closed, np.abs(gap), np.maximum(-gap, 0.0)).max() / length,
-        np.abs(slip - drawn.values.slip)[drawn.closed].max() / length,
-        max(cone.max(), 0.0) / np.abs(pressure).max(),
-        np.abs(drawn.lacking).max() / drawn.sizes.sum(),
-    )
-    assert found == pytest.approx(expected, rel=1e-12)
+def test_residuals(kernels):
+    for seed in seeds(6):
+        drawn = Drawn(seed)
+        found = kernels["residuals"](
+            drawn.equations,
+            drawn.values,
+            drawn.elastic,
+            drawn.loaded,
+            drawn.forces,
+            drawn.rest_gap,
+            drawn.concentric_gap,
+        )
+        (gap, slip), (pressure, shear) = np.split(drawn.true, 2), drawn.values[:2]
+        size = np.abs(shear)
+        sliding = np.abs(shear + drawn.status * drawn.friction * pressure)
+        cone = np.where(drawn.stick, size - drawn.friction * pressure, sliding)
+        cone = np.where(drawn.closed, np.maximum(cone, -pressure), np.maximum(np.abs(pressure), size))
+        length = max(np.abs(drawn.elastic).max(), np.abs(drawn.values.motion).max())
+        expected = (
+            np.where(drawn.closed, np.abs(gap), np.maximum(-gap, 0.0)).max() / length,
+            np.abs(slip - drawn.values.slip)[drawn.closed].max() / length,
+            max(cone.max(), 0.0) / np.abs(pressure).max(),
+            np.abs(drawn.lacking).max() / drawn.sizes.sum(),
+        )
+        assert found == pytest.approx(expected, rel=1e-12)
 
 
 def test_residuals_without_contact_are_in_parts_of_the_gap(kernels):
@@ -107,78 +114,78 @@ def test_nan_is_no_small_residual(kernels, name, place):
     assert np.isnan(np.max(found))
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_imbalance_and_drift(kernels, seed):
-    drawn, true, missing = Drawn(seed), np.full(2 * NODES, np.nan), np.full(2 * NODES + 3, np.nan)
-    error = kernels["imbalance"](
-        drawn.equations, drawn.values, drawn.elastic, drawn.loaded, drawn.forces, drawn.rest_gap, true, missing
-    )
-    assert true == pytest.approx(drawn.true, rel=1e-13)
-    held = (drawn.values.slip - true[NODES:]) * drawn.stick
-    expected = np.r_[-true[:NODES] * drawn.closed, held, drawn.lacking]
-    assert missing == pytest.approx(expected, rel=1e-12, abs=1e-13)
-    largest = np.abs(expected[: 2 * NODES]).max() / np.abs(drawn.elastic).max()
-    assert error == pytest.approx(max(largest, np.abs(drawn.lacking).max() / drawn.sizes.max()), rel=1e-12)
-    moved = np.abs(true - np.r_[drawn.values.gap, drawn.values.slip]).max()
-    length = max(np.abs(drawn.elastic).max(), np.abs(drawn.values.motion).max(), 1e-4 * 7e5)
-    got = kernels["drift"](drawn.elastic, true, drawn.values.gap, drawn.values.slip, drawn.values.motion, 7e5)
-    assert got == pytest.approx(moved / length, rel=1e-13)
+def test_imbalance_and_drift(kernels):
+    for seed in seeds(6):
+        drawn, true, missing = Drawn(seed), np.full(2 * NODES, np.nan), np.full(2 * NODES + 3, np.nan)
+        error = kernels["imbalance"](
+            drawn.equations, drawn.values, drawn.elastic, drawn.loaded, drawn.forces, drawn.rest_gap, true, missing
+        )
+        assert true == pytest.approx(drawn.true, rel=1e-13)
+        held = (drawn.values.slip - true[NODES:]) * drawn.stick
+        expected = np.r_[-true[:NODES] * drawn.closed, held, drawn.lacking]
+        assert missing == pytest.approx(expected, rel=1e-12, abs=1e-13)
+        largest = np.abs(expected[: 2 * NODES]).max() / np.abs(drawn.elastic).max()
+        assert error == pytest.approx(max(largest, np.abs(drawn.lacking).max() / drawn.sizes.max()), rel=1e-12)
+        moved = np.abs(true - np.r_[drawn.values.gap, drawn.values.slip]).max()
+        length = max(np.abs(drawn.elastic).max(), np.abs(drawn.values.motion).max(), 1e-4 * 7e5)
+        got = kernels["drift"](drawn.elastic, true, drawn.values.gap, drawn.values.slip, drawn.values.motion, 7e5)
+        assert got == pytest.approx(moved / length, rel=1e-13)
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_a_correction(kernels, seed):
-    drawn, rng = Drawn(seed), np.random.default_rng(seed + 100)
-    tie, change = rng.choice([-1, 1], NODES).astype(np.int8), rng.normal(size=2 * NODES + 3)
-    pressure, shear, motion = drawn.values.pressure.copy(), drawn.values.shear.copy(), drawn.values.motion.copy()
-    kernels["correct"](drawn.friction, tie, change, drawn.values)
-    moved = pressure + change[:NODES]
-    sticking = shear + change[NODES:-3] - tie * drawn.friction * change[:NODES]
-    slipping = -drawn.friction * drawn.status * moved
-    assert drawn.values.pressure == pytest.approx(np.where(drawn.closed, moved, pressure))
-    expected = np.where(drawn.stick, sticking, np.where(drawn.closed, slipping, shear))
-    assert drawn.values.shear == pytest.approx(expected)
-    assert drawn.values.motion == pytest.approx(motion + change[-3:])
+def test_a_correction(kernels):
+    for seed in seeds(6):
+        drawn, rng = Drawn(seed), np.random.default_rng(seed + 100)
+        tie, change = rng.choice([-1, 1], NODES).astype(np.int8), rng.normal(size=2 * NODES + 3)
+        pressure, shear, motion = drawn.values.pressure.copy(), drawn.values.shear.copy(), drawn.values.motion.copy()
+        kernels["correct"](drawn.friction, tie, change, drawn.values)
+        moved = pressure + change[:NODES]
+        sticking = shear + change[NODES:-3] - tie * drawn.friction * change[:NODES]
+        slipping = -drawn.friction * drawn.status * moved
+        assert drawn.values.pressure == pytest.approx(np.where(drawn.closed, moved, pressure))
+        expected = np.where(drawn.stick, sticking, np.where(drawn.closed, slipping, shear))
+        assert drawn.values.shear == pytest.approx(expected)
+        assert drawn.values.motion == pytest.approx(motion + change[-3:])
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_values_on_their_bounds(kernels, seed):
-    drawn, rng = Drawn(seed), np.random.default_rng(seed + 200)
-    solution, slip = drawn.values, rng.normal(size=NODES)
-    solution.pressure[:3] = [1e-14, -0.3, 0.0]
-    solution.gap[3:6] = [1e-14, -0.3, 0.0]
-    settled = ContactValues(*(np.full(NODES, np.nan) for _ in range(3)), slip.copy(), drawn.status, np.zeros(3))
-    kernels["put_on_bounds"](drawn.friction, solution, settled)
-    pressed = drawn.closed & (solution.pressure > 1e-12 * np.abs(solution.pressure).max())
-    pressure = np.where(pressed, solution.pressure, 0.0)
-    bound = drawn.friction * pressure
-    held = np.where(np.abs(solution.shear) > bound, np.copysign(bound, solution.shear), solution.shear)
-    shear = np.where(pressed, np.where(drawn.stick, held, solution.shear), 0.0)
-    gaping = ~drawn.closed & (solution.gap > 1e-12 * np.abs(solution.gap).max())
-    assert np.array_equal(settled.pressure, pressure)
-    assert settled.shear == pytest.approx(shear, abs=1e-11)
-    assert np.array_equal(settled.gap, np.where(gaping, solution.gap, 0.0))
-    assert np.array_equal(settled.slip, np.where(drawn.stick, slip, solution.slip))
-    traction, gap = kernels["beyond_bounds"](solution, settled)
-    cut = np.abs(settled.shear - solution.shear)[drawn.stick].max()
-    assert traction == max(np.abs(settled.pressure - solution.pressure).max(), cut)
-    assert gap == np.abs(settled.gap - solution.gap)[~drawn.closed].max()
+def test_values_on_their_bounds(kernels):
+    for seed in seeds(6):
+        drawn, rng = Drawn(seed), np.random.default_rng(seed + 200)
+        solution, slip = drawn.values, rng.normal(size=NODES)
+        solution.pressure[:3] = [1e-14, -0.3, 0.0]
+        solution.gap[3:6] = [1e-14, -0.3, 0.0]
+        settled = ContactValues(*(np.full(NODES, np.nan) for _ in range(3)), slip.copy(), drawn.status, np.zeros(3))
+        kernels["put_on_bounds"](drawn.friction, solution, settled)
+        pressed = drawn.closed & (solution.pressure > 1e-12 * np.abs(solution.pressure).max())
+        pressure = np.where(pressed, solution.pressure, 0.0)
+        bound = drawn.friction * pressure
+        held = np.where(np.abs(solution.shear) > bound, np.copysign(bound, solution.shear), solution.shear)
+        shear = np.where(pressed, np.where(drawn.stick, held, solution.shear), 0.0)
+        gaping = ~drawn.closed & (solution.gap > 1e-12 * np.abs(solution.gap).max())
+        assert np.array_equal(settled.pressure, pressure)
+        assert settled.shear == pytest.approx(shear, abs=1e-11)
+        assert np.array_equal(settled.gap, np.where(gaping, solution.gap, 0.0))
+        assert np.array_equal(settled.slip, np.where(drawn.stick, slip, solution.slip))
+        traction, gap = kernels["beyond_bounds"](solution, settled)
+        cut = np.abs(settled.shear - solution.shear)[drawn.stick].max()
+        assert traction == max(np.abs(settled.pressure - solution.pressure).max(), cut)
+        assert gap == np.abs(settled.gap - solution.gap)[~drawn.closed].max()
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_wanted_statuses(kernels, seed):
-    drawn, rng = Drawn(seed), np.random.default_rng(seed + 300)
-    solution, start_slip, wanted = drawn.values, rng.normal(size=NODES), np.empty(NODES, dtype=np.int8)
-    kernels["wanted_status"](drawn.friction, solution, start_slip, drawn.rest_gap, 1e-11, wanted)
-    slid = solution.slip - start_slip
-    expected = drawn.status.copy()
-    closing = ~drawn.closed & (solution.gap < 0.0)
-    expected[closing] = np.where(slid[closing] < 0.0, -1, 1)
-    back = drawn.closed & ~drawn.stick & (drawn.friction > 0.0) & (drawn.status * slid < 0.0)
-    expected[back] = STICK
-    free = drawn.stick & (np.abs(solution.shear) > drawn.friction * solution.pressure)
-    expected[free] = np.where(solution.shear[free] > 0.0, -1, 1)
-    expected[drawn.closed & (solution.pressure < 0.0)] = OPEN
-    assert np.array_equal(wanted, expected)
+def test_wanted_statuses(kernels):
+    for seed in seeds(12):
+        drawn, rng = Drawn(seed), np.random.default_rng(seed + 300)
+        solution, start_slip, wanted = drawn.values, rng.normal(size=NODES), np.empty(NODES, dtype=np.int8)
+        kernels["wanted_status"](drawn.friction, solution, start_slip, drawn.rest_gap, 1e-11, wanted)
+        slid = solution.slip - start_slip
+        expected = drawn.status.copy()
+        closing = ~drawn.closed & (solution.gap < 0.0)
+        expected[closing] = np.where(slid[closing] < 0.0, -1, 1)
+        back = drawn.closed & ~drawn.stick & (drawn.friction > 0.0) & (drawn.status * slid < 0.0)
+        expected[back] = STICK
+        free = drawn.stick & (np.abs(solution.shear) > drawn.friction * solution.pressure)
+        expected[free] = np.where(solution.shear[free] > 0.0, -1, 1)
+        expected[drawn.closed & (solution.pressure < 0.0)] = OPEN
+        assert np.array_equal(wanted, expected)
 
 
 def test_statuses_stay_within_the_tolerance(kernels):

@@ -31,6 +31,7 @@ print(*found, sep="\\n", file=sys.stderr)
 """
 
 
+@pytest.mark.gate
 def test_the_list_has_the_kernels_and_types_of_a_run() -> None:
     done = subprocess.run([sys.executable, "-c", SEEN], capture_output=True, text=True, check=True)
     listed = [f"{one.__name__}: {jit.signature(jit.argument_types(tuple(given)))}" for one, *given in first.kernels()]

@@ -51,6 +51,7 @@ def random_paths(seed, points, times):
     return np.ascontiguousarray(np.concatenate([rough, sum(waves), straight]))
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("form", FORMS)
 def test_the_worst_plane_is_that_of_a_scan(form):
     paths = random_paths(1, 40, 50)

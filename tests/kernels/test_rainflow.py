@@ -7,6 +7,7 @@ import pytest
 
 from fastpin import damage
 from fastpin.kernels import planes, rainflow
+from tests.support.tiers import seeds
 
 LIFE = np.array([np.log(2e3), np.log(5e5), -0.25, -0.7, -np.inf, 0.0, 0.0])
 INNER = ("_count", "_parameter", "_root", "_beyond", "_fill", "_damage", "_on_plane", "_sum", "_highest")
@@ -65,19 +66,19 @@ def naive(values, push):
     return sorted(found)
 
 
-@pytest.mark.parametrize("seed", range(300))
-def test_counts_of_random_histories(seed):
+def test_counts_of_random_histories():
     """Ranges are those of pylife, and with the largest pushes those of the naive count."""
-    rng = np.random.default_rng(seed)
-    values, push = rng.normal(size=int(rng.integers(2, 60))), rng.normal(size=60)
-    path = uniaxial(values, push[: values.size])
-    places, cycles = counted(path, 0.3, *one_block(values.size))
-    ranges, most = np.abs(values[places[:, 0]] - values[places[:, 1]]), push[places[:, 2]]
-    np.testing.assert_allclose(np.sort(ranges), np.sort(damage.rainflow(values).range), rtol=1e-12, atol=1e-14)
-    expected = np.array(naive(values, push[: values.size]))
-    np.testing.assert_allclose(np.sort(ranges), expected[:, 0], rtol=1e-12)
-    np.testing.assert_array_equal(most[np.argsort(ranges)], expected[:, 1])
-    np.testing.assert_allclose(cycles[:, 1], 0.5 * ranges * np.maximum(most, 0.0), rtol=1e-14)
+    for seed in seeds(300):
+        rng = np.random.default_rng(seed)
+        values, push = rng.normal(size=int(rng.integers(2, 60))), rng.normal(size=60)
+        path = uniaxial(values, push[: values.size])
+        places, cycles = counted(path, 0.3, *one_block(values.size))
+        ranges, most = np.abs(values[places[:, 0]] - values[places[:, 1]]), push[places[:, 2]]
+        np.testing.assert_allclose(np.sort(ranges), np.sort(damage.rainflow(values).range), rtol=1e-12, atol=1e-14)
+        expected = np.array(naive(values, push[: values.size]))
+        np.testing.assert_allclose(np.sort(ranges), expected[:, 0], rtol=1e-12)
+        np.testing.assert_array_equal(most[np.argsort(ranges)], expected[:, 1])
+        np.testing.assert_allclose(cycles[:, 1], 0.5 * ranges * np.maximum(most, 0.0), rtol=1e-14)
 
 
 def sums(values, found):
@@ -87,24 +88,24 @@ def sums(values, found):
     return np.sort(np.repeat(ranges, times)), np.sort(np.repeat(cycles[:, 1], times)), cycles[:, 2].sum()
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_blocks_are_counted_as_their_passes_one_by_one(seed):
+def test_blocks_are_counted_as_their_passes_one_by_one():
     """Also as one list from the largest value on, where equal ranges have equal pushes."""
-    rng = np.random.default_rng(seed)
-    values, push = rng.normal(size=(2, 12))
-    order, blocks, begin = [], [], 0
-    for _ in range(4):
-        size = int(rng.integers(1, 8))
-        order += list(rng.integers(0, 12, size))
-        blocks.append((begin, begin + size, int(rng.integers(1, 9))))
-        begin += size
-    order = np.array(order)
-    every = np.concatenate([np.tile(order[first:last], times) for first, last, times in blocks])
-    halves, whole = np.array([[0, 1, 1], [1, every.size, 1]]), np.array([[0, every.size, 1]])
-    for path, pieces in ((uniaxial(values, push), halves), (uniaxial(values), whole)):
-        found = sums(values, counted(path, 0.0, order, np.array(blocks)))
-        for one, two in zip(found, sums(values, counted(path, 0.0, every, pieces)), strict=True):
-            np.testing.assert_allclose(one, two, rtol=1e-12, atol=1e-300)
+    for seed in seeds(40):
+        rng = np.random.default_rng(seed)
+        values, push = rng.normal(size=(2, 12))
+        order, blocks, begin = [], [], 0
+        for _ in range(4):
+            size = int(rng.integers(1, 8))
+            order += list(rng.integers(0, 12, size))
+            blocks.append((begin, begin + size, int(rng.integers(1, 9))))
+            begin += size
+        order = np.array(order)
+        every = np.concatenate([np.tile(order[first:last], times) for first, last, times in blocks])
+        halves, whole = np.array([[0, 1, 1], [1, every.size, 1]]), np.array([[0, every.size, 1]])
+        for path, pieces in ((uniaxial(values, push), halves), (uniaxial(values), whole)):
+            found = sums(values, counted(path, 0.0, order, np.array(blocks)))
+            for one, two in zip(found, sums(values, counted(path, 0.0, every, pieces)), strict=True):
+                np.testing.assert_allclose(one, two, rtol=1e-12, atol=1e-300)
 
 
 def test_the_history_of_the_standard():
@@ -114,6 +115,7 @@ def test_the_history_of_the_standard():
     assert pairs == [(-4.0, 5.0), (-3.0, 4.0), (-2.0, 1.0), (-1.0, 3.0)]
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("form", [planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE])
 def test_the_worst_plane_is_that_of_a_scan(form):
     rng = np.random.default_rng(5)
@@ -129,6 +131,7 @@ def test_the_worst_plane_is_that_of_a_scan(form):
             assert -0.5 * np.pi < angle <= 0.5 * np.pi
 
 
+@pytest.mark.gate
 def test_compiled_and_plain_python():
     rng = np.random.default_rng(6)
     paths, order = rng.normal(size=(3, 9, 6)), rng.integers(0, 9, 14)

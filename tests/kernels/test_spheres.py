@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import spheres
+from tests.support.tiers import gate
 
 
 def python_kernel():
@@ -35,7 +36,7 @@ def solved(paths):
     return out[:, :-1], out[:, -1]
 
 
-@pytest.mark.parametrize("dimension", [1, 2, 3, 5])
+@pytest.mark.parametrize("dimension", [1, 2, *gate(3), 5])
 def test_the_sphere_is_the_smallest_of_all_subsets(dimension):
     paths = np.random.default_rng(dimension).normal(size=(12, 10 if dimension < 5 else 9, dimension))
     centres, radii = solved(paths)

@@ -15,6 +15,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver import path, unknowns
 from fastpin.solver.solving import solve
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
+from tests.support.tiers import gate
 
 BOTTOM = -0.5 * np.pi
 RIGID_PIN = MaterialPair(Material.rigid(), Material(70e9, 0.33))
@@ -146,7 +147,7 @@ def test_what_it_is_not_for(small_sets, titanium_in_aluminium):
     assert StickingRun.of(smooth, stuck(60, 20, 40)) is None
 
 
-@pytest.mark.parametrize(("pin_load", "rotation"), [("body", "free"), ("centre", "fixed")])
+@pytest.mark.parametrize(("pin_load", "rotation"), [*gate(("body", "free")), ("centre", "fixed")])
 def test_histories_are_those_of_factorisations(small_sets, titanium_in_aluminium, monkeypatch, pin_load, rotation):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, pin_load, rotation)
     grid = Grid.arc(BOTTOM - 1.8, BOTTOM + 1.8, 301)

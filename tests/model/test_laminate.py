@@ -13,6 +13,7 @@ import fastpin
 from fastpin.errors import InputError
 from fastpin.model import Laminate, Material, MaterialPair
 from fastpin.model.laminate import ORDER, in_axes, stroh_roots
+from tests.support.tiers import seeds
 
 TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
@@ -35,59 +36,59 @@ def laminate_of(matrix: np.ndarray, axis: float = 0.0) -> Laminate:
     return Laminate(compliance=tuple(matrix[places[name[1]], places[name[2]]] for name in ORDER), axis=axis)
 
 
-@pytest.mark.parametrize("seed", range(200))
-def test_constants_of_orthotropic_laminates_have_closed_forms(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    Ex, Ey, G, nu = orthotropic(rng)
-    laminate = Laminate.from_moduli(Ex, Ey, G, nu, axis=0.0)
-    k = math.sqrt(Ex / Ey)
-    n = math.sqrt(2.0 * (k - nu) + Ex / G)
-    expected = np.diag([n / Ex, n / math.sqrt(Ex * Ey)])
-    size = expected.max()
-    np.testing.assert_allclose(laminate.edge_tensor, expected, atol=1e-12 * size)
-    assert laminate.s == pytest.approx(1.0 / math.sqrt(Ex * Ey) - nu / Ex, abs=1e-7 * size)
-    assert laminate.moduli == pytest.approx((Ex, Ey, G, nu), rel=1e-14)
+def test_constants_of_orthotropic_laminates_have_closed_forms() -> None:
+    for seed in seeds(200):
+        rng = np.random.default_rng(seed)
+        Ex, Ey, G, nu = orthotropic(rng)
+        laminate = Laminate.from_moduli(Ex, Ey, G, nu, axis=0.0)
+        k = math.sqrt(Ex / Ey)
+        n = math.sqrt(2.0 * (k - nu) + Ex / G)
+        expected = np.diag([n / Ex, n / math.sqrt(Ex * Ey)])
+        size = expected.max()
+        np.testing.assert_allclose(laminate.edge_tensor, expected, atol=1e-12 * size)
+        assert laminate.s == pytest.approx(1.0 / math.sqrt(Ex * Ey) - nu / Ex, abs=1e-7 * size)
+        assert laminate.moduli == pytest.approx((Ex, Ey, G, nu), rel=1e-14)
 
 
-@pytest.mark.parametrize("seed", range(200))
-def test_constants_are_those_of_strohs_matrices(seed: int) -> None:
-    laminate = laminate_of(stable(np.random.default_rng(seed)))
-    (a11, a12, a16), (_, a22, a26), _ = laminate.matrix
-    mu = np.array(stroh_roots(laminate.matrix))
-    motions = np.array([a11 * mu**2 + a12 - a16 * mu, a12 * mu + a22 / mu - a26])
-    forces = np.array([-mu, np.ones(2)])
-    both = motions @ np.linalg.inv(forces)
-    expected = -1j * laminate.edge_tensor - laminate.s * TURN
-    np.testing.assert_allclose(both, expected, atol=1e-9 * abs(both).max())
+def test_constants_are_those_of_strohs_matrices() -> None:
+    for seed in seeds(200):
+        laminate = laminate_of(stable(np.random.default_rng(seed)))
+        (a11, a12, a16), (_, a22, a26), _ = laminate.matrix
+        mu = np.array(stroh_roots(laminate.matrix))
+        motions = np.array([a11 * mu**2 + a12 - a16 * mu, a12 * mu + a22 / mu - a26])
+        forces = np.array([-mu, np.ones(2)])
+        both = motions @ np.linalg.inv(forces)
+        expected = -1j * laminate.edge_tensor - laminate.s * TURN
+        np.testing.assert_allclose(both, expected, atol=1e-9 * abs(both).max())
 
 
-@pytest.mark.parametrize("seed", range(50))
-def test_lambda_turns_as_a_tensor_and_s_stays(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    laminate, angle = laminate_of(stable(rng), rng.uniform(-3.0, 3.0)), rng.uniform(-3.0, 3.0)
-    turned = laminate.turned(angle)
-    cos, sin = math.cos(angle), math.sin(angle)
-    rotation = np.array([[cos, -sin], [sin, cos]])
-    size = laminate.lambda0
-    np.testing.assert_allclose(turned.edge_tensor, rotation @ laminate.edge_tensor @ rotation.T, atol=1e-12 * size)
-    assert turned.s == laminate.s
-    assert turned.lambda0 == laminate.lambda0
-    # the same constants from the compliances in x and y
-    again = laminate_of(turned.matrix)
-    np.testing.assert_allclose(again.edge_tensor, turned.edge_tensor, atol=1e-8 * size)
-    assert again.s == pytest.approx(turned.s, abs=1e-8 * size)
+def test_lambda_turns_as_a_tensor_and_s_stays() -> None:
+    for seed in seeds(50):
+        rng = np.random.default_rng(seed)
+        laminate, angle = laminate_of(stable(rng), rng.uniform(-3.0, 3.0)), rng.uniform(-3.0, 3.0)
+        turned = laminate.turned(angle)
+        cos, sin = math.cos(angle), math.sin(angle)
+        rotation = np.array([[cos, -sin], [sin, cos]])
+        size = laminate.lambda0
+        np.testing.assert_allclose(turned.edge_tensor, rotation @ laminate.edge_tensor @ rotation.T, atol=1e-12 * size)
+        assert turned.s == laminate.s
+        assert turned.lambda0 == laminate.lambda0
+        # the same constants from the compliances in x and y
+        again = laminate_of(turned.matrix)
+        np.testing.assert_allclose(again.edge_tensor, turned.edge_tensor, atol=1e-8 * size)
+        assert again.s == pytest.approx(turned.s, abs=1e-8 * size)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_compliances_in_turned_axes_keep_the_energy(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    own, angle = stable(rng), rng.uniform(-3.0, 3.0)
-    sxx, syy, sxy = stress = rng.normal(size=3)
-    cos, sin = math.cos(angle), math.sin(angle)
-    rotation = np.array([[cos, sin], [-sin, cos]])
-    new = rotation @ np.array([[sxx, sxy], [sxy, syy]]) @ rotation.T
-    in_new = np.array([new[0, 0], new[1, 1], new[0, 1]])
-    assert in_new @ in_axes(own, angle) @ in_new == pytest.approx(stress @ own @ stress, rel=1e-12)
+def test_compliances_in_turned_axes_keep_the_energy() -> None:
+    for seed in seeds(20):
+        rng = np.random.default_rng(seed)
+        own, angle = stable(rng), rng.uniform(-3.0, 3.0)
+        sxx, syy, sxy = stress = rng.normal(size=3)
+        cos, sin = math.cos(angle), math.sin(angle)
+        rotation = np.array([[cos, sin], [-sin, cos]])
+        new = rotation @ np.array([[sxx, sxy], [sxy, syy]]) @ rotation.T
+        in_new = np.array([new[0, 0], new[1, 1], new[0, 1]])
+        assert in_new @ in_axes(own, angle) @ in_new == pytest.approx(stress @ own @ stress, rel=1e-12)
 
 
 def test_an_isotropic_laminate_is_the_isotropic_plate() -> None:
@@ -105,22 +106,22 @@ def test_an_isotropic_laminate_is_the_isotropic_plate() -> None:
     assert second == pytest.approx(2.0 * complex(sxx - syy, 2.0 * sxy) / E, abs=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_remote_tension_moves_the_hole_by_the_hoop_strains_of_lekhnitskii(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    Ex, Ey, G, nu = orthotropic(rng)
-    laminate = Laminate.from_moduli(Ex, Ey, G, nu, axis=0.0)
-    k = math.sqrt(Ex / Ey)
-    n = math.sqrt(2.0 * (k - nu) + Ex / G)
-    mean, second = laminate.hole_displacement((1.0, 0.0, 0.0))
-    for theta in np.linspace(0.0, 2.0 * math.pi, 17):
-        # R e_tt = v_r + dv_theta/dtheta
-        turn = second * complex(math.cos(2.0 * theta), -math.sin(2.0 * theta))
-        strain = mean.real + turn.real + (-2j * turn).imag
-        c2, s2 = math.cos(theta) ** 2, math.sin(theta) ** 2
-        along = s2 * s2 / Ex + (1.0 / G - 2.0 * nu / Ex) * s2 * c2 + c2 * c2 / Ey
-        hoop = (1.0 / along / Ex) * (-k * c2 + (1.0 + n) * s2)
-        assert strain == pytest.approx(hoop * along, abs=1e-7 * (1.0 + n) / min(Ex, Ey))
+def test_remote_tension_moves_the_hole_by_the_hoop_strains_of_lekhnitskii() -> None:
+    for seed in seeds(20):
+        rng = np.random.default_rng(seed)
+        Ex, Ey, G, nu = orthotropic(rng)
+        laminate = Laminate.from_moduli(Ex, Ey, G, nu, axis=0.0)
+        k = math.sqrt(Ex / Ey)
+        n = math.sqrt(2.0 * (k - nu) + Ex / G)
+        mean, second = laminate.hole_displacement((1.0, 0.0, 0.0))
+        for theta in np.linspace(0.0, 2.0 * math.pi, 17):
+            # R e_tt = v_r + dv_theta/dtheta
+            turn = second * complex(math.cos(2.0 * theta), -math.sin(2.0 * theta))
+            strain = mean.real + turn.real + (-2j * turn).imag
+            c2, s2 = math.cos(theta) ** 2, math.sin(theta) ** 2
+            along = s2 * s2 / Ex + (1.0 / G - 2.0 * nu / Ex) * s2 * c2 + c2 * c2 / Ey
+            hoop = (1.0 / along / Ex) * (-k * c2 + (1.0 + n) * s2)
+            assert strain == pytest.approx(hoop * along, abs=1e-7 * (1.0 + n) / min(Ex, Ey))
 
 
 def test_a_cross_ply_at_any_angle_has_an_isotropic_contact() -> None:

@@ -15,6 +15,7 @@ from fastpin.errors import InputError, UnknownNameError
 from fastpin.model import PLIES, Laminate, Ply, PlyStrengths
 from fastpin.model.laminate import ALONG_LOAD
 from fastpin.model.ply import PLY_KEYS, ply_from
+from tests.support.tiers import seeds
 
 PLY = Ply(135e9, 9e9, 5e9, 0.3, 0.125e-3)
 THICK = Ply(45e9, 16e9, 6e9, 0.28, 0.3e-3, name="glass")
@@ -72,42 +73,42 @@ def invariants(ply: Ply) -> tuple[float, float, float, float]:
     return float(first.mean()), float(by[0]), float(by[1]), float(coupled.mean())
 
 
-@pytest.mark.parametrize("seed", range(60))
-def test_compliances_invert_the_mean_stiffness(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    half = [(PLY if rng.random() < 0.5 else THICK, float(rng.integers(-90, 91))) for _ in range(rng.integers(1, 8))]
-    stack = half + half[::-1]
-    a11, a12, a22, a16, a26, a66 = Laminate(plies=tuple(stack)).compliance
-    compliance = np.array([[a11, a12, a16], [a12, a22, a26], [a16, a26, a66]])
-    np.testing.assert_allclose(compliance @ mean_stiffness(stack), np.eye(3), atol=1e-11)
+def test_compliances_invert_the_mean_stiffness() -> None:
+    for seed in seeds(60):
+        rng = np.random.default_rng(seed)
+        half = [(PLY if rng.random() < 0.5 else THICK, float(rng.integers(-90, 91))) for _ in range(rng.integers(1, 8))]
+        stack = half + half[::-1]
+        a11, a12, a22, a16, a26, a66 = Laminate(plies=tuple(stack)).compliance
+        compliance = np.array([[a11, a12, a16], [a12, a22, a26], [a16, a26, a66]])
+        np.testing.assert_allclose(compliance @ mean_stiffness(stack), np.eye(3), atol=1e-11)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_stresses_of_plies_balance_that_of_the_whole(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    half = [(PLY if rng.random() < 0.5 else THICK, rng.uniform(-90.0, 90.0)) for _ in range(4)]
-    laminate = Laminate.from_plies(half + half[::-1], axis=rng.uniform(-3.0, 3.0))
-    stress = rng.normal(size=(5, 2, 3)) * 1e8
-    found = laminate.ply_stresses(stress)
-    assert found.shape == (8, 5, 2, 3)
-    total, strains = np.zeros((5, 2, 2, 2)), laminate.ply_strains(stress)
-    whole_strain = stress @ laminate.matrix
-    for k, (ply, degrees) in enumerate(laminate.plies):
-        angle = laminate.axis + math.radians(degrees)
-        turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-        s1, s2, t12 = np.moveaxis(found[k], -1, 0)
-        tensor = np.moveaxis(np.array([[s1, t12], [t12, s2]]), (0, 1), (-2, -1))
-        total += ply.thickness / laminate.thickness * (turn @ tensor @ turn.T)
-        # all plies have the strains of the whole
-        e1, e2, g12 = np.moveaxis(strains[k], -1, 0)
-        tensor = np.moveaxis(np.array([[e1, 0.5 * g12], [0.5 * g12, e2]]), (0, 1), (-2, -1))
-        in_xy = turn @ tensor @ turn.T
-        np.testing.assert_allclose(in_xy[..., 0, 0], whole_strain[..., 0], atol=1e-15)
-        np.testing.assert_allclose(2.0 * in_xy[..., 0, 1], whole_strain[..., 2], atol=1e-15)
-        np.testing.assert_allclose(s1, (e1 + ply.nu12 * ply.E2 / ply.E1 * e2) * ply.stiffness[0, 0], rtol=1e-9)
-    np.testing.assert_allclose(total[..., 0, 0], stress[..., 0], atol=1e-4)
-    np.testing.assert_allclose(total[..., 0, 1], stress[..., 2], atol=1e-4)
-    np.testing.assert_allclose(total[..., 1, 1], stress[..., 1], atol=1e-4)
+def test_stresses_of_plies_balance_that_of_the_whole() -> None:
+    for seed in seeds(20):
+        rng = np.random.default_rng(seed)
+        half = [(PLY if rng.random() < 0.5 else THICK, rng.uniform(-90.0, 90.0)) for _ in range(4)]
+        laminate = Laminate.from_plies(half + half[::-1], axis=rng.uniform(-3.0, 3.0))
+        stress = rng.normal(size=(5, 2, 3)) * 1e8
+        found = laminate.ply_stresses(stress)
+        assert found.shape == (8, 5, 2, 3)
+        total, strains = np.zeros((5, 2, 2, 2)), laminate.ply_strains(stress)
+        whole_strain = stress @ laminate.matrix
+        for k, (ply, degrees) in enumerate(laminate.plies):
+            angle = laminate.axis + math.radians(degrees)
+            turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+            s1, s2, t12 = np.moveaxis(found[k], -1, 0)
+            tensor = np.moveaxis(np.array([[s1, t12], [t12, s2]]), (0, 1), (-2, -1))
+            total += ply.thickness / laminate.thickness * (turn @ tensor @ turn.T)
+            # all plies have the strains of the whole
+            e1, e2, g12 = np.moveaxis(strains[k], -1, 0)
+            tensor = np.moveaxis(np.array([[e1, 0.5 * g12], [0.5 * g12, e2]]), (0, 1), (-2, -1))
+            in_xy = turn @ tensor @ turn.T
+            np.testing.assert_allclose(in_xy[..., 0, 0], whole_strain[..., 0], atol=1e-15)
+            np.testing.assert_allclose(2.0 * in_xy[..., 0, 1], whole_strain[..., 2], atol=1e-15)
+            np.testing.assert_allclose(s1, (e1 + ply.nu12 * ply.E2 / ply.E1 * e2) * ply.stiffness[0, 0], rtol=1e-9)
+        np.testing.assert_allclose(total[..., 0, 0], stress[..., 0], atol=1e-4)
+        np.testing.assert_allclose(total[..., 0, 1], stress[..., 2], atol=1e-4)
+        np.testing.assert_allclose(total[..., 1, 1], stress[..., 1], atol=1e-4)
 
 
 def test_a_single_ply_has_the_stress_of_the_whole_in_its_axes() -> None:

@@ -21,7 +21,7 @@ from fastpin.pages import write_report
 from fastpin.pages.content import Facts, Items, Listing, Page, PageSection, Table, Text
 from fastpin.pages.pdf import pdf_of
 from fastpin.pages.sections import SECTIONS
-from tests.support.drawing import draw_roughly
+from tests.support.drawing import outline_figures
 from tests.support.samples import sample_result
 
 HOSTILE = 'A <b> #[x] $y$ @z `w` "q" \\ // */ é'
@@ -48,7 +48,7 @@ def compiled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[bytes
     with pytest.MonkeyPatch.context() as patch:
         once = typst.compile
         patch.setattr(typst, "compile", compile_twice)
-        draw_roughly(patch)
+        outline_figures(patch)
         sample_result().report(path, title=HOSTILE, about=ABOUT)
     return path, pictures
 
@@ -71,8 +71,8 @@ def test_pages_are_numbered_and_have_a_head(report: tuple[list[str], pypdf.PdfRe
     assert (pdf.metadata.title, pdf.metadata.author) == (HOSTILE, "A. Engineer")
 
 
-def test_no_figure_stands_above_the_title(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    draw_roughly(monkeypatch)
+@pytest.mark.gate
+def test_no_figure_stands_above_the_title(tmp_path: Path) -> None:
     sample_result([{"P": 1e6}], nodes=21).report(tmp_path / "r.pdf", title="Bolt")
     found: list[tuple[str, float]] = []
     first = read(tmp_path / "r.pdf")[1].pages[0]
@@ -140,8 +140,8 @@ def test_every_kind_of_part_is_printed(tmp_path: Path) -> None:
     assert all(words in text for words in ("a note", "1.5 ± 2", "… 7 more …", "… 9 more …", "made today", "\\x1b[31m"))
 
 
-def test_a_long_history_has_a_short_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    draw_roughly(monkeypatch)
+@pytest.mark.gate
+def test_a_long_history_has_a_short_report(tmp_path: Path) -> None:
     problem = sample_result().problem
     many = fastpin.solve(problem, [{"P": 1e6}, *({"Q": 1e5 * (-1) ** k * (1 + k % 7)} for k in range(70))], nodes=31)
     many.report(tmp_path / "many.pdf")

@@ -40,9 +40,10 @@ from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.states.quantities import QUANTITIES
 from fastpin.storage.layout import RESIDUALS
-from tests.support.drawing import draw_roughly
+from tests.support.drawing import outline_figures
 from tests.support.html import Page
 from tests.support.samples import JOINT, sample_result
+from tests.support.tiers import gate
 
 CASE = f"""title = "A <b>bold</b> & \\"quoted\\" title <script>alert(1)</script>"
 {JOINT}
@@ -71,7 +72,7 @@ def text(stored: Path) -> str:
     """The page of the stored result, with its case file."""
     path = stored.with_name("page.html")
     with pytest.MonkeyPatch.context() as patch:
-        draw_roughly(patch)
+        outline_figures(patch)
         write_report(stored, path, case=stored.with_name("case.toml"))
     return path.read_text(encoding="utf-8")
 
@@ -92,13 +93,6 @@ def test_page_is_well_formed_and_needs_nothing_from_outside(text: str) -> None:
     assert "@import" not in text
     assert re.findall(r"url\((?!#)", text) == []
     assert len(text) < 1_000_000
-
-
-def test_references_inside_figures_lead_to_elements(text: str) -> None:
-    page = Page(text)
-    used = set(re.findall(r"url\(#([^)]+)\)", text))
-    assert len(used) > 3
-    assert used <= set(page.ids)
 
 
 def test_figures_keep_their_colours_and_lose_ids_that_nothing_refers_to(tmp_path: Path) -> None:
@@ -155,6 +149,7 @@ def test_page_names_case_loads_key_figures_checks_and_origin(text: str, stored: 
     assert "not met" not in words
 
 
+@pytest.mark.gate
 def test_rows_that_repeat_are_folded(text: str, stored: Path) -> None:
     states, gaps = Source.of_file(stored).rows
     points = [state.step + 1 for state in states]
@@ -172,6 +167,7 @@ def test_rows_that_repeat_are_folded(text: str, stored: Path) -> None:
     assert words in text
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_a_gap_may_be_the_last_row(tmp_path: Path) -> None:
     result = sample_result([{"P": 1e6}, *[{"P": 1e6}] * 8], nodes=21)
@@ -188,6 +184,7 @@ def test_a_map_holds_all_states_or_says_that_it_does_not(joined: int, words: str
     assert picture.caption.startswith(f"{words} and slip over the angle")
 
 
+@pytest.mark.gate
 def test_few_states_of_a_long_history_are_read_and_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fastpin.report.states.MOST_COMPARED", 100)
     result = sample_result([{"P": 1e6 + 100.0 * k, "Q": 1e5 * (-1) ** k} for k in range(200)], nodes=21)
@@ -201,6 +198,7 @@ def test_few_states_of_a_long_history_are_read_and_drawn(monkeypatch: pytest.Mon
     assert len(read) == MAX_ROWS + MOST_DRAWN + 1  # one tells the load at the beginning
 
 
+@pytest.mark.gate
 def test_the_extremes_of_a_long_history_are_drawn_and_have_rows() -> None:
     corners = [{"P": 3e6 if k == 77 else 1e6 + 100.0 * k} for k in range(200)]
     source = Source.of_result(fastpin.solve(sample_result().problem, corners, nodes=61))
@@ -222,6 +220,7 @@ def test_the_last_closed_part_of_a_history_without_blocks_is_its_cycle() -> None
     assert Source.of_result(sample_result(corners[:4])).cycle is None
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_a_history_without_cycles_has_the_damage_of_a_spectrum(only: Callable[..., None], tmp_path: Path) -> None:
     """A long one, and one whose material lacks constants, say why there is no fatigue."""
@@ -240,6 +239,7 @@ def test_a_history_without_cycles_has_the_damage_of_a_spectrum(only: Callable[..
     assert "Fatigue needs a cycle" in words["steel"]
 
 
+@pytest.mark.gate
 def test_a_result_in_memory_has_the_same_page(tmp_path: Path) -> None:
     path, calls = tmp_path / "page.htm", []
     result = fastpin.solve(
@@ -300,12 +300,16 @@ def test_a_branch_begins_with_the_loads_of_its_start(only: Callable[..., None], 
     assert "from no load" not in words
 
 
-def test_a_figure_has_the_same_markup_each_time() -> None:
+@pytest.mark.usefixtures("drawn")
+def test_a_figure_has_the_same_markup_each_time_and_refers_to_its_own_elements() -> None:
     result = sample_result(nodes=21)
     first, second = (
         Album().picture(lambda path: fastpin.plot_tractions(result, path), "words", "caption") for _ in range(2)
     )
     assert first == second
+    used = set(re.findall(r"url\(#([^)]+)\)", first.markup))
+    assert len(used) >= 3
+    assert used <= set(Page(first.markup).ids)
 
 
 def test_a_large_figure_becomes_a_bitmap(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -319,6 +323,7 @@ def test_a_large_figure_becomes_a_bitmap(monkeypatch: pytest.MonkeyPatch) -> Non
     assert element[1]["alt"] == 'say "so"'
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_a_run_that_goes_on_or_ended_early_has_a_page(only: Callable[..., None], tmp_path: Path) -> None:
     only(overview)
@@ -380,7 +385,7 @@ def test_the_materials_show_a_laminate_with_its_plies_and_sources(only: Callable
 
 @pytest.mark.usefixtures("undrawn")
 @pytest.mark.filterwarnings("ignore::fastpin.errors.InputWarning")
-@pytest.mark.parametrize(("interference", "clearance"), [(30e-6, 15e-6), (0.0, -20e-6), (0.0, 40e-6)])
+@pytest.mark.parametrize(("interference", "clearance"), [*gate((30e-6, 15e-6)), (0.0, -20e-6), (0.0, 40e-6)])
 def test_the_pin_radius_is_that_of_the_free_pin(interference: float, clearance: float) -> None:
     bush = Bushing(Material(103e9, 0.34, yield_strength=138e6), 12.5e-3, interference)
     pair = MaterialPair(Material(210e9, 0.3), Material(71e9, 0.33))

@@ -10,14 +10,8 @@ import pytest
 from fastpin.pages import write_report
 from fastpin.report.states import seat_line
 from fastpin.states.extremes import KeptStates, marked_extremes, marked_places
-from tests.support.drawing import draw_roughly
 from tests.support.html import Page
 from tests.support.seats import sample_seat, stored_sample
-
-
-@pytest.fixture
-def _roughly(monkeypatch: pytest.MonkeyPatch) -> None:
-    draw_roughly(monkeypatch)
 
 
 def sentence() -> str:
@@ -28,8 +22,7 @@ def sentence() -> str:
     return f"{line[0].upper()}{line[1:]}."
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("_roughly")
+@pytest.mark.survey
 def test_the_page_has_a_section_on_the_seat(tmp_path: Path) -> None:
     pages = []
     for source, name in ((sample_seat(), "memory.html"), (stored_sample(tmp_path / "joint.h5"), "stored.html")):
@@ -46,7 +39,7 @@ def test_the_page_has_a_section_on_the_seat(tmp_path: Path) -> None:
     assert pages[0] == pages[1]
 
 
-@pytest.mark.usefixtures("_roughly")
+@pytest.mark.gate
 def test_the_pdf_has_it_too(tmp_path: Path) -> None:
     sample_seat().report(tmp_path / "joint.pdf")
     outline = [

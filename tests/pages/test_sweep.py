@@ -11,7 +11,6 @@ from fastpin.errors import InputError
 from fastpin.pages import write_sweep_report
 from fastpin.studies import read_plan, sweep
 from scripts.inline import Inline
-from tests.support.drawing import draw_roughly
 from tests.support.html import Page
 from tests.support.samples import JOINT
 
@@ -88,12 +87,10 @@ life = { wear = "life", cycles = 10, pin = 1e-14, law = "energy", criterion = "f
 """
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("extra", ["", "plate.nu = [0.3, 0.31]\n"])
-def test_maps_of_several_outcomes_stand_side_by_side(
-    folder: Path, extra: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_maps_of_several_outcomes_stand_side_by_side(folder: Path, extra: str, tmp_path: Path) -> None:
     """The case has no cycles, so the outcomes of cycles have no values."""
-    draw_roughly(monkeypatch)
     plan = folder.parent / "several.toml"
     plan.write_text(PLAN.replace("[outcomes]", f"{extra}[outcomes]") + OUTCOMES)
     sweep.run(read_plan(plan), tmp_path / "several", Inline())

@@ -19,9 +19,9 @@ from fastpin.pages.wear import WEAR_SECTIONS, damage, numbers, overview, provena
 from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.solver.wear_result import WearResult, WornCycle
-from tests.support.drawing import draw_roughly
 from tests.support.html import Page
 from tests.support.lives import JOINT, sample_life
+from tests.support.tiers import gate
 
 CASE = """title = "Worn lug"
 [pin]
@@ -82,9 +82,9 @@ def words_of(result: WearResult | Path, path: Path, **options: object) -> str:
     return Page(path.read_text(encoding="utf-8")).text
 
 
+@pytest.mark.gate
 @pytest.mark.filterwarnings("error")
-def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult, monkeypatch: pytest.MonkeyPatch) -> None:
-    draw_roughly(monkeypatch)
+def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult) -> None:
     calls: list[tuple[float, float]] = []
     write_report(stored, stored.with_name("page.html"), progress=lambda done, total: calls.append((done, total)))
     page = Page(stored.with_name("page.html").read_text(encoding="utf-8"))
@@ -111,6 +111,7 @@ def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult, monkeypa
     assert "nan" not in page.text.split()
 
 
+@pytest.mark.survey
 @pytest.mark.usefixtures("undrawn")
 def test_a_life_in_memory_has_the_same_page(
     stored: Path, life: WearResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -164,6 +165,7 @@ def test_a_long_table_is_cut_and_holds_the_extremes(
     assert [line for line in lines if "more" in line] == ["... 30 more ...", "... 30 more ..."]
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_the_damage_of_many_cycles_says_from_how_many_it_is(
     life: WearResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -192,7 +194,7 @@ def test_an_unfinished_life_says_so(stored: Path, life: WearResult, only: Callab
 
 
 @pytest.mark.usefixtures("undrawn")
-@pytest.mark.parametrize("count", [0, 1])
+@pytest.mark.parametrize("count", [0, *gate(1)])
 def test_a_life_that_ended_at_once_says_what_is_missing(count: int, life: WearResult, tmp_path: Path) -> None:
     ended = replace(life, cycles=life.cycles[:count], complete=False)
     found = words_of(ended, tmp_path / "page.html")
@@ -202,6 +204,7 @@ def test_a_life_that_ended_at_once_says_what_is_missing(count: int, life: WearRe
     assert count == 0 or "There is no figure of the slip: the cycle to corner 3 is not closed" in found
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_a_plate_without_constants_has_no_damage(tmp_path: Path) -> None:
     pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["aluminium"])

@@ -72,6 +72,7 @@ def test_at_the_onset_the_tractions_are_those_of_full_sliding(load_parameter, fr
     assert state.resultants["M"] == pytest.approx(found.moment, rel=2e-4)
 
 
+@pytest.mark.gate
 def test_onset_is_later_than_mu_P_and_earlier_on_the_way_back():
     for load_parameter, friction, expected in ((0.5, 0.1, 1.352), (1.0, 0.3, 1.252), (2.0, 0.8, 1.225)):
         problem = held(load_parameter, friction)
@@ -81,12 +82,14 @@ def test_onset_is_later_than_mu_P_and_earlier_on_the_way_back():
         assert back / friction == pytest.approx(expected, abs=0.02)
 
 
+@pytest.mark.gate
 def test_a_conforming_contact_does_not_slide():
     problem = held(0.2, 0.55)
     assert math.isnan(sliding_onset.forward_onset(problem, sliding_onset.LARGEST, NODES))
     assert math.isnan(sliding_onset.reverse_onset(problem, sliding_onset.LARGEST, NODES))
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("name", ["memory", "sliding-onset"])
 def test_drawn(name, remembered, monkeypatch):
     monkeypatch.setattr(sliding_onset, "LOAD_PARAMETERS", (0.5, 2.0))

@@ -75,6 +75,7 @@ def test_tractions_are_in_equilibrium_and_within_coulombs_cone(name: str) -> Non
         assert curve["N"][[0, -1]].tolist() == curve["T"][[0, -1]].tolist() == [0.0, 0.0]
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("name", catalog.PAPER)
 def test_drawn_with_all_lines_and_a_legend_inside(name: str) -> None:
     figure = drawn(name)
@@ -174,6 +175,7 @@ def test_nodes_gather_at_the_bottom_and_at_narrow_slip_zones() -> None:
     assert np.diff(finer)[middle] == pytest.approx(0.025, rel=0.05)
 
 
+@pytest.mark.gate
 def test_stick_zones_have_no_gaps_and_no_jogs() -> None:
     """With equal spacings of a quarter of a decade each, the first curve ended, and the others had 0.012 and 0.044."""
     narrow, wide = sweep.swept([("Ti/Al", 0.1), ("Ti/Al", 0.2)], 201, None)
@@ -224,6 +226,7 @@ def test_centre_loads_press_harder_and_rub_less_than_body_loads() -> None:
         assert centre["angle_deg"][-1] == pytest.approx(body["angle_deg"][-1], abs=0.5)
 
 
+@pytest.mark.gate
 def test_normalised_stresses_are_those_of_the_paper() -> None:
     """The hole's edge moves by F beta* [(sigma_x + sigma_y)/2 + (sigma_x - sigma_y) cos 2 theta], (42) with its 1/2."""
     unit, along, across = remote_stress.stress_unit("Ti/Al"), 0.3, -0.2
@@ -328,6 +331,7 @@ def test_names() -> None:
     assert len({catalog.figure(name).title for name in catalog.PAPER}) == len(catalog.PAPER)
 
 
+@pytest.mark.gate
 def test_a_figure_is_made_with_its_numbers(tmp_path: Path) -> None:
     picture, page, numbers = catalog.make(17, tmp_path / "new" / "folder", 201, formats=("png", "pdf"))
     assert matplotlib.image.imread(picture).shape[:2] == (1560, 2160)  # 300 dots an inch

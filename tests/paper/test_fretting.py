@@ -86,6 +86,7 @@ def test_sliding_forward_requires_more_than_mu_P(pair, load_parameter, friction,
     assert state.grid.weights @ (state.pressure * np.cos(state.theta)) > 0.0
 
 
+@pytest.mark.gate
 def test_sliding_may_begin_below_mu_P_in_nearly_flat_dissimilar_contacts():
     """5.3: eta_s > 1 is not so for Ti/Al at very high L_p, where the coupling of pressure and slip leans the pressure
     back: 0.999 at L_p = 300. Al/Ti and like materials keep to it."""
@@ -358,6 +359,7 @@ def test_held_pin_does_not_slide_at_low_load_parameter(pair, load_parameter):
         assert sliding_onset(pair, load_parameter, friction, 0.5, 8.0, steps=40) is None
 
 
+@pytest.mark.gate
 def test_sliding_gets_easier_with_the_load_parameter():
     """6: sliding occurs more easily at high values of L_p: eta_s falls towards 1 (Ti/Ti, mu = 0.4)."""
     found = [sliding_onset("Ti/Ti", lp, 0.4, 1.0, 2.0, steps=100)[0] for lp in (0.5, 1.0, 2.0, 10.0)]

@@ -62,6 +62,7 @@ def test_tractions_at_the_stages(loads):
         assert curve["N"][0] == curve["N"][-1]
 
 
+@pytest.mark.gate
 def test_loads_are_drawn(loads):
     figure = catalog.figure("interference").draw(loads)
     figure.draw_without_rendering()
@@ -149,6 +150,7 @@ def test_rays_are_added_where_neighbours_differ(mapped):
         assert RAYS < rays.size < 2 * RAYS
 
 
+@pytest.mark.gate
 def test_the_map_is_drawn_with_names_in_its_regions(mapped):
     figure = catalog.figure("regimes").draw(mapped)
     figure.draw_without_rendering()

@@ -166,6 +166,7 @@ def test_newest_result(
     assert report.newest().name == "a.json"
 
 
+@pytest.mark.gate
 def test_figure(report: ModuleType, tmp_path: Path, stored: dict[str, Any]) -> None:
     report.save_figure(stored, tmp_path / "performance.png")
     assert (tmp_path / "performance.png").read_bytes().startswith(b"\x89PNG")

@@ -23,7 +23,7 @@ def _inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         shutil.copy(DOCS / name, name)
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_page_prints_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     """Each block of Python is followed by what it prints."""
     names: dict[str, Any] = {}

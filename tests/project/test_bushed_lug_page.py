@@ -27,7 +27,7 @@ def test_the_page_shows_its_files() -> None:
     assert shown == [Path(f"bushed-lug{part}.toml").read_text(encoding="utf-8") for part in ("", "-tolerances")]
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_case_of_the_page_prints_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "bushed-lug.toml"]) == 0
     assert re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)[0] in capsys.readouterr().out

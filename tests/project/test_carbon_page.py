@@ -73,7 +73,7 @@ def test_other_assessments(criterion: str, lengths: str, start: str, capsys: pyt
     assert abs(round(abs(float(found[1])))) == int(place.removesuffix(" deg"))
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_clearance_and_friction() -> None:
     ratios = {(row["contact.clearance"], row["contact.friction"]): row["ratio"] for row in solved("carbon-fit")}
     assert f"from {ratios[0, 0.2]:.2f} to {ratios[60e-6, 0.2]:.2f} at a friction of 0.2" in PAGE
@@ -81,7 +81,7 @@ def test_clearance_and_friction() -> None:
     assert f"and by {100.0 * (ratios[60e-6, 0.4] / ratios[60e-6, 0.0] - 1.0):.0f} % at 60 um" in PAGE
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_table_of_axes() -> None:
     ratios = {(row["plate.layup"], row["plate.axis"]): row["ratio"] for row in solved("carbon-axis")}
     for layup in {layup for layup, _ in ratios}:
@@ -90,7 +90,7 @@ def test_the_table_of_axes() -> None:
         assert ratios[layup, 30] == pytest.approx(ratios[layup, 60], rel=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_envelope() -> None:
     factors = {(row["load.1.syy"], row["contact.clearance"]): row["factor"] for row in solved("carbon-envelope")}
     taken = 1.0 - factors[0, 40e-6] / factors[0, 10e-6]

@@ -147,7 +147,6 @@ def test_an_unfinished_case_is_resumed_and_a_finished_one_skipped(tmp_path: Path
     assert sorted(path.name for path in tmp_path.glob("a.*")) == ["a.h5"]
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("snakemake") is None, reason="snakemake is not installed")
 def test_snakemake_plans_all_parts_and_cases(tmp_path: Path) -> None:
     """Slow: Snakemake takes seconds to start."""
@@ -163,7 +162,7 @@ def test_snakemake_plans_all_parts_and_cases(tmp_path: Path) -> None:
     assert counts == {"all": "1", "case": "2", "part": "4", "sweep": "1", "total": "8"}
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 @needs_bash
 def test_the_parts_of_a_sweep_are_solved_and_joined(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Slow: each task starts two processes."""

@@ -36,7 +36,6 @@ from fastpin.elasticity import plate_compliance
 from fastpin.studies import parse_plan, sweep
 from fastpin.studies.tolerances import KEYS as TOLERANCE_KEYS
 from scripts.inline import Inline
-from tests.support.drawing import draw_roughly
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -63,8 +62,11 @@ ELSEWHERE = {
 }
 """Pages whose blocks of Python run in another test of this folder, as some of them may come later."""
 
-LONG = ("convergence.md", "compliance.md", "histories.md", "report.md")
-"""Pages whose blocks of Python take more than a few seconds."""
+LONG = {
+    **dict.fromkeys(("convergence.md", "compliance.md", "histories.md"), pytest.mark.gate),
+    "report.md": pytest.mark.survey,
+}
+"""Pages whose blocks of Python take long, and the mark of their test."""
 
 PLAN_KEYS = {"title", "case", "grid", "list", "outcomes", "labels"}
 """Keys of a plan, as docs/reference/plan-file.md lists them."""
@@ -89,8 +91,7 @@ def with_blocks(*languages: str) -> list[Any]:
 def here() -> list[Any]:
     """The pages whose Python runs in this file, as parameters."""
     pages = [page for page in PAGES if blocks(page, "python") and page.name not in ELSEWHERE]
-    slow = {name: [pytest.mark.slow] for name in LONG}
-    return [pytest.param(page, id=page.name, marks=slow.get(page.name, [])) for page in pages]
+    return [pytest.param(page, id=page.name, marks=LONG.get(page.name, ())) for page in pages]
 
 
 @pytest.fixture(scope="module")
@@ -141,8 +142,7 @@ def names(
 
 
 @pytest.mark.parametrize("page", here())
-def test_python_runs(page: Path, names: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
-    draw_roughly(monkeypatch)
+def test_python_runs(page: Path, names: dict[str, Any]) -> None:
     if page.name == "compliance.md":
         Path("lug.json").write_text(plate_compliance(parse_lug(LUG_EXAMPLE).lug).compliance.to_text(), encoding="utf-8")
     if page.name == "sweeps.md":
@@ -204,11 +204,16 @@ def test_unknown_keys_are_noticed() -> None:
     assert not has_known_keys({"load": [{"P": 1.0}, {"p": 1.0}]}, KEYS)
 
 
-@pytest.mark.parametrize("page", with_blocks("console", "sh", "bash"))
+@pytest.mark.parametrize("page", with_blocks("console"))
 def test_commands_exist(page: Path) -> None:
     for text in blocks(page, "console"):
         for line in filter(None, map(str.strip, text.replace("\\\n", " ").splitlines())):
             check_command(line.removeprefix("$ "))
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("page", with_blocks("sh", "bash"))
+def test_shell_scripts_can_be_read(page: Path) -> None:
     for text in blocks(page, "sh", "bash"):
         subprocess.run(["bash", "-n"], input=text, text=True, check=True)
 

@@ -21,7 +21,7 @@ def test_the_page_shows_its_plan() -> None:
     assert f"```toml\n{(DOCS / 'crack-map.toml').read_text(encoding='utf-8')}```" in PAGE
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_map_is_drawn_by_one_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -116,7 +116,7 @@ def test_every_way_to_an_outcome_is_explained() -> None:
         assert f"`{key}`" in text, key
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_the_examples_of_fatigue_print_their_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     text = (ROOT / "docs" / "fatigue.md").read_text(encoding="utf-8")
     codes, printed = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
@@ -126,7 +126,7 @@ def test_the_examples_of_fatigue_print_their_numbers(capsys: pytest.CaptureFixtu
         assert capsys.readouterr().out == lines
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_example_of_cracks_prints_its_numbers(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -140,7 +140,7 @@ def test_the_example_of_cracks_prints_its_numbers(
     assert [path.name for path in tmp_path.iterdir()] == ["growth.png"]
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_example_of_figures_draws_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")
@@ -154,6 +154,7 @@ def test_the_example_of_figures_draws_them(tmp_path: Path, monkeypatch: pytest.M
         assert f"`{kind}`" in text, kind
 
 
+@pytest.mark.gate
 def test_the_examples_of_sessions_run() -> None:
     text = (ROOT / "docs" / "sessions.md").read_text(encoding="utf-8")
     names: dict[str, Any] = {}
@@ -175,7 +176,7 @@ def test_the_riveted_joint_shows_its_files() -> None:
     assert shown == [(ROOT / "docs" / f"riveted-joint{part}.toml").read_text() for part in ("", "-plan")]
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_the_riveted_joint_prints_its_numbers(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -196,6 +197,7 @@ def without_sides(text: str) -> str:
     return re.sub(r"load point \d+;", "", re.sub(r"-(\d[\d.]* deg)", r"\1", text))
 
 
+@pytest.mark.gate
 def test_the_plan_of_the_riveted_joint_can_be_run(tmp_path: Path) -> None:
     plan = read_plan(ROOT / "docs" / "riveted-joint-plan.toml")
     assert len(plan.runs) == 18

@@ -94,6 +94,7 @@ def texts():
     return layout.texts_of(ROOT)
 
 
+@pytest.mark.gate
 def test_every_rule_holds(texts):
     assert len(texts) > 150
     assert layout.broken(texts) == []
@@ -156,6 +157,7 @@ def test_no_public_name_is_also_the_name_of_a_file(folder):
     assert [name for name in names if (stub.parent / f"{name}.py").exists()] == []
 
 
+@pytest.mark.gate
 def test_completion_shows_the_same_before_and_after_a_solve():
     code = (
         "import fastpin\n"

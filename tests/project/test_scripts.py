@@ -82,7 +82,15 @@ def log(project: Path) -> list[str]:
 
 @pytest.mark.parametrize(
     "name",
-    ["scripts/run", "scripts/test", "scripts/docs", "scripts/oldest-versions", "scripts/other-machines", ".ci/run"],
+    [
+        "scripts/run",
+        "scripts/test",
+        "scripts/docs",
+        "scripts/oldest-versions",
+        "scripts/other-machines",
+        "scripts/test-files",
+        ".ci/run",
+    ],
 )
 def test_scripts_can_be_run_and_parsed(name: str) -> None:
     assert os.access(ROOT / name, os.X_OK)
@@ -107,7 +115,7 @@ def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> N
     run(project, "run", "x")
     log(project)
     assert run(project, "test", "-k", "a b").returncode == 0
-    tests = f"{project}> -m pytest -n auto --dist worksteal -m not slow -k a b"
+    tests = f"{project}> -m pytest -n auto --dist worksteal -k a b"
     found = log(project)
     assert (found[0], found[-1]) == (f"pip {project}[dev]", tests)
     run(project, "run", "x")
@@ -223,7 +231,7 @@ def test_the_environment_of_the_oldest_versions_is_made_once(project: Path) -> N
     assert first.returncode == 0, first.stderr
     found = log(project)
     assert [line for line in found if line in ("venv", f"pip {project}[dev]")] == ["venv", f"pip {project}[dev]"]
-    tests = f"{project}> -m pytest -n auto -m not slow -W ignore::DeprecationWarning tests/model"
+    tests = f"{project}> -m pytest -n auto -W ignore::DeprecationWarning tests/model"
     assert found[-1] == tests
     assert (project / ".venv-oldest" / "constraints.txt").exists()
     run(project, "oldest-versions", "tests/model")

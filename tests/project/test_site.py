@@ -18,12 +18,13 @@ import fastpin
 from fastpin.casefile.reader import KEYS
 from fastpin.cli.options import parser
 from fastpin.storage import extremes, layout, wear_files
+from tests.support.tiers import some_survey
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 EXAMPLES = sorted((DOCS / "gallery").glob("*.py"))
 QUICK = ("plot_01_neat_fit", "plot_05_path_dependence", "plot_10_hollow_pin")
-"""Examples of a second or less: these run in ./scripts/test too."""
+"""Short examples. The others run when the site is made."""
 
 LONGEST_EXAMPLE = 60
 """Most lines of an example, so that it stays an example."""
@@ -38,7 +39,7 @@ def extension(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 @pytest.mark.parametrize(
     "path",
-    [pytest.param(path, marks=[] if path.stem in QUICK else [pytest.mark.slow]) for path in EXAMPLES],
+    some_survey(EXAMPLES, *(path for path in EXAMPLES if path.stem not in QUICK)),
     ids=lambda path: path.stem,
 )
 def test_an_example_runs_and_draws_a_figure(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from fastpin.studies.plan import parse_plan
 from scripts import tutorial
 from scripts.inline import Inline
 from tests.support.documents import DOCS, blocks, run_page
+from tests.support.tiers import gate
 
 HOW_TO = [
     "tutorial",
@@ -46,7 +47,7 @@ def _inside_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_the_tutorial_runs_as_printed() -> None:
     """Figures are left to `scripts/tutorial.py`, which draws them by the same commands."""
     run_page("tutorial.md", lambda command: "" if command.startswith("plot") else command.partition(" --plot")[0])
@@ -61,11 +62,12 @@ def test_the_tutorial_shows_the_figures_of_its_script(monkeypatch: pytest.Monkey
     assert all((DOCS / "figures" / name).exists() for name in names)
 
 
-@pytest.mark.parametrize("page", ["superposition.md", "coming-from.md", "interference.md"])
+@pytest.mark.parametrize("page", ["superposition.md", "coming-from.md", *gate("interference.md")])
 def test_a_page_of_scripts_prints_its_numbers(page: str) -> None:
     run_page(page)
 
 
+@pytest.mark.gate
 def test_results_are_read_as_shown() -> None:
     """The sweep runs in this process, and drawn figures are left out."""
 
@@ -79,6 +81,7 @@ def test_results_are_read_as_shown() -> None:
     assert len(names["paths"]) == 2
 
 
+@pytest.mark.gate
 def test_the_map_of_slip_regimes_is_a_plan() -> None:
     for block in blocks("sweeps.md"):
         if block.file is not None:

@@ -16,7 +16,7 @@ from scripts.inline import Inline
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "tolerances.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_the_plan_of_the_page_prints_its_numbers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

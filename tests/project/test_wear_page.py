@@ -47,7 +47,7 @@ def test_the_profiles_of_the_page_can_be_read() -> None:
     assert changed.friction_at(changed.hole_radius * 0.0 - 1.6) == pytest.approx(0.2)
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_page_prints_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     """Each block of Python that prints is followed by what it prints."""
     names: dict[str, Any] = {}
@@ -59,7 +59,7 @@ def test_the_page_prints_its_numbers(capsys: pytest.CaptureFixture[str]) -> None
     assert printed == 5
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_table_of_the_page_is_that_of_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["wear", "worn-joint.toml", "-o", "life.h5"]) == 0
     shown = next(text for text in blocks("text") if "energy/cycle" in text)
@@ -67,7 +67,7 @@ def test_the_table_of_the_page_is_that_of_the_command(capsys: pytest.CaptureFixt
     assert main(["plot", "life.h5", "damage"]) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_the_fretting_map_is_drawn_by_one_command(capsys: pytest.CaptureFixture[str]) -> None:
     """The same plan on a small grid, with few nodes and cycles."""
     plan = read_plan("fretting-map.toml")

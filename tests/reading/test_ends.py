@@ -55,6 +55,7 @@ def test_an_edge_without_a_shape_is_where_the_outermost_nodes_point():
 # --- solved contacts --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.gate
 def test_contact_edges_are_second_order(similar):
     """Against Persson's closed form; on 401 nodes the half-angle is right to a fiftieth of the node distance."""
     sizes, rng = np.array([101, 201, 401, 801]), np.random.default_rng(7)
@@ -71,6 +72,7 @@ def test_contact_edges_are_second_order(similar):
     assert order(sizes, np.sqrt(squares)) > 1.9
 
 
+@pytest.mark.gate
 def test_peaks_of_shear_and_borders_of_a_cycle(similar):
     """P, Q, -Q, Q: the third peak is where the border of the first half cycle was, and far from any border now."""
     problem = Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed")
@@ -103,6 +105,7 @@ def test_readings_of_a_mirrored_contact_are_mirrored(similar):
             assert (start - BOTTOM, stop - BOTTOM) == pytest.approx((BOTTOM - last, BOTTOM - first), abs=1e-8)
 
 
+@pytest.mark.gate
 def test_exponents_of_edges_and_borders_of_unlike_bodies():
     """(T21), (T26): with them 201 nodes agree with 801 at edges and borders; with others they do not."""
     problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.6, "body")
@@ -121,6 +124,7 @@ def test_exponents_of_edges_and_borders_of_unlike_bodies():
         assert wrong[0].stick[0][1] != pytest.approx(fine.stick[0][1], abs=0.01 * spacing)
 
 
+@pytest.mark.gate
 def test_the_peak_shear_of_unlike_bodies_is_a_little_beyond_the_border():
     problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.6, "body")
     for nodes in (201, 801):
@@ -130,6 +134,7 @@ def test_the_peak_shear_of_unlike_bodies_is_a_little_beyond_the_border():
         assert 0.004 < beyond < 0.012
 
 
+@pytest.mark.gate
 def test_the_pressure_of_unlike_bodies_has_a_corner_where_they_first_touched():
     problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.6, "body")
     coarse, fine = (solve(problem, [{"P": 1.0}], nodes=nodes)[-1] for nodes in (201, 1201))

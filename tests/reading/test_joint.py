@@ -99,6 +99,7 @@ def bushed(interference: float = 0.0) -> State:
     return solve(problem, [{"P": 1.0}], nodes=801)[-1]
 
 
+@pytest.mark.gate
 def test_the_interface_of_case_a10():
     """Table A of a trial of these formulas: the interface carries -0.07299 to 0.46486, and shear up to 0.06845."""
     fit = bushed().bush_fit()
@@ -117,6 +118,7 @@ def test_the_interface_of_case_a10():
         assert bushed().bush_fit(friction).pressure_to_stick == pytest.approx(needed, abs=5e-4)
 
 
+@pytest.mark.gate
 def test_the_press_fit_holds_the_bush():
     body = Bushing(BRONZE, 1.25, 1.0)
     unit = Problem.from_load_parameter(MaterialPair(STEEL, ALUMINIUM), 0.1, 0.2, plate_body=body).press_fit_pressure
@@ -165,6 +167,7 @@ def test_the_friction_of_an_interface_is_checked():
         state[-1].bush_fit(-0.1)
 
 
+@pytest.mark.gate
 def test_joint_and_bush_are_quantities_of_a_state():
     state = bushed()
     assert QUANTITIES["joint_uy"].of(state) == state.joint_displacement()["uy"] < 0.0

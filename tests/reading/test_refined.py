@@ -76,14 +76,14 @@ def states(request):
     return solve(problem(), FRETTING, nodes=request.param)
 
 
-@pytest.mark.parametrize("step", range(4))
-def test_hoop_stress_at_the_edges(states, step):
-    state = states[step]
-    for body, expected in zip(("plate", "pin"), EDGES[step], strict=True):
-        found = state.hoop_stress(body, state.contact[0])
-        for value, known in zip(found, expected, strict=True):
-            if known is not None:
-                assert value == pytest.approx(known, abs=3e-4)
+def test_hoop_stress_at_the_edges(states):
+    for step in range(4):
+        state = states[step]
+        for body, expected in zip(("plate", "pin"), EDGES[step], strict=True):
+            found = state.hoop_stress(body, state.contact[0])
+            for value, known in zip(found, expected, strict=True):
+                if known is not None:
+                    assert value == pytest.approx(known, abs=3e-4)
 
 
 def test_a_slip_zone_of_half_a_degree(states):
@@ -121,7 +121,7 @@ def test_a_slip_zone_narrower_than_the_nodes_is_seen():
     assert not state.peak_hoop_stress().resolved
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_peaks_of_random_states_converge():
     """Against four times as many nodes; narrow slip zones and unlike bodies among them."""
     errors = []
@@ -317,6 +317,7 @@ def test_a_rigid_body_has_no_peak():
     assert state.peak_hoop_stress().value > 0.0
 
 
+@pytest.mark.gate
 def test_the_cusp_of_an_earlier_edge_inside_the_contact():
     """P grows, and the edge of the corner before lies inside a stick zone. The value is of 6,401 nodes."""
     one, two = solve(problem(), [{"P": 1.0}, {"Q": 0.275}, {"P": 1.1, "Q": 0.15}], nodes=1601)[1:]
@@ -327,6 +328,7 @@ def test_the_cusp_of_an_earlier_edge_inside_the_contact():
     assert two.hoop_stress("plate", edge + np.linspace(-0.01, 0.01, 401), True).max() < 0.57632
 
 
+@pytest.mark.gate
 def test_no_law_of_a_border_goes_beyond_an_old_border_beside_it():
     """With 301 and 601 nodes both lie within a node distance, at a slip zone of 0.7 degrees.
 
@@ -375,6 +377,7 @@ def test_angles_that_are_equal_up_to_rounding_are_one(monkeypatch):
     np.testing.assert_allclose(state.hoop_stress(theta=np.linspace(-3.0, 3.0, 50)), before, rtol=1e-9)
 
 
+@pytest.mark.gate
 def test_a_law_between_crowded_old_borders_keeps_coulombs_law():
     """A free pin leaves five old borders on six nodes.
 

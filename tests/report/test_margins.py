@@ -40,6 +40,7 @@ def of(result: Result) -> dict[str, Margin]:
     return {row.subject: row for row in rows}
 
 
+@pytest.mark.gate
 def test_margins_are_allowable_over_value_of_the_governing_state() -> None:
     result = solved()
     rows = of(result)
@@ -58,6 +59,7 @@ def test_margins_are_allowable_over_value_of_the_governing_state() -> None:
     assert opening.load_point == fits.index(least) + 1
 
 
+@pytest.mark.gate
 def test_what_is_not_known_says_why() -> None:
     result = solved(pair=MaterialPair(STEEL, replace(ALUMINIUM, yield_strength=None)))
     rows = of(result)
@@ -88,6 +90,7 @@ def test_a_bush_that_opens_has_a_negative_margin() -> None:
     assert rows["bush: rotation, friction needed"].remark == "the bush opens"
 
 
+@pytest.mark.gate
 def test_a_bush_that_slips_has_its_largest_slip() -> None:
     lug = replace(LUG, friction=0.2, bonded=False)
     result = solved(LoadHistory([{"P": 2e6}, {"Q": 1e6}, {"Q": -1e6}]), lug=lug)
@@ -123,6 +126,7 @@ def test_fatigue_is_of_the_last_cycle_and_says_so() -> None:
         assert row.remark == "not known: fatigue needs a cycle: none has ended"
 
 
+@pytest.mark.gate
 def test_the_summary_has_the_margins() -> None:
     result = solved()
     found = summary.document(Case(result.problem, result.history), result)["margins"]
@@ -139,6 +143,7 @@ def test_the_summary_has_the_margins() -> None:
     assert next(each for each in found if each["subject"] == "pin: yield, von Mises")["margin"] is None
 
 
+@pytest.mark.gate
 def test_the_ultimate_strength_has_a_margin_of_its_own() -> None:
     result = solved(pair=MaterialPair(STEEL, replace(ALUMINIUM, ultimate_strength=572e6)))
     rows = of(result)

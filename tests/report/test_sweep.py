@@ -151,6 +151,7 @@ def test_rounding_is_printed_as_zero(plan: Plan, rows: list[dict[str, Any]]) -> 
     assert {line[: ends["rotation"]].split()[-1] for line in lines} == {"0"}
 
 
+@pytest.mark.gate
 def test_outcomes_have_their_units(with_outcomes: Plan, rows: list[dict[str, Any]], tmp_path: Path) -> None:
     for place, row in enumerate(rows):
         row |= {"mass": 2e6 + place, "walk": 2e3, "loss": 0.5 * place}

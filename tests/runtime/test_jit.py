@@ -18,7 +18,6 @@ import pytest
 
 from fastpin.kernels import exchange, influence
 from fastpin.runtime import compiler, jit, machine, source
-from tests.support.marks import first_quick
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
 KERNEL = """
@@ -71,6 +70,7 @@ def compiles(installed: Path, **more: str) -> bool:
     return done.stdout.split() == ["True"]
 
 
+@pytest.mark.gate
 @keeps
 def test_kept_beside_the_package_until_it_does_not_fit_any_more(installed: Path, tmp_path: Path) -> None:
     assert compiles(installed)
@@ -92,6 +92,7 @@ def test_kept_beside_the_package_until_it_does_not_fit_any_more(installed: Path,
     assert not file.exists()
 
 
+@pytest.mark.gate
 @keeps
 def test_a_list_of_numba_that_names_what_is_gone_is_compiled_anew(installed: Path) -> None:
     """As after an upgrade to a version without a class that arguments had."""
@@ -114,8 +115,9 @@ print(small.doubled(1.5))
 """
 
 
+@pytest.mark.gate
 @keeps
-@pytest.mark.parametrize("file", first_quick(1, ["kernels/small.py", *source.SHARED]))
+@pytest.mark.parametrize("file", ["kernels/small.py", *source.SHARED])
 def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file: str) -> None:
     """The text on disk is not the text that it has imported, as after an upgrade while it runs."""
     path = installed / "fastpin" / file
@@ -129,7 +131,7 @@ def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file
     assert stored_in(cache(installed)) == ["small.doubled"]
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 @keeps
 def test_other_settings_need_other_code(installed: Path) -> None:
     assert compiles(installed)
@@ -138,7 +140,7 @@ def test_other_settings_need_other_code(installed: Path) -> None:
     assert stored_in(cache(installed)) == ["small.doubled"] * 2
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 @keeps
 def test_in_the_cache_of_the_user_where_the_package_can_not_be_written(installed: Path) -> None:
     cache(installed).touch()  # nobody, not even root, can make a directory where a file is
@@ -157,6 +159,7 @@ def arguments_of_columns(rng: np.random.Generator) -> tuple[object, ...]:
     return seen, nodes, length, length, 0.3, 2.0, influence._hat_series(length, length, 0.3), out[0], out[1]
 
 
+@pytest.mark.gate
 @keeps
 def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
     arguments = arguments_of_columns(np.random.default_rng(1))
@@ -235,7 +238,7 @@ print(influence.clausen(1.0), "numba" in sys.modules)
 """
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_numba_keeps_code_that_can_not_be_stored(tmp_path: Path) -> None:
     variables = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
 
@@ -279,7 +282,7 @@ assert numba.config.NUMBA_NUM_THREADS == 1
 """
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_packages_that_are_imported_later_work() -> None:
     influence.clausen(1.0)  # its machine code is stored now
     assert subprocess.run([sys.executable, "-c", AFTER], capture_output=True, text=True, check=True).stderr == ""

@@ -72,6 +72,7 @@ def forget() -> None:
         remembered.cache_clear()
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("change", CHANGES)
 def test_numba_keeps_the_code_when_a_part_changes(
     change: str, directory: Path, monkeypatch: pytest.MonkeyPatch
@@ -108,7 +109,7 @@ print(hashlib.sha256(arrays + numbers.encode()).hexdigest())
 """
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_a_history_has_the_same_bits_without_any_part(tmp_path: Path) -> None:
     def run(*arguments: str, **more: str) -> str:
         variables = {name: value for name, value in os.environ.items() if name != "FASTPIN_CACHE"} | more

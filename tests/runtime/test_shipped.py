@@ -12,7 +12,6 @@ import pytest
 
 from fastpin.runtime import jit, machine, source, stored
 from scripts import platform_wheel
-from tests.support.marks import first_quick
 
 pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored")
 
@@ -65,7 +64,8 @@ def runs(level: str) -> bool:
     return stored.LEVELS[level] <= {name.removeprefix("+") for name in machine.target()[-1].split(",")}
 
 
-@pytest.mark.parametrize("level", first_quick(1, stored.LEVELS))
+@pytest.mark.gate
+@pytest.mark.parametrize("level", stored.LEVELS)
 def test_shipped_code_needs_no_compiler_and_gives_the_same_bits(site: Path, tmp_path: Path, level: str) -> None:
     if not runs(level):
         pytest.skip("another processor")

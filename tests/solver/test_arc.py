@@ -16,6 +16,7 @@ from fastpin.solver.errors import ArcError, ResolutionError
 from fastpin.solver.run import Run
 from fastpin.solver.task import reference_force
 from tests.support.slip_cases import LIKE
+from tests.support.tiers import seeds
 from tests.survey.histories import random_case
 
 
@@ -30,18 +31,19 @@ def is_simple(seed: int) -> bool:
     return not values[:, REMOTE].any() and arc._estimated_arc(problem, values) is not None
 
 
-@pytest.mark.parametrize("seed", [seed for seed in range(12) if is_simple(seed)])
-def test_the_quick_run_finds_the_arc_of_the_careful_ones(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    problem, history = random_case(seed)
-    estimated = arc._estimated_arc(problem, history.distinct())
-    quick = touched_arc(problem, history)
-    monkeypatch.setattr(arc, "_quick_arc", lambda *_: None)
-    careful = touched_arc(problem, history)
-    assert estimated is not None
-    assert quick is not None
-    assert careful is not None
-    spacing = (estimated[1] - estimated[0]) / (arc.COARSE_NODES - 1)
-    assert quick == pytest.approx(careful, abs=1.001 * spacing)
+def test_the_quick_run_finds_the_arc_of_the_careful_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    for seed in filter(is_simple, seeds(12)):
+        problem, history = random_case(seed)
+        estimated = arc._estimated_arc(problem, history.distinct())
+        quick = touched_arc(problem, history)
+        with monkeypatch.context() as patch:
+            patch.setattr(arc, "_quick_arc", lambda *_: None)
+            careful = touched_arc(problem, history)
+        assert estimated is not None
+        assert quick is not None
+        assert careful is not None
+        spacing = (estimated[1] - estimated[0]) / (arc.COARSE_NODES - 1)
+        assert quick == pytest.approx(careful, abs=1.001 * spacing)
 
 
 @pytest.mark.parametrize("corner", [{"P": 1.0, "sxx": 0.01}, {"P": 1e-3}], ids=["remote stress", "little contact"])
@@ -112,13 +114,13 @@ def test_coarse_runs_follow_no_change_of_the_load_twice() -> None:
     assert np.array_equal(arc._without_repetition(corners[:1]), corners[:1])
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_the_arc_of_cycles_is_wide_enough_after_their_first_change(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_arc_of_cycles_is_wide_enough_after_their_first_change(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of 120 random contacts, one had another arc after all cycles, by one node of the coarse run."""
-    rng = np.random.default_rng(seed)
-    problem = Problem.from_load_parameter(LIKE, 10.0 ** rng.uniform(-2.0, 1.0), rng.uniform(0.1, 0.9), "centre")
-    force = rng.uniform(0.1, 0.9) * problem.friction_at(np.zeros(1))[0]
-    history = LoadHistory([{"P": 1.0}, *4 * [{"Q": force}, {"P": rng.uniform(0.4, 1.0), "Q": -force}]])
-    first = touched_arc(problem, history)
-    monkeypatch.setattr(arc, "_without_repetition", lambda values: values)
-    assert touched_arc(problem, history) == first
+    for seed in seeds(4):
+        rng = np.random.default_rng(seed)
+        problem = Problem.from_load_parameter(LIKE, 10.0 ** rng.uniform(-2.0, 1.0), rng.uniform(0.1, 0.9), "centre")
+        force = rng.uniform(0.1, 0.9) * problem.friction_at(np.zeros(1))[0]
+        history = LoadHistory([{"P": 1.0}, *4 * [{"Q": force}, {"P": rng.uniform(0.4, 1.0), "Q": -force}]])
+        first = touched_arc(problem, history)
+        monkeypatch.setattr(arc, "_without_repetition", lambda values: values)
+        assert touched_arc(problem, history) == first

@@ -33,7 +33,7 @@ from fastpin.solver.session import Session
 from fastpin.solver.settling import settle
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from tests.support.marks import slow
+from tests.support.tiers import some_gate, some_survey
 
 UNLIKE = MaterialPair(Material(116e9, 0.32), Material(69e9, 0.33))
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
@@ -68,11 +68,13 @@ def configuration_after(system: System, corners: list[Corner]) -> Configuration:
 # Nodes, peak pressure, rotation and int T of two cases, from another program.
 REFERENCE = [
     (61, 0.50786, 0.02135, -0.10402),
-    *slow((121, 0.50783, 0.02138, -0.10390), (241, 0.50780, 0.02136, -0.10385)),
+    (121, 0.50783, 0.02138, -0.10390),
+    (241, 0.50780, 0.02136, -0.10385),
 ]
 
 
-@pytest.mark.parametrize(("nodes", "peak", "rotation", "shear"), REFERENCE)
+@pytest.mark.gate
+@pytest.mark.parametrize(("nodes", "peak", "rotation", "shear"), some_survey(REFERENCE, REFERENCE[2]))
 def test_the_table_of_reference(nodes: int, peak: float, rotation: float, shear: float) -> None:
     """Loads and friction that change together, and friction that falls at constant load."""
     states = t1(nodes)
@@ -95,10 +97,10 @@ def test_a_step_in_parts_is_the_same_step(whole: Result) -> None:
 
 
 # Nodes, and the largest error of T by the number of increments.
-INCREMENTS = [(31, {50: 2e-3, 400: 2e-4}), *slow((61, {160: 3.3e-4, 640: 2.6e-5, 2560: 5e-6}))]
+INCREMENTS = [(31, {50: 2e-3, 400: 2e-4}), (61, {160: 3.3e-4, 640: 2.6e-5, 2560: 5e-6})]
 
 
-@pytest.mark.parametrize(("nodes", "largest"), INCREMENTS)
+@pytest.mark.parametrize(("nodes", "largest"), some_gate(INCREMENTS, INCREMENTS[1]))
 def test_implicit_increments_tend_to_it_at_first_order(nodes: int, largest: dict[int, float]) -> None:
     system = System.build(T1, Grid.arc(*ARC, nodes), 1.0)
     start, exact = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
@@ -116,6 +118,7 @@ def test_implicit_increments_tend_to_it_at_first_order(nodes: int, largest: dict
     assert worst_residual(system.under(exact.load), exact) < 1e-13
 
 
+@pytest.mark.gate
 def test_the_increment_method_follows_the_friction(whole: Result) -> None:
     stepped = t1(method="increment", increments=200)
     assert difference(whole[-1], stepped[-1]) < 2e-3
@@ -150,6 +153,7 @@ def test_growing_friction_changes_nothing_and_all_nodes_stick() -> None:
     assert np.all(grown[-1].status[grown[-1].pressure > 0.0] == STICK)
 
 
+@pytest.mark.gate
 def test_work_is_energy_and_dissipation_at_second_order() -> None:
     """Measured with 61, 121 and 241 nodes: 2.7e-6, 6.8e-7, 1.7e-7."""
     errors = []
@@ -162,6 +166,7 @@ def test_work_is_energy_and_dissipation_at_second_order() -> None:
     assert 3.0 < errors[0] / errors[1] < 6.0
 
 
+@pytest.mark.gate
 def test_a_pin_that_friction_no_longer_holds_is_reported_where_it_is_lost() -> None:
     problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.4)
     with pytest.raises(NoEquilibriumError, match=r"step 3, at 62\.\d+ % .*friction_change = -0\.56") as caught:
@@ -174,6 +179,7 @@ def test_a_pin_that_friction_no_longer_holds_is_reported_where_it_is_lost() -> N
     assert friction / math.hypot(1.0, friction) < 0.2  # at a point it would have been lost before
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("parameter", "corners"), [
     (0.1, [{"P": 1.0, "Q": 0.3, "friction_change": -0.5}, {"P": 0.0, "Q": 0.0, "friction_change": 0.2}, FIRST[0]]),
     (0.0, [{"P": 1.0, "Q": 0.3, "friction_change": -0.5}, {"Q": -0.3, "friction_change": 0.5}]),
@@ -198,6 +204,7 @@ def test_states_inside_a_step_have_the_friction_of_their_moment() -> None:
         assert abs(state.peak_shear) <= state.most_friction * state.peak_pressure * (1.0 + 1e-12)
 
 
+@pytest.mark.gate
 def test_a_history_continues_inside_changes_with_the_same_bits() -> None:
     corners: list[Corner] = [*FIRST, LAST, {"Q": 0.15}, {"friction_change": 0.1, "Q": -0.1}]
     grid = Grid.arc(*ARC, 31)
@@ -209,6 +216,7 @@ def test_a_history_continues_inside_changes_with_the_same_bits() -> None:
             assert np.array_equal(getattr(last, name), getattr(whole[-1], name)), (cut, name)
 
 
+@pytest.mark.gate
 def test_cycles_of_friction_settle_and_repeat() -> None:
     cycle = LoadHistory([{"Q": 0.2, "friction_change": -0.3}, {"Q": -0.2, "friction_change": 0.0}]).repeated(300)
     problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "centre", "fixed")
@@ -281,6 +289,7 @@ def test_a_first_contact_has_the_friction_of_its_load() -> None:
         solve(problem, corners, nodes=31)
 
 
+@pytest.mark.gate
 def test_a_neat_fit_is_followed_while_the_friction_changes() -> None:
     problem = Problem.from_load_parameter(UNLIKE, 0.0, 0.4, "centre", "fixed")
     whole = solve(problem, [{"P": 1.0, "Q": 0.3, "friction_change": -0.8}], grid=Grid.circle(61))
@@ -289,6 +298,7 @@ def test_a_neat_fit_is_followed_while_the_friction_changes() -> None:
     assert whole.statistics["events"] > 5
 
 
+@pytest.mark.gate
 def test_energies_between_far_events_are_exact() -> None:
     problem = Problem.from_load_parameter(LIKE, 0.2, 0.6, "centre", "fixed")
     first, last = {"P": 1.0, "Q": 0.9}, {"P": 1.0, "Q": 1.2, "friction_change": 1.0}
@@ -301,6 +311,7 @@ def test_energies_between_far_events_are_exact() -> None:
     assert found[0].work == pytest.approx(found[1].work, rel=1e-9)
 
 
+@pytest.mark.gate
 def test_a_stretch_is_halved_until_cubics_describe_it(monkeypatch: pytest.MonkeyPatch) -> None:
     system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
     start, end = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
@@ -345,6 +356,7 @@ def test_statuses_that_come_back_end_the_path_at_once(monkeypatch: pytest.Monkey
 # -- sessions: any friction at the nodes, followed at constant load ----------------------------------------------------
 
 
+@pytest.mark.gate
 def test_a_session_follows_a_change_as_a_history_does() -> None:
     session = Session(T1, nodes=31, arc=ARC, slip_sums=True)
     session.advance(FIRST[0])
@@ -383,6 +395,7 @@ def test_a_friction_from_the_accumulated_slip_is_followed_cycle_by_cycle() -> No
         assert max(followed.residuals.values()) < 1e-13
 
 
+@pytest.mark.gate
 def test_a_session_that_loses_the_pin_on_the_way_stays_where_it_was() -> None:
     session = Session(Problem.from_load_parameter(UNLIKE, 0.1, 0.5), nodes=41)
     before = session.advance({"P": 1.0, "M": 0.3})

@@ -22,7 +22,7 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep
 from fastpin.solver.settling import FiniteStep, settle
 from fastpin.solver.solving import solve
-from tests.support.marks import first_quick
+from tests.support.tiers import gate
 
 BOTTOM = -0.5 * np.pi
 DRIVES = ["ux", "uy", "both"]
@@ -132,7 +132,8 @@ def test_windows_give_the_states_of_the_whole_operator(titanium_in_aluminium, dr
         assert [two.load[name] for name in LOADS] == pytest.approx([one.load[name] for name in LOADS], abs=1e-11)
 
 
-@pytest.mark.parametrize("rotation", first_quick(1, HELD))
+@pytest.mark.gate
+@pytest.mark.parametrize("rotation", HELD)
 def test_narrow_contacts_that_travel_get_the_nodes_where_they_are(titanium_in_aluminium, rotation):
     """The pin goes from one place of the hole to another, and hardly touches it."""
     case, history = narrow(titanium_in_aluminium, "both", rotation=rotation), circling(0.30001, -90, 0, 130)
@@ -154,7 +155,7 @@ def test_an_overlap_between_two_nodes_is_too_narrow(titanium_in_aluminium):
 
 
 @pytest.mark.parametrize("pin_load", ["centre", "body"])
-@pytest.mark.parametrize("drive", ["uy", "both"])
+@pytest.mark.parametrize("drive", [*gate("uy"), *gate("both")])
 def test_a_pin_that_is_moved_back_exactly_has_no_contact(titanium_in_aluminium, drive, pin_load):
     for nodes in (101, 201, 401):
         result = solve(narrow(titanium_in_aluminium, drive, pin_load), [{"uy": -0.30002}, {"uy": -0.3}], nodes=nodes)

@@ -21,6 +21,7 @@ def seconds(history: fastpin.LoadHistory, **options: object) -> float:
     return expected_seconds(CASE.problem, history, SolveOptions(**options))
 
 
+@pytest.mark.gate
 def test_the_time_is_expected_within_a_factor_of_ten() -> None:
     """Measured on a busy machine: factors of 0.4 to 1.7. Other machines may be slower."""
     history = PUSH + CYCLE.repeated(30)

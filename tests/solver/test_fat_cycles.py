@@ -23,8 +23,8 @@ from fastpin.solver.wear_result import WearResult
 from fastpin.verification.rows import Solving
 from fastpin.verification.wear_limits import rigid_sliding
 from fastpin.verification.wear_rows import final_state, half_planes, step, wearing
-from tests.support.marks import slow
 from tests.support.slip_cases import LIKE, UNLIKE
+from tests.support.tiers import some_survey
 from tests.support.wear_cases import WEAR_CASES, WearCase, lived
 from tests.survey.conditions import check_states
 from tests.survey.histories import generate
@@ -43,6 +43,7 @@ def every_cycle() -> WearResult:
     return life(WEAR_CASES["partial slip"], 300, 0.0)
 
 
+@pytest.mark.gate
 def test_fat_cycles_keep_their_promise_at_every_chosen_cycle():
     direct = every_cycle()
     fat = life(WEAR_CASES["partial slip"], 300, 0.05)
@@ -70,6 +71,7 @@ def test_the_volume_is_the_friction_energy_of_the_pieces():
     assert run.system.weights @ worn == pytest.approx(case.tau / 5 / 0.2 * dissipation, rel=1e-14)
 
 
+@pytest.mark.gate
 def test_half_the_coefficient_and_twice_the_cycles_are_nearly_the_same():
     case, volumes = WEAR_CASES["partial slip"], []
     for fat in (20, 40, 80, 160):
@@ -101,6 +103,7 @@ def test_pin_and_plate_share_the_wear_by_their_coefficients():
     assert np.array_equal(found.coefficients[1], np.where(inside, 0.6, 0.3))
 
 
+@pytest.mark.gate
 def test_beyond_the_limit_of_stability_the_pressure_stays_smooth():
     case = WEAR_CASES["rotation"]
     explicit, implicit = (life(case, jumps, 0.0, tau=0.1)[-1] for jumps in (80, 5))
@@ -138,6 +141,7 @@ def test_a_cycle_without_contact_in_it_wears_on():
     assert max(max(state.residuals.values()) for each in found for state in each.states) < 1e-10
 
 
+@pytest.mark.gate
 def test_a_pin_that_wear_sets_loose_rests_in_the_worn_hole():
     """An interference fit holds the pin all through the first cycle. Later it floats without force."""
     problem = fastpin.Problem.from_load_parameter(UNLIKE, -0.01, 0.3, "centre", "fixed")
@@ -150,6 +154,7 @@ def test_a_pin_that_wear_sets_loose_rests_in_the_worn_hole():
             assert max(value for name, value in conditions.items() if name != "balance") < 1e-10
 
 
+@pytest.mark.gate
 def test_wear_may_take_away_the_last_contact_without_force():
     """A pin that friction holds at no load floats after the wear of the way there."""
     case = generate("wear", 164)
@@ -159,6 +164,7 @@ def test_wear_may_take_away_the_last_contact_without_force():
         assert max(max(state.residuals.values()) for state in each.states) < 1e-10
 
 
+@pytest.mark.gate
 def test_much_wear_on_the_way_to_a_corner_is_applied_in_parts(monkeypatch):
     """The volume then hardly depends on the size of the parts. At the corners alone it is far off."""
     problem = fastpin.Problem.from_load_parameter(LIKE, 15.0, 0.3, "centre", "fixed")
@@ -210,7 +216,7 @@ def slid(clearance: float, steps: int) -> tuple[float, float, float]:
     return depth, float(peak), tilt
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 @pytest.mark.parametrize(("clearance", "depth", "peak"), [(1.0, 3e-3, 8e-3), (10.0, 4e-3, 1e-2)])
 def test_gross_sliding_tends_to_rigid_bodies(clearance, depth, peak):
     """Elastic bodies: d 5.252 and 6.925, N0 0.623 and 0.688, against 5.262 and 6.943, 0.625 and 0.693."""
@@ -220,7 +226,7 @@ def test_gross_sliding_tends_to_rigid_bodies(clearance, depth, peak):
     assert found[2] == pytest.approx(-np.arctan(0.2), abs=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_implicit_jumps_of_gross_sliding_converge():
     """Explicit jumps need more than 900 steps here. Measured: 0.53, 0.144, 0.038 below the depth of small steps."""
     finest = slid(1.0, 1600)[0]
@@ -229,7 +235,10 @@ def test_implicit_jumps_of_gross_sliding_converge():
     assert np.all(errors[:-1] > 3.0 * errors[1:])
 
 
-@pytest.mark.parametrize(("load_parameter", "nodes"), [(2e6, (6, 12)), (2e4, (6, 12)), *slow((2e6, (24, 48)))])
+@pytest.mark.gate
+@pytest.mark.parametrize(
+    ("load_parameter", "nodes"), some_survey([(2e6, (6, 12)), (2e4, (6, 12)), (2e6, (24, 48))], (2e6, (24, 48)))
+)
 def test_partial_slip_tends_to_the_final_state_of_the_half_plane(load_parameter, nodes):
     """First order. Measured with 6, 12, 24, 48 nodes: volume 9.1, 5.4, 3.0, 1.5 %, depth 5.0, 2.7, 1.7, 0.9 %."""
     coarse, fine = ([row.difference for row in half_planes(each, load_parameter, Solving())] for each in nodes)
@@ -238,6 +247,7 @@ def test_partial_slip_tends_to_the_final_state_of_the_half_plane(load_parameter,
         assert other < 0.65 * one
 
 
+@pytest.mark.gate
 def test_the_stick_zone_carries_the_whole_load_at_last():
     """The load beside it is 2e-7. The scar ends within a node distance of the limit."""
     last, half = final_state(12, 2e6)
@@ -250,6 +260,7 @@ def test_the_stick_zone_carries_the_whole_load_at_last():
     assert not last.gap_growth[~beside].any()
 
 
+@pytest.mark.gate
 def test_too_deep_wear_ends_with_one_sentence_and_keeps_what_was_found():
     problem = fastpin.Problem(UNLIKE, 0.01, 2e-5, 0.4, "centre", "fixed")
     history = LoadHistory([{"P": 2e6}]) + LoadHistory([{"rotation": 0.02}, {"rotation": -0.02}]).repeated(1)
@@ -280,6 +291,7 @@ def test_a_result_is_read_only_and_can_be_pickled():
     assert found.tau[-1] == pytest.approx(7.0)
 
 
+@pytest.mark.gate
 def test_a_worn_joint_is_a_problem_of_its_own():
     """A life in two parts, each from no load, is nearly the whole life: what goes is the memory of the shear."""
     case = WEAR_CASES["partial slip"]

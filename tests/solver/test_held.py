@@ -26,6 +26,7 @@ from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns
+from tests.support.tiers import gate, some_gate
 from tests.survey.histories import generate
 
 BOTTOM = -0.5 * np.pi
@@ -91,7 +92,7 @@ def response(columns, given, updates=0):
 CONTACTS = [zones((15, 45)), zones((10, 20), (30, 50)), zones((28, 32))]
 
 
-@pytest.mark.parametrize("grid", GRIDS)
+@pytest.mark.parametrize("grid", some_gate(GRIDS, "arc"))
 @pytest.mark.parametrize("case", CASES)
 def test_a_held_contact_begins_with_the_tableau_of_a_factorisation(titanium_in_aluminium, case, grid):
     system = system_of(titanium_in_aluminium, case, grid)
@@ -147,7 +148,7 @@ def test_columns_and_updates_of_a_held_contact_are_those_of_the_naive_way(titani
             assert np.allclose(column, naive[:, p], rtol=0.0, atol=1e-9 * np.abs(naive).max())
 
 
-@pytest.mark.parametrize("way", ["compiled", "python"])
+@pytest.mark.parametrize("way", [*gate("compiled"), "python"])
 @pytest.mark.parametrize("grid", GRIDS)
 def test_corrections_of_a_held_contact_are_those_of_whole_arrays(titanium_in_aluminium, way, grid, monkeypatch):
     """A solution that lacks some digits is corrected to all of them, and put on its bounds."""
@@ -198,7 +199,7 @@ def test_nodes_that_leave_a_motion_free_have_no_table(titanium_in_aluminium):
     assert held_table(replace(system, motion=system.motion * [1.0, 1.0, 0.0]), zones((15, 45))) is None
 
 
-@pytest.mark.parametrize("kind", ["general", "fits", "remote", "fixed", "rough"])
+@pytest.mark.parametrize("kind", ["general", "fits", "remote", *gate("fixed"), "rough"])
 def test_histories_have_the_states_of_the_way_by_factorisations(kind, monkeypatch):
     """Measured: the largest difference is 4e-11 of the largest pressure."""
     compared = 0

@@ -22,6 +22,7 @@ from fastpin.solver.solving import solve
 ARC = (-0.5 * np.pi - 1.25, -0.5 * np.pi + 1.25)
 
 
+@pytest.mark.gate
 def test_tends_to_the_path_at_first_order(titanium_in_aluminium):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
     exact = solve(problem, [{"P": 1.0}], nodes=201, arc=ARC)[-1]
@@ -35,6 +36,7 @@ def test_tends_to_the_path_at_first_order(titanium_in_aluminium):
     assert -np.polyfit(np.log(counts), np.log(shears), 1)[0] > 0.7
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("load", "rotation", "lp"), [("body", "free", 0.05), ("centre", "fixed", 0.5)])
 def test_fretting_cycle_agrees(similar, load, rotation, lp):
     problem = Problem.from_load_parameter(similar, lp, 0.55, load, rotation)
@@ -53,6 +55,7 @@ def test_fretting_cycle_agrees(similar, load, rotation, lp):
         assert max(finest.residuals.values()) < 1e-9
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("bare", [False, True])
 def test_both_solvers_agree_under_friction_that_varies(titanium_in_aluminium, bare):
     """From the same first contact, with a smooth coefficient, also beside nodes without friction."""

@@ -12,9 +12,10 @@ from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.wear import Wear
 from fastpin.solver.errors import ArcError
 from fastpin.solver.wear_result import WearResult
-from scripts import metamorphic
 from tests.support.slip_cases import LIKE, UNLIKE
+from tests.support.tiers import some_gate
 from tests.support.wear_cases import BUMPED, BUMPED_TURNS, WEAR_CASES
+from tests.survey import metamorphic
 
 TURNS = LoadHistory([{"P": 1.0, "rotation": 0.5}]) + LoadHistory([{"rotation": -0.5}, {"rotation": 0.5}]).repeated(1)
 
@@ -68,7 +69,7 @@ def test_a_pin_without_friction_wears_by_its_pressure() -> None:
     assert 1e-12 < np.abs(much.gap_growth - limit.gap_growth).max() < 1e-7 * much.depth
 
 
-@pytest.mark.parametrize("name", WEAR_CASES)
+@pytest.mark.parametrize("name", some_gate(WEAR_CASES, "lobed hole"))
 def test_energies_of_a_life_balance_at_second_order(name: str) -> None:
     """The elastic energy that goes with the material is a thousandth to a fifth of the work."""
     case, left = WEAR_CASES[name], []
@@ -83,6 +84,7 @@ def test_energies_of_a_life_balance_at_second_order(name: str) -> None:
     assert abs(left[1]) < 0.3 * abs(left[0])
 
 
+@pytest.mark.gate
 def test_a_pin_that_sinks_onto_a_bump_beyond_its_arc_is_noticed() -> None:
     arc, wear = (-0.5 * np.pi - 0.98, -0.5 * np.pi + 0.98), Wear(0.1, cycles=5, tolerance=0.0)
     with pytest.raises(

@@ -154,6 +154,7 @@ def test_equal_stress_all_round_is_another_clearance(similar):
     assert state.peak_pressure == pytest.approx(closed_forms.persson_pressure(0.0, half), rel=1e-5)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("kind", [("centre", "fixed"), ("body", "free")])
 def test_the_first_nodes_stick_where_a_stress_has_moved_the_hole_before(titanium_in_aluminium, kind):
     """Slip counts from rest. The stress has moved the hole along the pin, not by the same way at all nodes."""

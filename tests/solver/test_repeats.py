@@ -18,8 +18,8 @@ from fastpin.solver.repeats import MOST_KEPT, Repeats
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.cycles import consecutive_cycles, periodic_from
-from tests.support.marks import first_quick
 from tests.support.programs import CYCLE, FIELDS, PROGRAMS, RANDOM, P, assert_same, grid_of, known, q
+from tests.support.tiers import some_gate
 
 
 @pytest.fixture(scope="module")
@@ -32,8 +32,11 @@ def free(similar):
     return Problem.from_load_parameter(similar, 0.05, 0.55, "body")
 
 
-@pytest.mark.parametrize("keep", first_quick(2, ["all", "cycles", "every 3"]))
-@pytest.mark.parametrize("program", list(PROGRAMS))
+@pytest.mark.parametrize("keep", ["all", "cycles", "every 3"])
+@pytest.mark.parametrize(
+    "program",
+    some_gate(list(PROGRAMS), "pressed again and again", "pressed again and again", "pressed again and again"),
+)
 @pytest.mark.parametrize("kind", ["held", "free"])
 def test_what_repeats_has_the_bits_of_what_is_solved_again(request, kind, program, keep):
     problem, history = request.getfixturevalue(kind), PROGRAMS[program]
@@ -52,7 +55,7 @@ def test_what_repeats_has_the_bits_of_what_is_solved_again(request, kind, progra
         assert short.statistics["events"] < whole.statistics["events"]
 
 
-@pytest.mark.parametrize("program", list(PROGRAMS))
+@pytest.mark.parametrize("program", some_gate(list(PROGRAMS), "pressed again and again"))
 def test_a_split_history_has_the_bits_of_the_whole(free, program):
     history = PROGRAMS[program]
     whole = solve(free, history, grid=grid_of(free, program))
@@ -145,6 +148,7 @@ def test_the_last_cycle_is_not_solved_for_its_last_state(held):
         assert_same(Result([result[-1]], *[None] * 6), Result([whole[-1]], *[None] * 6))
 
 
+@pytest.mark.gate
 def test_states_that_are_seldom_kept_do_not_cost_the_shortcut(held):
     history = P + q(0.2, -0.2, 0.1).repeated(120)
     result = solve(held, history, nodes=61, keep="every 150")

@@ -50,6 +50,7 @@ def test_states_without_contact_and_empty_results_have_short_forms():
     assert repr(state) == "<State at load point 1: sxx = 0.001 F/R, no contact, 41 nodes>"
 
 
+@pytest.mark.gate
 def test_notebooks_get_a_table_and_a_picture(result):
     for thing, rows in ((result, 7), (result[1], 1)):
         html = thing._repr_html_()
@@ -58,6 +59,7 @@ def test_notebooks_get_a_table_and_a_picture(result):
     assert "shown: " not in result._repr_html_()
 
 
+@pytest.mark.gate
 def test_a_result_draws_and_stores_itself(result, tmp_path):
     figure = result.plot(tmp_path / "a.png", title="Here")
     assert (tmp_path / "a.png").stat().st_size > 10_000

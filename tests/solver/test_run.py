@@ -10,11 +10,12 @@ import pytest
 import fastpin
 from fastpin.model.grid import Grid
 from fastpin.solver.errors import ArcError, NoEquilibriumError
+from tests.support.tiers import gate
 
 ARC = (-0.5 * np.pi - 0.6, -0.5 * np.pi + 0.6)
 """Too narrow for the load P = 1."""
 
-METHODS = [{}, {"method": "increment", "increments": 400}]
+METHODS = [{}, *gate({"method": "increment", "increments": 400})]
 
 
 @pytest.fixture(scope="module")

@@ -16,6 +16,7 @@ from fastpin.model.profile import InitialGap, Profile
 from fastpin.solver.errors import ArcError, NoEquilibriumError
 from fastpin.verification.body_cases import ring_compliance
 from tests.support.joints import ALUMINIUM, BRONZE, CASES, STEEL, joint, numbers, turns
+from tests.support.tiers import gate, seeds
 from tests.survey.histories import generate, lug
 from tests.survey.joint_conditions import check_joint
 from tests.survey.random_histories import TOLERANCES
@@ -101,7 +102,7 @@ def test_the_hub_of_a_held_pin_turns_over_the_lug(rotation):
         assert state.seat.resultants["M"] == pytest.approx(state.resultants["M"], abs=1e-12)
 
 
-@pytest.mark.parametrize(("nodes", "bound"), [(64, 1.2e-5), pytest.param(128, 1.5e-6, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("nodes", "bound"), [(64, 1.2e-5), *gate((128, 1.5e-6))])
 def test_a_pin_stuck_in_a_bush_of_its_material_is_a_solid_pin(nodes, bound):
     """It slips, walks and dissipates as the solid pin of the radius of the seat."""
     body = Bushing(BRONZE, 1.25, 1e-3, friction=0.05, bonded=False)
@@ -281,10 +282,10 @@ def _check(states, but=""):
         assert not wrong
 
 
-@pytest.mark.parametrize("seed", [*range(8), 310, 907])
-def test_random_joints(seed):
-    case = generate("bush", seed)
-    _check(solve(case.problem, case.history, **case.options).states)
+def test_random_joints():
+    for seed in [*seeds(8), 310, 907]:
+        case = generate("bush", seed)
+        _check(solve(case.problem, case.history, **case.options).states)
 
 
 def test_increments_tend_to_the_path():

@@ -18,6 +18,7 @@ from fastpin.solver.place import ROWS, Loads
 from fastpin.solver.run import Run
 from fastpin.states.state import State
 from fastpin.verification.body_cases import BRONZE
+from tests.support.tiers import seeds, some_gate
 
 BOTTOM = -0.5 * np.pi
 WALK = [
@@ -100,15 +101,18 @@ def test_states_are_those_of_solve_to_the_last_bit(titanium_in_aluminium, name):
     assert np.array_equal(session.history.values(), fastpin.LoadHistory(loads).values())
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_random_loads_on_a_found_arc(problem, seed):
-    rng = np.random.default_rng(seed)
-    loads = [{"P": 1.0}, *({"P": float(p), "Q": float(q)} for p, q in rng.uniform((0.2, -0.3), (1.2, 0.3), (12, 2)))]
-    session = fastpin.Session(problem, 81, expected=loads)
-    states = walked(session, loads)
-    assert all(one.grid is states[0].grid for one in states)
-    for one, two in zip(states, fastpin.solve(problem, loads, grid=session.grid), strict=True):
-        assert_same_bits(one, two)
+def test_random_loads_on_a_found_arc(problem):
+    for seed in seeds(2):
+        rng = np.random.default_rng(seed)
+        loads = [
+            {"P": 1.0},
+            *({"P": float(p), "Q": float(q)} for p, q in rng.uniform((0.2, -0.3), (1.2, 0.3), (12, 2))),
+        ]
+        session = fastpin.Session(problem, 81, expected=loads)
+        states = walked(session, loads)
+        assert all(one.grid is states[0].grid for one in states)
+        for one, two in zip(states, fastpin.solve(problem, loads, grid=session.grid), strict=True):
+            assert_same_bits(one, two)
 
 
 def test_a_narrow_contact_begins_on_graded_nodes(titanium_in_aluminium):
@@ -144,7 +148,7 @@ GROWING = {
 }
 
 
-@pytest.mark.parametrize("name", GROWING)
+@pytest.mark.parametrize("name", some_gate(GROWING, "neat fit"))
 def test_a_grown_arc_has_the_states_of_solve_on_it(titanium_in_aluminium, name):
     fields, loads = GROWING[name]
     problem = problem_of(titanium_in_aluminium, **fields)

@@ -24,7 +24,7 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep
 from fastpin.solver.settling import FiniteStep, settle
 from fastpin.solver.solving import solve
-from tests.support.marks import first_quick
+from tests.support.tiers import some_gate
 
 BOTTOM = -0.5 * np.pi
 
@@ -82,7 +82,7 @@ def met(monkeypatch):
 
 
 @pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("nodes", [61, 101])
+@pytest.mark.parametrize("nodes", some_gate([61, 101], 101))
 def test_histories_whose_statuses_cycle_are_solved(name, nodes, met):
     case, history = CASES[name]
     result = solve(case, history, nodes=nodes)
@@ -93,6 +93,7 @@ def test_histories_whose_statuses_cycle_are_solved(name, nodes, met):
             assert rate_violation(system, now, status, load_rate) < 1e-9
 
 
+@pytest.mark.gate
 def test_lemke_finds_the_only_statuses_among_all_combinations(met):
     for name, nodes in (("narrow", 61), ("narrow", 101), ("oval", 61), ("relieved", 101)):
         case, history = CASES[name]
@@ -119,7 +120,8 @@ def test_lemke_finds_the_only_statuses_among_all_combinations(met):
     assert compared >= 2
 
 
-@pytest.mark.parametrize("name", first_quick(1, ["relieved", "narrow"]))
+@pytest.mark.gate
+@pytest.mark.parametrize("name", ["relieved", "narrow"])
 def test_increments_tend_to_the_path_beyond_such_events(name):
     """First order as a whole; single numbers of increments may be lucky."""
     case, history = CASES[name]

@@ -19,6 +19,7 @@ from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
 from fastpin.solver.snap import _step_on_springs, find_state_beyond
 from tests.support.snap_cases import GRIPPED, TURNED, problem
+from tests.support.tiers import gate
 
 
 @pytest.fixture
@@ -45,6 +46,7 @@ def pressed(titanium_in_aluminium):
     return system, PathStep(system, start, load).follow(1.0)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("case", "history"), [GRIPPED, TURNED], ids=["gripped", "turned"])
 def test_snaps_converge_with_the_nodes(snaps, case, history):
     """The load of the snap and the way of the pin are properties of the joint, not of the grid."""
@@ -137,7 +139,7 @@ def test_a_pin_that_creeps_to_an_end_of_the_arc_is_an_error(pressed):
 
 @pytest.mark.parametrize(
     "nodes",
-    [{"grid": Grid.circle(120)}, pytest.param({"nodes": 121}, marks=pytest.mark.slow)],
+    [{"grid": Grid.circle(120)}, *gate({"nodes": 121})],
     ids=["a given grid", "a grid that is searched for"],
 )
 def test_a_snap_to_nowhere_is_told(nodes, monkeypatch):

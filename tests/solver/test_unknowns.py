@@ -74,6 +74,7 @@ def tableaus() -> set[int]:
     return {id(one) for one in gc.get_objects() if type(one) is TableauMemory}  # not isinstance: it asks dead proxies
 
 
+@pytest.mark.gate
 def test_a_solved_history_leaves_no_tableau_behind(system):
     """Its memory is free at once, without a garbage collection."""
     solve(system.problem, [{"P": 1.0}], nodes=61, arc=(BOTTOM - 1.8, BOTTOM + 1.8))

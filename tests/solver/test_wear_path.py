@@ -41,7 +41,7 @@ def test_lives_of_forty_fat_cycles_have_the_known_numbers(name, monkeypatch):
     assert worst_residual(run.system, run.now) < 1e-14
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 @pytest.mark.parametrize("name", WEAR_CASES)
 def test_lives_tend_to_the_known_limits(name):
     """The uncertainties are those of the stated limits. docs/wear-accuracy.md has the numbers of 121 to 481 nodes."""

@@ -30,7 +30,7 @@ from fastpin.solver.task import Task
 from fastpin.solver.window import Window
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load
-from tests.support.marks import first_quick
+from tests.support.tiers import gate
 from tests.survey.histories import generate
 
 BOTTOM = -0.5 * np.pi
@@ -65,6 +65,7 @@ def test_a_graded_grid_has_the_wanted_spacing(places):
     assert ratio.min() > 0.88
 
 
+@pytest.mark.gate
 def test_a_wide_contact_keeps_its_nodes_beside_a_narrow_one():
     """The first corner needs nodes at one place. The second must not pay for it."""
     case = Problem.from_load_parameter(PAIR, 0.03, 0.1)
@@ -120,8 +121,9 @@ def test_a_survey_ends_where_the_pin_snaps_and_snaps(monkeypatch):
     assert len(tried) == 3
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("corners", [SMALL_FIRST, TRAVELLING], ids=["small first", "travelling"])
-@pytest.mark.parametrize("nodes", first_quick(1, [61, 101]))
+@pytest.mark.parametrize("nodes", [61, 101])
 def test_narrow_contacts_are_solved_with_few_nodes(corners, nodes):
     case = problem(200.0)
     result = solve(case, corners, nodes=nodes)
@@ -135,6 +137,7 @@ def test_narrow_contacts_are_solved_with_few_nodes(corners, nodes):
         assert one.peak_pressure == pytest.approx(two.peak_pressure, rel=0.02)
 
 
+@pytest.mark.gate
 def test_a_contact_lost_on_the_first_graded_grid_is_followed_on_a_second(monkeypatch):
     sizes = []
     follow = Task._follow_on
@@ -163,6 +166,7 @@ def test_given_arcs_and_grids_are_kept():
             solve(problem(200.0), SMALL_FIRST, **given)
 
 
+@pytest.mark.gate
 def test_states_inside_steps_do_not_change_the_corners():
     case = problem(200.0)
     plain, dense = (solve(case, SMALL_FIRST, nodes=61, between=between) for between in (0, 20))
@@ -207,7 +211,7 @@ def test_large_graded_grids_are_followed_on_windows():
         assert not isinstance(build_system(case, grid, 1.0), LargeSystem)
 
 
-@pytest.mark.parametrize("pin_load", ["centre", "body"])
+@pytest.mark.parametrize("pin_load", ["centre", *gate("body")])
 def test_windows_lead_to_the_states_of_the_whole_grid(monkeypatch, pin_load):
     case = problem(20.0, 0.4, pin_load, "fixed" if pin_load == "centre" else "free")
     grid = Grid.graded([(BOTTOM + angle, 0.06) for angle in np.linspace(-0.8, 0.8, 27)], 500, BOTTOM)
@@ -225,6 +229,7 @@ def test_windows_lead_to_the_states_of_the_whole_grid(monkeypatch, pin_load):
         assert worst(one) < 1e-10
 
 
+@pytest.mark.gate
 def test_a_pin_released_in_a_window_lies_inside_the_whole_hole():
     """The pin lets go while the remote stress is still there. Its gap counts from one position at all nodes."""
     case = generate("narrow", 379)
@@ -273,6 +278,7 @@ def test_a_window_holds_the_contact_across_the_first_node():
     assert np.all(np.diff(opened.system.grid.theta) > 0.0)
 
 
+@pytest.mark.gate
 def test_a_narrow_history_is_stored_resumed_and_continued(tmp_path):
     case = problem(200.0)
     path = tmp_path / "narrow.h5"

@@ -34,6 +34,7 @@ def lessened(cycle: WornCycle) -> np.ndarray:
     return 0.5 - 0.05 * (1 + cycle.cycle) * where
 
 
+@pytest.mark.gate
 def test_a_life_with_other_friction_is_that_of_its_pieces_one_by_one() -> None:
     """The same by a run that wears and follows its friction by hand."""
     found = life(lessened, coefficient=0.05)
@@ -57,6 +58,7 @@ def test_a_life_with_other_friction_is_that_of_its_pieces_one_by_one() -> None:
     assert np.abs(found[-1].pressure - run.now.pressure).max() < 1e-11
 
 
+@pytest.mark.gate
 def test_states_have_the_friction_of_their_cycles() -> None:
     asked: list[int] = []
 
@@ -78,6 +80,7 @@ def test_states_have_the_friction_of_their_cycles() -> None:
     assert np.abs(found[-1].gap_growth - unchanged[-1].gap_growth).max() > 1e-3 * unchanged[-1].depth
 
 
+@pytest.mark.gate
 def test_nothing_changes_where_the_rule_says_so() -> None:
     one, other = life(lambda cycle: None, tolerance=0.02, cycles=40), life(None, tolerance=0.02, cycles=40)
     assert np.array_equal(one[-1].gap_growth, other[-1].gap_growth)
@@ -131,6 +134,7 @@ def test_wrong_friction_is_refused_in_one_sentence(tmp_path: Path) -> None:
         life(lessened, output=tmp_path / "life.h5")
 
 
+@pytest.mark.gate
 def test_a_contact_that_is_lost_on_the_way_names_its_cycle() -> None:
     problem = fastpin.Problem.from_load_parameter(CASE.problem.pair, 0.1, 0.5)
     history = fastpin.LoadHistory([{"P": 1.0, "M": 0.3}]) + fastpin.LoadHistory([{"Q": 0.05}, {"Q": -0.05}]).repeated(1)

@@ -149,6 +149,7 @@ def test_a_graded_grid_is_halved_node_by_node(problem: Problem) -> None:
     assert 0.0 < state.error_bars["work"] < 1e-3
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("options", [{"keep": "cycles"}, {"keep": "every 7"}, {"shortcut": False}], ids=str)
 def test_long_histories_have_error_bars(options: dict[str, Any], problem: Problem) -> None:
     history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).repeated(15)
@@ -223,6 +224,7 @@ def test_a_peak_that_may_be_elsewhere_has_a_wide_angle(problem: Problem) -> None
     assert state.error_bars["peak_pressure_angle"] < 0.1 * apart
 
 
+@pytest.mark.gate
 def test_saved_results_keep_their_error_bars(problem: Problem, tmp_path: Path) -> None:
     result = solve(problem, CORNERS, nodes=101, between=1, error_bars=True)
     save(result, tmp_path / "a.h5")
@@ -247,6 +249,7 @@ def to_rounding(state: State) -> Any:
     return pytest.approx(bars_of(state), rel=1e-9, abs=1e-12, nan_ok=True)
 
 
+@pytest.mark.gate
 def test_run_shows_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(case), "--nodes", "101", "--error-bars"]) == 0
     line = capsys.readouterr().out.splitlines()[3]
@@ -258,6 +261,7 @@ def test_run_shows_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) ->
     assert set(QUANTITIES) - {"P", "Q", "M"} <= set(state)
 
 
+@pytest.mark.gate
 def test_files_of_runs_show_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = str(case.parent / "a.h5")
     assert main(["run", str(case), "--nodes", "101", "--error-bars", "-o", path]) == 0

@@ -25,6 +25,7 @@ from fastpin.states.extremes import MARKS, READINGS, KeptStates, marked_extremes
 from fastpin.states.state import State
 from fastpin.states.stress_map import Hats, NodalStress
 from tests.support.samples import sample_result
+from tests.support.tiers import some_gate
 
 STEEL, ALUMINIUM = MATERIALS["steel"], MATERIALS["aluminium"]
 
@@ -60,7 +61,7 @@ def _few_states_are_many(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reading_bounds, "MAPPED", MAPPED)
 
 
-@pytest.fixture(scope="module", params=JOINTS)
+@pytest.fixture(scope="module", params=some_gate(JOINTS, "bush", "bush that slips"))
 def result(request: pytest.FixtureRequest) -> Result:
     return fastpin.solve(JOINTS[request.param], random_history(20), nodes=61)
 
@@ -102,6 +103,7 @@ def test_readings_of_a_bush_that_slips_lie_within_their_bounds(result: Result) -
         assert np.all((low <= values) & (values <= high) | np.isnan(values)), name
 
 
+@pytest.mark.gate
 def test_few_states_are_read(readings: list[str]) -> None:
     corners = [{"P": 3e6 if k == 17 else 1e6 + 1e4 * k} for k in range(40)]
     joint = replace(JOINTS["bush"], pair=MaterialPair(replace(STEEL, yield_strength=3e8), MATERIALS["7075-T6"]))
@@ -144,6 +146,7 @@ def test_equal_states_are_read_once(readings: list[str]) -> None:
     assert max(readings.count(name) for name in readings) == 2  # the smallest, and the largest
 
 
+@pytest.mark.gate
 def test_states_that_differ_in_the_seat_only_are_both_read() -> None:
     state = fastpin.solve(JOINTS["bush that slips"], [{"P": 1e6}], nodes=61)[0]
     assert state.seat is not None
@@ -166,6 +169,7 @@ def test_the_seat_has_extremes_of_its_own(result: Result) -> None:
         assert (found[name].smallest.value, found[name].largest.value) == (min(values), max(values))
 
 
+@pytest.mark.gate
 def test_stored_states_of_a_bush_that_slips_have_the_same_extremes(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     result = fastpin.solve(JOINTS["bush that slips"], random_history(6), nodes=61)
@@ -192,6 +196,7 @@ def test_states_on_another_grid_are_refused() -> None:
         replace(one, states=[*one, *other]).extremes()
 
 
+@pytest.mark.gate
 def test_a_bonded_bush_has_no_margin_of_slip() -> None:
     found = fastpin.solve(JOINTS["bush"], random_history(8), nodes=61).extremes()
     assert "bush_slip_margin" not in found

@@ -19,7 +19,6 @@ from fastpin.solver.solving import solve
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.storage.recording import record
 from fastpin.storage.store import load, places_between
-from tests.support.marks import first_quick
 
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 LIKE = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
@@ -131,7 +130,8 @@ def test_the_friction_energy_is_the_dissipation(name: str, options: dict[str, An
     assert energy == pytest.approx(cycle.dissipation, rel=1e-12, abs=1e-12 * cycle.states[-1].dissipation)
 
 
-@pytest.mark.parametrize("name", first_quick(3, CYCLES))
+@pytest.mark.gate
+@pytest.mark.parametrize("name", CYCLES)
 def test_the_loops_enclose_the_work_of_the_loads(name: str) -> None:
     """The polygon through the states converges to the work of the solver, with the square of their number."""
     errors, size = [], 0.0
@@ -156,6 +156,7 @@ def test_a_loop_is_exact_where_no_status_changes() -> None:
     assert work == pytest.approx(found[2].work - found[0].work, rel=1e-11)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("name", ["forces", "remote stress", "displacements"])
 def test_closed_loops_enclose_the_dissipation_up_to_the_discretisation(name: str) -> None:
     """The contact under remote stress has not settled quite: its elastic energy still changes."""
@@ -202,7 +203,8 @@ def bare(cycle: LoadCycle) -> LoadCycle:
     return LoadCycle(tuple(replace(state, **lost) for state in cycle.states))
 
 
-@pytest.mark.parametrize("name", first_quick(3, CYCLES))
+@pytest.mark.gate
+@pytest.mark.parametrize("name", CYCLES)
 def test_the_slip_range_is_exact_whatever_is_kept(name: str) -> None:
     """The range from two states against the ranges read from more and more states."""
     cycles = 6 if name == "body" else 2  # by the sixth cycle the nodes of the pin with body loads stick
@@ -227,6 +229,7 @@ def test_the_slip_range_is_exact_whatever_is_kept(name: str) -> None:
     assert missed[2] < 4e-3
 
 
+@pytest.mark.gate
 def test_moving_contact_edges_leave_no_staircase() -> None:
     """Nodes that open between the states: the range along the arc is as smooth as read from very many states."""
     history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"P": 0.4, "Q": 0.1}, {"P": 1.0, "Q": 0.0}]).repeated(3)

@@ -139,6 +139,7 @@ def test_quantities_and_words_of_the_seat():
     assert math.isnan(values(plain)["peak_hoop_seat"])
 
 
+@pytest.mark.gate
 def test_error_bars_of_the_seat():
     state = solve(joint(), [{"P": 1e6}], nodes=201, error_bars=True)[-1]
     fine = solve(joint(), [{"P": 1e6}], nodes=801)[-1]

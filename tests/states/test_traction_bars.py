@@ -59,6 +59,7 @@ def test_bars_hold_against_the_closed_form(similar: MaterialPair, parameter: flo
     assert of_curve.max() < 0.15 * state.peak_pressure  # and no wider than its steep end needs
 
 
+@pytest.mark.gate
 def test_bars_hold_against_a_finer_grid(held: Problem, states: list[State]) -> None:
     grid = states[0].grid
     finer = solve(held, CORNERS, grid=Grid.arc(float(grid.theta[0]), float(grid.theta[-1]), 8 * (grid.size - 1) + 1))
@@ -113,6 +114,7 @@ def test_bars_do_not_depend_on_the_seam_of_a_circle(held: Problem) -> None:
         assert np.allclose(one, other, rtol=0.0, atol=1e-4)
 
 
+@pytest.mark.gate
 def test_files_keep_the_bars(held: Problem, tmp_path: Path) -> None:
     result = solve(held, CORNERS, nodes=101, error_bars=True)
     save(result, tmp_path / "a.h5")

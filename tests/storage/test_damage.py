@@ -190,6 +190,7 @@ def test_a_hostile_result_takes_no_memory_and_no_other_file(whole, tmp_path, kin
     assert {each: each.read_bytes() for each in tmp_path.iterdir() if each.suffix != ".journal"} == before
 
 
+@pytest.mark.gate
 def test_large_arrays_are_read_in_parts_between_which_an_interrupt_is_heard(tmp_path, monkeypatch):
     values = np.random.default_rng(0).random((1000, 7))
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -250,6 +251,7 @@ def test_a_special_file_is_not_written(whole, tmp_path):
         fastpin.save(result, "/dev/full")
 
 
+@pytest.mark.gate
 def test_zeros_that_are_packed_as_small_as_possible_are_read(tmp_path):
     """Deflate packs zeros best in large chunks. Rows that were never written are refused all the same."""
     rows = 10_000

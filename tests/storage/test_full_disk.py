@@ -64,6 +64,7 @@ def output_of(program: str, *words: object) -> str:
     return ended.stdout
 
 
+@pytest.mark.gate
 def test_a_result_that_finds_no_room_is_one_sentence(source, tmp_path):
     """Prepared in memory, and written in place."""
     size = source.stat().st_size
@@ -76,6 +77,7 @@ def test_a_result_that_finds_no_room_is_one_sentence(source, tmp_path):
     assert [found.name for found in tmp_path.iterdir()] == ["out.h5"]
 
 
+@pytest.mark.gate
 def test_a_run_that_finds_no_room_keeps_its_last_transaction(source, tmp_path):
     paths = [tmp_path / f"{share}.h5" for share in (0.3, 0.5, 0.7, 0.9)]
     words = [word for path in paths for word in (path, path.stem)]

@@ -62,6 +62,7 @@ def assert_kept(new: Any, old: Any, place: str = "") -> None:
         assert new == old, place
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("name", RESULTS)
 def test_an_old_result_has_the_same_summary(name, old):
     new = json.loads(said("show", old / f"{name}.h5", "--json"))

@@ -58,6 +58,7 @@ def assert_bars(path, expected):
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
 
 
+@pytest.mark.gate
 def test_a_file_holds_the_bars_of_a_solution(problem, expected, path):
     record(problem, HISTORY, path, error_bars=True, **OPTIONS)
     assert_bars(path, expected)
@@ -66,6 +67,7 @@ def test_a_file_holds_the_bars_of_a_solution(problem, expected, path):
         resume(path)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("run", "steps"), [(1, 0.0), (1, 6.0), (2, 0.0), (2, 6.0), (2, 12.0)])
 def test_an_interrupted_run_gets_its_bars(problem, expected, path, run, steps):
     with pytest.raises(Interrupted) as ended:
@@ -80,6 +82,7 @@ def test_an_interrupted_run_gets_its_bars(problem, expected, path, run, steps):
     assert_bars(path, expected)
 
 
+@pytest.mark.gate
 def test_a_run_killed_before_its_coarse_states_are_in_the_file(problem, expected, path, monkeypatch):
     def fail(*_):
         raise KeyboardInterrupt
@@ -97,6 +100,7 @@ def test_a_run_killed_before_its_coarse_states_are_in_the_file(problem, expected
     assert_bars(path, expected)
 
 
+@pytest.mark.gate
 def test_the_coarse_run_of_another_run_is_not_used(problem, expected, path):
     with pytest.raises(Interrupted):
         record(problem, HISTORY[:5], path, error_bars=True, progress=StopAtRun(2, 3.0), **OPTIONS)
@@ -130,6 +134,7 @@ def test_a_branch_has_no_bars_in_a_file(problem, expected, path):
     assert not path.exists()
 
 
+@pytest.mark.gate
 def test_only_the_end_of_a_file_goes_on_with_bars(problem, expected, path):
     record(problem, HISTORY, path, error_bars=True, save_after=[4], **OPTIONS)
     whole, part = store.load(path, states=[]), store.load(path, after=4)
@@ -148,6 +153,7 @@ def test_damaged_coarse_states_are_one_sentence(problem, path):
         store.load(path)
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_show_says_what_is_missing(problem, path, capsys):
     with pytest.raises(Interrupted):

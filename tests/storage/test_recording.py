@@ -30,8 +30,8 @@ from fastpin.storage.recording import record as follow
 from fastpin.storage.recording import resume, stored_case
 from fastpin.storage.writer import checkpoint_of, coarse_of
 from tests.support.interrupts import StopAt
-from tests.support.marks import first_quick
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
+from tests.support.tiers import some_gate
 
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
 
@@ -65,8 +65,14 @@ def assert_file(path: Path, expected) -> None:
     assert found.complete
 
 
-@pytest.mark.parametrize("keep", first_quick(2, ["all", "cycles", "every 3"]))
-@pytest.mark.parametrize("program", list(PROGRAMS))
+@pytest.mark.parametrize("keep", ["all", "cycles", "every 3"])
+@pytest.mark.parametrize(
+    "program",
+    some_gate(
+        PROGRAMS,
+        *(PROGRAMS.keys() - {"cycles", "corners", "loads that come back", "minus zero", "pressed again and again"}),
+    ),
+)
 def test_the_file_holds_what_a_solution_returns(problem, path, program, keep):
     history = PROGRAMS[program]
     keep = keep if history.longest_cycle or keep != "cycles" else "every 7"
@@ -132,7 +138,7 @@ def test_an_interrupted_run_goes_on(problem, denser, path, corner):
     assert sorted(entry.name for entry in path.parent.iterdir()) == [path.name]
 
 
-@pytest.mark.parametrize("stops", first_quick(1, [1.75, 6.0]))
+@pytest.mark.parametrize("stops", [1.75, 6.0])
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_a_run_interrupted_again_and_again(problem, path, program, stops):
     history, corner = PROGRAMS[program][: 12 * int(stops)], 3.0
@@ -177,6 +183,7 @@ def test_handlers_of_the_program_and_other_threads_are_left_alone(problem):
     assert len(results[0]) == 3
 
 
+@pytest.mark.gate
 def test_a_second_ctrl_c_ends_at_once_and_the_file_stays_good(problem, whole, path):
     def progress(done: float, total: int) -> None:
         if total > 1 and done > 10.0:
@@ -208,6 +215,7 @@ def test_a_lost_load_is_kept_with_what_was_solved(similar, path):
     assert np.array_equal(solve(problem, [{"Q": -0.1}], start=found)[-1].shear, expected[-1].shear)
 
 
+@pytest.mark.gate
 def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path, tmp_path, monkeypatch):
     """The coarse run is made to see the first step only."""
     from fastpin.solver import arc
@@ -244,6 +252,7 @@ def begin_and_die(path: Path) -> None:
     os.close(file._file)
 
 
+@pytest.mark.gate
 def test_a_full_disk_leaves_what_was_there(problem, whole, path, monkeypatch):
     written, allowed = os.pwrite, [2_000_000]
 
@@ -450,6 +459,7 @@ def test_two_runs_do_not_write_to_one_file(problem, path):
     assert_file(path, whole)
 
 
+@pytest.mark.gate
 def test_a_run_can_be_looked_at_while_it_goes_on(problem, path, monkeypatch):
     monkeypatch.setattr(writer, "LONGEST_WAIT", 0.0)
     sizes = []
@@ -489,6 +499,7 @@ def test_a_branch_goes_on_from_any_corner(problem, stem, tmp_path, corner):
     assert_same(store.load(tmp_path / "b.h5"), result)
 
 
+@pytest.mark.gate
 def test_corners_to_branch_from_are_not_skipped(problem, path):
     history = P + q(0.2, -0.2, 0.1, -0.1).repeated(50)
     wanted = [20, 21, 22, 23, 50, 51, 61, 100, 201]
@@ -528,6 +539,7 @@ def test_a_branch_of_a_branch_that_was_interrupted(problem, whole, path, tmp_pat
     assert np.array_equal(fourth[-1].shear, whole[-1].shear)
 
 
+@pytest.mark.gate
 def test_corners_that_can_not_be_branched_from(problem, path, tmp_path):
     follow(problem, RANDOM[:4], path, nodes=61)
     with pytest.raises(InputError, match="must be a corner from 1 to 4"):

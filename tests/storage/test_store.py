@@ -198,6 +198,7 @@ def test_cycles_are_kept(tmp_path: Path) -> None:
     assert [type(value) for value in found[0]] == [type(value) for value in cycles[0]]
 
 
+@pytest.mark.gate
 def test_xarray_reads_the_states_with_and_without_us(tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     result, path = sample_result(), tmp_path / "a.h5"

@@ -19,8 +19,8 @@ from fastpin.storage.layout import SLIP_FIELDS
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load, places_between
 from tests.support.interrupts import StopAt
-from tests.support.marks import first_quick
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
+from tests.support.tiers import gate
 
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
 
@@ -35,8 +35,8 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "a.h5"
 
 
-@pytest.mark.parametrize("keep", first_quick(2, ["all", "cycles", "every 7"]))
-@pytest.mark.parametrize("program", ["spectrum", "two levels", "pressed again and again"])
+@pytest.mark.parametrize("keep", ["all", "cycles", "every 7"])
+@pytest.mark.parametrize("program", [*gate("spectrum"), "two levels", "pressed again and again"])
 def test_a_run_interrupted_again_and_again(problem: Problem, path: Path, program: str, keep: str) -> None:
     history, corner = PROGRAMS[program][:60], 3.0
     options: dict[str, Any] = {"nodes": 61, "arc": (-3.0, -0.1), "keep": keep, "slip_sums": True}
@@ -68,6 +68,7 @@ def test_a_restart_holds_the_sums_since_the_latest_kept_state(problem: Problem, 
         assert np.array_equal(one.friction_energy, two.friction_energy)
 
 
+@pytest.mark.gate
 def test_many_states_are_copied_piece_by_piece(problem: Problem, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(writer, "PIECE", 7)
     for keep in ("all", "every 3"):
@@ -84,6 +85,7 @@ def test_files_without_the_option_have_nothing_new(problem: Problem, path: Path)
     assert load(path)[-1].slip_distance is None
 
 
+@pytest.mark.gate
 def test_states_that_do_not_follow_on_one_another_lose_their_sums(problem: Problem, path: Path) -> None:
     record(problem, RANDOM, path, nodes=61, slip_sums=True)
     for picked in (slice(5, 9), [5, 6, 7]):

@@ -40,6 +40,7 @@ def assert_same_life(one: WearResult, other: WearResult) -> None:
                 assert np.array_equal(getattr(state, name), getattr(again, name)), name
 
 
+@pytest.mark.gate
 def test_a_file_holds_the_life_to_the_last_bit(tmp_path):
     path = tmp_path / "life.h5"
     written, kept = life(path, title="one life"), life()
@@ -55,6 +56,7 @@ def test_a_file_holds_the_life_to_the_last_bit(tmp_path):
     assert sorted(each.name for each in tmp_path.iterdir()) == ["life.h5"]
 
 
+@pytest.mark.gate
 def test_a_history_may_be_its_cycle_alone(tmp_path):
     path = tmp_path / "life.h5"
     history = fastpin.LoadHistory([{"P": 1.0}, {"P": 0.5}]).repeated(2)
@@ -65,6 +67,7 @@ def test_a_history_may_be_its_cycle_alone(tmp_path):
     assert [state.step for state in written[-1].states] == [119, 120, 121]
 
 
+@pytest.mark.gate
 def test_an_interrupted_life_goes_on_to_the_same_bits(tmp_path):
     path, corners = tmp_path / "life.h5", [5, 12, 13, 30, 47]
     for number, corner in enumerate(corners):
@@ -77,6 +80,7 @@ def test_an_interrupted_life_goes_on_to_the_same_bits(tmp_path):
     assert_same_life(life(path, resume=True), life())
 
 
+@pytest.mark.gate
 def test_a_life_goes_on_from_its_checkpoint(tmp_path, monkeypatch):
     monkeypatch.setattr(wear_files, "CHECKPOINT_EVERY", 0.0)
     path = tmp_path / "life.h5"
@@ -93,6 +97,7 @@ def test_a_life_goes_on_from_its_checkpoint(tmp_path, monkeypatch):
     assert_same_life(found, life(at=[2]))
 
 
+@pytest.mark.gate
 def test_a_life_that_needs_finer_nodes_later_begins_anew_there(tmp_path, monkeypatch):
     """Interrupted or not: the nodes are too coarse from the sixth cycle on."""
     follow = FatCycles.next
@@ -130,6 +135,7 @@ def test_a_life_that_ended_before_its_first_transaction_begins_anew(tmp_path, mo
     assert_same_life(life(path, cycles=2, resume=True), life(cycles=2))
 
 
+@pytest.mark.gate
 def test_a_life_whose_pin_touches_beyond_its_arc_later_begins_anew_there(tmp_path):
     """Interrupted or not: a bump is touched in the fourth cycle."""
     path = tmp_path / "life.h5"
@@ -141,6 +147,7 @@ def test_a_life_whose_pin_touches_beyond_its_arc_later_begins_anew_there(tmp_pat
     assert_same_life(fastpin.wear(BUMPED, BUMPED_TURNS, output=path, resume=True, **given), whole)
 
 
+@pytest.mark.gate
 def test_a_life_of_another_kind_is_not_continued(tmp_path):
     path = tmp_path / "life.h5"
     with pytest.raises(Interrupted):
@@ -194,7 +201,7 @@ life(path, cycles=3000, tolerance=0.005, resume=path.exists())
 """
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_a_life_that_is_killed_ten_times_has_the_same_bits(tmp_path):
     """Each process dies some hundredths of a second after it has written one or two more checkpoints."""
     path, root = tmp_path / "life.h5", Path(__file__).parents[2]

@@ -95,6 +95,7 @@ def test_increments_tend_to_the_path_on_the_same_grid(study: Convergence, proble
     assert math.isnan(series(study, "work").path)
 
 
+@pytest.mark.gate
 def test_a_long_history_shows_its_last_corner_or_the_one_asked_for(problem: Problem) -> None:
     history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).repeated(20)
     last = converge(problem, history, GRIDS)
@@ -105,6 +106,7 @@ def test_a_long_history_shows_its_last_corner_or_the_one_asked_for(problem: Prob
     assert second.loads[2]["Q"] == 0.2
 
 
+@pytest.mark.gate
 def test_other_ratios_and_the_whole_circle(problem: Problem) -> None:
     found = converge(problem, CORNERS[:2], (60, 75, 110), arc=(0.0, 2.0 * math.pi))
     assert found.grid.closed
@@ -167,6 +169,7 @@ def test_input_is_checked_before_anything_is_solved(
     assert refused.value.field == field
 
 
+@pytest.mark.gate
 def test_loads_that_a_grid_cannot_carry_name_it(problem: Problem) -> None:
     with pytest.raises(StudyLostError, match=r"^with 51 nodes: step 2, at 47") as lost:
         converge(problem, [{"P": 1.0}, {"M": 1.0}], GRIDS, (5, 10, 20))
@@ -180,6 +183,7 @@ def test_loads_that_a_grid_cannot_carry_name_it(problem: Problem) -> None:
     assert at_once.value.study is None
 
 
+@pytest.mark.gate
 def test_a_grid_that_does_not_fit_in_memory_leaves_the_others(
     problem: Problem, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -195,6 +199,7 @@ def test_a_grid_that_does_not_fit_in_memory_leaves_the_others(
     assert lost.value.study.studies[0].counts == (51, 101, 201)
 
 
+@pytest.mark.gate
 def test_a_corner_is_studied_on_the_arc_of_the_whole_history(problem: Problem) -> None:
     whole, one = converge(problem, CORNERS, GRIDS), converge(problem, CORNERS, GRIDS, corner=2)
     assert np.array_equal(whole.grid.theta, one.grid.theta)
@@ -219,6 +224,7 @@ def test_a_contact_of_few_nodes_is_refused(problem: Problem) -> None:
     assert refused.value.field == "nodes"
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("at", "grids", "studies"), [("201", 0, 0), ("301", 3, 1), ("20 inc", 4, 1)])
 def test_an_interrupt_keeps_three_grids(at: str, grids: int, studies: int, problem: Problem) -> None:
     def progress(done: float, total: float, what: str) -> None:
@@ -244,6 +250,7 @@ REPEATED = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).re
 """Nine corners, of which the last is studied."""
 
 
+@pytest.mark.gate
 def test_an_outcome_at_the_end_has_the_estimate_of_its_quantity(problem: Problem) -> None:
     given = {"end_work": {"quantity": "work"}, "own": lambda result: result[-1].work}
     study = converge(problem, CORNERS, GRIDS, (5, 10, 20), 51, outcomes=given)
@@ -257,6 +264,7 @@ def test_an_outcome_at_the_end_has_the_estimate_of_its_quantity(problem: Problem
     assert study.unread == {}
 
 
+@pytest.mark.gate
 def test_outcomes_of_the_history_and_of_its_last_cycle(problem: Problem) -> None:
     given = {
         "loss": {"cycle": "dissipation"},

@@ -56,6 +56,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.gate
 def test_a_sweep_tells_the_fate_of_cracks(folder: Path) -> None:
     assert main(["sweep", "plan.toml", "--workers", "1"]) == 0
     rows = sweep.rows(read_plan("plan.toml"), "plan")

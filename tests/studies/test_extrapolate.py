@@ -101,6 +101,7 @@ def test_a_missing_value_is_not_compared() -> None:
     assert estimate(HALVED, [1.0, 2.0, math.nan, 1.0, 1.0])[0] == "not comparable"
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("order", [1.0, 1.5, 2.0])
 def test_bars_hold_with_noise(order: float) -> None:
     rng = np.random.default_rng(3)

@@ -53,6 +53,7 @@ def test_the_next_factor_stays_between_those_that_are_known():
     assert 0.45 < _next_factor(known) < 0.5
 
 
+@pytest.mark.gate
 def test_a_ply_may_fail_in_any_state_or_at_the_end():
     loads = [{"P": 1e6}, {"P": 5e5}]
     factors = [

@@ -250,6 +250,7 @@ def plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "plan.toml"
 
 
+@pytest.mark.gate
 def test_a_sweep_ranks_designs_by_life(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", "plan.toml", "--table", "a.csv", "--plot", "a.png", "--workers", "1"]) == 1
     out = capsys.readouterr().out
@@ -271,6 +272,7 @@ def test_a_sweep_ranks_designs_by_life(plan: Path, capsys: pytest.CaptureFixture
     assert len({row["life"] for row in rows}) == 3
 
 
+@pytest.mark.gate
 def test_a_convergence_study_gives_a_life_an_error_bar(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names = ("smith_watson_topper", "smith_watson_topper_life", "largest_friction_energy", "crossland_angle")
     study = converge(problem(), HISTORY, (51, 101, 201), outcomes={name: {"cycle": name} for name in names})
@@ -323,6 +325,7 @@ cycle = { fatigue = "life", over = "cycle" }
 """
 
 
+@pytest.mark.gate
 def test_outcomes_of_the_section(tmp_path):
     (tmp_path / "case.toml").write_text(SECTION_CASE, encoding="utf-8")
     plan = parse_plan(SECTION_PLAN, folder=tmp_path)

@@ -122,6 +122,7 @@ def test_files_of_loads_and_their_columns_can_be_varied(tmp_path: Path) -> None:
     assert (data["peak_pressure"][:, 0] > data["peak_pressure"][:, 1]).all()
 
 
+@pytest.mark.gate
 def test_a_dataset_can_be_written_and_read(plan: Plan, directory: Path, tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     data = sweep.to_xarray(plan, directory)

@@ -73,6 +73,7 @@ def swept(folder, text):
     return sweep.rows(plan, folder / "plan")
 
 
+@pytest.mark.gate
 def test_outcomes_are_the_margins_of_the_table(folder):
     plan = parse_plan(f'case = "case.toml"\n[grid]\ncontact.friction = [0.4]\n{OUTCOMES}', folder=folder)
     case = plan.case(plan.points[0])
@@ -93,6 +94,7 @@ def test_outcomes_are_the_margins_of_the_table(folder):
     assert values["none"] is None
 
 
+@pytest.mark.gate
 def test_each_strength_has_its_own_run_and_margin(folder):
     """Strengths change no state: without outcomes of margins both points are one run."""
     plain = parse_plan(STRENGTHS, folder=folder)
@@ -106,6 +108,7 @@ def test_each_strength_has_its_own_run_and_margin(folder):
         assert strength == row["plate.yield_strength"]
 
 
+@pytest.mark.gate
 def test_another_strength_in_the_case_is_not_mixed_up(folder):
     """The same folder and plan, after the case got another strength: the margin is new, the old run is another one."""
     text = ONE + '[outcomes]\nm = { margin = "yield", body = "plate" }\n'
@@ -128,6 +131,7 @@ def test_an_outcome_that_is_added_later_changes_the_ids(folder):
     assert other.points == plain.points
 
 
+@pytest.mark.gate
 def test_a_tolerance_study_has_the_swing_of_the_least_margin(folder, capsys):
     (folder / "study.toml").write_text(
         'case = "case.toml"\nsamples = 0\n[tolerances]\nplate.yield_strength = { from = 350e6, to = 400e6 }\n'
@@ -165,6 +169,7 @@ def test_wrong_outcomes_have_a_sentence(folder, outcome, words):
     assert words in message
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("files", [False, True])
 def test_stored_runs_keep_the_sections(folder, capsys, files):
     """``fastpin show`` and ``fastpin report`` of a stored run judge it as those of the case."""

@@ -304,6 +304,7 @@ def test_another_version_of_the_solver_is_another_run() -> None:
     assert run_id(document, "1.0") != run_id(document, "1.1")
 
 
+@pytest.mark.gate
 def test_ids_are_the_same_in_every_process() -> None:
     code = (
         "from fastpin.casefile import builtin_case; from fastpin.studies.identity import *; "

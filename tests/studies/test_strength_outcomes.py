@@ -57,6 +57,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.gate
 def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope"]) == 1  # two have no curve
     plan = read_plan("plan.toml")
@@ -84,6 +85,7 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path, capsys:
     assert "outcome curve can't be read in 2 runs" in capsys.readouterr().out
 
 
+@pytest.mark.gate
 def test_an_envelope_follows_the_force_and_the_other_fields(folder: Path) -> None:
     Path("plan.toml").write_text(
         'case = "case.toml"\n[grid]\nload.1.Q = [-1e6]\nload.1.P = [0]\nload.1.sxx = [50e6]\nload.1.syy = [-9e6]\n'
@@ -116,6 +118,7 @@ def test_what_an_envelope_can_not_show(
     assert not Path("plan").exists()
 
 
+@pytest.mark.gate
 def test_points_without_a_factor_are_noted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("plan.toml").write_text(PLAN.replace("[-100e6, 100e6]", "[0]"))
     assert main(["sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope"]) == 1
@@ -143,6 +146,7 @@ def test_a_fault_is_one_sentence_with_its_line(folder: Path, old: str, new: str,
     assert found.startswith(sentence)
 
 
+@pytest.mark.gate
 def test_a_tolerance_study_has_the_strength_too(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("case.toml").write_text(CASE)
     Path("tolerances.toml").write_text(

@@ -234,6 +234,7 @@ def stems(directory: Path) -> set[str]:
     return {path.stem for path in (directory / "results").iterdir()}
 
 
+@pytest.mark.gate
 def test_results_get_files_when_asked_for(plan: Plan, copy: Path, tmp_path: Path) -> None:
     """Those of finished runs are written from the index; a run that is solved now has a file only."""
     done = {row["id"] for row in sweep.load(copy) if row["status"] == "done"}
@@ -249,6 +250,7 @@ def test_results_get_files_when_asked_for(plan: Plan, copy: Path, tmp_path: Path
             assert same_states(store.load(directory / "results" / f"{run}.h5"), packed[run])
 
 
+@pytest.mark.gate
 def test_a_sweep_of_files_without_results_in_its_index_goes_on(plan: Plan, tmp_path: Path) -> None:
     """As earlier versions have written it."""
     sweep.run(plan, tmp_path, Inline(), files=True)

@@ -153,6 +153,7 @@ def test_every_quantity_of_a_cycle_has_a_bar(name: str, result: Result) -> None:
     assert bar_of(outcome, value, result) >= 0.0
 
 
+@pytest.mark.gate
 def test_later_outcomes_have_bars_from_the_stored_results(folder, directory, tmp_path) -> None:
     later, packed = parse_plan(LATER, folder=folder), tmp_path / "out"
     summary = sweep.run(later, packed, Inline())
@@ -162,6 +163,7 @@ def test_later_outcomes_have_bars_from_the_stored_results(folder, directory, tmp
     assert bars[0] == bars[1]
 
 
+@pytest.mark.gate
 def test_parts_keep_their_bars(plan: Plan, directory, tmp_path) -> None:
     parts = [tmp_path / "1", tmp_path / "2"]
     for k, part in enumerate(parts, start=1):

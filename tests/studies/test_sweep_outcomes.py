@@ -52,6 +52,7 @@ def chosen(plan: Plan, directory: Path) -> list[dict[str, Any]]:
     return [{name: row[name] for name in plan.outcomes} for row in sweep.rows(plan, directory)]
 
 
+@pytest.mark.gate
 def test_outcomes_are_those_of_the_results(tmp_path: Path) -> None:
     plan = parse_plan(CYCLES + TABLE).with_outcomes({"work": last_work})
     summary = sweep.run(plan, tmp_path, workers=2)
@@ -95,6 +96,7 @@ def test_an_outcome_with_another_definition_is_read_again(copy: Path) -> None:
     assert [row["loss"] for row in chosen(second, copy)] == [row["loss"] for row in known]
 
 
+@pytest.mark.gate
 def test_a_function_that_fails_loses_no_run(tmp_path: Path) -> None:
     path = tmp_path / "plan.toml"
     (tmp_path / "mine.py").write_text(FILE)
@@ -117,6 +119,7 @@ def test_a_function_that_fails_loses_no_run(tmp_path: Path) -> None:
     assert [row["broken"] for row in sweep.rows(read_plan(path), tmp_path / "out")] == [0.5, 0.5]
 
 
+@pytest.mark.gate
 def test_a_function_that_kills_its_worker_loses_no_run(bare: Plan, tmp_path: Path) -> None:
     plan = bare.with_outcomes({"deadly": deadly})
     summary = sweep.run(plan, tmp_path, workers=1)
@@ -146,6 +149,7 @@ def test_a_result_that_can_not_be_read_is_the_reason(copy: Path) -> None:
     assert all(reason.endswith("is damaged: its checksum is wrong") for _, _, reason in summary.unread)
 
 
+@pytest.mark.gate
 def test_outcomes_are_read_from_files_too(tmp_path: Path) -> None:
     sweep.run(parse_plan(CYCLES), tmp_path, Inline(), files=True)
     assert sweep.run(parse_plan(CYCLES + TABLE), tmp_path, Inline()).read == 2
@@ -207,7 +211,7 @@ def test_a_run_that_fails_when_solved_again_shows_no_old_outcome(copy: Path) -> 
     assert [row["loss"] is None for row in sweep.rows(plan, copy)] == [True, False]
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_a_cluster_reads_outcomes(bare: Plan, tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 

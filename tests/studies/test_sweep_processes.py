@@ -64,6 +64,7 @@ def many_threads(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(name, "2")
 
 
+@pytest.mark.gate
 def test_a_worker_has_one_thread(many_threads: None) -> None:
     pool = Pool(1)
     try:
@@ -74,6 +75,7 @@ def test_a_worker_has_one_thread(many_threads: None) -> None:
     assert set(found) == {1}
 
 
+@pytest.mark.gate
 def test_a_worker_of_others_has_one_thread(many_threads: None) -> None:
     code = (
         "from threadpoolctl import threadpool_info\nfrom fastpin.studies.workers import one_thread\n"
@@ -83,6 +85,7 @@ def test_a_worker_of_others_has_one_thread(many_threads: None) -> None:
     assert done.stdout == "{1}\n"
 
 
+@pytest.mark.gate
 def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     plan = parse_plan(FRICTION.replace("COUNT", "8"))
 
@@ -92,6 +95,7 @@ def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     assert_same_as_serial(plan, tmp_path)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("size", [1, 3])
 def test_the_run_that_kills_its_worker_is_found(size: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also among others of its batch."""
@@ -134,6 +138,7 @@ def workers(main: int) -> list[psutil.Process]:
     return found
 
 
+@pytest.mark.gate
 def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -> None:
     path = tmp_path / "plan.toml"
     path.write_text(FRICTION.replace("COUNT", "41"))
@@ -149,6 +154,7 @@ def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -
     )
 
 
+@pytest.mark.gate
 def test_an_interrupted_and_a_killed_sweep_go_on_with_their_outcomes(tmp_path: Path) -> None:
     path, directory = tmp_path / "plan.toml", tmp_path / "out"
     (tmp_path / "mine.py").write_text(FILE)
@@ -193,7 +199,7 @@ def test_an_interrupted_and_a_killed_sweep_go_on_with_their_outcomes(tmp_path: P
     assert_same_as_serial(plan, directory)
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 
@@ -215,6 +221,7 @@ def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
         assert_same_as_serial(plan, directory)
 
 
+@pytest.mark.gate
 def test_a_script_that_its_workers_run_again_is_told(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(

@@ -49,6 +49,7 @@ def faults_of(folder: Path, text: str, case: str = CASE) -> str:
     return str(caught.value)
 
 
+@pytest.mark.gate
 def test_outcomes_of_a_neat_fit_without_friction_are_proportional_to_the_factors(tmp_path: Path):
     text = (
         "samples = 12\n[tolerances]\nloads = { from = 0.9, to = 1.1 }\nloads.P = { from = 0.5, to = 1.25, count = 4 }\n"

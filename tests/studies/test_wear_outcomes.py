@@ -76,6 +76,7 @@ def read(given: dict[str, Any], result: Result) -> float | None:
     return found.value
 
 
+@pytest.mark.gate
 def test_the_numbers_are_those_of_the_life(result: Result) -> None:
     life = fastpin.wear(result.problem, result.history, nodes=41, **HOW)
     found, last = life.fatigue(), life[-1]
@@ -96,6 +97,7 @@ def test_the_numbers_are_those_of_the_life(result: Result) -> None:
         assert read({"wear": quantity, **HOW}, result) == (None if value is None else pytest.approx(value, rel=1e-12))
 
 
+@pytest.mark.gate
 def test_a_crack_has_a_life_and_wins(result: Result) -> None:
     how = HOW | {"cycles": 300_000, "at": [10_000, 30_000, 100_000]}
     found = fastpin.wear(result.problem, result.history, nodes=41, **how).fatigue()
@@ -106,6 +108,7 @@ def test_a_crack_has_a_life_and_wins(result: Result) -> None:
     assert outcome.classes == {0: "no crack in any case", 1: "wear wins", 2: "a crack wins"}
 
 
+@pytest.mark.gate
 def test_outcomes_share_a_life_and_its_damage(result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     counts = {"wear": 0, "fatigue": 0}
     follow, damage = Result.wear, fastpin.solver.WearResult.fatigue
@@ -200,6 +203,7 @@ i = { wear = "life", cycles = 10, plate = { zone = 1e-15, start = 10 } }
     assert starts == expected
 
 
+@pytest.mark.gate
 def test_a_life_that_fails_is_the_reason_of_its_outcome_alone(plan: Plan, tmp_path: Path) -> None:
     summary = sweep.run(plan, tmp_path, Inline())
     assert (summary.done, summary.failed) == (2, [])
@@ -211,7 +215,7 @@ def test_a_life_that_fails_is_the_reason_of_its_outcome_alone(plan: Plan, tmp_pa
     assert [row["deep"] is None for row in rows] == [False, True]
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_worker_processes_read_the_same_numbers(plan: Plan, tmp_path: Path) -> None:
     sweep.run(plan, tmp_path / "one", Inline())
     sweep.run(plan, tmp_path / "two", workers=2)

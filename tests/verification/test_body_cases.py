@@ -88,7 +88,7 @@ def test_a_compliance_converges_with_its_harmonics():
     assert np.all(np.divide(errors[:-1], errors[1:]) > 15.0)
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 @pytest.mark.parametrize("name", CASES)
 def test_nodes(name):
     """From 801 to 1,601 nodes the peak changes by 2e-7 to 1.3e-6, and half-angles by less than 2e-4.

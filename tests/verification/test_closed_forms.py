@@ -276,6 +276,7 @@ def test_stress_under_ellipses_is_flamants_integral(x, depth):
         assert scaled == pytest.approx(3.0 * np.array(expected), abs=6e-12)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     ("now", "branch", "kink"), [(0.6, "loading", 0.4), (-0.2, "unloading", 0.6), (0.1, "reloading", 0.65)]
 )

@@ -36,6 +36,7 @@ def test_residuals_are_of_second_order(friction: float, allowed: float) -> None:
         assert one / other == pytest.approx(4.0, rel=0.1)
 
 
+@pytest.mark.gate
 def test_residuals_of_partial_slip_fall() -> None:
     """The cusps at the borders of zones are felt far away."""
     for one, other in zip(largest(200, 0.4), largest(800, 0.4), strict=True):

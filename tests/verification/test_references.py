@@ -38,6 +38,7 @@ def test_persson(similar, load_parameter, pin_load):
     assert np.abs(state.pressure[inside] - expected).max() < 1e-3 * expected.max()
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("load_parameter", [0.01, 0.5, 2.0])
 def test_persson_contact_angle_with_many_nodes(similar, load_parameter):
     state = solve(Problem.from_load_parameter(similar, load_parameter, 0.0), [{"P": 1.0}], nodes=1600)[-1]
@@ -55,6 +56,7 @@ def test_dissimilar_frictionless_without_coupling(alpha, load_parameter):
     assert half_angle(state) == pytest.approx(exact, abs=1e-3)
 
 
+@pytest.mark.gate
 def test_order_of_edge_and_peak_pressure(similar):
     """Edges read between nodes: no stair steps, and better than first order. Peaks: second order."""
     rng = np.random.default_rng(3)
@@ -93,6 +95,7 @@ def test_monotonic_reference_values(similar, titanium_in_aluminium):
             assert 0.5 * (state.stick[0][1] - state.stick[0][0]) == pytest.approx(stick, abs=1e-3)
 
 
+@pytest.mark.gate
 def test_fretting_with_fixed_rotation_reference_values(similar):
     result = solve(Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed"), CYCLE, nodes=601)
     peaks = [0.91864, 0.93755, 0.94690, 0.94671, 0.94690]
@@ -105,6 +108,7 @@ def test_fretting_with_fixed_rotation_reference_values(similar):
         assert -state.resultants["M"] == pytest.approx(integral, abs=4e-6)
 
 
+@pytest.mark.gate
 def test_fretting_with_free_rotation_reference_values(similar):
     result = solve(Problem.from_load_parameter(similar, 0.05, 0.55, "body", "free"), CYCLE, nodes=601)
     peaks = [0.46529, 0.50477, 0.55305, 0.54587, 0.55164]

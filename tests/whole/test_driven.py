@@ -133,6 +133,7 @@ def test_reactions_given_as_forces(titanium_in_aluminium, kind):
     assert result[-1].load["Q"] != pytest.approx(result[-2].load["Q"], abs=1e-3)  # P alone changes the reaction
 
 
+@pytest.mark.gate
 def test_the_methods_agree(titanium_in_aluminium):
     for kind, drive in ((KINDS[0], "ux"), (KINDS[1], "both"), (KINDS[2], "uy")):
         driven = joint(titanium_in_aluminium, 0.2, kind, drive)
@@ -214,6 +215,7 @@ def test_the_work_of_a_body_force_is_that_over_its_displacement(titanium_in_alum
 # --- gross sliding, first contact, loss of contact -----------------------------------------------------------
 
 
+@pytest.mark.gate
 def test_gross_sliding(titanium_in_aluminium):
     """Under ux the held pin slides along the wall; the state is that of (58) under the reaction."""
     driven = joint(titanium_in_aluminium, 0.5, KINDS[1], "ux", friction=0.3)
@@ -406,6 +408,7 @@ def case(tmp_path):
     return parse_case(CASE, folder=tmp_path)
 
 
+@pytest.mark.gate
 def test_case_file_tables_and_files(case, tmp_path):
     assert (case.problem.drive, case.problem.gauge_radius, case.problem.hub_radius) == ("ux", 15e-3, 4e-3)
     assert "ux in place of Q over radius 0.015 m, hub of radius 0.004 m" in describe(case)

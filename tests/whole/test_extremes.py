@@ -15,7 +15,7 @@ import fastpin
 from fastpin import figures, storage
 from fastpin.cli.main import main
 from fastpin.states.extremes import READINGS, Extreme, marked_places
-from tests.support.marks import slow
+from tests.support.tiers import gate
 
 CASE = """
 [pin]
@@ -57,7 +57,7 @@ def case_text(kind: str) -> str:
     return CASE.format(**given) + "\n".join(steps)
 
 
-@pytest.fixture(scope="module", params=["plain", *slow("bush")])
+@pytest.fixture(scope="module", params=["plain", "bush"])
 def stored(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp(request.param) / f"{request.param}.toml"
     path.write_text(case_text(request.param), encoding="utf-8")
@@ -90,7 +90,7 @@ def sentences(stored: Path, readings: dict[str, list[float]]) -> list[str]:
     return found
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_python_and_json_agree_with_every_state(stored: Path, readings: dict[str, list[float]], tmp_path: Path) -> None:
     result, peak = fastpin.load(stored), PEAKS[stored.stem]
     found = result.extremes()
@@ -104,6 +104,7 @@ def test_python_and_json_agree_with_every_state(stored: Path, readings: dict[str
     assert told.keys() == found.keys()
 
 
+@pytest.mark.gate
 def test_run_and_show_tell_the_largest_of_all(
     stored: Path, sentences: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -117,7 +118,7 @@ def test_run_and_show_tell_the_largest_of_all(
         assert any(line.split()[:2] == [str(peak), "60"] for line in text.splitlines())
 
 
-@pytest.mark.slow
+@pytest.mark.gate
 def test_the_page_tells_and_draws_the_largest_of_all(
     stored: Path, sentences: list[str], readings: dict[str, list[float]], tmp_path: Path
 ) -> None:
@@ -133,6 +134,7 @@ def test_the_page_tells_and_draws_the_largest_of_all(
     assert all(str(PEAKS[stored.stem] + 1) in each.split(", ") for each in drawn)
 
 
+@pytest.mark.gate
 def test_figures_draw_the_states_of_extremes(stored: Path, readings: dict[str, list[float]]) -> None:
     peak = PEAKS[stored.stem]
     for drawn in (figures.states.stored_states(stored), figures.states.drawn_states(fastpin.load(stored))):
@@ -173,6 +175,7 @@ def long(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.gate
 def test_a_file_has_extremes_from_so_many_states_on(long: Path, least: None, tmp_path: Path) -> None:
     result = fastpin.load(long)
     for size, stored in ((LEAST - 1, False), (LEAST, True)):
@@ -188,7 +191,7 @@ def test_a_long_result_has_its_extremes_in_the_file(long: Path, monkeypatch: pyt
     assert marked_places(known)
 
 
-@pytest.mark.parametrize("damage", ["absent", "place", "value", "states", "names", "shape", "text"])
+@pytest.mark.parametrize("damage", ["absent", "place", *gate("value"), "states", "names", "shape", "text"])
 def test_extremes_in_a_file_are_checked(long: Path, tmp_path: Path, damage: str) -> None:
     path = tmp_path / "b.h5"
     path.write_bytes(long.read_bytes())
@@ -214,6 +217,7 @@ def test_extremes_in_a_file_are_checked(long: Path, tmp_path: Path, damage: str)
         assert storage.marked_extremes(path) == storage.marked_extremes(long)
 
 
+@pytest.mark.gate
 def test_a_saved_long_result_has_the_same_extremes(long: Path, least: None, tmp_path: Path) -> None:
     result = fastpin.load(long)
     result.save(tmp_path / "c.h5")

@@ -58,6 +58,7 @@ def test_the_assembly_with_friction_keeps_the_balance_of_energy(uneven):
         assert state.work == pytest.approx(state.energy + state.dissipation, abs=3e-6)
 
 
+@pytest.mark.gate
 def test_both_methods_follow_an_interference_fit_in_an_uneven_plate(uneven):
     corners = [{}, {"P": 0.6}, {"Q": 0.2}, {"Q": -0.2}]
     path = solve(interference(uneven, 0.3), corners, nodes=121)

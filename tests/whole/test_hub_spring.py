@@ -21,6 +21,7 @@ from fastpin.studies.identity import canonical
 from fastpin.studies.plan import parse_plan
 from fastpin.verification.sliding import solve_sliding
 from tests.support.programs import assert_same
+from tests.support.tiers import gate
 
 HISTORY = [{"P": 1.0}, {"Q": 0.25}, {"Q": -0.25}, {"Q": 0.25}, {"P": 0.6, "Q": -0.2}]
 TURNED = [*HISTORY[:2], {"Q": -0.25, "rotation": 0.02}, *HISTORY[3:]]
@@ -65,7 +66,7 @@ def test_the_moment_is_the_spring_s(titanium_in_aluminium, hub_radius, stiffness
     assert abs(moments[1]) > 1e-6
 
 
-@pytest.mark.parametrize("options", [{}, INCREMENTS], ids=["path", "increment"])
+@pytest.mark.parametrize("options", [{}, *gate(INCREMENTS)], ids=["path", "increment"])
 def test_stiff_and_soft_springs(titanium_in_aluminium, options):
     """A stiff spring is a fixed hub, and a soft one a free pin; the differences fall with the first power."""
     fixed = solve(joint(titanium_in_aluminium, "fixed", 0.3), TURNED, nodes=101, **options)
@@ -77,6 +78,7 @@ def test_stiff_and_soft_springs(titanium_in_aluminium, options):
         assert worst[2] < 1e-11
 
 
+@pytest.mark.gate
 def test_the_methods_agree(titanium_in_aluminium):
     problem = joint(titanium_in_aluminium, "spring", None, 0.5)
     path = solve(problem, TURNED, nodes=101)
@@ -107,6 +109,7 @@ def test_a_cycle_dissipates_the_work_of_the_force(titanium_in_aluminium):
     assert work == pytest.approx(lost, rel=1e-3)
 
 
+@pytest.mark.gate
 def test_full_sliding(titanium_in_aluminium):
     """A spring whose far end turns on and on brings the pin into full sliding, at the moment of (58)."""
     problem = joint(titanium_in_aluminium, "spring", None, 0.2)
@@ -170,6 +173,7 @@ SPRING = 'rotation = "spring"\nhub_stiffness = 2e5\nhub_radius = 4e-3\n#'
 CASE = EXAMPLE.replace('pin_load = "body"  ', 'pin_load = "centre"').replace('rotation = "free"', SPRING)
 
 
+@pytest.mark.gate
 def test_case_file_tables_and_files(tmp_path):
     case = parse_case(CASE.replace("nodes = 401", "nodes = 61"))
     assert (case.problem.rotation, case.problem.hub_stiffness) == ("spring", 2e5)

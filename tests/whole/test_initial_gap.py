@@ -29,7 +29,6 @@ from fastpin.verification import interference
 from fastpin.verification.comparisons import all_round_difference, residuals_away
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.sliding import solve_sliding
-from tests.support.marks import slow
 from tests.support.once import solve_once
 
 CIRCLE = Grid.circle(120)
@@ -68,9 +67,7 @@ def fit_error(pair, order, friction, nodes, **bodies):
 
 @pytest.mark.parametrize("friction", [0.0, 1e6], ids=["frictionless", "stuck"])
 @pytest.mark.parametrize("order", [1, 2, 3, 6])
-@pytest.mark.parametrize(
-    ("pair", "bodies"), [("like", "solid"), *slow(("unlike", "solid"), ("unlike", "tube in ring"))]
-)
+@pytest.mark.parametrize(("pair", "bodies"), [("like", "solid"), ("unlike", "solid"), ("unlike", "tube in ring")])
 def test_waves_of_an_interference_fit_have_closed_forms(pair, bodies, order, friction):
     """The error falls with the square of the spacing. Measured with 400 nodes: docs/accuracy-tables.md."""
     coarse, fine = (fit_error(PAIRS[pair], order, friction, nodes, **BODIES[bodies]) for nodes in (60, 120))
@@ -335,6 +332,7 @@ def test_a_held_displacement_grips_beside_the_room():
     assert can_float(System.build(driven, CIRCLE, 1.0), np.where(np.array(LOADS) == "ux", 0.5, 0.0))
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("drive", ["ux", "uy", "both"])
 def test_driven_pins_meet_an_oval_hole_where_they_touch_it(drive):
     """The prescribed displacement is that of the hub. A contact begins where the gap of the rigid pin is used up."""
@@ -496,6 +494,7 @@ def test_a_pin_rests_on_the_edges_of_its_flat():
         assert start - 0.01 < edge < stop + 0.01
 
 
+@pytest.mark.gate
 def test_a_neat_fit_beside_the_middle_is_a_neat_fit():
     """Complete unloading too. Measured: 2e-14."""
     neat, shifted = (

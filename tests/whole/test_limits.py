@@ -14,6 +14,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver.errors import ArcError, ConvergenceError, NoEquilibriumError
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
+from tests.support.tiers import some_gate
 
 BOTTOM = -0.5 * math.pi
 
@@ -215,7 +216,7 @@ def test_grids_can_be_given(similar):
 # --- what is easily lost ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["path", "increment"])
+@pytest.mark.parametrize("method", some_gate(["path", "increment"], "increment", "path"))
 @pytest.mark.parametrize("load_parameter", [0.1, 0.0])
 def test_energy_balance_through_unloading_and_reloading(titanium_in_aluminium, method, load_parameter):
     problem = Problem.from_load_parameter(titanium_in_aluminium, load_parameter, 0.4, "body")
@@ -289,7 +290,8 @@ def test_rotation_may_change_without_contact(titanium_in_aluminium):
     assert not back.in_contact
 
 
-@pytest.mark.parametrize("side", [1e-3, 1e-4, pytest.param(1e-5, marks=pytest.mark.slow)])
+@pytest.mark.gate
+@pytest.mark.parametrize("side", [1e-3, 1e-4, 1e-5])
 def test_a_held_pin_crosses_the_clearance_with_a_little_side_force(titanium_in_aluminium, side):
     """It slides round the hole under next to no force. Friction lets the new contact lag behind, for any side force."""
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "centre", "fixed")

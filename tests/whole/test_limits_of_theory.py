@@ -14,6 +14,7 @@ from fastpin.paper import catalog, half_plane, rigid_pin
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
+from tests.support.tiers import gate
 
 
 @cache
@@ -40,7 +41,7 @@ def order(curve: Curve, first: float, last: float) -> float:
 @pytest.mark.parametrize(
     ("quantity", "first", "last", "expected"),
     [
-        ("half-width", 4.0, 50.0, 1.0),
+        *gate(("half-width", 4.0, 50.0, 1.0)),
         ("peak pressure", 4.0, 100.0, 1.0),
         ("peak pressure, with friction", 4.0, 50.0, 1.0),
         ("stick size, +Q", 4.0, 25.0, 1.0),
@@ -151,7 +152,7 @@ def test_unlike_half_planes_without_coupling_are_spences():
 
 @pytest.mark.parametrize(
     ("ratio", "limit", "published", "tolerance"),
-    [(0.5, 0.1652, 0.169, 0.025), (1.0, 0.6936, 0.679, 0.005), (1.5, 0.9222, 0.918, 0.005)],
+    [(0.5, 0.1652, 0.169, 0.025), (1.0, 0.6936, 0.679, 0.005), *gate((1.5, 0.9222, 0.918, 0.005))],
 )
 def test_unlike_materials_tend_to_half_planes(ratio, limit, published, tolerance):
     """Whatever the sign of beta. `published` (a half-space code) is stated to 0.01; the second is off by more."""
@@ -165,6 +166,7 @@ def test_unlike_materials_tend_to_half_planes(ratio, limit, published, tolerance
         assert stick / contact == pytest.approx(half_planes, rel=tolerance)
 
 
+@pytest.mark.gate
 def test_the_sign_of_beta_decides_how_far_unlike_half_planes_reach():
     """And so does the pin's load, of which a half-plane knows nothing."""
     softer_plate, softer_pin = (error_curve(f"mu = 1 |beta|, beta {relation} 0").parameters for relation in "><")
@@ -221,6 +223,7 @@ def test_elastic_pins_tend_to_the_rigid_one_with_the_inverse_of_their_modulus():
 # --- both ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("name", "panels", "lines"), [("half-plane", 4, 23), ("rigid-pin", 4, 18)])
 def test_drawn(name, panels, lines):
     figure = catalog.figure(name).draw(computed(name))
@@ -229,6 +232,7 @@ def test_drawn(name, panels, lines):
     assert sum(len(line.get_xdata()) > 2 for panel in figure.axes for line in panel.lines) == lines
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("load_parameter", [3.0, 100.0])
 def test_floors_are_above_the_errors_of_the_discretisation(load_parameter):
     """Differences between 201 and 401 nodes are below the floors for 201."""

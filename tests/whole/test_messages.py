@@ -420,6 +420,7 @@ def test_python_warns_on_the_line_of_the_user(work: Callable[..., Any], tmp_path
     assert warning.filename == __file__
 
 
+@pytest.mark.gate
 def test_a_run_prints_each_warning_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "case.toml"
     path.write_text(HARD)
@@ -458,6 +459,7 @@ def test_a_plan_doubts_the_coefficients_of_its_outcomes_of_wear(tmp_path: Path) 
     assert str(warning.message).startswith("coefficient: 1e-09 1/Pa is more than any surface wears")
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("other", [False, True], ids=["named", "given"])
 def test_a_pressure_above_the_yield_strength_is_doubted(
     other: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None

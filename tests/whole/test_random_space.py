@@ -14,10 +14,10 @@ from fastpin.model.grid import Grid
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
-from scripts import conditions, metamorphic, two_roads
 from tests.support.potentials import displacement_kernels
 from tests.support.slip_cases import UNLIKE
 from tests.support.tiers import seeds
+from tests.survey import conditions, metamorphic, two_roads
 from tests.survey.histories import GENERATORS, generate, lug
 from tests.survey.random_histories import Outcome, examine
 
@@ -43,12 +43,14 @@ def test_a_few_random_histories_of_quick_classes(kind):
 
 
 @pytest.mark.gate
+@pytest.mark.gate
 @pytest.mark.parametrize("kind", [kind for kind in GENERATORS if kind not in (*QUICK, "drift")])
 def test_a_few_random_histories_of_each_class(kind):
     """Friction that changes takes more time than all others, and has quick tests of its own."""
     check_a_few(kind)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("kind", "seed"), [("wear", 29), ("wear", 107), ("wear", 164)])
 def test_a_pin_comes_to_rest_in_a_worn_hole(kind, seed):
     outcome = examine(kind, seed)
@@ -134,6 +136,7 @@ def test_the_check_knows_the_spring_of_a_hub(pin):
     assert max(found["rotation"] for found in conditions.check_states(states)) < 1e-12
 
 
+@pytest.mark.gate
 def test_the_check_knows_the_displacement_of_a_lug_by_loads():
     """A driven pin meets the hole after some stress has acted. Its slip counts from there."""
     pair = MaterialPair(UNLIKE.pin, Material(UNLIKE.plate.E, 0.33), "strain")

@@ -154,6 +154,7 @@ def dominant(power, x, left, mu_beta, length=1.2):
     return float(-(near + far) / (2 * mpmath.pi) - (1 if left else -1) * mu_beta * slope(x))
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("left", [True, False])
 def test_edge_exponents(left):
     """(T20), (T21): the dominant part stays bounded towards an edge with the right exponent only."""

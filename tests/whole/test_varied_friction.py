@@ -21,6 +21,7 @@ from fastpin.states.state import State
 from fastpin.verification.comparisons import residuals_away
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.sliding import solve_sliding
+from tests.support.tiers import some_gate
 from tests.survey.histories import generate
 
 FRETTED = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}, {"P": 0.5}, {"P": 1.0, "Q": 0.2}]
@@ -64,7 +65,7 @@ def fretted(name: str, nodes: int) -> Result:
     return solve(PROBLEMS[name], FRETTED, grid=Grid.circle(nodes))
 
 
-@pytest.mark.parametrize("nodes", [240, pytest.param(960, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("nodes", some_gate([240, 960], 960, 960))
 @pytest.mark.parametrize("name", TABLE)
 def test_the_table_of_reference(name: str, nodes: int) -> None:
     state = fretted(name, nodes)[-1]

@@ -1,0 +1,170 @@
+"""The rules of the tiers. This plugin counts processor time, and watches processes, sockets, sleeps and figures.
+
+A quick test takes at most 0.5 s of processor time, fixtures and child processes included. It starts no process, opens
+no socket, does not sleep, and draws no figure of full size. A test of the gate takes at most 5 s, a survey any time. A
+test that breaks a rule fails. On a slower machine the limits are wider. Compiling a kernel is not counted: a machine
+does it once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from multiprocessing.process import BaseProcess
+from typing import Any
+
+import pytest
+from matplotlib.figure import Figure
+
+from fastpin.runtime import compiler
+from tests.support.tiers import TIERS, tier_of
+
+LIMITS = {"quick": 0.5, "gate": 5.0}
+"""Seconds of processor time that a test may take on the usual machine."""
+
+SHORT = 0.1
+"""Seconds below which a test of the gate that breaks no rule might be a quick one."""
+
+MOST_PIXELS = 500_000
+"""Pixels of a bitmap that is no figure of full size."""
+
+LOOP, USUAL = 200_000, 8e-3
+"""Turns of a loop of plain Python, and the seconds of processor time that they take on the usual machine."""
+
+EVENTS = {
+    "subprocess.Popen": "a child process",
+    "os.fork": "a child process",
+    "os.posix_spawn": "a child process",
+    "socket.bind": "a socket",
+    "socket.connect": "a socket",
+}
+"""Audit events of the interpreter that no quick test raises."""
+
+_seen: dict[str, int] = defaultdict(int)
+"""What the running test has done that no quick test does."""
+
+_compiling = [0.0]
+"""Seconds of processor time that this process has compiled kernels."""
+
+
+def spent() -> float:
+    """Seconds of processor time of this process and of its children that have ended, without compilations."""
+    children = os.times()
+    return time.process_time() + children.children_user + children.children_system - _compiling[0]
+
+
+def slowness() -> float:
+    """How many times as long as usual plain Python takes now; at least 1."""
+    best = min(_time_of_loop() for _ in range(3))
+    return max(1.0, best / USUAL)
+
+
+def _time_of_loop() -> float:
+    begin = time.process_time()
+    total = 0
+    for number in range(LOOP):
+        total += number
+    return time.process_time() - begin
+
+
+def _watch(owner: Any, name: str, count: Callable[..., str | None]) -> None:
+    """Let a function count what it does for the running test, by the words that `count` makes of its arguments."""
+    function = getattr(owner, name)
+
+    def watched(*arguments: Any, **keywords: Any) -> Any:
+        words = count(*arguments, **keywords)
+        if words and threading.current_thread() is threading.main_thread():
+            _seen[words] += 1
+        return function(*arguments, **keywords)
+
+    setattr(owner, name, watched)
+
+
+def _size(figure: Figure, path: Any, **options: Any) -> str | None:
+    dpi = options.get("dpi", figure.dpi)
+    inches = figure.get_size_inches()
+    pixels = inches[0] * inches[1] * (figure.dpi if dpi == "figure" else dpi) ** 2
+    is_vector = str(path).endswith((".pdf", ".svg", ".svgz", ".eps")) or options.get("format") in ("pdf", "svg")
+    return "a figure of full size" if pixels > MOST_PIXELS and not is_vector else None
+
+
+def pytest_configure() -> None:
+    sys.addaudithook(lambda event, _: _seen.__setitem__(EVENTS[event], 1) if event in EVENTS else None)
+    _watch(time, "sleep", lambda seconds: "a sleep" if seconds else None)
+    _watch(BaseProcess, "start", lambda process: "a child process")
+    _watch(Figure, "savefig", _size)
+    compile_kernel = compiler.compile_kernel
+
+    def timed(*arguments: Any, **keywords: Any) -> Any:
+        begin = time.process_time()
+        try:
+            return compile_kernel(*arguments, **keywords)
+        finally:
+            _compiling[0] += time.process_time() - begin
+
+    compiler.compile_kernel = timed  # type: ignore[assignment]
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> Iterator[None]:
+    _seen.clear()
+    item.stash[BEGIN] = spent()
+    return (yield)
+
+
+BEGIN = pytest.StashKey[float]()
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
+    result = yield
+    seconds, tier = spent() - item.stash[BEGIN], tier_of(item)
+    item.user_properties += [("processor", round(seconds, 4)), ("tier", tier), ("seen", dict(_seen))]
+    broken = broken_rules(tier, seconds, item.config.getoption("tier"))
+    if broken and not item.get_closest_marker("browser"):
+        above = TIERS[TIERS.index(tier) + 1]
+        pytest.fail(f"too much for a test of the tier {tier}: {'; '.join(broken)}. Mark it {above}", pytrace=False)
+    return result
+
+
+def broken_rules(tier: str, seconds: float, running: str) -> list[str]:
+    """The rules of its tier that a test broke. Where a higher tier is running, with more seeds, its limit counts."""
+    limit = LIMITS.get(max(tier, running, key=TIERS.index))
+    broken = []
+    if limit and seconds > limit and seconds > (allowed := limit * slowness()):
+        broken.append(f"{seconds:.2f} s of processor time, {allowed:.2f} s allowed")
+    return [*broken, *_seen] if tier == "quick" else broken
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if output := getattr(session.config, "workeroutput", None):
+        output["processor"] = sum(os.times()[:4])
+    else:
+        _workers.append(sum(os.times()[:2]))
+
+
+_workers: list[float] = []
+"""Seconds of processor time of each worker, from its start on."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    _workers.append(getattr(node, "workeroutput", {}).get("processor", 0.0))
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Say how much processor time the tests took, and which tests of the gate might be quick ones."""
+    reports = [
+        one for found in terminalreporter.stats.values() for one in found if getattr(one, "when", "") == "teardown"
+    ]
+    costs = [(one.nodeid, dict(one.user_properties)) for one in reports]
+    costs = [(name, cost) for name, cost in costs if "processor" in cost]
+    total = sum(cost["processor"] for _, cost in costs)
+    terminalreporter.write_line(f"processor time: tests {total:.0f} s, with their workers {sum(_workers):.0f} s")
+    for name, cost in costs:
+        if cost["tier"] == "gate" and not cost["seen"] and cost["processor"] < SHORT:
+            terminalreporter.write_line(f"marked gate, but quick: {name} ({cost['processor']:.2f} s)")
