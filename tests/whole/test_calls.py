@@ -11,7 +11,6 @@ from tests.survey import calls
 
 
 @pytest.mark.gate
-@pytest.mark.gate
 def test_a_raw_error_a_slow_call_and_a_crash_are_findings(monkeypatch):
     monkeypatch.setattr(calls, "LONGEST", 0.1)
     monkeypatch.setattr(calls, "LONGEST_WAIT", 2.0)

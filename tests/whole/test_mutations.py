@@ -18,7 +18,6 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.gate
-@pytest.mark.gate
 @pytest.mark.parametrize("kind", ["case", "csv", "index", "lug", "plan"])
 def test_some_changed_files_give_one_sentence(files: Path, kind: str) -> None:
     found = [finding for seed in seeds(3) for finding in mutations.examine(kind, seed, files)]
