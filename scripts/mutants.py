@@ -58,7 +58,10 @@ NEAR = {
 TIERS = {"quick": ((), ("-m", "not slow")), "gate": (("--gate",), ("-m", ""))}
 """Options of pytest for each tier, and for checkouts of the time before the tiers."""
 
-PYTEST = "-x -v --no-header --tb=no -p no:cacheprovider -p no:xdist -p no:benchmark -p no:tests.support.guard".split()
+PYTEST = (
+    "-x", "-v", "--no-header", "--tb=no", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:benchmark",
+    "-p", "no:tests.support.guard",
+)  # fmt: skip
 """Options of pytest. A changed test that takes longer breaks no rule of its tier."""
 
 STUCK = 600.0
@@ -112,7 +115,11 @@ class Copy:
         log = self.root / "said.txt"
         without = (f"--deselect={test}" for test in self.failing)
         # Bytecode of a changed file may have the time and the size of the unchanged one.
-        environment = os.environ | {"PYTHONPATH": str(self.root), "PYTHONDONTWRITEBYTECODE": "1"}
+        environment = os.environ | {
+            "PYTHONPATH": str(self.root),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "PYTHONUNBUFFERED": "1",
+        }
         with log.open("w") as said:
             process = subprocess.Popen(
                 [self.python, "-m", "pytest", *PYTEST, *self.options, *without, *tests],

@@ -212,7 +212,8 @@ class Package:
     def hidden_imports(self) -> list[str]:
         """Imports of the own public face, and imports of a named file by ``importlib``."""
         named = r"importlib.import_module\('fastpin[^()]*\)"
-        found = [(name, node) for name, node in self.nodes[ast.Call] if re.fullmatch(named, ast.unparse(node))]
+        calls = (at for at in self.nodes[ast.Call] if getattr(at[1].func, "attr", "") == "import_module")
+        found = [(name, node) for name, node in calls if re.fullmatch(named, ast.unparse(node))]
         for name, node in self.nodes[ast.ImportFrom]:
             if node.module == "fastpin" and name.partition("/")[0] in {alias.name for alias in node.names}:
                 found.append((name, node))
