@@ -176,7 +176,7 @@ def test_bodies_and_materials_can_be_changed() -> None:
 
 
 def assert_every_control_can_be_sent_back(text: str | None, changes: dict[str, Any]) -> None:
-    page = Page(contact(text, nodes=21))
+    page = Page(contact(text, nodes=21, limits=Limits(nodes=21)))
     if changes:
         page.tell("change", changes=changes)
     before = page.live.session.problem
