@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import io
 import re
+import select
 import socket
 from collections.abc import Awaitable, Callable, Iterator
 from functools import partial
@@ -272,8 +273,14 @@ def test_a_page_that_reads_nothing_does_not_keep_the_server_from_ending(monkeypa
         assert b"101" in raw.recv(20)
         (request,) = running._sockets.values()
         assert request.transport is not None
+        request.transport.get_extra_info("socket").setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
+        raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        raw.setblocking(False)
+        ping, sent = b"\x89\xfd" + bytes(4) + b"x" * 125, 0
         while not request.transport.get_write_buffer_size():  # until the answers have filled all other buffers
-            raw.sendall((b"\x89\xfd" + bytes(4) + b"x" * 125) * 1000)
+            select.select([], [raw], [], 0.01)
+            with contextlib.suppress(BlockingIOError):
+                sent += raw.send((ping * 100)[sent % len(ping) :])
 
 
 def test_a_port_in_use_is_refused_with_one_sentence(server: Server, capsys: pytest.CaptureFixture[str]) -> None:
