@@ -13,6 +13,8 @@ from tests.support.live_pages import floats, recorded
 from tests.support.lives import fretting
 from tests.support.wear_cases import WEAR_CASES
 
+pytestmark = pytest.mark.gate
+
 
 @pytest.fixture(scope="module")
 def result() -> WearResult:
