@@ -8,7 +8,6 @@ import os
 import shutil
 import signal
 import threading
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -187,9 +186,8 @@ def test_handlers_of_the_program_and_other_threads_are_left_alone(problem):
 def test_a_second_ctrl_c_ends_at_once_and_the_file_stays_good(problem, whole, path):
     def progress(done: float, total: int) -> None:
         if total > 1 and done > 10.0:
-            os.kill(os.getpid(), signal.SIGINT)
-            os.kill(os.getpid(), signal.SIGINT)
-            time.sleep(0.1)  # where Python looks for signals
+            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt) as stopped:
         follow(problem, RANDOM, path, nodes=61, progress=progress, arc=(-3.0, -0.1))
