@@ -30,6 +30,7 @@ from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
+from tests.support.kernels import run_as_python
 
 BOTTOM = -0.5 * np.pi
 
@@ -43,9 +44,7 @@ def kernel(request, monkeypatch):
     """Kernels by name, compiled or as plain Python with all that they call."""
     if request.param == "compiled":
         return compiled_kernel
-    for name, function in vars(exchange).items():
-        if hasattr(function, "py_func"):
-            monkeypatch.setattr(exchange, name, function.py_func)
+    run_as_python(exchange, monkeypatch)
     return lambda name: getattr(exchange, name)
 
 

@@ -9,13 +9,14 @@ from fastpin.kernels import held
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.tableau import expected_ties, has_turned
+from tests.support.kernels import python
 
 NODES = 14
 
 
 @pytest.fixture(params=["compiled", "python"])
 def begin(request):
-    return held.begin if request.param == "compiled" else held.begin.py_func
+    return held.begin if request.param == "compiled" else python(held.begin)
 
 
 def drawn_contact(rng, rough):
