@@ -16,6 +16,9 @@ from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.pages.album import Album
 from fastpin.pages.content import Picture
 from tests.support.approx import quicken
+from tests.support.processes import hear_interrupts
+
+hear_interrupts()
 
 PROFILE = os.environ.get("FASTPIN_HYPOTHESIS", "gate")
 
