@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import random
-import subprocess
-import sys
 import time
-from pathlib import Path
 from typing import Any
 
 import h5py
@@ -20,7 +17,9 @@ from fastpin.solver.fat_cycles import FatCycles, Worn
 from fastpin.solver.wear_result import WearResult
 from fastpin.storage import wear_files
 from fastpin.storage.journal import JournaledFile
+from fastpin.storage.recording import stored_case
 from tests.support.interrupts import StopAt
+from tests.support.processes import python, started
 from tests.support.wear_cases import BUMPED, BUMPED_TURNS, WEAR_CASES, life
 
 CASE = WEAR_CASES["unlike"]
@@ -183,6 +182,43 @@ def test_a_damaged_file_is_told_in_one_sentence(tmp_path, part):
         fastpin.load_wear(path)
 
 
+def shorten(array):
+    group, name, values = array.parent, array.name, array[:-1]
+    del group[name]
+    group[name] = values
+
+
+def spoil(array):
+    array[-1] = np.nan if array.dtype.kind == "f" else -1
+
+
+@pytest.mark.parametrize("damage", [spoil, shorten, lambda array: array.resize(10**8, axis=0)])
+def test_a_damaged_life_is_not_continued(tmp_path, damage):
+    path = tmp_path / "life.h5"
+    with pytest.raises(Interrupted):
+        life(path, progress=StopAt(5))
+    before = path.read_bytes()
+    for part in ("cycle", "next_jump", "removed", "plate_depth"):
+        path.write_bytes(before)
+        with h5py.File(path, "r+") as file:
+            damage(file[f"wear/{part}"])
+        with pytest.raises(InputError, match=r"life\.h5: is damaged: .*wear/(cycle|%s) " % part):
+            life(path, resume=True)
+
+
+def test_a_life_without_a_stored_cycle_keeps_its_title(tmp_path, monkeypatch):
+    path = tmp_path / "life.h5"
+
+    def full(*_):
+        raise MemoryError
+
+    with monkeypatch.context() as patched, pytest.raises(MemoryError):
+        patched.setattr(wear_files.WearFile, "add", full)
+        life(path, title="one life")
+    life(path, resume=True, title="one life")
+    assert stored_case(path).title == "one life"
+
+
 KILLED = """
 from pathlib import Path
 from typing import Any
@@ -197,7 +233,7 @@ life(path, cycles=3000, tolerance=0.005, resume=path.exists())
 @pytest.mark.slow
 def test_a_life_that_is_killed_ten_times_has_the_same_bits(tmp_path):
     """Each process dies some hundredths of a second after it has written one or two more checkpoints."""
-    path, root = tmp_path / "life.h5", Path(__file__).parents[2]
+    path = tmp_path / "life.h5"
     checkpoint = wear_files.checkpoint_of(path)
     program = KILLED.format(path=str(path))
     chance, kills = random.Random(5), 0
@@ -209,7 +245,7 @@ def test_a_life_that_is_killed_ten_times_has_the_same_bits(tmp_path):
             return 0
 
     while kills < 10:
-        with subprocess.Popen([sys.executable, "-c", program], cwd=root, stderr=subprocess.PIPE, text=True) as process:
+        with started(python(program)) as process:
             for _ in range(chance.randint(1, 2)):
                 before = written()
                 while process.poll() is None and written() == before:
