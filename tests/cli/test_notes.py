@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 import h5py
 import pytest
 
 from fastpin.cli.main import main
 from fastpin.solver.errors import Interrupted
 from fastpin.storage.recording import record
+from tests.support.processes import python, started
 
 CASE = """
 [pin]

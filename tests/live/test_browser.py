@@ -11,8 +11,6 @@ import os
 import re
 import shutil
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -40,6 +38,8 @@ from fastpin.states.curves import traction_patches
 from tests.support import seats
 from tests.support.live_pages import FREE, contact, served
 from tests.support.lives import fretting
+from tests.support.processes import fastpin as fastpin_command
+from tests.support.processes import started
 
 BROWSER, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
 if not os.environ.get("FASTPIN_BROWSER"):
@@ -757,9 +757,7 @@ def test_a_reloaded_page_has_its_history(tab: Tab) -> None:
 
 
 def test_a_killed_server_leaves_the_history_on_the_page(chrome: webdriver.Chrome) -> None:
-    command = [sys.executable, "-m", "fastpin", "live", "--no-browser", "--nodes", "61"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
+    with started(fastpin_command("live", "--no-browser", "--nodes", 61)) as process:
         address = process.stdout.readline().split()[-1]
         tab = Tab(chrome, None)
         chrome.get(address)

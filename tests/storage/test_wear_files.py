@@ -202,7 +202,7 @@ def test_a_damaged_life_is_not_continued(tmp_path, damage):
         path.write_bytes(before)
         with h5py.File(path, "r+") as file:
             damage(file[f"wear/{part}"])
-        with pytest.raises(InputError, match=r"life\.h5: is damaged: .*wear/(cycle|%s) " % part):
+        with pytest.raises(InputError, match=rf"life\.h5: is damaged: .*wear/(cycle|{part}) "):
             life(path, resume=True)
 
 
@@ -212,9 +212,10 @@ def test_a_life_without_a_stored_cycle_keeps_its_title(tmp_path, monkeypatch):
     def full(*_):
         raise MemoryError
 
-    with monkeypatch.context() as patched, pytest.raises(MemoryError):
+    with monkeypatch.context() as patched:
         patched.setattr(wear_files.WearFile, "add", full)
-        life(path, title="one life")
+        with pytest.raises(MemoryError):
+            life(path, title="one life")
     life(path, resume=True, title="one life")
     assert stored_case(path).title == "one life"
 
