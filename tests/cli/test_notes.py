@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+
 import h5py
 import pytest
 
