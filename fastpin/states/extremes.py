@@ -191,6 +191,8 @@ def yield_extremes(kept: Kept) -> Found:
         tractions = [part for each in (block, block.seat or block) for part in (each.pressure, each.shear)]
         remote = np.abs(block.loads[:, list(REMOTE)])
         columns.append(np.column_stack([remote, *(np.abs(part).max(axis=1) for part in tractions)]))
+    if not columns:  # the run was stopped before its first state
+        return {}
     places = {int(np.argmax(column)) for column in np.concatenate(columns).T if column.any()}
     states = kept.read(sorted(places))
     near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]

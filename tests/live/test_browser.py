@@ -34,9 +34,11 @@ from fastpin.live.server import Server
 from fastpin.model.units import units
 from fastpin.solver import WearResult
 from fastpin.states.curves import traction_patches
-from tests.support import processes, seats
+from tests.support import seats
 from tests.support.live_pages import FREE, LIMIT, contact, served
 from tests.support.lives import fretting
+from tests.support.processes import fastpin as fastpin_command
+from tests.support.processes import started
 
 BROWSER, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
 if not os.environ.get("FASTPIN_BROWSER"):
@@ -751,8 +753,7 @@ def test_a_reloaded_page_has_its_history(tab: Tab) -> None:
 
 
 def test_a_killed_server_leaves_the_history_on_the_page(chrome: webdriver.Chrome) -> None:
-    with processes.started(processes.fastpin("live", "--no-browser", "--nodes", 61)) as process:
-        assert process.stdout is not None
+    with started(fastpin_command("live", "--no-browser", "--nodes", 61)) as process:
         address = process.stdout.readline().split()[-1]
         tab = Tab(chrome, None)
         chrome.get(address)

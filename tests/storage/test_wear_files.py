@@ -17,6 +17,7 @@ from fastpin.solver.fat_cycles import FatCycles, Worn
 from fastpin.solver.wear_result import WearResult
 from fastpin.storage import wear_files
 from fastpin.storage.journal import JournaledFile
+from fastpin.storage.recording import stored_case
 from tests.support.interrupts import StopAt
 from tests.support.processes import finished, python
 from tests.support.wear_cases import BUMPED, BUMPED_TURNS, WEAR_CASES, life
@@ -186,6 +187,44 @@ def test_a_damaged_file_is_told_in_one_sentence(tmp_path, part):
             file[f"wear/{part}"][0, 3] = np.nan
     with pytest.raises(InputError, match="is damaged"):
         fastpin.load_wear(path)
+
+
+def shorten(array):
+    group, name, values = array.parent, array.name, array[:-1]
+    del group[name]
+    group[name] = values
+
+
+def spoil(array):
+    array[-1] = np.nan if array.dtype.kind == "f" else -1
+
+
+@pytest.mark.parametrize("damage", [spoil, shorten, lambda array: array.resize(10**8, axis=0)])
+def test_a_damaged_life_is_not_continued(tmp_path, damage):
+    path = tmp_path / "life.h5"
+    with pytest.raises(Interrupted):
+        life(path, progress=StopAt(5))
+    before = path.read_bytes()
+    for part in ("cycle", "next_jump", "removed", "plate_depth"):
+        path.write_bytes(before)
+        with h5py.File(path, "r+") as file:
+            damage(file[f"wear/{part}"])
+        with pytest.raises(InputError, match=rf"life\.h5: is damaged: .*wear/(cycle|{part}) "):
+            life(path, resume=True)
+
+
+def test_a_life_without_a_stored_cycle_keeps_its_title(tmp_path, monkeypatch):
+    path = tmp_path / "life.h5"
+
+    def full(*_):
+        raise MemoryError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(wear_files.WearFile, "add", full)
+        with pytest.raises(MemoryError):
+            life(path, title="one life")
+    life(path, resume=True, title="one life")
+    assert stored_case(path).title == "one life"
 
 
 KILLED = """

@@ -24,12 +24,12 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from fastpin.runtime.stopping import STOPPING
+
 ROOT = Path(__file__).resolve().parents[2]
 
 LONGEST = 180.0
 """Longest life of a child process, s. On a busy machine a child of a second has taken half a minute."""
-
-STOPPING = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
 
 def hear_interrupts() -> None:
