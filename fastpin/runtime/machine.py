@@ -40,6 +40,20 @@ class Code(NamedTuple):
     mathematics: tuple[str, ...]
     foreign: tuple[str, ...]
 
+    def to_bytes(self) -> bytes:
+        """Four lines of names, and the object file."""
+        lines = (self.entry, self.environment, " ".join(self.mathematics), " ".join(self.foreign), "")
+        return "\n".join(lines).encode() + self.machine_code
+
+    @classmethod
+    def from_bytes(cls, content: bytes) -> Code:
+        """The code of such bytes. :class:`ValueError` if they are others."""
+        *lines, machine_code = content.split(b"\n", 4)
+        entry, environment, mathematics, foreign = (line.decode() for line in lines)
+        if not (entry and environment):
+            raise ValueError("symbols without names")  # LLVM would end the process
+        return cls(machine_code, entry, environment, tuple(mathematics.split()), tuple(foreign.split()))
+
 
 def load(code: Code, name: str, module: str) -> Callable[..., Any]:
     """Load a function of a module. It does not check the types of its arguments.

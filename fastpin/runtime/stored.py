@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import marshal
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -74,7 +73,7 @@ class StoredCode:
         return None
 
     def _load_machine(self, body: bytes) -> Callable[..., Any]:
-        return machine.load(machine.Code(*marshal.loads(body)), self.name, self.module)
+        return machine.load(machine.Code.from_bytes(body), self.name, self.module)
 
     def _digest(self, body: bytes) -> bytes:
         return blake2b(body, key=self.key, digest_size=SIZE).digest()
@@ -84,7 +83,7 @@ class StoredCode:
 
         Any number of processes and threads may do it at once.
         """
-        body, suffix = (code, NUMBA) if isinstance(code, bytes) else (marshal.dumps(tuple(code)), MACHINE)
+        body, suffix = (code, NUMBA) if isinstance(code, bytes) else (code.to_bytes(), MACHINE)
         for directory in self._directories():
             try:
                 files.write(directory / (self.stem + self.text + suffix), self._digest(body) + body, self.home)

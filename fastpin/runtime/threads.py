@@ -98,7 +98,7 @@ def undisturbed(work: Callable[[], Found]) -> Found:
             with thread.works:
                 pass
         except BaseException as error:
-            raised = raised or error
+            raised = error if raised is None else raised
     if raised is not None:
         raise raised
     return thread.result.result()  # type: ignore[return-value]
