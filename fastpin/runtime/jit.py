@@ -1,9 +1,9 @@
 """Compiled functions.
 
-A kernel is compiled when it is first called, once for each combination of types of its arguments. The machine code is
-kept on disk (:mod:`fastpin.runtime.stored`). Later processes load it without Numba, whose import takes several times
-as long as that of NumPy. Set ``FASTPIN_CACHE=0`` to compile afresh. Numba's own ``NUMBA_DISABLE_JIT=1`` runs everything
-as plain Python.
+A kernel is compiled when it is first called, once for each combination of types of its arguments. No signal and no
+exception of another thread disturbs it. The machine code is kept on disk (:mod:`fastpin.runtime.stored`). Later
+processes load it without Numba, whose import takes several times as long as that of NumPy. Set ``FASTPIN_CACHE=0`` to
+compile afresh. Numba's own ``NUMBA_DISABLE_JIT=1`` runs everything as plain Python.
 """
 
 from __future__ import annotations
