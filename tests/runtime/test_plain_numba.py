@@ -82,8 +82,9 @@ def test_a_result_of_numba_is_stored_when_a_part_changes(
     (file,) = directory.glob("*.machine")
     monkeypatch.setattr(*CHANGES[change])
     assert value() == before
-    assert file.with_suffix(stored.NUMBA).is_file()
     file.unlink()
+    assert value() == before
+    assert file.with_suffix(stored.NUMBA).is_file()
     monkeypatch.setattr(compiler, "compile_kernel", refuse)
     assert value() == before
 
@@ -96,11 +97,10 @@ def test_code_is_stored_for_versions_that_have_no_file(directory: Path, monkeypa
 
 
 def test_code_that_can_not_be_stored_is_compiled_each_time(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    expected = influence.clausen(1.0)
     for name in ("_object_code", "_pack"):
         monkeypatch.setattr(compiler, name, refuse)
     for _ in range(2):
-        assert jit.Kernel(influence.clausen.py_func, inner=False)(1.0) == expected
+        assert jit.Kernel(influence.clausen.py_func, inner=False)(1.0) == pytest.approx(1.0139591323607684, rel=1e-14)
     assert not list(directory.iterdir())
 
 
