@@ -144,6 +144,7 @@ LIGHT: dict[str, list[list[str]]] = {
 """Commands by the heavy packages that they may import."""
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("needed", some_gate(LIGHT, "numpy"))
 def test_heavy_imports_wait_until_they_are_needed(needed: str, case: Path) -> None:
     """The commands run in one process, one after the other. The first that imports more is named."""
@@ -408,6 +409,7 @@ def test_a_file_that_can_not_be_written_does_not_cost_the_others(
     assert path.exists()
 
 
+@pytest.mark.gate
 def test_a_reader_that_leaves_is_no_error() -> None:
     command = '"$0" -m fastpin example | true; exit "${PIPESTATUS[0]}"'
     words = ["bash", "-c", command, sys.executable]

@@ -21,6 +21,7 @@ printf '%s\n' "${COMPREPLY[@]}"
 """
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("shell", SHELLS)
 def test_each_shell_has_a_script(shell: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["completion", shell]) == 0
@@ -32,6 +33,7 @@ def test_each_shell_has_a_script(shell: str, tmp_path: Path, capsys: pytest.Capt
         assert subprocess.run([shell, "-n", script], capture_output=True, check=True).stderr == b""
 
 
+@pytest.mark.gate
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
 def test_bash_completes_commands_options_choices_and_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main(["completion", "bash"])

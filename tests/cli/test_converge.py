@@ -128,6 +128,7 @@ def test_options_are_checked_before_the_work(
     assert list(tmp_path.iterdir()) == [case]
 
 
+@pytest.mark.gate
 def test_an_interrupted_command_hands_out_what_there_is(
     case: Path, study: Convergence, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

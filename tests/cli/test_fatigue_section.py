@@ -115,6 +115,7 @@ def test_the_report_has_the_hot_spots(folder, source, capsys, tmp_path):
     assert "s rule modified by Haibach below the knee at 1e+06 cycles" in text
 
 
+@pytest.mark.gate
 def test_check_explains_the_section(folder, capsys):
     capsys.readouterr()
     assert main(["check", str(folder / "case.toml")]) == 0
@@ -122,6 +123,7 @@ def test_check_explains_the_section(folder, capsys):
     assert words in capsys.readouterr().out
 
 
+@pytest.mark.gate
 def test_stresses_that_do_not_change_end_with_one_sentence(folder, capsys, tmp_path):
     still = tmp_path / "still.toml"
     loads = "[[load]]\nP = [3e6, 3e6]\n"

@@ -14,6 +14,7 @@ from fastpin.cli.main import main
 from fastpin.figures.kinds import KIND_OPTIONS, KINDS
 from tests.support.lives import sample_life
 from tests.support.samples import JOINT
+from tests.support.tiers import gate
 
 
 @pytest.fixture(scope="module")
@@ -251,9 +252,11 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
         (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
         (["hoop", "--bars"], "--bars: has no effect on hoop; it is for tractions"),
-        (
-            ["tractions", "--bars"],
-            "--bars: needs states with error bars: fastpin run CASE --error-bars, or solve(..., ",
+        *gate(
+            (
+                ["tractions", "--bars"],
+                "--bars: needs states with error bars: fastpin run CASE --error-bars, or solve(..., ",
+            )
         ),
         (["hoop", "--sketch"], "--sketch: has no effect on hoop; it is for tractions"),
         (
@@ -459,6 +462,7 @@ def test_a_map_joins_all_states_of_a_long_history_with_cycles(blocks, tmp_path, 
     assert "the figure shows 7 of 39 states: load points 11, 11.333" in capsys.readouterr().out
 
 
+@pytest.mark.gate
 def test_the_regime_is_printed(blocks, capsys):
     assert main(["show", str(blocks)]) == 0
     assert "partial slip, slip range up to" in capsys.readouterr().out

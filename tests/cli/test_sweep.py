@@ -128,6 +128,7 @@ def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.Capt
     assert "1 points of the plan have the same input as another and share its run" in out
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -44,6 +44,7 @@ def test_lives(cycle, name, threshold, long, short, nasgro):
     assert grown(cycle, name, NASGRO).life == pytest.approx(nasgro, rel=1e-3)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("threshold", "arrest"), [*gate((3.0, 4.000e-3)), (2.0, 7.247e-3)])
 def test_a_crack_that_stops(cycle, threshold, arrest):
     found = grown(cycle, "small", walker(threshold))
@@ -57,6 +58,7 @@ def test_a_crack_that_stops(cycle, threshold, arrest):
     assert math.isnan(found.fracture)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("name", ["bulk", "Q"])
 def test_a_crack_that_does_not_begin(cycle, name):
     found = grown(cycle, name, walker(4.0))
@@ -146,6 +148,7 @@ def test_refusals(small_states, words):
     assert str(refused.value).startswith(words)
 
 
+@pytest.mark.gate
 def test_states_of_two_problems_are_refused(small_states, cycle):
     with pytest.raises(InputError, match="states: must be states of one problem"):
         growth([small_states[0], cycle("lug")[0]], Crack(0.0), NASGRO, 1e-4, 1e-3)

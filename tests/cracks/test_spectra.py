@@ -106,6 +106,7 @@ def test_straight_tractions_of_many_states_are_one_product(levels):
     assert pressed.K_I[:6] == pytest.approx(one.K_I, abs=1e-11 * size)
 
 
+@pytest.mark.gate
 def test_remote_stresses_and_two_cracks_are_products_too():
     history = [{"P": 1e6}, *({"sxx": 1e7 * k, "sxy": 3e6 * k} for k in range(60))]
     states = list(fastpin.solve(problem_of(LIKE, 20e-6, 0.3), history, nodes=101))

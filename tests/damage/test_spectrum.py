@@ -209,6 +209,7 @@ def searched(history, plane):
     return (1.0 / smith_watson_topper_life(parameters, 70e9, **LIFE)).sum()
 
 
+@pytest.mark.gate
 def test_a_brute_search_finds_no_worse_plane():
     """Stresses of one load: every quarter of a degree, counted by pylife, with the stress at the upper reversals."""
     for seed in seeds(10):

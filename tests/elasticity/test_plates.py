@@ -88,6 +88,7 @@ def test_the_hole_is_that_of_the_closed_form():
     assert np.allclose(found[:2, :2], 0.5 * np.eye(2))
 
 
+@pytest.mark.gate
 def test_the_rectangle_agrees_with_finite_elements(made):
     whole = made.compliance.matrix + hole_compliance(10, 1.8)
     for place, value in FINITE_ELEMENTS.items():
@@ -96,6 +97,7 @@ def test_the_rectangle_agrees_with_finite_elements(made):
         )  # finite elements converge from below; their last halving changes 1e-5
 
 
+@pytest.mark.gate
 def test_the_matrix_is_symmetric_and_decays(made):
     assert made.asymmetry < 1e-9  # measured: 2e-11
     assert made.error < 1e-7  # measured: 2e-9
@@ -104,6 +106,7 @@ def test_the_matrix_is_symmetric_and_decays(made):
     assert np.all(sizes[4:] < 0.7 * sizes[3:-1])
 
 
+@pytest.mark.gate
 def test_all_tractions_do_positive_work(made):
     whole = made.compliance.matrix + hole_compliance(10, 1.8)
     assert np.linalg.eigvalsh(whole).min() > 0.2 / 11.0  # about 1/2(n + 1) for the last harmonic

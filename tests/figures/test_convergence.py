@@ -49,6 +49,7 @@ def test_panels_tell_the_verdict_and_relative_distances(study):
             assert panel.lines[0].get_fillstyle() == ("full" if row.verdict == "observed" else "none")
 
 
+@pytest.mark.gate
 def test_two_solvers_have_marks_before_their_verdicts(study):
     both = converge(study.problem, [{"P": 1e6}], nodes=(51, 101, 201), increments=(2, 4, 8), increment_nodes=51)
     marks = {text.get_text()[0] for panel in figures.plot_convergence(both).axes for text in panel.texts}

@@ -65,6 +65,7 @@ def test_captions_hold_the_profiles() -> None:
     assert "gap" not in caption(ROUND)
 
 
+@pytest.mark.gate
 def test_a_case_file_has_the_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
     text = '[pin]\nmaterial = "steel"\n[plate]\nmaterial = "steel"\n[contact]\nhole_radius = 0.01\nclearance = 1e-5\n'

@@ -54,6 +54,7 @@ def heading(figure: Figure) -> str:
     return str(figure.get_suptitle()).replace("\n", " ").replace("\N{NO-BREAK SPACE}", " ")
 
 
+@pytest.mark.gate
 def test_words_of_the_angle_fit_a_narrow_figure(life: WearResult) -> None:
     figure = life.plot(width=3.4)
     label = figure.axes[-1].xaxis.label

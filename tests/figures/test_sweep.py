@@ -149,6 +149,7 @@ def test_contours_join_equal_values(smooth: Chart) -> None:
         assert 10.0 + 100.0 * friction + 5.0 * np.log2(clearance) == pytest.approx(level, abs=2.0)
 
 
+@pytest.mark.gate
 def test_contours_of_decades_stand_at_powers_of_ten(smooth: Chart) -> None:
     name, numbers, failed = smooth.parts[0]
     figure = plot_sweep(replace(smooth, parts=[(name, 10.0 ** (numbers / 20.0), failed)]))

@@ -181,7 +181,7 @@ def zones(n=41):
     return status
 
 
-@pytest.mark.parametrize("tied", [*gate(True), False], ids=["as foreseen", "otherwise"])
+@pytest.mark.parametrize("tied", gate(True, False), ids=["as foreseen", "otherwise"])
 def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, kernel, tied):
     rate, typical = loads(P=1.0, Q=0.3), float(np.median(np.diagonal(system.operator)))
     for node, new in ((20, 1), (20, -1), (13, 0), (30, -1), (30, 1), (12, OPEN)):
@@ -463,6 +463,7 @@ def test_little_friction_tends_to_none(system):
 PLAIN = """
 import numpy as np
 from tests.support.tiers import gate
+from tests.support.tiers import some_gate
 from fastpin import MATERIALS, MaterialPair, Problem, solve
 pair = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 problem = Problem.from_load_parameter(pair, 0.1, 0.4, "body")

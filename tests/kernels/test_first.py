@@ -64,6 +64,7 @@ sys.stdin.read()
 """
 
 
+@pytest.mark.gate
 @pytest.mark.skipif(cores() < 2, reason="no core for a second process")
 @pytest.mark.parametrize("ends", [False, True])
 def test_a_second_process_compiles_as_long_as_the_first_one_runs(ends: bool, tmp_path: Path) -> None:

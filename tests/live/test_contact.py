@@ -95,6 +95,7 @@ def test_the_same_load_in_two_ways_has_two_shears() -> None:
     assert page.latest["reference"] is None
 
 
+@pytest.mark.gate
 def test_undo_takes_back_a_gesture_and_redo_brings_it_again() -> None:
     page = Page(contact())
     drag(page, 5, 6)
@@ -160,6 +161,7 @@ def test_a_change_of_the_problem_follows_the_load_or_the_history(follow: str) ->
 
 
 @pytest.mark.gate
+@pytest.mark.gate
 def test_bodies_and_materials_can_be_changed() -> None:
     page = Page(contact(nodes=21))
     page.tell("change", changes={"pin_bore": 4e-3})
@@ -200,6 +202,7 @@ def assert_every_control_can_be_sent_back(text: str | None, changes: dict[str, A
 
 
 @pytest.mark.gate
+@pytest.mark.gate
 @pytest.mark.parametrize(
     "changes", [{}, {"pin_bore": 4e-3}, {"plate_body": "ring"}, {"plate_body": "bushing"}], ids=str
 )
@@ -207,6 +210,7 @@ def test_every_control_can_be_sent_back_unchanged(changes: dict[str, Any]) -> No
     assert_every_control_can_be_sent_back(None, changes)
 
 
+@pytest.mark.gate
 @pytest.mark.gate
 @pytest.mark.parametrize("changes", [{}, {"friction_along": "uniform", "pin_lobes": "5"}], ids=str)
 def test_every_control_of_an_oval_hole_can_be_sent_back_unchanged(changes: dict[str, Any]) -> None:
@@ -274,6 +278,7 @@ def test_a_uniform_friction_has_one_slider() -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.gate
 def test_hole_and_pin_get_lobes_by_words() -> None:
     page = Page(contact())
     assert [controls_of(page)[f"{body}_lobes"]["value"] for body in ("hole", "pin")] == ["0", "0"]
@@ -299,6 +304,7 @@ def test_hole_and_pin_get_lobes_by_words() -> None:
     assert len(page.live.session.problem.gap.given) == 2
 
 
+@pytest.mark.gate
 @pytest.mark.gate
 def test_lobes_of_the_case_are_controlled_and_its_other_terms_stay() -> None:
     page = Page(contact(OVAL))
@@ -443,6 +449,7 @@ def test_a_new_page_gets_the_whole_history() -> None:
     assert set(other.latest["grids"]) == {picture["grid"] for picture in page.pictures}
 
 
+@pytest.mark.gate
 def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(contact_module, "MOST_UNDONE", 7)
     page = Page(contact(nodes=21, limits=Limits(pictures=5)))
@@ -549,6 +556,7 @@ def frozen() -> Iterator[None]:
     gc.unfreeze()
 
 
+@pytest.mark.gate
 def test_gestures_that_can_be_undone_hold_no_matrices(frozen: None) -> None:
     page = Page(contact(nodes=21))
     before = systems()
@@ -615,6 +623,7 @@ def test_curves_across_the_top_have_a_part_at_either_end() -> None:
     assert np.all(np.diff(degrees) >= 0.0)
 
 
+@pytest.mark.gate
 def test_a_long_history_pauses_and_leaves_the_contact_where_it_was() -> None:
     page = Page(contact(nodes=41))
     drag(page, 5, 6)

@@ -55,6 +55,7 @@ def test_worn_depths_and_numbers_are_those_of_the_life(result: WearResult, recor
     assert np.array_equal(floats(worn["hole"]), result[-1].plate_depth[order].astype("<f4"))
 
 
+@pytest.mark.gate
 def test_the_damage_is_that_of_the_material_that_is_still_there(result: WearResult, recording: dict) -> None:
     """The titanium of the pin has no constants for a life."""
     life, found = recording["life"], result.fatigue()
@@ -72,6 +73,7 @@ def test_the_damage_is_that_of_the_material_that_is_still_there(result: WearResu
             assert degrees[np.argmax(values)] == pytest.approx(np.degrees(spot.theta) + 90.0, abs=1e-3)
 
 
+@pytest.mark.gate
 def test_depths_round_the_whole_hole_go_on_to_the_top() -> None:
     case = WEAR_CASES["lobed hole"]
     result = fastpin.wear(case.problem, case.history(), cycles=2, plate=5.0, tolerance=0.0, grid=case.grid(21))
@@ -83,6 +85,7 @@ def test_depths_round_the_whole_hole_go_on_to_the_top() -> None:
     assert hole.max() == np.float32(result[-1].depth)
 
 
+@pytest.mark.gate
 def test_of_many_cycles_an_even_choice_is_recorded(result: WearResult, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(life_module, "MOST_PICTURES", 6)
     life = recorded(record_life(result))["life"]
@@ -92,6 +95,7 @@ def test_of_many_cycles_an_even_choice_is_recorded(result: WearResult, monkeypat
     assert life["stored"] == 3
 
 
+@pytest.mark.gate
 def test_what_is_not_modelled_and_what_is_in_doubt_is_told(result: WearResult, recording: dict) -> None:
     """A pin that slips by more than a node distance turns its own profile."""
     assert recording["life"]["remark"] == "debris is not modelled"

@@ -54,6 +54,7 @@ def test_what_is_no_message_is_refused(text: str, sentence: str) -> None:
     assert str(caught.value).startswith(sentence)
 
 
+@pytest.mark.gate
 @given(JSON, st.sampled_from([None, *FIELDS]))
 def test_any_json_is_a_message_or_one_refusal(value: object, kind: str | None) -> None:
     if kind is not None and isinstance(value, dict):

@@ -27,6 +27,7 @@ def turn(page: Page, count: int = 3) -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.gate
 def test_a_drag_has_the_states_of_solve_with_the_bush(page: Page) -> None:
     turn(page)
     session = page.live.session
@@ -43,6 +44,7 @@ def test_a_drag_has_the_states_of_solve_with_the_bush(page: Page) -> None:
     json.dumps(page.latest, allow_nan=False)
 
 
+@pytest.mark.gate
 @pytest.mark.gate
 def test_undo_and_redo_lead_back_to_the_same_seat(page: Page) -> None:
     turn(page)

@@ -225,6 +225,7 @@ def test_files_that_can_not_be_read(tmp_path: Path, content: bytes | None) -> No
         LoadHistory.from_csv(path)
 
 
+@pytest.mark.gate
 def test_a_long_csv_file_is_in_memory_once(tmp_path: Path) -> None:
     path, rows = tmp_path / "loads.csv", 30_000
     path.write_text("P,Q\n" + "".join(f"1e6,{k}.5\n" for k in range(rows)))

@@ -58,6 +58,7 @@ def report(compiled: tuple[Path, list[bytes]]) -> tuple[list[str], pypdf.PdfRead
     return read(compiled[0])
 
 
+@pytest.mark.gate
 def test_pages_are_numbered_and_have_a_head(report: tuple[list[str], pypdf.PdfReader]) -> None:
     texts, pdf = report
     assert len(texts) > 3
@@ -83,6 +84,7 @@ def test_no_figure_stands_above_the_title(tmp_path: Path) -> None:
     assert caption < title
 
 
+@pytest.mark.gate
 def test_sections_stand_on_the_pages_that_the_contents_and_the_outline_name(
     report: tuple[list[str], pypdf.PdfReader],
 ) -> None:
@@ -96,6 +98,7 @@ def test_sections_stand_on_the_pages_that_the_contents_and_the_outline_name(
         assert f"{number}. {title}" in texts[page - 1]
 
 
+@pytest.mark.gate
 def test_figures_stand_where_the_text_says(report: tuple[list[str], pypdf.PdfReader]) -> None:
     texts, _ = report
     said = re.findall(r"Figure (\d+) stands on page (\d+)\.", " ".join(texts))
@@ -104,6 +107,7 @@ def test_figures_stand_where_the_text_says(report: tuple[list[str], pypdf.PdfRea
         assert re.search(rf"Figure {number}\. [A-Z]", texts[int(page) - 1])
 
 
+@pytest.mark.gate
 def test_no_page_but_the_last_is_half_empty(compiled: tuple[Path, list[bytes]]) -> None:
     """On every other page text or a figure reaches into the lowest third."""
     _, pictures = compiled
@@ -114,6 +118,7 @@ def test_no_page_but_the_last_is_half_empty(compiled: tuple[Path, list[bytes]]) 
         assert np.flatnonzero(rows[:276])[-1] > 198  # the foot stands below 278 mm
 
 
+@pytest.mark.gate
 def test_fonts_are_inside(report: tuple[list[str], pypdf.PdfReader]) -> None:
     _, pdf = report
     fonts = {}

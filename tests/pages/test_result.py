@@ -83,6 +83,7 @@ def only(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     return lambda *sections: monkeypatch.setattr("fastpin.pages.result.SECTIONS", sections)
 
 
+@pytest.mark.gate
 def test_page_is_well_formed_and_needs_nothing_from_outside(text: str) -> None:
     page = Page(text)
     assert len(page.ids) == len(set(page.ids))
@@ -109,6 +110,7 @@ def test_figures_keep_their_colours_and_lose_ids_that_nothing_refers_to(tmp_path
     ]  # fmt: skip
 
 
+@pytest.mark.gate
 def test_page_can_be_read_without_seeing_it(text: str) -> None:
     page = Page(text)
     elements = page.attributes
@@ -122,6 +124,7 @@ def test_page_can_be_read_without_seeing_it(text: str) -> None:
     assert any(tag == "meta" and found.get("name") == "viewport" for tag, found in elements)
 
 
+@pytest.mark.gate
 def test_every_section_stands_in_the_contents(text: str) -> None:
     page = Page(text)
     sections = [found["id"] for tag, found in page.attributes if tag == "section"]
@@ -130,12 +133,14 @@ def test_every_section_stands_in_the_contents(text: str) -> None:
     assert links == ["#content", *(f"#{name}" for name in sections)]
 
 
+@pytest.mark.gate
 def test_text_of_the_user_is_escaped(text: str) -> None:
     page = Page(text)
     assert "b" not in page.tags
     assert page.text.count('A <b>bold</b> & "quoted" title <script>alert(1)</script>') == 2  # title and heading
 
 
+@pytest.mark.gate
 def test_page_names_case_loads_key_figures_checks_and_origin(text: str, stored: Path) -> None:
     words = Page(text).text
     result = fastpin.load(stored)
@@ -300,6 +305,7 @@ def test_a_branch_begins_with_the_loads_of_its_start(only: Callable[..., None], 
     assert "from no load" not in words
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("drawn")
 def test_a_figure_has_the_same_markup_each_time_and_refers_to_its_own_elements() -> None:
     result = sample_result(nodes=21)

@@ -53,6 +53,7 @@ def text(folder: Path) -> str:
     return path.read_text(encoding="utf-8")
 
 
+@pytest.mark.gate
 def test_page_is_whole_and_escapes_the_title(text: str) -> None:
     page = Page(text)
     assert len(page.ids) == len(set(page.ids))
@@ -65,6 +66,7 @@ def test_page_is_whole_and_escapes_the_title(text: str) -> None:
     assert "Moments & <i>friction</i>" in page.text
 
 
+@pytest.mark.gate
 def test_page_has_plan_figures_runs_failed_runs_and_versions(text: str, folder: Path) -> None:
     page = Page(text)
     assert page.tags.count("svg") == 1

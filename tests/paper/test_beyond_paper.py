@@ -28,6 +28,7 @@ def remembered() -> list[Curve]:
         return catalog.figure("memory").compute(NODES)
 
 
+@pytest.mark.gate
 def test_memory_is_largest_in_between_and_grows_with_the_amplitude(remembered):
     half, full, more = (curve["memory_T"] for curve in remembered)
     assert half == pytest.approx([0.019, 0.033, 0.024, 0.008, 0.002], abs=0.0025)
@@ -36,6 +37,7 @@ def test_memory_is_largest_in_between_and_grows_with_the_amplitude(remembered):
     assert more[:3] == pytest.approx([0.083, 0.146, 0.125], abs=0.006)
 
 
+@pytest.mark.gate
 def test_sliding_forgets(remembered):
     more = remembered[-1]
     assert more["memory_T"][3:] == pytest.approx([0.0, 0.0], abs=1e-9)
@@ -43,6 +45,7 @@ def test_sliding_forgets(remembered):
     assert more["first_forward_T"][3:] == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
+@pytest.mark.gate
 def test_states_are_steady_from_the_first_reversal_on_unless_strongly_conforming(remembered):
     for curve in remembered:
         assert curve["first_reverse_T"][2:] == pytest.approx(0.0, abs=1e-9)

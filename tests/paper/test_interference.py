@@ -43,6 +43,7 @@ def loads() -> list[Curve]:
         return catalog.figure("interference").compute(101)
 
 
+@pytest.mark.gate
 def test_slip_comes_before_opening_and_both_come_later_with_more_friction(loads):
     for curve in loads[:2]:
         assert np.all(curve["P_slips"][1:] < curve["P_opens"][1:])
@@ -50,6 +51,7 @@ def test_slip_comes_before_opening_and_both_come_later_with_more_friction(loads)
         assert np.all(np.diff(curve["P_slips"][1:]) > 0.0)
 
 
+@pytest.mark.gate
 def test_tractions_at_the_stages(loads):
     still, slipping, opening, open_ = loads[2:]
     assert still["N"] == pytest.approx(1.0)
@@ -133,6 +135,7 @@ def mapped() -> list[Curve]:
         return catalog.figure("regimes").compute(81)
 
 
+@pytest.mark.gate
 def test_regimes_of_all_four_panels(mapped):
     kinds = {(c.parameters["P"], c.parameters["L_p"]): set(c["arcs"].astype(int).tolist()) for c in mapped}
     assert kinds == {
@@ -143,6 +146,7 @@ def test_regimes_of_all_four_panels(mapped):
     }
 
 
+@pytest.mark.gate
 def test_rays_are_added_where_neighbours_differ(mapped):
     for curve in mapped:
         rays = np.unique(curve["ray"])

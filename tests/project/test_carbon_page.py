@@ -39,6 +39,7 @@ def test_the_page_shows_its_files() -> None:
     assert blocks("toml") == [(DOCS / name).read_text(encoding="utf-8") for name in FILES]
 
 
+@pytest.mark.gate
 def test_the_run_prints_the_lines_of_the_page(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "carbon-laminate.toml"]) == 0
     assert blocks("text")[0] in capsys.readouterr().out

@@ -80,6 +80,7 @@ def test_the_page_shows_the_recipes() -> None:
     assert shown == [(RECIPES / name).read_text(encoding="utf-8") for name in (*JOBS, "Snakefile")]
 
 
+@pytest.mark.gate
 @needs_bash
 @pytest.mark.parametrize("name", JOBS)
 def test_bash_reads_the_jobs(name: str) -> None:
@@ -98,6 +99,7 @@ def test_the_command_lines_of_all_recipes_exist() -> None:
         parser().parse_args(join_words(words))
 
 
+@pytest.mark.gate
 @needs_bash
 @pytest.mark.parametrize(("code", "requeued"), [(0, False), (1, False), (130, True)])
 @pytest.mark.parametrize("name", JOBS)
@@ -119,6 +121,7 @@ def test_a_task_that_was_stopped_goes_back_into_the_queue(tmp_path: Path, name: 
     assert (tmp_path / "calls").read_text() == expected[name]
 
 
+@pytest.mark.gate
 @needs_bash
 def test_a_case_whose_file_is_empty_is_begun_again(tmp_path: Path) -> None:
     (tmp_path / "cases.txt").write_text("a.toml\n")
@@ -129,6 +132,7 @@ def test_a_case_whose_file_is_empty_is_begun_again(tmp_path: Path) -> None:
     assert (tmp_path / "a.h5").exists()
 
 
+@pytest.mark.gate
 @needs_bash
 def test_an_unfinished_case_is_resumed_and_a_finished_one_skipped(tmp_path: Path) -> None:
     case = parse_case(CASE)

@@ -141,6 +141,7 @@ def names(
     return dict(common_names)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("page", here())
 def test_python_runs(page: Path, names: dict[str, Any]) -> None:
     if page.name == "compliance.md":

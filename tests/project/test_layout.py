@@ -12,6 +12,7 @@ import pytest
 import fastpin
 from tests.support import layout
 from tests.support.processes import finished, python
+from tests.support.tiers import some_gate
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -99,7 +100,9 @@ def test_every_rule_holds(texts):
     assert layout.broken(texts) == []
 
 
-@pytest.mark.parametrize("name", list(BREAKS))
+@pytest.mark.parametrize(
+    "name", some_gate(list(BREAKS), "a folder without a rank", "a kernel that imports the package")
+)
 def test_a_broken_rule_is_noticed(name, texts):
     rule, file, text = BREAKS[name]
     sentences = layout.broken({**texts, file: "" if text is None else f"{texts.get(file, '')}\n{text}"})
@@ -169,6 +172,7 @@ def test_completion_shows_the_same_before_and_after_a_solve():
     finished(python(code))
 
 
+@pytest.mark.gate
 def test_importing_the_package_loads_nothing_heavy():
     code = (
         "import sys, fastpin, fastpin.cli.main\n"

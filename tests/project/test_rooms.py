@@ -79,6 +79,7 @@ def _long(state):
 }
 
 
+@pytest.mark.gate
 def test_no_number_grows():
     package = Package(ROOT)
     assert {name: number for name, most in MOST.items() if (number := number_of(NUMBERS[name](package))) > most} == {}

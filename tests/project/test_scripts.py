@@ -80,6 +80,7 @@ def log(project: Path) -> list[str]:
     return lines
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     "name",
     [
@@ -98,6 +99,7 @@ def test_scripts_can_be_run_and_parsed(name: str) -> None:
     subprocess.run(["bash", "-n", ROOT / "scripts" / "environment.sh"], check=True)
 
 
+@pytest.mark.gate
 def test_environment_is_made_once_and_again_when_the_dependencies_change(project: Path) -> None:
     first = run(project, "run", "case.toml", "--nodes", "9")
     assert first.returncode == 0, first.stderr
@@ -111,6 +113,7 @@ def test_environment_is_made_once_and_again_when_the_dependencies_change(project
     assert log(project)[:-1] == [f"pip {project}", *compiled]
 
 
+@pytest.mark.gate
 def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> None:
     run(project, "run", "x")
     log(project)
@@ -122,6 +125,7 @@ def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> N
     assert log(project) == ["/> -P -m fastpin run x"]
 
 
+@pytest.mark.gate
 def test_the_site_needs_its_own_tools(project: Path) -> None:
     (project / "docs" / "examples").mkdir(parents=True)
     assert run(project, "docs", "--fresh", "-E").stdout == f"site: {project}/out/docs/index.html\n"
@@ -131,6 +135,7 @@ def test_the_site_needs_its_own_tools(project: Path) -> None:
     assert not (project / "docs" / "examples").exists()
 
 
+@pytest.mark.gate
 def test_the_environment_of_the_site_can_be_made_alone(project: Path) -> None:
     done = run(project, "docs", "--prepare")
     assert (done.returncode, done.stdout) == (0, "")
@@ -139,6 +144,7 @@ def test_the_environment_of_the_site_can_be_made_alone(project: Path) -> None:
     assert log(project) == []
 
 
+@pytest.mark.gate
 def test_without_arguments_the_built_in_case_with_its_figure(project: Path) -> None:
     done = run(project, "run")
     assert log(project)[-1].endswith(f"--plot {project}/out/tractions.png --json {project}/out/summary.json")
@@ -146,11 +152,13 @@ def test_without_arguments_the_built_in_case_with_its_figure(project: Path) -> N
     assert "out/tractions.png" in done.stdout
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("script", "arguments"), [("run", ()), ("run", ("x",)), ("test", ()), ("docs", ())])
 def test_exit_codes_come_through(script: str, arguments: tuple[str, ...], project: Path) -> None:
     assert run(project, script, *arguments, FAIL="7").returncode == 7
 
 
+@pytest.mark.gate
 def test_called_through_a_link(project: Path) -> None:
     link = project.parents[1] / "fp"
     link.symlink_to(project / "scripts" / "run")
@@ -158,6 +166,7 @@ def test_called_through_a_link(project: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.gate
 def test_two_at_once_install_once(project: Path) -> None:
     both = [
         subprocess.Popen(
@@ -172,6 +181,7 @@ def test_two_at_once_install_once(project: Path) -> None:
     assert sorted(line.split()[0] for line in log(project)).count("pip") == 1
 
 
+@pytest.mark.gate
 def test_too_old_a_python_is_refused_in_one_sentence(project: Path) -> None:
     (project.parents[1] / "too-old").touch()
     done = run(project, "run")
@@ -184,6 +194,7 @@ def test_too_old_a_python_is_refused_in_one_sentence(project: Path) -> None:
     assert log(project) == []
 
 
+@pytest.mark.gate
 def test_missing_venv_package(project: Path) -> None:
     (project.parents[1] / "has-ensurepip").unlink()
     done = run(project, "run", "x")
@@ -196,6 +207,7 @@ def test_missing_venv_package(project: Path) -> None:
         assert log(project) == []
 
 
+@pytest.mark.gate
 def test_a_failed_installation_shows_why_and_is_tried_again(project: Path) -> None:
     (project.parents[1] / "offline").touch()
     done = run(project, "run", "x")
@@ -207,6 +219,7 @@ def test_a_failed_installation_shows_why_and_is_tried_again(project: Path) -> No
     assert log(project)[0] == f"pip {project}"
 
 
+@pytest.mark.gate
 def test_the_oldest_versions_are_the_lower_bounds() -> None:
     done = subprocess.run(
         [ROOT / "scripts" / "oldest-versions", "--list"],
@@ -226,6 +239,7 @@ def test_the_oldest_versions_are_the_lower_bounds() -> None:
         assert listed[name].endswith(".*") == (len(version) == 2)
 
 
+@pytest.mark.gate
 def test_the_environment_of_the_oldest_versions_is_made_once(project: Path) -> None:
     first = run(project, "oldest-versions", "tests/model")
     assert first.returncode == 0, first.stderr
@@ -238,6 +252,7 @@ def test_the_environment_of_the_oldest_versions_is_made_once(project: Path) -> N
     assert "venv" not in log(project)
 
 
+@pytest.mark.gate
 def test_other_machines_skip_what_does_not_run_and_count_the_rest(project: Path) -> None:
     """Here OpenBLAS knows Prescott, by the name Katmai, and Haswell; the kernels of SkylakeX end in a signal."""
     chosen = "--types", "Prescott,Zen,SkylakeX,Haswell", "--pythons", "3.11,3.12,3.99"
@@ -254,6 +269,7 @@ def test_other_machines_skip_what_does_not_run_and_count_the_rest(project: Path)
     assert all(line.endswith("tests/model -x") for line in tests)
 
 
+@pytest.mark.gate
 def test_other_machines_fail_where_a_run_fails(project: Path) -> None:
     done = run(project, "other-machines", "--types", "Prescott", FAIL="3")
     assert (done.returncode, len(log(project))) == (1, 5)

@@ -105,6 +105,7 @@ def test_every_key_of_a_case_file_is_explained(extension: ModuleType) -> None:
             assert re.search(rf"^\| `{key}` \| \S", part, re.MULTILINE), (section, key)
 
 
+@pytest.mark.gate
 def test_the_file_format_of_the_reference_has_every_array(
     extension: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -265,6 +265,7 @@ INSIDE = {
 """(srr, stt, srt) at depths .05, .2, .5 R and angles -150, -90, 0 degrees, good to 1e-5."""
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("step", "body"), HOOP)
 def test_hoop_stress_against_stored_values(states, step, body):
     """The stored values take straight lines between the nodes, which are 2e-5 off next to an edge."""
@@ -272,6 +273,7 @@ def test_hoop_stress_against_stored_values(states, step, body):
     assert states[step].hoop_stress(body, ANGLES) == pytest.approx(HOOP[step, body], abs=4e-5)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("step", "body"), INSIDE)
 def test_stress_inside_against_stored_values(states, step, body):
     points = Points.at_depth([0.05, 0.2, 0.5], np.radians([-150, -90, 0]))
@@ -281,6 +283,7 @@ def test_stress_inside_against_stored_values(states, step, body):
         assert components == pytest.approx(np.array(INSIDE[step, body]), abs=tolerance)
 
 
+@pytest.mark.gate
 def test_points_by_depth_radius_and_coordinates_agree(states):
     state = states[1]
     depth, theta = np.array([[0.01], [0.2]]), np.array([-1.4, 0.3, 2.0])
@@ -294,6 +297,7 @@ def test_points_by_depth_radius_and_coordinates_agree(states):
         assert getattr(by_xy, field) == pytest.approx(getattr(by_depth, field), abs=1e-12)
 
 
+@pytest.mark.gate
 def test_invariants_are_the_ones_of_the_tensor(states):
     found = states[1].stress(Points.at_depth(np.geomspace(1e-6, 3.0, 12), np.linspace(-3.0, 3.0, 12)))
     for k in range(12):
@@ -342,6 +346,7 @@ def test_contacts_round_the_circle_and_across_its_end():
     assert (one.status != OPEN)[0]
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     ("points", "body", "message"),
     [
@@ -378,6 +383,7 @@ def test_infinite_and_undetermined_stresses_are_refused():
         solve(rigid, [{"P": 1.0}], nodes=61)[-1].hoop_stress("pin")
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     ("step", "contact", "pressure", "largest", "smallest"),
     [

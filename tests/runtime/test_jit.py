@@ -237,6 +237,7 @@ def test_packages_that_are_imported_later_work() -> None:
     assert subprocess.run([sys.executable, "-c", AFTER], capture_output=True, text=True, check=True).stderr == ""
 
 
+@pytest.mark.gate
 def test_modules_come_when_they_are_asked_for():
     code = "import fastpin; print(fastpin.model.LOADS[0], hasattr(fastpin, 'nothing'))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

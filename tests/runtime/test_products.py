@@ -80,6 +80,7 @@ def forked(out, left, right):
     os._exit(0)
 
 
+@pytest.mark.gate
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no processes by forking")
 def test_a_forked_process_makes_its_own_thread():
     out, left, right = arrays(1203, 120, 64)

@@ -88,6 +88,7 @@ def test_the_table_of_reference(nodes: int, peak: float, rotation: float, shear:
     assert float(fallen.grid.weights @ fallen.shear) == pytest.approx(shear, abs=5e-6)
 
 
+@pytest.mark.gate
 def test_a_step_in_parts_is_the_same_step(whole: Result) -> None:
     corners = [{name: (1.0 - k / 7) * before + k / 7 * LAST[name] for name, before in
                 (("P", 1.0), ("Q", 0.2), ("friction_change", 0.0))} for k in range(1, 8)]  # fmt: skip
@@ -270,6 +271,7 @@ def test_the_rates_of_a_moment_are_its_derivatives() -> None:
             assert np.abs(slope - found).max() < 1e-6 * np.abs(found).max(), (rates, name)
 
 
+@pytest.mark.gate
 def test_lemkes_method_lets_nodes_slip_where_their_limit_falls() -> None:
     system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
     start = configuration_after(system, FIRST)

@@ -54,6 +54,7 @@ def test_fat_cycles_keep_their_promise_at_every_chosen_cycle():
         assert np.abs(one.gap_growth - other.gap_growth).max() < 0.05 * one.depth
 
 
+@pytest.mark.gate
 def test_a_joint_that_shakes_down_takes_few_cycles():
     """A free pin under Q alone slips no more after nine cycles. Then rounding wears it: slip of some 1e-14 a cycle."""
     problem = fastpin.Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body")
@@ -279,6 +280,7 @@ def test_a_pin_that_wears_and_slips_far_gives_a_warning():
         fastpin.wear(problem, history, cycles=1, pin=1e-16, arc=(-3.1, 0.0), nodes=NODES)
 
 
+@pytest.mark.gate
 def test_a_result_is_read_only_and_can_be_pickled():
     found = every_cycle()
     with pytest.raises(ValueError, match="read-only"):

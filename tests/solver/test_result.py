@@ -75,6 +75,7 @@ def test_chosen_states_are_drawn(result):
         assert "".join(label.get_text() for label in zones.get_yticklabels()) == points
 
 
+@pytest.mark.gate
 def test_a_result_and_its_file_give_the_same_dataset(result, tmp_path):
     pytest.importorskip("xarray")
     result.save(tmp_path / "a.h5")

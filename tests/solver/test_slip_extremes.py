@@ -100,6 +100,7 @@ def naive(states: Sequence[State]) -> np.ndarray:
     return sums
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("finer", ["unlike bodies", "remote stress", "much friction", "driven"], indirect=True)
 def test_sums_from_state_to_state_converge_to_the_exact_sums(finer: list[list[State]]) -> None:
     errors = []

@@ -223,6 +223,7 @@ def test_large_graded_grids_are_followed_on_windows():
         assert not isinstance(build_system(case, grid, 1.0), LargeSystem)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("pin_load", ["centre", *gate("body")])
 def test_windows_lead_to_the_states_of_the_whole_grid(monkeypatch, pin_load):
     case = problem(20.0, 0.4, pin_load, "fixed" if pin_load == "centre" else "free")

@@ -143,6 +143,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
+@pytest.mark.gate
 def test_readers_see_the_last_transaction_after_a_kill_and_write_nothing(plan: Plan, directory: Path) -> None:
     whole = sweep.load(directory)
     ended = finished(python(KILLED, directory / INDEX), check=False)

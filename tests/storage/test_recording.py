@@ -68,8 +68,11 @@ def assert_file(path: Path, expected) -> None:
 @pytest.mark.parametrize(
     "program",
     some_gate(
-        PROGRAMS,
-        *(PROGRAMS.keys() - {"cycles", "corners", "loads that come back", "minus zero", "pressed again and again"}),
+        some_gate(
+            PROGRAMS,
+            *(PROGRAMS.keys() - {"cycles", "corners", "loads that come back", "minus zero", "pressed again and again"}),
+        ),
+        "loads that come back",
     ),
 )
 def test_the_file_holds_what_a_solution_returns(problem, path, program, keep):
@@ -102,6 +105,7 @@ def test_a_period_after_another_of_the_same_length_has_its_own_states(problem, p
     assert_same(store.load(path), expected)
 
 
+@pytest.mark.gate
 def test_many_states_are_copied_piece_by_piece(problem, path, monkeypatch):
     monkeypatch.setattr(writer, "PIECE", 7)
     history = PROGRAMS["spectrum"]
@@ -123,6 +127,7 @@ def test_states_wait_for_one_commit_after_the_other(problem, path, monkeypatch):
 # -- runs that end early -------------------------------------------------------------------------------------
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("corner", [0.0, 0.5, 1.0, 7.0, 20.5, 39.0])
 def test_an_interrupted_run_goes_on(problem, denser, path, corner):
     with pytest.raises(Interrupted):
@@ -137,6 +142,7 @@ def test_an_interrupted_run_goes_on(problem, denser, path, corner):
     assert sorted(entry.name for entry in path.parent.iterdir()) == [path.name]
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("stops", [1.75, 6.0])
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_a_run_interrupted_again_and_again(problem, path, program, stops):
@@ -525,6 +531,7 @@ def test_the_way_to_a_corner_is_not_solved_again_where_it_repeats(problem, path)
     assert np.array_equal(branch[-1].shear, store.load(path)[-1].shear)
 
 
+@pytest.mark.gate
 def test_a_branch_of_a_branch_that_was_interrupted(problem, whole, path, tmp_path):
     follow(problem, RANDOM[:10], path, nodes=61, arc=(-3.0, -0.1))
     second, third = tmp_path / "b.h5", tmp_path / "c.h5"

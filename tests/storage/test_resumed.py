@@ -79,6 +79,7 @@ def whole(options: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> 
     return parts(path)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("corners", [[0.5], [1.0], [4.5], [8.0, 10.5, 13.0], [22.5], [25.0, 30.5, 36.0]])
 def test_a_resumed_run_differs_in_the_named_parts_only(
     corners: list[float], options: dict[str, Any], whole: dict[str, Any], tmp_path: Path

@@ -89,6 +89,7 @@ def test_a_file_without_bodies_has_a_solid_pin_in_an_infinite_plate(tmp_path):
     assert (found.pin_body, found.plate_body) == (Disk(), Plate())
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("bodies", [BODIES[2], BODIES[5]], ids=["tube in ring", "bush"])
 def test_a_history_with_bodies_is_resumed(bodies, tmp_path):
     first, whole = tmp_path / "a.h5", tmp_path / "b.h5"

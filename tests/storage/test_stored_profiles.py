@@ -58,6 +58,7 @@ def test_files_without_profiles_are_as_before(tmp_path: Path) -> None:
         assert file["problem"].attrs["friction"] == 0.4
 
 
+@pytest.mark.gate
 def test_a_recorded_run_is_resumed_to_the_same_bits(tmp_path: Path) -> None:
     given = problem(friction=FRICTION, gap=InitialGap(Profile.ellipse(3e-6, 0.7)))
     history = LoadHistory([{"P": 5e5}, {"Q": 1e5}, {"Q": -1e5}, {"Q": 1e5}])

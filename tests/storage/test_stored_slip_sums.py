@@ -35,6 +35,7 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "a.h5"
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("keep", ["all", "cycles", "every 7"])
 @pytest.mark.parametrize("program", [*gate("spectrum"), "two levels", "pressed again and again"])
 def test_a_run_interrupted_again_and_again(problem: Problem, path: Path, program: str, keep: str) -> None:
@@ -54,6 +55,7 @@ def test_a_run_interrupted_again_and_again(problem: Problem, path: Path, program
     assert known(found) == known(expected)
 
 
+@pytest.mark.gate
 def test_a_restart_holds_the_sums_since_the_latest_kept_state(problem: Problem, path: Path) -> None:
     options: dict[str, Any] = {"nodes": 61, "keep": "every 9", "slip_sums": True}
     record(problem, RANDOM, path, save_after=[9, 13], **options)

@@ -265,6 +265,7 @@ def test_a_sweep_of_files_without_results_in_its_index_goes_on(plan: Plan, tmp_p
     assert (stems(tmp_path / "whole"), contents(tmp_path / "whole")) == (stems(tmp_path), contents(tmp_path))
 
 
+@pytest.mark.gate
 def test_a_large_result_has_a_file(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(work, "MOST_PACKED", 8000)
     sweep.run(plan, tmp_path, Inline())

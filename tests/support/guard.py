@@ -1,13 +1,14 @@
 """The rules of the tiers. This plugin counts processor time, and watches processes, sockets, sleeps and figures.
 
-A quick test takes at most 0.5 s of processor time, fixtures and child processes included. It starts no process, opens
+A quick test takes at most 0.5 s of processor time, with its fixtures and child processes. It starts no process, opens
 no socket, does not sleep, and draws no figure of full size. A test of the gate takes at most 5 s, a survey any time. A
-test that breaks a rule fails. On a slower machine the limits are wider. Compiling a kernel is not counted: a machine
-does it once.
+fixture that tests share counts by itself, and has the same limit. A test that breaks a rule fails. On a slower machine
+the limits are wider. Compiling a kernel is not counted: a machine does it once.
 """
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import threading
@@ -46,6 +47,9 @@ EVENTS = {
 
 _seen: dict[str, int] = defaultdict(int)
 """What the running test has done that no quick test does."""
+
+_shared: list[tuple[float, str]] = []
+"""Seconds of processor time of the shared fixtures that the running test has made, and their names."""
 
 _compiling = [0.0]
 """Seconds of processor time that this process has compiled kernels."""
@@ -109,35 +113,41 @@ def pytest_configure() -> None:
     compiler.compile_kernel = timed  # type: ignore[assignment]
 
 
-@pytest.hookimpl(wrapper=True, tryfirst=True)
-def pytest_runtest_setup(item: pytest.Item) -> Iterator[None]:
-    _seen.clear()
-    item.stash[BEGIN] = spent()
-    return (yield)
+@pytest.hookimpl(wrapper=True)
+def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any]) -> Iterator[None]:
+    begin, inner = spent(), sum(seconds for seconds, _ in _shared)
+    try:
+        return (yield)
+    finally:
+        if fixturedef.scope != "function":
+            of_others = sum(seconds for seconds, _ in _shared) - inner
+            _shared.append((spent() - begin - of_others, f"fixture {fixturedef.argname}: "))
 
 
 BEGIN = pytest.StashKey[float]()
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    _seen.clear()
+    _shared.clear()
+    item.stash[BEGIN] = spent()
+
+
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
     result = yield
-    seconds, tier = spent() - item.stash[BEGIN], tier_of(item)
+    tier, seconds = tier_of(item), spent() - item.stash[BEGIN]
     item.user_properties += [("processor", round(seconds, 4)), ("tier", tier), ("seen", dict(_seen))]
-    broken = broken_rules(tier, seconds, item.config.getoption("tier"))
+    # Where a higher tier is running, with more seeds, its limit counts.
+    limit = LIMITS.get(max(tier, item.config.getoption("tier"), key=TIERS.index), math.inf)
+    parts = [(seconds - sum(each for each, _ in _shared), ""), *_shared]
+    broken = [f"{name}{each:.2f} s of processor time" for each, name in parts if each > limit]
+    broken = [*(broken if broken and max(parts)[0] > limit * slowness() else ()), *(_seen if tier == "quick" else ())]
     if broken and not item.get_closest_marker("browser"):
         above = TIERS[TIERS.index(tier) + 1]
         pytest.fail(f"too much for a test of the tier {tier}: {'; '.join(broken)}. Mark it {above}", pytrace=False)
     return result
-
-
-def broken_rules(tier: str, seconds: float, running: str) -> list[str]:
-    """The rules of its tier that a test broke. Where a higher tier is running, with more seeds, its limit counts."""
-    limit = LIMITS.get(max(tier, running, key=TIERS.index))
-    broken = []
-    if limit and seconds > limit and seconds > (allowed := limit * slowness()):
-        broken.append(f"{seconds:.2f} s of processor time, {allowed:.2f} s allowed")
-    return [*broken, *_seen] if tier == "quick" else broken
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

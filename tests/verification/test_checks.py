@@ -192,6 +192,7 @@ def test_a_wrong_kernel_of_the_stresses_is_seen(only, monkeypatch) -> None:
         assert {("on the edge", case), ("force", case)} <= seen
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("body", "name"), [*gate(("plate", "plate_stress")), ("pin", "pin_stress")])
 def test_a_wrong_share_of_the_force_is_seen_by_the_strains(only, monkeypatch, body: str, name: str) -> None:
     """A thousandth of the hoop stress of one wave. It changes neither the tractions on the edge nor the resultants."""

@@ -184,6 +184,7 @@ def test_a_file_has_extremes_from_so_many_states_on(long: Path, least: None, tmp
             assert ("extremes" in file) == stored
 
 
+@pytest.mark.gate
 def test_a_long_result_has_its_extremes_in_the_file(long: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     known = storage.marked_extremes(long)
     monkeypatch.setattr(storage.extremes.StoredStates, "blocks", lambda self: pytest.fail("all states were read"))
@@ -191,6 +192,7 @@ def test_a_long_result_has_its_extremes_in_the_file(long: Path, monkeypatch: pyt
     assert marked_places(known)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("damage", ["absent", "place", *gate("value"), "states", "names", "shape", "text"])
 def test_extremes_in_a_file_are_checked(long: Path, tmp_path: Path, damage: str) -> None:
     path = tmp_path / "b.h5"

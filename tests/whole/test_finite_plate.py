@@ -20,6 +20,7 @@ def compliance():
     return rough_compliance(plate(), 10)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("friction", "peak"), [(0.0, 0.563799), (0.4, 0.465304)])
 def test_peaks_agree_with_finite_elements(compliance, friction, peak):
     """The peaks were computed with a matrix of 10 harmonics from finite elements of the plate."""
@@ -41,6 +42,7 @@ def interference(body, friction, **fields):
     return Problem.from_load_parameter(pair, -0.2, friction, plate_body=body, **fields)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("fields", [{}, {"rotation": "fixed"}, {"drive": "both"}], ids=str)
 @pytest.mark.parametrize("friction", [0.0, 0.1, 0.5])
 def test_an_interference_fit_in_an_uneven_plate_is_in_equilibrium_without_load(uneven, friction, fields):
@@ -52,6 +54,7 @@ def test_an_interference_fit_in_an_uneven_plate_is_in_equilibrium_without_load(u
     assert (abs(state.resultants["P"]) < 1e-12) == ("drive" not in fields)
 
 
+@pytest.mark.gate
 def test_the_assembly_with_friction_keeps_the_balance_of_energy(uneven):
     """The error falls like the square of the node distance: 8e-6 with 121 nodes, 7e-7 with 401."""
     for state in solve(interference(uneven, 0.3), [{}, {"P": 0.6}, {"Q": 0.2}, {"Q": -0.2}], nodes=401):

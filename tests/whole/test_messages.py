@@ -25,6 +25,7 @@ from fastpin.model.doubts import doubts, pressure_doubts
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.ply import PlyStrengths
 from fastpin.studies.plan import parse_plan, read_plan
+from tests.support.tiers import gate
 
 PAIR = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
 
@@ -407,7 +408,7 @@ FRICTION = "friction: 40 is above 2, more than dry metals have; did you mean 40 
     [
         lambda case, folder: fastpin.solve(case.problem, case.history, nodes=51),
         lambda case, folder: fastpin.record(case.problem, case.history, folder / "a.h5", nodes=51),
-        lambda case, folder: fastpin.converge(case.problem, case.history, [51, 61, 71]),
+        *gate(lambda case, folder: fastpin.converge(case.problem, case.history, [51, 61, 71])),
         lambda case, folder: fastpin.Session(case.problem, nodes=51),
     ],
     ids=["solve", "record", "converge", "Session"],
