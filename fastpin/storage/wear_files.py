@@ -475,11 +475,10 @@ def _read_rows(file: hdf5.Group, nodes: int) -> dict[str, np.ndarray]:
     if count(file["states"]) != size * corners:
         raise ValueError(f"wear/cycle has {size} rows, which don't fit the states")
     rows = {name: array[()] for name, array in arrays.items()}
-    for name, array in rows.items():
-        if NUMBERS.get(name) is np.int64:
-            check_between(f"wear/{name}", array, 0, np.iinfo(np.int64).max)
-        else:
-            check_finite(f"wear/{name}", array)
+    for name in (*DEPTHS, "dissipation", "removed"):
+        check_finite(f"wear/{name}", rows[name])
+    for name in ("cycle", "solved"):
+        check_between(f"wear/{name}", rows[name], 0, np.iinfo(np.int64).max)
     if np.any(np.diff(rows["cycle"]) <= 0):
         raise ValueError("wear/cycle does not increase")
     return rows
