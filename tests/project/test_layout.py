@@ -101,7 +101,11 @@ def test_every_rule_holds(texts):
 
 
 @pytest.mark.parametrize(
-    "name", some_gate(list(BREAKS), "a folder without a rank", "a kernel that imports the package")
+    "name",
+    some_gate(
+        some_gate(list(BREAKS), "a folder without a rank", "a kernel that imports the package"),
+        "a folder inside a folder",
+    ),
 )
 def test_a_broken_rule_is_noticed(name, texts):
     rule, file, text = BREAKS[name]

@@ -71,6 +71,7 @@ def test_a_topic_passes_with_tolerances_that_are_used_and_not_slack(only, key: s
         assert [name for name, difference in largest.items() if not name[1] <= MOST_SLACK * difference] == []
 
 
+@pytest.mark.gate
 def test_a_table_in_columns(only) -> None:
     only("parts", "laminates, exact")
     checks = installation.verify()
