@@ -13,6 +13,9 @@ from fastpin.pages.album import Album
 from fastpin.pages.content import Picture
 from tests.support.approx import quicken
 from tests.support.drawing import outline_figures
+from tests.support.processes import hear_interrupts
+
+hear_interrupts()
 
 pytest_plugins = ["tests.support.tiers", "tests.support.guard"]
 

@@ -29,7 +29,18 @@ from fastpin.bodies.body import Harmonics, InWords, PlateBody, Projected, Remote
 from fastpin.bodies.walls import Displacements
 from fastpin.errors import InputError, printable
 from fastpin.kernels import fourier
-from fastpin.model.checks import any_text, as_toml, choice, file_path, number, numbers, positive, string, why_unreadable
+from fastpin.model.checks import (
+    any_text,
+    as_toml,
+    choice,
+    file_path,
+    is_whole,
+    number,
+    numbers,
+    positive,
+    string,
+    why_unreadable,
+)
 from fastpin.model.grid import Grid
 from fastpin.model.inputs import open_input
 from fastpin.model.loads import LOADS, REMOTE, P, Q
@@ -52,6 +63,9 @@ DECAYED = 1e-2
 
 COLUMNS = tuple(LOADS[place] for place in REMOTE)
 """Loads that a plate may have besides the forces on the pin: its own loads take the names of the remote stresses."""
+
+MOST_ENTRY = 1e9
+"""Largest entry, dimensionless. That of a slender lug is below 1e6; a larger one could only mean a wrong unit."""
 
 MOST_BYTES = 10_000_000
 """Most bytes of a file."""
@@ -100,7 +114,7 @@ class Compliance(PlateBody):
         object.__setattr__(self, "plane", choice("plane", self.plane, PLANES))
         object.__setattr__(self, "hole_radius", positive("hole_radius", self.hole_radius))
         object.__setattr__(self, "made_by", string("made_by", self.made_by))
-        matrix = numbers("matrix", self.matrix).copy()
+        matrix = numbers("matrix", self.matrix, -MOST_ENTRY, MOST_ENTRY).copy()
         size = matrix.shape[0] if matrix.ndim == 2 else 0
         if matrix.shape != (size, size) or size % 4 != 2 or not LEAST_ORDER <= (size - 2) // 4 <= MOST_ORDER:
             words = f"must have the shape (2 + 4 K, 2 + 4 K) with K from {LEAST_ORDER} to {MOST_ORDER}"
@@ -117,7 +131,7 @@ class Compliance(PlateBody):
         columns = {}
         for name, column in self.columns.items():
             choice("columns", name, COLUMNS)
-            columns[name] = numbers(f"columns.{name}", column).copy()
+            columns[name] = numbers(f"columns.{name}", column, -MOST_ENTRY, MOST_ENTRY).copy()
             if columns[name].shape != (size,):
                 raise InputError(f"columns.{name}", f"must have the shape ({size},), not {columns[name].shape}")
             columns[name].setflags(write=False)
@@ -208,7 +222,11 @@ class Compliance(PlateBody):
         given = {name: content[name] for name in known if name in content}
         if isinstance(given.get("made_by"), str):
             given["made_by"] = printable(given["made_by"])  # the file may be anybody's, or of an earlier version
-        return cls(**given)
+        made = cls(**given)
+        order = content.get("order", made.order)
+        if not is_whole(order) or order != made.order:
+            raise InputError("order", f"must be {made.order}, the last harmonic of the matrix, not {as_toml(order)}")
+        return made
 
     def document(self) -> dict[str, Any]:
         """Return the content of a file, JSON-ready."""

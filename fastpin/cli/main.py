@@ -11,14 +11,13 @@ import importlib
 import io
 import logging
 import os
-import signal
 import sys
-import threading
 import warnings
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from fastpin.cli.options import read_options
+from fastpin.cli.signals import stopped_by_signals
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, fail, say
 from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning, printable
 from fastpin.model.inputs import remembered_inputs
@@ -32,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code. 0: success. 1: the loads could not be followed to their end, a run of a sweep or a check of the
         installation has failed, a file could not be written, or memory did not suffice. 2: input that can't be used.
-        130: interrupted. 141: the reader of the output has closed it.
+        130: interrupted by Ctrl-C, SIGTERM or SIGHUP. 141: the reader of the output has closed it.
     """
     gc.set_threshold(50_000)  # Imports make no garbage, and Python's threshold of 700 new objects costs them 30 ms.
     for stream in (sys.stdout, sys.stderr):
@@ -41,10 +40,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = read_options(sys.argv[1:] if arguments is None else list(arguments))
         _log(getattr(options, "verbose", 0))
-        if threading.current_thread() is threading.main_thread():
-            signal.signal(signal.SIGTERM, signal.default_int_handler)  # batch systems end a job by SIGTERM
         file, function = options.command
-        with _printed_warnings(), remembered_inputs():
+        with stopped_by_signals(), _printed_warnings(), remembered_inputs():
             code = int(getattr(importlib.import_module(f"fastpin.cli.{file}"), function)(options))
         sys.stdout.flush()
         return code

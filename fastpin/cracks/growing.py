@@ -21,6 +21,7 @@ from fastpin.model.doubts import warn_of
 from fastpin.model.growth import GrowthLaw, checked_law
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.ties import is_top, top_angle
 from fastpin.model.units import units
 from fastpin.runtime.extensions import interpolate
 from fastpin.states.choice import stops_of_one_problem
@@ -422,8 +423,8 @@ class _Following(NamedTuple):
                 if progress is not None:
                     progress(len(grown), every.size)
         life, arrest = np.array([one.life for one in grown]), np.array([one.arrest for one in grown])
-        farthest = np.where(np.isnan(arrest), np.inf, arrest)
-        fastest = grown[int(np.lexsort((life, -farthest))[0])]
+        farthest = np.flatnonzero(is_top(np.where(np.isnan(arrest), np.inf, arrest)))
+        fastest = grown[farthest[top_angle(-life[farthest], every[farthest])]]
         warn_of(fastest.doubts, 3)
         return EdgeGrowth(every, life, arrest, fastest)
 
@@ -440,7 +441,7 @@ class _Following(NamedTuple):
         fine = np.geomspace(lengths[0], lengths[-1], count)
         spline = interpolate.CubicSpline(np.log(lengths), K / np.sqrt(lengths)[:, None], axis=1)
         opening, sliding = np.moveaxis(spline(np.log(fine)) * np.sqrt(fine)[:, None], -1, 0)
-        top = np.argmax(opening, axis=0)
+        top = np.argmax(is_top(opening.T), axis=1)  # of equal ones the first
         K_II = np.take_along_axis(sliding, top[None], axis=0)[0]
         at = np.array([load_point(self.stops[place]) for place in top.tolist()])
         loads = {load_point(state): state.load for state in (self.stops[place] for place in np.unique(top).tolist())}

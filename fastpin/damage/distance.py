@@ -19,6 +19,7 @@ from fastpin.damage.histories import stress_history
 from fastpin.damage.hot_spots import NO_CRACK, Fatigue, evaluated, fatigue
 from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
+from fastpin.model.assessment import checked_distance
 from fastpin.model.checks import choice, instance, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import Body, Points, material_of, near_rim, owner_of
@@ -131,7 +132,7 @@ def checked_length(
         given = (material_of(problem, body).fatigue if constants is None else constants) or FatigueConstants()
         names = ("threshold_range", "limit_range")
         length = critical_distance(*given.required(names, f'method "{method}"', owner_of(problem, body)))
-    return positive("length", length)
+    return checked_distance(length)
 
 
 def mean_depth(method: str, length: float) -> float:

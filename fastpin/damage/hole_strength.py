@@ -24,6 +24,7 @@ from fastpin.model.points import Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.strength import StrengthAssessment, checked_lengths
+from fastpin.model.ties import TIE, top_angle
 from fastpin.states.state import State
 
 AROUND = 720
@@ -95,8 +96,8 @@ class JointStrength(ReadOnly):
 
     @property
     def least(self) -> int:
-        """The point with the least ratio."""
-        return int(np.argmin(self.ratio))
+        """The point with the least ratio; of equal points the one farthest to the right."""
+        return top_angle(-self.ratio, self.theta)
 
     @property
     def least_ratio(self) -> float:
@@ -211,7 +212,7 @@ def least_strength(
     found: tuple[State, JointStrength] | None = None
     for done, state in enumerate(known, 1):
         strength = joint_strength(state, how.criterion, **how.lengths)
-        if found is None or strength.least_ratio < found[1].least_ratio:
+        if found is None or strength.least_ratio < (1.0 - TIE) * found[1].least_ratio:
             found = state, strength
         if progress is not None:
             progress(done, len(known))

@@ -22,6 +22,7 @@ from fastpin.model.materials import Material
 from fastpin.model.points import CRITERION, Body, Points, isotropic_material, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.ties import top_angle
 from fastpin.model.units import units_per_thickness
 from fastpin.reading.stress import check_body
 from fastpin.states.choice import loaded_span_of, missing_corners, states_between, stops_of_one_problem
@@ -114,10 +115,10 @@ class Fatigue(ReadOnly):
 
     @property
     def hot_spot(self) -> HotSpot:
-        """The point with the largest parameter; the first one of equal points."""
+        """The point with the largest parameter; of equal points the first one farthest to the right."""
         if not self.parameter.any():
             return HotSpot(0.0, math.nan, math.nan, math.nan, math.nan if self.life is None else math.inf)
-        at = np.unravel_index(int(np.argmax(self.parameter)), self.parameter.shape)
+        at = np.unravel_index(top_angle(self.parameter, self.theta), self.parameter.shape)
         optional = (np.nan if array is None else float(array[at]) for array in (self.plane, self.life))
         return HotSpot(float(self.parameter[at]), float(self.theta[at]), float(self.depth[at]), *optional)
 

@@ -34,6 +34,7 @@ from fastpin.errors import FastpinError, InputError
 from fastpin.model.checks import check_callable, choice, instance, not_negative, number, number_array, positive, triples
 from fastpin.model.laminate import Laminate
 from fastpin.model.ply import CRITERION_NAMES, LEAST_MODULUS, MOST_MODULUS, Ply, PlyCriterion, PlyStrengths
+from fastpin.model.ties import is_top
 
 MODES = ("fibre tension", "fibre compression", "matrix tension", "matrix compression", "shear")
 """Modes of ply failure, in the order of the places in :attr:`PlyFailure.mode`."""
@@ -265,7 +266,7 @@ def first_ply_failure(laminate: Laminate, stress: ArrayLike, criterion: PlyCrite
         See :func:`ply_failure`.
     """
     found = ply_failure(laminate, stress, criterion)
-    ply = np.argmin(found.ratio, axis=0)
+    ply = np.argmax(is_top(-np.moveaxis(found.ratio, 0, -1)), axis=-1)  # of equal ones the first
     ratio, mode = (np.take_along_axis(values, ply[np.newaxis], 0)[0] for values in (found.ratio, found.mode))
     return FirstPly(ratio, ply, mode)
 

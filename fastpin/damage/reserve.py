@@ -16,6 +16,7 @@ import numpy as np
 from fastpin.damage.counted import CountedMaterial, Spectrum
 from fastpin.damage.spectrum import SpectrumCount, halves
 from fastpin.model.problem import Problem
+from fastpin.model.ties import top, top_angle
 from fastpin.runtime.extensions import optimize
 from fastpin.states.quantities import load_point
 
@@ -106,7 +107,7 @@ def stress_reserve(count: SpectrumCount, goal: Goal, progress: Callable[[float],
     for block, history in count.blocks(tell_read):
         for chosen, counted in count.parts:
             places = block.start + np.flatnonzero(chosen[block])
-            search.take(counted, history[:, chosen[block]], places)
+            search.take(counted, history[:, chosen[block]], places, count.theta.ravel()[places])
         tell_counted(block.stop / max(count.theta.size, 1))
     found = StressReserve(count.different[0].problem, count.criterion, count.body, goal)
     if search.best is None:
@@ -114,7 +115,7 @@ def stress_reserve(count: SpectrumCount, goal: Goal, progress: Callable[[float],
     (place, counted, history), factor = search.best, search.factor
     plane = search.plane(counted, factor * history)
     places, values = counted.cycles(factor * history, search.spectrum, plane)
-    worst = int(np.argmax(values[:, 1 if goal.kind == "endurance" else 2]))
+    worst = top(values[:, 1 if goal.kind == "endurance" else 2])
     stops = [count.different[k] for k in places[worst].tolist()]
     where = float(count.theta.flat[place]), float(count.depth.flat[place]), plane
     start, stop, largest = (load_point(state) for state in stops)
@@ -129,11 +130,11 @@ class _Search:
         self.best: tuple[int, CountedMaterial, np.ndarray] | None = None
         self._goal, self._cycles = goal, cycles
 
-    def take(self, counted: CountedMaterial, history: np.ndarray, places: np.ndarray) -> None:
-        """Look at the points at these places, with stresses (states, points, 4)."""
+    def take(self, counted: CountedMaterial, history: np.ndarray, places: np.ndarray, theta: np.ndarray) -> None:
+        """Look at the points at these places and angles, with stresses (states, points, 4)."""
         left = np.arange(places.size)
         if self.best is None and left.size:  # the point with the largest cycle is a good first guess
-            self._try(counted, history, places, int(np.argmax(counted.largest(history)[0])))
+            self._try(counted, history, places, top_angle(counted.largest(history)[0], theta))
         while left.size:
             used = np.concatenate(
                 [
@@ -141,7 +142,7 @@ class _Search:
                     for some in np.array_split(left, math.ceil(left.size * len(history) / MOST_SCALED))
                 ]
             )
-            worst = int(left[np.argmax(used)])
+            worst = int(left[top_angle(used, theta[left])])
             if used.max() > 1.0:
                 self._try(counted, history, places, worst)
             left = left[(used > 1.0) & (left != worst)]

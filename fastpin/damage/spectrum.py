@@ -21,6 +21,7 @@ from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import CRITERION, Body, Points, isotropic_bodies, isotropic_material, material_of, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.ties import is_top, top_angle
 from fastpin.reading.stress import check_body
 from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.quantities import load_point
@@ -123,10 +124,10 @@ class SpectrumDamage(ReadOnly):
 
     @property
     def hot_spot(self) -> SpectrumSpot:
-        """The point with the largest damage; the first one of equal points."""
+        """The point with the largest damage; of equal points the first one farthest to the right."""
         if not self.damage.any():
             return SpectrumSpot(0.0, math.nan, math.nan, math.nan, math.inf)
-        at = np.unravel_index(int(np.argmax(self.damage)), self.damage.shape)
+        at = np.unravel_index(top_angle(self.damage, self.theta), self.damage.shape)
         place = (float(values[at]) for values in (self.theta, self.depth, self.plane, self.life))
         return SpectrumSpot(float(self.damage[at]), *place)
 
@@ -222,7 +223,7 @@ class SpectrumCount(NamedTuple):
         InputError
             If the stresses do not change.
         """
-        spectrum, found, changes = Spectrum.of(self.order), _Found(self.theta.size), False
+        spectrum, found, changes = Spectrum.of(self.order), _Found(self.theta.ravel()), False
         for block, history in self.blocks(tell_read):
             changes = changes or bool(np.ptp(history, axis=0).max() > ROUNDING * np.abs(history).max())
             for chosen, counted in self.parts:
@@ -336,10 +337,10 @@ def halves(progress: Callable[[float, float], None] | None) -> tuple[Callable[[f
 class _Found:
     """The damage of the points, and the point with the largest damage."""
 
-    def __init__(self, points: int) -> None:
-        self.damage, self.plane = np.zeros(points), np.full(points, np.nan)
+    def __init__(self, theta: np.ndarray) -> None:
+        self._theta, self.damage, self.plane = theta, np.zeros(theta.size), np.full(theta.size, np.nan)
         self._taken = 0
-        self._best: tuple[float, float, np.ndarray, CountedMaterial] | None = None
+        self._best: tuple[int, np.ndarray, CountedMaterial] | None = None
 
     def take(
         self, counted: CountedMaterial, history: np.ndarray, spectrum: Spectrum, places: np.ndarray,
@@ -353,16 +354,18 @@ class _Found:
             history, spectrum, lambda part: progress((before + part * places.size) / self.damage.size)
         )
         self.damage[places], self.plane[places] = damage, plane
-        at = int(np.argmax(damage))
-        if damage[at] > (0.0 if self._best is None else self._best[0]):
-            self._best = float(damage[at]), float(plane[at]), history[:, at : at + 1].copy(), counted
+        at = top_angle(damage, self._theta[places])
+        rivals = [places[at], *(() if self._best is None else self._best[:1])]
+        if damage[at] > 0.0 and top_angle(self.damage[rivals], self._theta[rivals]) == 0:
+            self._best = int(places[at]), history[:, at : at + 1].copy(), counted
 
     def cycles(self, spectrum: Spectrum, load_points: np.ndarray) -> SpectrumCycles:
         """Return the cycles at the point with the largest damage."""
         places, values = np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3))
         if self._best is not None:
-            _, plane, history, counted = self._best
-            places, values = counted.cycles(history, spectrum, plane)
-        rows = np.argsort(-values[:, 2], kind="stable")
+            point, history, counted = self._best
+            places, values = counted.cycles(history, spectrum, float(self.plane[point]))
+        done = values[:, 2]
+        rows = np.argsort(np.where(is_top(done), -np.inf, -done), kind="stable")
         (start, stop, largest), (times, parameter, damage) = load_points[places[rows]].T, values[rows].T
         return SpectrumCycles(start, stop, largest, times.astype(np.int64), parameter, damage)

@@ -30,6 +30,7 @@ from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import Body, Points, far_rim, near_rim, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.ties import top_angle
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
 from fastpin.reading.stress import check_body
@@ -122,7 +123,7 @@ class WornFatigue(ReadOnly):
         life = float(self.broken.min())
         if math.isinf(life):
             return WornSpot(math.inf, math.nan, math.nan, math.nan)
-        return self._spot(life, self.broken == life, np.ones_like(self.broken))
+        return self._spot(life, -self.broken, np.ones_like(self.broken))
 
     @property
     def life(self) -> float:
@@ -175,8 +176,7 @@ class WornFatigue(ReadOnly):
         """At each stored cycle the material with the largest damage of all that is still there."""
         there = np.where(self.is_gone, -1.0, self.damage)
         return tuple(
-            self._spot(float(cycle), values == values.max(), values)
-            for cycle, values in zip(self.cycles.tolist(), there, strict=True)
+            self._spot(float(cycle), values, values) for cycle, values in zip(self.cycles.tolist(), there, strict=True)
         )
 
     @property
@@ -216,10 +216,10 @@ class WornFatigue(ReadOnly):
         mine, theirs = (float(each.damage[-1].max()) for each in (self, other))
         return abs(theirs / mine - 1.0) if mine else 0.0
 
-    def _spot(self, cycle: float, chosen: np.ndarray, values: np.ndarray) -> WornSpot:
-        """The first of the chosen points (d, m), with its damage."""
-        at = np.unravel_index(int(np.argmax(chosen)), chosen.shape)
-        return WornSpot(cycle, float(self.theta[at[1]]), float(self.depth[at[0]]), float(values[at]))
+    def _spot(self, cycle: float, values: np.ndarray, damage: np.ndarray) -> WornSpot:
+        """The point with the largest of `values` (d, m), with its damage."""
+        at = np.unravel_index(top_angle(values, np.broadcast_to(self.theta, values.shape)), values.shape)
+        return WornSpot(cycle, float(self.theta[at[1]]), float(self.depth[at[0]]), float(damage[at]))
 
 
 def worn_fatigue(

@@ -22,7 +22,7 @@ import secrets
 import socket
 import time
 from collections import deque
-from collections.abc import AsyncIterator, Awaitable, Callable, Generator
+from collections.abc import AsyncIterator, Awaitable, Callable, Generator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -205,21 +205,29 @@ class Server:
         The address of this machine on which the server listens. At another one than :data:`ADDRESS` it shares the page:
         others may open it, and the page shows its address as a QR code.
     limits : Limits
+    clock : callable
+        ``clock()`` returns seconds. Rates of messages and turns of pages are measured with it.
 
     Attributes
     ----------
     token : str
         The part of the address that nobody else knows.
     address : str
-        The address of the page; "" before :meth:`running`.
+        The address of the page; "" before :meth:`take_port`.
     """
 
-    def __init__(self, make: Callable[[], LiveContact], host: str = "", limits: Limits = ALONE) -> None:
+    def __init__(
+        self,
+        make: Callable[[], LiveContact],
+        host: str = "",
+        limits: Limits = ALONE,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         self.token = secrets.token_urlsafe(TOKEN_BYTES)
         self.address = ""
         self._hosts: tuple[str, ...] = ()
         self._make, self._sessions = make, Sessions(limits.sessions)
-        self._host, self._shared, self._limits = host or ADDRESS, bool(host), limits
+        self._host, self._shared, self._limits, self._clock = host or ADDRESS, bool(host), limits, clock
         self._greeting = asyncio.Lock()
         self._files = page_files()
         self._page, self._map = live_page()
@@ -246,13 +254,7 @@ class Server:
         listening = bound_socket(self._host, port, self._limits.connections)
         try:
             await runner.setup()
-            port = listening.getsockname()[1]
-            names = [f"[{self._host}]" if ":" in self._host else self._host]
-            if self._host == ADDRESS:
-                names.append("localhost")
-            # Browsers leave port 80 out of the Host.
-            self._hosts = tuple(name if port == 80 else f"{name}:{port}" for name in names)
-            self.address = f"http://{self._hosts[0]}/{self.token}/"
+            self.take_port(listening.getsockname()[1])
             await web.SockSite(runner, listening).start()
             yield self
         finally:
@@ -262,18 +264,33 @@ class Server:
             listening.close()
             self._thread.shutdown(wait=True, cancel_futures=True)
 
+    def take_port(self, port: int) -> None:
+        """Take the address with this port as that of the page."""
+        names = [f"[{self._host}]" if ":" in self._host else self._host]
+        if self._host == ADDRESS:
+            names.append("localhost")
+        # Browsers leave port 80 out of the Host.
+        self._hosts = tuple(name if port == 80 else f"{name}:{port}" for name in names)
+        self.address = f"http://{self._hosts[0]}/{self.token}/"
+
     # -- requests --------------------------------------------------------------------------------------------------
+
+    def objection(self, host: str | None, origins: Sequence[str], token: str) -> str:
+        """Say why a request with this Host, these Origins and this token is refused; "" if it may come."""
+        if host not in self._hosts:
+            return "This server answers to its own address only."
+        if not set(origins) <= {f"http://{own}" for own in self._hosts}:
+            return "Another page may not use this server."
+        if not hmac.compare_digest(token.encode(), self.token.encode()):
+            return "The address lacks the token: take the address that fastpin live has printed."
+        return ""
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         """Refuse requests for another host, from another page, or without the token."""
-        origins = set(request.headers.getall("Origin", []))
-        if request.headers.get("Host") not in self._hosts:
-            response: web.StreamResponse = _refused(403, "This server answers to its own address only.")
-        elif not origins <= {f"http://{host}" for host in self._hosts}:
-            response = _refused(403, "Another page may not use this server.")
-        elif not hmac.compare_digest(request.match_info.get("token", "").encode(), self.token.encode()):
-            response = _refused(403, "The address lacks the token: take the address that fastpin live has printed.")
+        origins, token = request.headers.getall("Origin", []), request.match_info.get("token", "")
+        if sentence := self.objection(request.headers.get("Host"), origins, token):
+            response: web.StreamResponse = _refused(403, sentence)
         else:
             try:
                 response = await handler(request)
@@ -309,21 +326,30 @@ class Server:
 
     async def _save(self, request: web.Request) -> web.Response:
         """Send the history of a page as a case file, or as a recording."""
-        name, file = request.match_info["session"], request.match_info["file"]
-        if name not in self._sessions or file not in ("case.toml", "recording.html"):
-            return _refused(404, "There is no such history.")
-        contact = self._sessions[name]
-
-        def text() -> str:
-            return contact.case_text() if file == "case.toml" else recorded_page(contact.recording())
-
+        file = request.match_info["file"]
         try:
-            async with self._sessions.turn(name):
-                body = await self._compute(text)
+            text = await self.saved(request.match_info["session"], file)
         except InputError as error:
             return _refused(409, str(error))
+        if text is None:
+            return _refused(404, "There is no such history.")
         headers = {"Content-Disposition": f'attachment; filename="{file}"'}
-        return web.Response(text=body, content_type="application/octet-stream", headers=headers)
+        return web.Response(text=text, content_type="application/octet-stream", headers=headers)
+
+    async def saved(self, name: str, file: str) -> str | None:
+        """Return the text of a file with the history of a page; None if there is no such page or file.
+
+        Raises
+        ------
+        InputError
+            If the history can't be saved.
+        """
+        if name not in self._sessions or file not in ("case.toml", "recording.html"):
+            return None
+        contact = self._sessions[name]
+        work = contact.case_text if file == "case.toml" else lambda: recorded_page(contact.recording())
+        async with self._sessions.turn(name):
+            return str(await self._compute(work))
 
     async def _compute(self, work: Callable[[], Any]) -> Any:
         return await asyncio.get_running_loop().run_in_executor(self._thread, work)
@@ -335,20 +361,12 @@ class Server:
             return _refused(403, "Only the page may use this server.")
         # A page that has gone without a word is noticed after 20 s.
         page = web.WebSocketResponse(max_msg_size=MOST_BYTES, heartbeat=20.0, compress=False)
-        if self._connections >= self._limits.connections:
-            await page.prepare(request)  # a page can read messages, but not why a websocket was refused
-            sentence = f"{self._limits.connections} pages are open, no more are served; close one, and reload"
-            await _send(page, refusal(None, InputError("connection", sentence)))
-            await page.close(code=WSCloseCode.TRY_AGAIN_LATER)
-            return page
-        self._connections += 1
+        await page.prepare(request)
+        self._sockets[page] = request
         try:
-            await page.prepare(request)
-            self._sockets[page] = request
-            await self._serve_page(page)
+            await self.serve_page(page)
         finally:
-            self._connections -= 1
-            self._sockets.pop(page, None)
+            del self._sockets[page]
         return page
 
     async def _end_pages(self) -> None:
@@ -361,8 +379,16 @@ class Server:
             if transport is not None:
                 transport.abort()
 
-    async def _serve_page(self, page: web.WebSocketResponse) -> None:
-        mailbox, limit = Mailbox(), RateLimit(MOST_A_SECOND)
+    async def serve_page(self, page: web.WebSocketResponse) -> None:
+        """Serve a page until it has gone. If too many are open, tell it so, and close it."""
+        if self._connections >= self._limits.connections:
+            # A page can read messages, but not why a websocket was refused.
+            sentence = f"{self._limits.connections} pages are open, no more are served; close one, and reload"
+            await _send(page, refusal(None, InputError("connection", sentence)))
+            await page.close(code=WSCloseCode.TRY_AGAIN_LATER)
+            return
+        self._connections += 1
+        mailbox, limit = Mailbox(), RateLimit(MOST_A_SECOND, self._clock)
         working = asyncio.create_task(self._work(page, mailbox))
         try:
             async for received in page:
@@ -373,6 +399,7 @@ class Server:
                 else:
                     await _send(page, refusal(None, InputError("message", "must be text")))
         finally:
+            self._connections -= 1
             working.cancel()
             with contextlib.suppress(asyncio.CancelledError, ConnectionError):
                 await working
@@ -417,7 +444,7 @@ class Server:
         work = contact.steps(message)
         try:
             while True:
-                text = await self._compute(functools.partial(_answers, work, message))
+                text = await self._compute(functools.partial(_answers, work, message, self._clock))
                 if text is not None:
                     return list(text)
         finally:  # a page that has gone leaves its work: the contact goes back to where it was
@@ -440,14 +467,16 @@ class Server:
         )
 
 
-def _answers(work: Generator[None, None, list[dict[str, Any]]], message: Message) -> list[str] | None:
+def _answers(
+    work: Generator[None, None, list[dict[str, Any]]], message: Message, clock: Callable[[], float]
+) -> list[str] | None:
     """Go on with a message for a while. Return its answers as text at its end, and None before.
 
     Whatever goes wrong is an answer too, and the page lives on.
     """
-    end = time.monotonic() + TURN
+    end = clock() + TURN
     try:
-        while time.monotonic() < end:
+        while clock() < end:
             next(work)
     except StopIteration as done:
         return [json.dumps(answer, allow_nan=False, separators=(",", ":")) for answer in done.value]

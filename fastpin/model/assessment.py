@@ -24,7 +24,7 @@ from fastpin.model.points import (
     material_of,
     owner_of,
 )
-from fastpin.model.problem import Problem
+from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
 
 MINER_RULES = ("elementary", "original", "haibach")
 """The variants of Miner's rule for small cycles: the curve of lives goes on, ends, or falls off beyond its knee."""
@@ -96,7 +96,7 @@ class FatigueAssessment:
         choice("over", self.over, SPECTRA)
         choice("method", self.method, DISTANCES)
         if self.length is not None:
-            object.__setattr__(self, "length", positive("length", self.length))
+            object.__setattr__(self, "length", checked_distance(self.length))
             if self.method == "edge":
                 raise InputError("length", 'belongs to the methods "point", "line" and "area", but method is "edge"')
         if self.angles is not None:
@@ -158,6 +158,11 @@ class FatigueAssessment:
             If a value can't be used.
         """
         return replace(self, **given)
+
+
+def checked_distance(length: object) -> float:
+    """Check a critical distance, m, which has the limits of a radius, and return it as a float."""
+    return number("length", positive("length", length), LEAST_RADIUS, MOST_RADIUS)
 
 
 def _words(field: str, value: str | Sequence[str], allowed: tuple[str, ...]) -> tuple[str, ...]:

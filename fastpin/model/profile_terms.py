@@ -16,7 +16,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between, degrees_at, degrees_of, from_bottom
-from fastpin.model.checks import number, number_array, positive, whole_number
+from fastpin.model.checks import number, number_array, numbers, positive, whole_number
 from fastpin.runtime.extensions import interpolate
 
 MOST_ORDER = 1000
@@ -39,6 +39,12 @@ Angles in the wrong unit are refused in this way, too.
 
 MOST_ANGLE = 4.0 * math.pi
 """Largest angle, rad. One beyond two turns is in degrees by mistake."""
+
+LEAST_ANGLE = 1e-9
+"""Least half width of a crown, and angle between samples, rad: on a hole of 1 m a nanometre."""
+
+MOST_SIZE = 1e100
+"""Largest value of a profile, in its unit. The curvatures of larger ones would overflow."""
 
 ValueInWords = Callable[[float], str]
 """The text of a value, with its unit if it has one."""
@@ -132,7 +138,7 @@ class Harmonic(Term):
     def __post_init__(self) -> None:
         object.__setattr__(self, "order", whole_number("order", self.order, 0, MOST_ORDER))
         for name in ("cosine", "sine"):
-            object.__setattr__(self, name, number(name, getattr(self, name)))
+            object.__setattr__(self, name, _size(name, getattr(self, name)))
         if self.order == 0:
             object.__setattr__(self, "sine", 0.0)
 
@@ -198,7 +204,7 @@ class Flat(Term):
     kind, places, sizes, needs_lengths = "flat", ("centre",), ("depth",), True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "depth", positive("depth", self.depth))
+        object.__setattr__(self, "depth", _size("depth", positive("depth", self.depth)))
         self._check_angles()
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
@@ -228,7 +234,7 @@ class Crown(Term):
     centre : float
         Angle of its middle, rad.
     half_width : float
-        Angle from its middle to its foot, rad, positive, at most pi.
+        Angle from its middle to its foot, rad, from :data:`LEAST_ANGLE` to pi.
     """
 
     height: float
@@ -238,8 +244,8 @@ class Crown(Term):
     kind, places, spans, sizes = "crown", ("centre",), ("half_width",), ("height",)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "height", number("height", self.height))
-        number("half_width", positive("half_width", self.half_width), 0.0, math.pi)
+        object.__setattr__(self, "height", _size("height", self.height))
+        number("half_width", positive("half_width", self.half_width), LEAST_ANGLE, math.pi)
         self._check_angles()
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
@@ -275,7 +281,7 @@ class Zone(Term):
     kind, places, sizes, jumps = "zone", ("start", "stop"), ("value",), True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "value", number("value", self.value))
+        object.__setattr__(self, "value", _size("value", self.value))
         self._check_angles()
         if not 0.0 < self.stop - self.start < 2.0 * math.pi:
             raise InputError("stop", "must lie beyond the start, by less than a turn")
@@ -313,6 +319,7 @@ class Samples(Term):
 
     def __post_init__(self) -> None:
         angles, heights = _samples("angles", self.angles), _samples("heights", self.heights)
+        numbers("heights", heights, -MOST_SIZE, MOST_SIZE)
         if angles.size != heights.size:
             raise InputError("heights", f"must be as many as the angles, {angles.size}, not {heights.size}")
         turn = 2.0 * math.pi
@@ -324,7 +331,7 @@ class Samples(Term):
             angles, heights = angles[:-1], heights[:-1]
         if not 4 <= angles.size <= MOST_SAMPLES:
             raise InputError("angles", f"must be from 4 to {MOST_SAMPLES} angles within a turn, not {angles.size}")
-        if np.any(np.diff(angles) <= 0.0) or angles[-1] - angles[0] >= turn:
+        if np.any(np.diff(angles) < LEAST_ANGLE) or angles[-1] - angles[0] >= turn:
             raise InputError("angles", "must increase, all within one turn")
         widest = float(np.diff(angles, append=angles[0] + turn).max())
         if widest > WIDEST:
@@ -358,6 +365,11 @@ class Samples(Term):
 
 TERMS: dict[str, type[Term]] = {made.kind: made for made in (Harmonic, Flat, Crown, Zone, Samples)}
 """The kinds of terms by their names in files."""
+
+
+def _size(field: str, value: object) -> float:
+    """Check a value of a profile."""
+    return number(field, value, -MOST_SIZE, MOST_SIZE)
 
 
 def _samples(field: str, values: object) -> np.ndarray:

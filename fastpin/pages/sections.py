@@ -35,6 +35,7 @@ from fastpin.model.loads import LOAD, named_load
 from fastpin.model.materials import Material
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES, edge_body
+from fastpin.model.ties import top
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
@@ -52,7 +53,7 @@ from fastpin.report.strength import strength_lines
 from fastpin.report.table import MAX_ROWS, Column
 from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
-from fastpin.states.extremes import yield_doubts
+from fastpin.states.extremes import READINGS, yield_doubts
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.margins import static_margins
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
@@ -106,7 +107,7 @@ def overview(page: PageParts) -> PageSection:
     cycle = source.cycle
     parts: list[SectionPart] = [_status(source), *warnings_and_notes(source)]
     if source.peaks:
-        largest = max(source.peaks, key=lambda state: state.peak_pressure)
+        largest = source.peaks[top([state.peak_pressure for state in source.peaks])]
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
         sentences = [f"largest contact pressure in all kept states: {pressure}, load point {point}"]
         sentences += [hoop_line(problem, source.peaks, body) for body in EDGES]
@@ -450,10 +451,8 @@ def stresses(page: PageParts) -> PageSection:
     peaks = page.source.peaks
     lines = [hoop_line(problem, peaks, body) for body in EDGES]
     parts += [Text(sentence(line)) for line in lines if line]
-    if problem.surfaces.plate.is_rigid:
-        largest = max(peaks, key=lambda state: state.peak_pressure)
-    else:
-        largest = max(peaks, key=lambda state: state.peak_hoop_stress().value)
+    name = "peak_pressure" if problem.surfaces.plate.is_rigid else "peak_hoop"
+    largest = peaks[top([READINGS[name].of(state) for state in peaks])]
     parts += drawn_or_reason(lambda: page.album.figure(map_plot(InMemory(largest))))
     return PageSection("stresses", "Stresses", parts)
 

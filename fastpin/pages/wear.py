@@ -13,6 +13,7 @@ from fastpin.figures.scar import scar_plot, wear_plot
 from fastpin.figures.subjects import InMemory
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import edge_body
+from fastpin.model.ties import top, top_angle
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
 from fastpin.pages.content import Facts, Items, PageSection, SectionPart, Table, Text
@@ -52,7 +53,7 @@ def overview(page: PageParts) -> PageSection:
     parts: list[SectionPart] = [_status(source, life), *warnings_and_notes(source)]
     parts.append(Text(f"{sentence(DEBRIS)} Worn material leaves the contact at once.", "note"))
     if len(life):
-        first, last, peak = life[0], life[-1], max(life, key=lambda each: each.largest_pressure)
+        first, last, peak = life[0], life[-1], life[top([each.largest_pressure for each in life])]
         worn = f"worn off after {cycles_text(last.cycle)}: {unit['work per stress'].text(last.volume, 4)}"
         worn += f", at most {unit['displacement'].text(last.depth, 4)} deep"
         share = "" if math.isnan(last.pin_share) else f"; {100.0 * last.pin_share:.3g} % of the volume from the pin"
@@ -117,7 +118,7 @@ def profile(page: PageParts) -> PageSection:
             rows.append((name, "nothing", "-", "-"))
             continue
         deepest = unit["displacement"].text(float(depth.max()), 4)
-        place = f"{from_bottom(float(life.theta[np.argmax(depth)])):z.2f} deg"
+        place = f"{from_bottom(float(life.theta[top_angle(depth, life.theta)])):z.2f} deg"
         rows.append((name, unit["work per stress"].text(volume, 4), deepest, place))
     energies = [
         ("dissipated by friction", unit["energy"].text(last.dissipation, 4), "in all cycles"),

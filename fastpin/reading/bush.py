@@ -9,6 +9,7 @@ import numpy as np
 
 from fastpin.model.angles import near_bottom
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.ties import top_angle
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +47,7 @@ class BushFit(ReadOnly):
     @property
     def open_angle(self) -> float:
         """Place of the smallest pressure, rad."""
-        return near_bottom(float(self.theta[np.argmin(self.pressure)]))
+        return self._angle_of_least(self.pressure)
 
     @property
     def slip_margin(self) -> float:
@@ -56,9 +57,7 @@ class BushFit(ReadOnly):
     @property
     def slip_angle(self) -> float:
         """Place where the interface is nearest to slip, rad; NaN without friction."""
-        if self.friction is None:
-            return math.nan
-        return near_bottom(float(self.theta[np.argmin(self._reserve(self.friction))]))
+        return math.nan if self.friction is None else self._angle_of_least(self._reserve(self.friction))
 
     @property
     def pressure_to_close(self) -> float:
@@ -76,6 +75,10 @@ class BushFit(ReadOnly):
         if self.open_margin <= 0.0:
             return math.inf
         return float((np.abs(self.shear) / self.pressure).max())
+
+    def _angle_of_least(self, values: np.ndarray) -> float:
+        largest = float(self.pressure.max())  # a small difference of large pressures has their rounding
+        return near_bottom(float(self.theta[top_angle(largest - values, self.theta)]))
 
     def _reserve(self, friction: float) -> np.ndarray:
         needed = np.abs(self.shear) / friction if friction > 0.0 else np.where(self.shear == 0.0, 0.0, math.inf)

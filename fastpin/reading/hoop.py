@@ -13,7 +13,7 @@ from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, near_rim
 from fastpin.model.problem import Problem
-from fastpin.reading.peaks import TIE
+from fastpin.model.ties import top_angle
 from fastpin.reading.stress import HoopPeak, open_hole_hoop
 
 AROUND = 180
@@ -60,8 +60,7 @@ def hoop_peak(
     before, after = np.roll(values, 1), np.roll(values, -1)
     tops = np.flatnonzero((values >= before) & (values >= after))
     found = _highest(hoop, angles, values, tops[np.argsort(-values[tops])[:TRIED]])
-    largest = max(value for value, _ in found)
-    value, angle = max((peak for peak in found if peak[0] >= largest - TIE * abs(largest)), key=lambda peak: peak[1])
+    value, angle = found[top_angle(*np.array(found).T)]
     rim, force = near_rim(problem, body), math.hypot(resultants["P"], resultants["Q"])
     resolved = _is_resolved(grid.weights[closed], refined, hoop, value, angle, rim - 1.0)
     bearing, gross, bypass, press_fit = force / (2.0 * (rim * problem.hole_radius)), 0.0, 0.0, 0.0

@@ -8,8 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from fastpin.model.angles import angle_between, near_bottom
+from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid
+from fastpin.model.ties import top_angle
 from fastpin.reading.cusps import ShearNodes
 from fastpin.reading.ends import by_two_nodes
 from fastpin.reading.zones import Interval, is_all_round, runs
@@ -53,9 +54,6 @@ The nodal values beside a border have errors up to this size. A node that is hig
 DROP_NODES = 3
 """Number of nodes on either side of the largest one whose values must be consistent with a peak at a border."""
 
-TIE = 1e-9
-"""Relative difference below which two peaks are equal. Of equal peaks the one farthest to the right is taken."""
-
 
 def pressure_peak(grid: Grid, pressure: np.ndarray) -> tuple[float, float]:
     """Largest contact pressure and its angle (rad), read between the nodes.
@@ -66,7 +64,7 @@ def pressure_peak(grid: Grid, pressure: np.ndarray) -> tuple[float, float]:
     pressure : ndarray, shape (n,)
         Nodal pressure N >= 0, in any unit; the peak has the same unit.
     """
-    return _smooth_peak(grid, pressure, _top(grid, pressure))
+    return _smooth_peak(grid, pressure, top_angle(pressure, grid.theta))
 
 
 def shear_peak(contact: ShearNodes, stick: list[Interval]) -> tuple[float, float]:
@@ -82,7 +80,7 @@ def shear_peak(contact: ShearNodes, stick: list[Interval]) -> tuple[float, float
         Stick intervals (start, stop), rad.
     """
     grid, pressure, shear, sticking = contact.grid, contact.pressure, contact.shear, contact.sticking
-    top = _top(grid, np.abs(shear))
+    top = top_angle(np.abs(shear), grid.theta)
     peaks, fitted_here = _peaks_at_borders(contact, stick, top)
     for cusp in contact.old_cusps(RIVAL * float(abs(shear[top]))):
         if cusp.error <= CUSP_ERROR * cusp.value and _likely(grid, np.abs(shear), cusp.node, cusp.value):
@@ -96,9 +94,8 @@ def shear_peak(contact: ShearNodes, stick: list[Interval]) -> tuple[float, float
         if sticking[top]:  # Coulomb's law also holds between the nodes
             value = min(value, float(contact.friction[top]) * float(pressure[beside].max()))
         peaks.append((value, place, top))
-    highest = max(value for value, _, _ in peaks)
-    equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest]
-    value, place, node = max(equal, key=lambda peak: near_bottom(peak[1]))
+    values, places, _ = np.array(peaks).T
+    value, place, node = peaks[top_angle(values, places)]
     return math.copysign(value, float(shear[node])), place
 
 
@@ -144,12 +141,6 @@ def _peaks_at_borders(
                 at_border = min(at_border, max(by_line, float(magnitude[highest])))
             peaks.append((min(at_border, _highest_cusp(grid, magnitude, highest)), border, highest))
     return peaks, fitted_here
-
-
-def _top(grid: Grid, values: np.ndarray) -> int:
-    """The node with the largest value. In symmetric contacts two nodes have it: take the one to the right."""
-    equal = np.flatnonzero(values >= (1.0 - TIE) * values.max())
-    return int(max(equal, key=lambda node: near_bottom(float(grid.theta[node]))))
 
 
 def _borders(grid: Grid, sticking: np.ndarray, stick: list[Interval]) -> Iterator[tuple[float, int, np.ndarray]]:

@@ -15,6 +15,7 @@ from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.checks import instance, instances
 from fastpin.model.points import Body, edge_body, elastic_bodies
 from fastpin.model.problem import Problem
+from fastpin.model.ties import top
 from fastpin.model.units import Unit, units
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import ROUNDING, load_columns
@@ -293,10 +294,11 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
     """
     if body not in elastic_bodies(problem) or not any(state.in_contact for state in states):
         return ""
-    distinct: dict[Hashable, State] = {}
+    known: dict[Hashable, State] = {}
     for state in states:  # Steady cycles repeat their states, and a peak takes some milliseconds.
-        distinct.setdefault(_identity(state), state)
-    state = max(distinct.values(), key=lambda state: state.peak_hoop_stress(body).value)
+        known.setdefault(_identity(state), state)
+    distinct = list(known.values())
+    state = distinct[top([state.peak_hoop_stress(body).value for state in distinct])]
     peak = state.peak_hoop_stress(body)
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
     factor, unit = units(problem)["traction"].scale([peak.value])
@@ -325,7 +327,7 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     if problem.joint.bush is None or not any(state.in_contact for state in states):
         return ""
     fits = [(state, state.bush_fit()) for state in states]
-    state, fit = min(fits, key=lambda pair: pair[1].open_margin)
+    state, fit = fits[top([-fit.open_margin for _, fit in fits])]
     unit = units(problem)["traction"]
     where = f"at {_angle(fit.open_angle)} deg, load point {_point(state)}"
     if problem.bush_slips and fit.open_margin <= 0.0:
@@ -360,7 +362,7 @@ def seat_line(problem: Problem, states: Sequence[State], last: State, cycle: Seq
     seat, unit = last.seat, units(problem)
     if seat is None or not seats or not problem.bush_slips:
         return ""
-    most = max(seats, key=lambda each: abs(each.peak_slip))
+    most = seats[top([abs(each.peak_slip) for each in seats])]
     natural = sizes(seat)
 
     def shown(kind: str, value: float, digits: int) -> str:

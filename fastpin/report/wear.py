@@ -9,6 +9,7 @@ import numpy as np
 from fastpin.damage import WornFatigue
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import edge_body
+from fastpin.model.ties import top
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
 from fastpin.report.curves import Curve
@@ -36,7 +37,7 @@ def table(result: WearResult) -> str:
 def cycle_lines(result: WearResult) -> list[TableLine]:
     """Return the lines of the table of the chosen cycles, with those of the largest pressure and dissipation."""
     pressures, energies = [each.largest_pressure for each in result], [each.energy_per_cycle for each in result]
-    extremes = {int(np.argmax(values)) for values in (pressures, energies) if values}
+    extremes = {top(values) for values in (pressures, energies) if values}
     return with_rows(cut_lines(len(result)), extremes)
 
 

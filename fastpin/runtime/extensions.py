@@ -60,6 +60,9 @@ numba = Later("numba")
 llvm = Later("llvmlite.binding")
 """The part of the compiler that loads machine code."""
 
+metadata = Later("importlib.metadata")
+"""The versions of packages, if their own files do not tell them."""
+
 fft = Later("scipy.fft")
 """Fourier transforms, which grids of many nodes need."""
 

@@ -1,9 +1,9 @@
 """Compiled functions.
 
-A kernel is compiled when it is first called, once for each combination of types of its arguments. The machine code is
-kept on disk (:mod:`fastpin.runtime.stored`). Later processes load it without Numba, whose import takes several times
-as long as that of NumPy. Set ``FASTPIN_CACHE=0`` to compile afresh. Numba's own ``NUMBA_DISABLE_JIT=1`` runs everything
-as plain Python.
+A kernel is compiled when it is first called, once for each combination of types of its arguments. No signal and no
+exception of another thread disturbs it. The machine code is kept on disk (:mod:`fastpin.runtime.stored`). Later
+processes load it without Numba, whose import takes several times as long as that of NumPy. Set ``FASTPIN_CACHE=0`` to
+compile afresh. Numba's own ``NUMBA_DISABLE_JIT=1`` runs everything as plain Python.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from typing import Any
 import numpy as np
 from numpy import ndarray
 
-from fastpin.runtime import beside, compiler, stored
+from fastpin.runtime import beside, compiler, machine, stored
 from fastpin.runtime.extensions import numba
 from fastpin.runtime.source import CACHED, KernelSource
+from fastpin.runtime.threads import undisturbed
 
 PLAIN = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 """Whether kernels run as plain Python."""
@@ -59,7 +60,9 @@ class Kernel(KernelSource):
         try:
             types = argument_types(arguments)
         except KeyError:  # types that no kernel of fastpin takes: the compiler decides
-            return compiler.dispatcher(self)(*arguments)
+            function = compiler.dispatcher(self)
+            undisturbed(lambda: function.compile(tuple(map(numba.typeof, arguments))))
+            return function(*arguments)
         entry = self._entries.get(types)
         if entry is None:
             entry = self._find(types, arguments)
@@ -72,22 +75,25 @@ class Kernel(KernelSource):
     @functools.cached_property
     def _numba_type_(self) -> Any:
         """The type of the kernel in other kernels. The compiler asks for it by this name."""
-        return numba.typeof(compiler.dispatcher(self, alone=False, kept=True))
+        return numba.typeof(compiler.dispatcher(self, alone=False))
 
     def _find(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
         """Load the machine code for these arguments, or compile it."""
         if self.inner:
             raise TypeError(f"{self.py_func.__qualname__} is called by kernels only")
+        return undisturbed(lambda: self._load_or_compile(types, arguments))
+
+    def _load_or_compile(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
         with _lock:
             if types not in self._entries:
                 place = stored.place_of(self, signature(types)) if CACHED else None
                 entry: Any = place and (place.load() or stored.load_shipped(self, signature(types)))
                 if entry is None:
                     _announce()
-                    if place:
+                    if place and machine.CAN_LOAD:
                         beside.start()
-                    entry, code = compiler.compile_kernel(self, arguments, stores=place is not None)
-                    if place:
+                    entry, code = compiler.compile_kernel(self, arguments)
+                    if place and code:
                         place.save(code)
                 self._entries[types] = entry
             return self._entries[types]

@@ -40,25 +40,44 @@ class Code(NamedTuple):
     mathematics: tuple[str, ...]
     foreign: tuple[str, ...]
 
+    def to_bytes(self) -> bytes:
+        """Four lines of names, and the object file."""
+        lines = (self.entry, self.environment, " ".join(self.mathematics), " ".join(self.foreign), "")
+        return "\n".join(lines).encode() + self.machine_code
+
+    @classmethod
+    def from_bytes(cls, content: bytes) -> Code:
+        """The code of such bytes. :class:`ValueError` if they are others."""
+        *lines, machine_code = content.split(b"\n", 4)
+        entry, environment, mathematics, foreign = (line.decode() for line in lines)
+        if not (entry and environment):
+            raise ValueError("symbols without names")  # LLVM would end the process
+        return cls(machine_code, entry, environment, tuple(mathematics.split()), tuple(foreign.split()))
+
 
 def load(code: Code, name: str, module: str) -> Callable[..., Any]:
     """Load a function of a module. It does not check the types of its arguments.
 
-    :class:`ImportError` if the process lacks a symbol, with which LLVM would end the process.
+    :class:`ImportError` if it is not whole, or the process lacks a symbol, with which LLVM would end the process.
     """
+    parsed = llvm.ObjectFileRef.from_data(code.machine_code)
+    if not parsed:
+        raise ImportError("no object file")
     if missing := unknown_symbols(code.foreign):
         raise ImportError(f"no {', '.join(missing)}")
     _name_symbols(code.mathematics)
     engine = _engine()
-    engine.add_object_file(llvm.ObjectFileRef.from_data(code.machine_code))
+    engine.add_object_file(parsed)
     engine.finalize_object()
+    entry, place = engine.get_function_address(code.entry), engine.get_global_value_address(code.environment)
+    if not (entry and place):
+        raise ImportError(f"no {code.entry}, or no {code.environment}")
     maker = library("numba._dynfunc")
     home = sys.modules[module]
     environment = maker.Environment(vars(home))
-    pointer = ctypes.c_void_p.from_address(engine.get_global_value_address(code.environment))
-    pointer.value = id(environment)
+    ctypes.c_void_p.from_address(place).value = id(environment)
     # The function keeps environment and engine alive.
-    return maker.make_function(home, name, "", engine.get_function_address(code.entry), environment, (engine,))
+    return maker.make_function(home, name, "", entry, environment, (engine,))
 
 
 @functools.cache

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Callable
+from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +29,15 @@ def stamp(file: str) -> tuple[int, int] | None:
     except OSError:
         return None
     return found.st_mtime_ns, found.st_size
+
+
+@functools.cache
+def digest(file: str, imported: tuple[int, int] | None) -> bytes:
+    """The digest of an imported text. :class:`OSError` if its file is gone, or was replaced since the import."""
+    content = Path(file).read_bytes()
+    if stamp(file) != imported:
+        raise OSError(f"{file} was replaced after its import")
+    return blake2b(content).digest()
 
 
 _shared = tuple((file, stamp(file)) for file in (str(Path(__file__).parents[1] / name) for name in SHARED))
@@ -54,7 +65,3 @@ class KernelSource:
             if isinstance(each, KernelSource):
                 texts.update((other, kept) for other, kept in each.texts if other != file)
         self.texts = tuple({**texts, **dict(_shared)}.items())
-
-    def is_current(self) -> bool:
-        """Whether the files of its text are still those that were imported."""
-        return all(stamp(file) == imported for file, imported in self.texts)

@@ -1,8 +1,12 @@
 """Machine code of kernels on disk: beside the package, else in the user's cache directory, else nowhere.
 
-A file holds one kernel for one combination of types. It holds all that the code depends on, too: the text of the
-kernel's file, the types, the settings, and the versions of Python, NumPy, Numba, LLVM and the processor. A file that
-does not agree is not used. The folder may be moved or copied. ``NUMBA_CACHE_DIR`` chooses another directory.
+A file holds one kernel for one combination of types. It begins with a digest of its content and of all that the code
+depends on: the texts of the kernel, the types, the settings, and the versions of Python, NumPy, Numba, LLVM and the
+processor. A file whose digest does not agree, or that others can write (:mod:`fastpin.runtime.files`), is not used. The
+folder may be moved or copied. ``NUMBA_CACHE_DIR`` chooses another directory.
+
+A file has one of two forms, with a suffix each: machine code that is loaded without Numba, or a result of Numba. Only
+functions for calls from Python are stored. What a kernel calls is in its own code.
 
 A platform wheel brings such files, in :data:`SHIPPED`. They are for all processors of a level, and are read when the
 directories hold none. They depend on the binary interface of Python and on the version of Numba. The code calls no
@@ -13,22 +17,25 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import marshal
 import os
 import sys
-import zlib
 from collections.abc import Callable, Iterator
+from hashlib import blake2b
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fastpin.runtime import compiler, machine
-from fastpin.runtime.extensions import folder
-from fastpin.runtime.source import SETTINGS, KernelSource
+from fastpin.runtime import compiler, files, machine
+from fastpin.runtime.extensions import folder, metadata
+from fastpin.runtime.source import SETTINGS, KernelSource, digest
 
-SUFFIX = ".machine"
+MACHINE, NUMBA = ".machine", ".numba"
+"""Suffixes of machine code that is loaded without Numba, and of results of Numba."""
+
+SIZE = 16
+"""Bytes of a digest."""
 
 SHIPPED = Path(__file__).parent / "shipped"
 """The folder of machine code in a platform wheel. Other installations have none."""
@@ -44,49 +51,42 @@ class StoredCode:
     """The files of a kernel for arguments of some types, for this environment or another one."""
 
     def __init__(self, kernel: KernelSource, signature: str, environment: tuple[str, ...] = ()) -> None:
-        self.kernel, function = kernel, kernel.py_func
-        self.source = function.__code__.co_filename
-        texts = tuple(Path(file).read_bytes() for file, _ in kernel.texts)
-        if not kernel.is_current():
-            raise OSError("the text of the kernel was replaced after its import")
-        rest = (signature, repr(SETTINGS), *(environment or own_environment()))
-        self.key = (texts, rest)
+        function = kernel.py_func
         self.name, self.module = function.__qualname__, function.__module__
-        self.stem = f"{Path(self.source).stem}.{self.name}-{zlib.crc32(repr(rest).encode()):08x}-"
-        self.file = f"{self.stem}{zlib.crc32(b''.join(texts)):08x}{SUFFIX}"
+        self.home = Path(function.__code__.co_filename).parent
+        texts = b"".join(digest(file, imported) for file, imported in kernel.texts)
+        rest = repr((signature, SETTINGS, *(environment or own_environment()))).encode()
+        self.key = blake2b(texts + rest).digest()
+        words = (blake2b(one, digest_size=8).hexdigest() for one in (rest, texts))
+        self.stem, self.text = f"{Path(function.__code__.co_filename).stem}.{self.name}-{next(words)}-", next(words)
 
     def load(self, *directories: Path) -> Callable[..., Any] | None:
-        """The function from the first file that agrees, of these or the user's directories; None if there is none.
-
-        Where code can't be stored, the function comes from the cache of Numba.
-        """
+        """The function from the first file that agrees, of these or the user's directories; None if there is none."""
+        loaders = {MACHINE: self._load_machine} if machine.CAN_LOAD else {}
         for directory in directories or self._directories():
-            try:
-                content = (directory / self.file).read_bytes()
-            except OSError:
-                continue
-            body = content[4:]
-            if zlib.crc32(body).to_bytes(4, "little") != content[:4]:
-                continue
-            key, code = marshal.loads(body)
-            if key == self.key:
-                if not code:
-                    return compiler.dispatcher(self.kernel, kept=True)
-                with contextlib.suppress(Exception):  # parts of Numba that it needs may change
-                    return machine.load(machine.Code(*code), self.name, self.module)
+            for suffix, loader in {**loaders, NUMBA: compiler.unpack}.items():
+                # Damaged files and folders, and parts of Numba that have changed: the kernel is compiled anew.
+                with contextlib.suppress(Exception):
+                    content = files.read(directory / (self.stem + self.text + suffix), self.home)
+                    if content[:SIZE] == self._digest(content[SIZE:]):
+                        return loader(content[SIZE:])
         return None
 
-    def save(self, code: machine.Code | None) -> None:
-        """Write the machine code, or that there is none, to the first directory that can be written.
+    def _load_machine(self, body: bytes) -> Callable[..., Any]:
+        return machine.load(machine.Code.from_bytes(body), self.name, self.module)
 
-        The file is written whole or not at all. Any number of processes and threads may do it at once.
+    def _digest(self, body: bytes) -> bytes:
+        return blake2b(body, key=self.key, digest_size=SIZE).digest()
+
+    def save(self, code: machine.Code | bytes) -> None:
+        """Write machine code, or a result of Numba, to the first directory that can be written.
+
+        Any number of processes and threads may do it at once.
         """
-        body = marshal.dumps((self.key, tuple(code or ())))
-        content = zlib.crc32(body).to_bytes(4, "little") + body
+        body, suffix = (code, NUMBA) if isinstance(code, bytes) else (code.to_bytes(), MACHINE)
         for directory in self._directories():
             try:
-                directory.mkdir(parents=True, exist_ok=True)
-                _replace(directory / self.file, content)
+                files.write(directory / (self.stem + self.text + suffix), self._digest(body) + body, self.home)
             except OSError:
                 continue
             if directory == self._beside():
@@ -95,13 +95,13 @@ class StoredCode:
 
     def _forget_older(self, directory: Path) -> None:
         """Delete the code of earlier texts of the file, where that is possible."""
-        for path in directory.glob(f"{self.stem}*{SUFFIX}"):
-            if path.name != self.file:
+        for path in directory.glob(f"{self.stem}*"):
+            if path.suffix in (MACHINE, NUMBA) and path.stem != self.stem + self.text:
                 with contextlib.suppress(OSError):  # another process has deleted it, or keeps it open
                     path.unlink()
 
     def _beside(self) -> Path:
-        return Path(self.source).parent / "__pycache__"
+        return self.home / "__pycache__"
 
     def _directories(self) -> Iterator[Path]:
         chosen = os.environ.get("NUMBA_CACHE_DIR")
@@ -113,27 +113,8 @@ class StoredCode:
             yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fastpin"
 
 
-def _replace(file: Path, content: bytes) -> None:
-    """Write a file under a new random name, and give it its own name when it is whole.
-
-    Threads, and processes with equal numbers in several containers, never write to the same file. No link is followed.
-    """
-    part = file.with_name(f"{file.name}.{os.urandom(8).hex()}.part")
-    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
-    descriptor = os.open(part, flags, 0o666)
-    try:
-        with os.fdopen(descriptor, "wb") as target:
-            target.write(content)
-        part.replace(file)
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise
-
-
 def place_of(kernel: KernelSource, signature: str) -> StoredCode | None:
-    """The place of a kernel's code; None if code can't be loaded, or its text is not in a file any more."""
-    if not machine.CAN_LOAD:
-        return None
+    """The place of a kernel's code; None if its text is not in a file any more, or a version is unknown."""
     try:
         return StoredCode(kernel, signature)
     except (OSError, ImportError, RuntimeError):  # RuntimeError: LLVM does not know the processor
@@ -178,4 +159,7 @@ def _settings() -> list[str]:
 
 
 def _version(package: str) -> str:
-    return (folder(package) / "_version.py").read_text(encoding="utf-8")
+    try:
+        return (folder(package) / "_version.py").read_text(encoding="utf-8")
+    except OSError:
+        return metadata.version(package)

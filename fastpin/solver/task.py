@@ -30,6 +30,7 @@ from fastpin.model.loads import REMOTE, Corner, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
+from fastpin.runtime.stopping import STOPPING
 from fastpin.solver.attempts import Attempts, Unfit
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted
 from fastpin.solver.result import Restart, Result
@@ -37,9 +38,6 @@ from fastpin.solver.run import Recorder, Run, RunProgress
 from fastpin.solver.step import pushes
 
 log = logging.getLogger(__name__)
-
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
-"""Signals that are held back until a run can stop at a place from which it can continue."""
 
 LEAST_LOAD = 1e-50
 """Least force, or remote stress times R, that is the largest of a history, in parts of R/beta*."""
@@ -254,8 +252,8 @@ class StopRequest:
 def deferred_interrupts() -> Iterator[StopRequest]:
     """Note a first Ctrl-C in the request instead of raising. A second Ctrl-C raises KeyboardInterrupt as usual.
 
-    Outside the main thread, and where the program has its own handlers, the first Ctrl-C is not held back. SIGTERM is
-    treated like Ctrl-C if the program has given it Python's handler of SIGINT.
+    Outside the main thread, and where the program has its own handlers, the first Ctrl-C is not held back. SIGTERM and
+    SIGHUP are treated like Ctrl-C if the program has given them Python's handler of SIGINT.
     """
     request = StopRequest()
 
@@ -266,7 +264,7 @@ def deferred_interrupts() -> Iterator[StopRequest]:
 
     held = []
     if threading.current_thread() is threading.main_thread():
-        held = [number for number in SIGNALS if signal.getsignal(number) is signal.default_int_handler]
+        held = [number for number in STOPPING if signal.getsignal(number) is signal.default_int_handler]
     for number in held:
         signal.signal(number, note)
     try:

@@ -16,6 +16,7 @@ import numpy as np
 from fastpin import reading
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between
+from fastpin.model.ties import top_angle
 from fastpin.states.quantities import QUANTITIES, intervals, matching_values, quantity, size, sizes, values, width
 from fastpin.states.state import State
 
@@ -169,7 +170,7 @@ def _floor(name: str, state: State) -> float:
     kind = quantity(name).kind
     if name in ("peak_pressure", "peak_shear"):
         traction = state.pressure if name == "peak_pressure" else np.abs(state.shear)
-        top = int(np.argmax(traction))
+        top = top_angle(traction, state.theta)
         beside = traction[[top - 1, (top + 1) % traction.size]]
         peak = abs(QUANTITIES[name].of(state))
         floor = PEAK_FLOORS[int(peak > (1.0 + 1e-12) * float(traction[top]))]

@@ -23,6 +23,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE
 from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
+from fastpin.model.ties import least_equal
 from fastpin.reading.marks import Marks
 from fastpin.states.quantities import QUANTITIES, Quantity, load_point, of_bush, point_name
 from fastpin.states.reading_bounds import NUMBERS, Bounds, StateBlock
@@ -190,6 +191,8 @@ def yield_extremes(kept: Kept) -> Found:
         tractions = [part for each in (block, block.seat or block) for part in (each.pressure, each.shear)]
         remote = np.abs(block.loads[:, list(REMOTE)])
         columns.append(np.column_stack([remote, *(np.abs(part).max(axis=1) for part in tractions)]))
+    if not columns:  # the run was stopped before its first state
+        return {}
     places = {int(np.argmax(column)) for column in np.concatenate(columns).T if column.any()}
     states = kept.read(sorted(places))
     near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]
@@ -315,22 +318,26 @@ class Different:
             self._bounds[name] = every, values, values
 
     def extreme(self, name: str, side: Side) -> Extreme | None:
-        """Return the extreme of a quantity. It is None if the quantity is NaN in all states."""
+        """Return the extreme of a quantity, of equal ones the first; None if the quantity is NaN in all states."""
         places, low, high = self._bounds[name]
         most = {"smallest": -low, "largest": high, "largest magnitude": np.maximum(-low, high)}[side]
-        best, place, found = -math.inf, -1, math.nan
+        best, read = -math.inf, dict[int, float]()
+        value = {"smallest": np.negative, "largest": np.positive, "largest magnitude": np.abs}[side]
         order = np.lexsort((places, -most))
         begin, size = 0, 1
-        while begin < order.size and (place < 0 or most[order[begin]] > best):
-            chosen = order[begin : begin + size]
-            states = self._kept.read(sorted(places[chosen].tolist()))
-            for at, state in zip(sorted(places[chosen].tolist()), states, strict=True):
-                reading = READINGS[name].of(state)
-                value = {"smallest": -reading, "largest": reading, "largest magnitude": abs(reading)}[side]
-                if value > best or (value == best and (place < 0 or at < place)):
-                    best, place, found = value, at, reading
+        while begin < order.size and (not read or most[order[begin]] > best):
+            chosen = sorted(places[order[begin : begin + size]].tolist())
+            readings = {at: READINGS[name].of(state) for at, state in zip(chosen, self._kept.read(chosen), strict=True)}
+            read |= {at: reading for at, reading in readings.items() if not math.isnan(reading)}
+            best = max((float(value(reading)) for reading in read.values()), default=best)
             begin, size = begin + size, min(2 * size, AT_ONCE)
-        return None if place < 0 else Extreme(found, place, float(self._kept.points[place]))
+        least = least_equal(np.array(best))
+        for place in sorted(places[most >= least].tolist()) if read else ():
+            if place not in read:
+                read[place] = READINGS[name].of(self._kept.read([place])[0])
+            if value(read[place]) >= least:
+                return Extreme(read[place], place, float(self._kept.points[place]))
+        return None
 
 
 def _keys(block: StateBlock) -> Iterator[bytes]:

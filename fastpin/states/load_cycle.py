@@ -19,6 +19,7 @@ from fastpin.model.angles import near_bottom
 from fastpin.model.checks import instances, number_array
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.ties import top_angle
 from fastpin.model.units import units_per_thickness
 from fastpin.states.regimes import Regime, regime_of
 from fastpin.states.state import State
@@ -298,12 +299,14 @@ class LoadCycle:
     def angle_of_largest(self, values: np.ndarray) -> float:
         """Angle of the node with the largest of `values`, shape (n,), rad; NaN if none is above 0.
 
+        Of equal nodes it is the one farthest to the right.
+
         Another shape raises :class:`InputError`.
         """
         values = number_array("values", values)
         if values.shape != self.theta.shape:
             raise InputError("values", f"must have the shape {self.theta.shape}, not {values.shape}")
-        return near_bottom(float(self.theta[np.argmax(values)])) if values.max() > 0.0 else math.nan
+        return near_bottom(float(self.theta[top_angle(values, self.theta)])) if values.max() > 0.0 else math.nan
 
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
         """The values of all nodes, shape (n,), and their unit, by name. Quantities that are not known are left out."""

@@ -19,6 +19,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.ties import top_angles
 from fastpin.model.units import named_loads, units
 from fastpin.reading import peaks, zones
 from fastpin.reading.cusps import ShearNodes
@@ -263,8 +264,8 @@ class State(ReadOnly):
     def _slip_peak(self) -> tuple[float, float]:
         if not self.in_contact:
             return 0.0, math.nan
-        (slip,) = peak_slips(self.slip[None], self.status[None])
-        return float(slip), near_bottom(float(self.theta[np.argmax(self.slip == slip)]))
+        (node,) = _slip_nodes(self.slip[None], self.status[None], self.theta)
+        return float(self.slip[node]), near_bottom(float(self.theta[node]))
 
     @cached_property
     def _pressure_peak(self) -> tuple[float, float]:
@@ -570,10 +571,15 @@ class ErrorBars(Mapping[str, float]):
 _FIELDS = tuple(field.name for field in fields(State))
 
 
-def peak_slips(slip: np.ndarray, status: np.ndarray) -> np.ndarray:
+def peak_slips(slip: np.ndarray, status: np.ndarray, theta: np.ndarray) -> np.ndarray:
     """The :attr:`State.peak_slip` of many states, shape (k,), from slip and status of their nodes, shape (k, n)."""
-    size = np.where(status != OPEN, np.abs(slip), 0.0)
-    return np.where(size.any(axis=1), np.take_along_axis(slip, size.argmax(axis=1)[:, None], axis=1)[:, 0], 0.0)
+    nodes = _slip_nodes(slip, status, theta)
+    return np.where((status != OPEN).any(axis=1), np.take_along_axis(slip, nodes[:, None], axis=1)[:, 0], 0.0)
+
+
+def _slip_nodes(slip: np.ndarray, status: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    """The closed node with the slip of largest magnitude in each of many states, shape (k,)."""
+    return top_angles(np.where(status != OPEN, np.abs(slip), -1.0), theta)
 
 
 def state_again(state: State, step: int, dissipation: float, work: float) -> State:

@@ -18,6 +18,7 @@ from fastpin.model.angles import from_bottom
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points, elastic_bodies, far_rim, material_of, near_rim
 from fastpin.model.problem import Problem
+from fastpin.model.ties import top_angle
 from fastpin.model.units import units
 from fastpin.reading.stress import Stress
 
@@ -168,7 +169,7 @@ def von_mises_peak(state: State, owner: str, edges_only: bool = False) -> MisesP
     places = Places.of(state.problem, state.grid, owner, edges_only)
     points = Points.at_depth(places.depth * state.problem.hole_radius, places.theta)
     found = state.stress(points, places.body, straight=True).von_mises
-    top = int(np.argmax(found))
+    top = top_angle(found, places.theta)
     return MisesPeak(float(found[top]), float(places.theta[top]), places.circle[top])
 
 

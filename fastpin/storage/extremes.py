@@ -65,7 +65,7 @@ class StoredStates:
             block = _block_of(rows, loads, marks)
             if "seat" in group:
                 own = {name.removeprefix(SEATED[1]): rows[name] for name in seated}
-                block.numbers["seat_slip"] = peak_slips(own["slip"], own["status"])
+                block.numbers["seat_slip"] = peak_slips(own["slip"], own["status"], self.grid.theta)
                 block = block._replace(seat=_block_of({**rows, **own}, loads, marks))
             yield block
 

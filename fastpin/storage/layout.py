@@ -528,10 +528,15 @@ def check_growing(file: h5py.File, nodes: int) -> None:
         size = count(group)
         for name in arrays:
             dataset = dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
-            if dataset.maxshape[0] is not None or dataset.chunks is None:
-                raise ValueError(f"{part}/{name} can't grow")
-            if len(dataset) != size:
-                raise ValueError(f"{part}/{name} has {len(dataset)} rows, not {size}")
+            check_rows(f"{part}/{name}", dataset, size)
+
+
+def check_rows(label: str, dataset: h5py.Dataset, size: int) -> None:
+    """Raise :class:`ValueError` if an array has not so many rows, or if nothing can be appended to it."""
+    if dataset.maxshape[0] is not None or dataset.chunks is None:
+        raise ValueError(f"{label} can't grow")
+    if len(dataset) != size:
+        raise ValueError(f"{label} has {len(dataset)} rows, not {size}")
 
 
 def check_old_borders(label: str, marks: np.ndarray, places: np.ndarray) -> None:

@@ -13,7 +13,7 @@ import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Unpack
 
 import h5py
 import numpy as np
@@ -42,6 +42,9 @@ from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_r
 from fastpin.storage.layout import (
     append,
     check_format,
+    check_growing,
+    check_rows,
+    count,
     option_attributes,
     read_grid,
     read_history,
@@ -154,7 +157,7 @@ def wear(
     if resume:
         check_exists(path)
         if not is_empty(path):  # a killed life may have left a file without any transaction
-            return _resumed(path, task)
+            return _resumed(path, task, title)
     writer = WearFile(path, task, title)
     check_overwriting(path, overwrite)
     with _closing(writer):
@@ -174,9 +177,9 @@ def _in_memory(task: WearTask) -> WearResult:
     return task.result(kept.grid, kept.cycles, kept.statistics)
 
 
-def _resumed(path: Path, task: WearTask) -> WearResult:
-    """Continue the life in a file."""
-    writer = WearFile(path, task, "")
+def _resumed(path: Path, task: WearTask, title: str) -> WearResult:
+    """Continue the life in a file. A life without a stored cycle begins anew, with this title."""
+    writer = WearFile(path, task, title)
     place, grid = writer.reopen()
     with _closing(writer):
         if place is None:
@@ -242,6 +245,9 @@ class WearFile:
                 check_format(stored, str(self.path))
                 _check_same(self.path, stored, self._task)
                 grid = read_grid(stored)
+                check_growing(stored, grid.size)
+                for name, rows in _read_rows(stored, grid.size).items():
+                    check_rows(f"wear/{name}", stored["wear"][name], len(rows))
                 self._name = str(self._h5.attrs["run"])
                 self._h5.attrs.pop("error", None)
                 return self._latest(stored, grid.size), grid
@@ -399,22 +405,15 @@ def load_wear(path: str | Path) -> WearResult:
         if "wear" not in file:
             raise InputError(str(path), "holds no wear: it is the result of a run; fastpin.load reads it")
         group, grid, history = file["wear"], read_grid(file), read_history(file)
-        nodes, corners = grid.size, len(history.blocks[-1].given) + 1
-        arrays: dict[str, Any] = {name: dataset_of(group, name, float, (nodes,))[()] for name in DEPTHS}
-        arrays |= {name: dataset_of(group, name, kind, ())[()] for name, kind in NUMBERS.items()}
-        coefficients = dataset_of(group, "coefficients", float, (nodes,))[()]
-        size = len(arrays["cycle"])
-        if any(len(array) != size for array in arrays.values()) or len(states) != size * corners:
-            raise ValueError("wear has arrays of different lengths")
-        for name in (*DEPTHS, "dissipation", "removed"):
-            check_finite(f"wear/{name}", arrays[name])
+        corners, arrays = len(history.blocks[-1].given) + 1, _read_rows(file, grid.size)
+        coefficients = dataset_of(group, "coefficients", float, (grid.size,))[()]
         check_between("wear/coefficients", coefficients, 0.0, np.finfo(float).max)
         cycles = tuple(
             WornCycle(
                 **{name: array[k] if array.ndim > 1 else array[k].item() for name, array in arrays.items()},
                 states=tuple(states[k * corners : (k + 1) * corners]),
             )
-            for k in range(size)
+            for k in range(len(arrays["cycle"]))
         )
         return WearResult(
             problem=read_problem(file),
@@ -434,7 +433,9 @@ def _check_same(path: Path, file: hdf5.Group, task: WearTask) -> None:
     if "wear" not in file:
         raise InputError(str(path), "holds no wear: it is the result of a run")
     if file.attrs["complete"]:
-        raise InputError(str(path), "holds a finished life of wear: there is nothing to continue")
+        raise InputError(
+            str(path), f"holds a finished life of wear: there is nothing to continue; try fastpin show {path} --json"
+        )
     group, grid = file["wear"], read_grid(file)
     begun, wanted = read_history(file).blocks, task.stored_history.blocks
     same = {
@@ -454,6 +455,34 @@ def _check_same(path: Path, file: hdf5.Group, task: WearTask) -> None:
     for name, is_same in same.items():
         if not is_same:
             raise InputError("resume", f"{path} was begun with another {name}")
+
+
+def _read_rows(file: hdf5.Group, nodes: int) -> dict[str, np.ndarray]:
+    """Read the arrays with a row for each chosen cycle, on a grid of so many nodes.
+
+    Raises
+    ------
+    ValueError
+        If an array is missing, does not fit the others, or has a number out of range. It names the array.
+    """
+    group, corners = file["wear"], len(read_history(file).blocks[-1].given) + 1
+    arrays = {name: dataset_of(group, name, float, (nodes,)) for name in DEPTHS}
+    arrays |= {name: dataset_of(group, name, kind, ()) for name, kind in NUMBERS.items()}
+    size = len(arrays["cycle"])
+    for name, array in arrays.items():
+        if len(array) != size:
+            raise ValueError(f"wear/{name} has {len(array)} rows, not {size}")
+    if count(file["states"]) != size * corners:
+        raise ValueError(f"wear/cycle has {size} rows, which don't fit the states")
+    rows = {name: array[()] for name, array in arrays.items()}
+    for name, array in rows.items():
+        if NUMBERS.get(name) is np.int64:
+            check_between(f"wear/{name}", array, 0, np.iinfo(np.int64).max)
+        else:
+            check_finite(f"wear/{name}", array)
+    if np.any(np.diff(rows["cycle"]) <= 0):
+        raise ValueError("wear/cycle does not increase")
+    return rows
 
 
 def _write_place(group: h5py.Group, place: Worn) -> None:

@@ -36,6 +36,9 @@ FORMAT_VERSION = 1
 WAITING, DONE, FAILED = "waiting", "done", "failed"
 """Statuses of a run."""
 
+LONGEST_WORDS = 2_000
+"""Most characters of a reason or a name that are read. A reason may repeat a text of any length."""
+
 _END_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "host", "versions")
 
 
@@ -419,7 +422,8 @@ def _status(value: Any) -> str:
 
 def _text(name: str, value: Any) -> str | None:
     """Return a text on one line that can be printed: the index may be anybody's, or of an earlier version."""
-    return None if value is None else printable(any_text(name, value))
+    cut = value[:LONGEST_WORDS] if isinstance(value, str) else value
+    return None if value is None else printable(any_text(name, cut))
 
 
 def _shown(value: Any) -> Any:

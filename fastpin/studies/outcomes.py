@@ -27,6 +27,7 @@ from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
 from fastpin.model.doubts import doubts_given
 from fastpin.model.points import Body, owner_of
+from fastpin.model.ties import top
 from fastpin.model.units import DEGREE, Unit
 from fastpin.model.wear import Wear
 from fastpin.states.choice import missing_corners, span_of, states_between
@@ -381,12 +382,13 @@ def bar_of_taken(quantity: str, take: str, span: str, interface: str, result: Re
         return math.nan
     value, other = (taken(quantity, take, span, "pin", each) for each in (result, result.coarse))
     kind = "width" if take == "range" else QUANTITIES[quantity].kind
-    lowest, highest = min(states, key=of), max(states, key=of)
+    readings = np.array([of(state) for state in states])
+    lowest, highest = states[top(-readings)], states[top(readings)]
     ends = {
         "range": [lowest, highest],
         "smallest": [lowest],
         "largest": [highest],
-        "largest magnitude": [max(states, key=lambda state: abs(of(state)))],
+        "largest magnitude": [states[top(np.abs(readings))]],
     }
     return value_bar(quantity, value, _beside(kind, value, other), ends[take])
 

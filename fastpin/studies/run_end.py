@@ -9,7 +9,11 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from fastpin.model.angles import interval_from_bottom
+from fastpin.model.ties import top_angle
+from fastpin.reading.zones import Interval
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees
 from fastpin.studies.outcomes import OutcomeValue, bar_of_taken
 
@@ -75,8 +79,7 @@ def key_figures(result: Result) -> dict[str, Any]:
     if not result.complete:
         return figures
     last = result[-1]
-    widest = max(last.contact, key=lambda interval: interval[1] - interval[0], default=None)
-    start, stop = (None, None) if widest is None else interval_from_bottom(*widest)
+    start, stop = interval_from_bottom(*last.contact[_widest(last.contact)]) if last.contact else (None, None)
     figures |= {
         **{name: in_degrees(name, QUANTITIES[name].of(last)) for name in (*_PEAKS, *_OTHERS)},
         "contact_start": start,
@@ -103,13 +106,19 @@ def key_bars(result: Result) -> dict[str, float]:
         return {}
     bars = result[-1].error_bars
     assert bars is not None
-    widest = max(range(len(ends)), key=lambda k: ends[k][1] - ends[k][0]) if (ends := result[-1].contact) else 0
+    widest = _widest(ends) if (ends := result[-1].contact) else 0
     found = {name: bar_in_degrees(name, bars[name]) for name in (*_PEAKS, *_OTHERS)}
     for end in ("start", "stop"):  # A contact all round has no ends.
         found[f"contact_{end}"] = math.degrees(bars.get(f"contact_{widest + 1}_{end}", math.nan))
     found["max_pressure"] = bar_of_taken("peak_pressure", "largest", "history", "pin", result)
     found["max_shear"] = bar_of_taken("peak_shear", "largest magnitude", "history", "pin", result)
     return {name: bar for name, bar in found.items() if not math.isnan(bar)}
+
+
+def _widest(intervals: list[Interval]) -> int:
+    """The place of the widest interval; of equal ones the one farthest to the right."""
+    ends = np.array(intervals)
+    return top_angle(ends[:, 1] - ends[:, 0], ends.mean(axis=1))
 
 
 def _number(value: Any) -> int | float | None:

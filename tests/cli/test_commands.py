@@ -8,10 +8,8 @@ import logging
 import os
 import re
 import runpy
-import signal
 import subprocess
 import sys
-import time
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -737,39 +735,6 @@ def test_options_of_long_histories_are_checked(
     assert captured.err.count("\n") == 1
     assert captured.out == ""
     assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
-
-
-@pytest.mark.gate
-@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("background", [False, True])
-def test_signals_leave_a_run_that_goes_on(sign: signal.Signals, background: bool, tmp_path: Path) -> None:
-    """Also where the shell has started it in the background, which makes it deaf to SIGINT."""
-    loads = np.random.default_rng(0).uniform(-7e5, 7e5, 3000)
-    case, stored = tmp_path / "long.toml", tmp_path / "a.h5"
-    text = EXAMPLE.replace("[7.26e5, -7.26e5, 7.26e5]", f"[{', '.join(f'{load:.6g}' for load in loads)}]")
-    case.write_text(text.replace("nodes = 401", "nodes = 201"))
-    command = [sys.executable, "-P", "-m", "fastpin", "run", str(case), "-o", str(stored)]
-    ignore = (lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)) if background else None
-    process = subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT, preexec_fn=ignore
-    )
-    while not stored.exists() or stored.stat().st_size < 200_000:
-        assert process.poll() is None
-        time.sleep(0.05)
-    if background and sign == signal.SIGINT:
-        process.send_signal(sign)
-        time.sleep(0.3)
-        assert process.poll() is None
-        process.send_signal(signal.SIGTERM)
-    else:
-        process.send_signal(sign)
-    out, said = process.communicate(timeout=30)
-    assert process.returncode == 130
-    assert re.fullmatch(
-        rf"fastpin: interrupted after \d+ of 3,001 corners; continue with: fastpin resume {stored}\n", said
-    )
-    assert "path solver, 201 nodes" in out
-    assert [path.name for path in tmp_path.iterdir() if path.name.startswith("a.")] == ["a.h5"]
 
 
 @pytest.mark.gate

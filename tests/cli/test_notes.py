@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 
 import h5py
 import pytest
@@ -11,6 +10,7 @@ import pytest
 from fastpin.cli.main import main
 from fastpin.solver.errors import Interrupted
 from fastpin.storage.recording import record
+from tests.support.processes import python, started
 
 CASE = """
 [pin]
@@ -68,7 +68,7 @@ def test_a_run_that_goes_on_is_told(case, tmp_path, capsys, monkeypatch):
         file.attrs["complete"] = False
     code = f"import fcntl, sys\nfile = open({str(path)!r}, 'rb')\nfcntl.flock(file, fcntl.LOCK_EX)\nprint(flush=True)\n"
     code += "sys.stdin.read()"
-    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
+    with started(python(code), stdin=subprocess.PIPE) as other:
         other.stdout.readline()
         capsys.readouterr()
         assert main(["show", str(path)]) == 0

@@ -18,6 +18,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver import path, shortcut
 from fastpin.solver.solving import solve
 from fastpin.verification.body_cases import ring_compliance
+from tests.support.kernels import python
 
 BOTTOM = -0.5 * np.pi
 GRIDS = {
@@ -72,7 +73,7 @@ def test_entries_and_products_are_those_of_the_stored_operator(problem, grid, mo
 
 def test_the_kernel_as_plain_python(titanium_in_aluminium, monkeypatch):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4)
-    monkeypatch.setattr(toeplitz, "fill_column", getattr(toeplitz.fill_column, "py_func", toeplitz.fill_column))
+    monkeypatch.setattr(toeplitz, "fill_column", python(toeplitz.fill_column))
     matrix, found = both(problem, Grid.arc(BOTTOM - 0.3, BOTTOM + 0.2, 17), monkeypatch)
     assert np.array_equal(np.asarray(found), matrix)
 

@@ -13,22 +13,15 @@ from fastpin.elasticity import tractions as module
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
 from fastpin.kernels import cauchy
 from fastpin.runtime import threads
+from tests.support.kernels import python, run_as_python
 from tests.support.tiers import gate
-
-KERNELS = ("cauchy", "grow")
-INNER = (
-    "_add_moments", "_shift_moments", "_log_one_minus", "_dilogarithm", "_reduced", "_stretch", "_expansion",
-    "_opposite",
-)  # fmt: skip
 
 
 @pytest.fixture(params=["compiled", "python"])
 def way(request, monkeypatch):
     """Run the kernels compiled, or as plain Python."""
     if request.param == "python":
-        functions = {name: getattr(cauchy, name).py_func for name in KERNELS + INNER}
-        for name, function in functions.items():
-            monkeypatch.setattr(cauchy, name, function)
+        run_as_python(cauchy, monkeypatch)
     return request.param
 
 
@@ -179,15 +172,16 @@ def test_integrals_at_nodes_on_the_edge_are_finite_and_continuous(way, name, out
 
 
 def test_the_dilogarithm_has_all_digits():
+    dilogarithm = python(cauchy._dilogarithm)
     rng = np.random.default_rng(2)
     for _ in range(200):
         x, away = rng.uniform(-math.pi, math.pi), 10.0 ** rng.uniform(-3.0, 1.0)
         w = np.exp(-away + 1j * x)
         log = complex(np.log(1.0 - w))
-        found = cauchy._dilogarithm.py_func(x, away, log)
+        found = dilogarithm(x, away, log)
         assert found == pytest.approx(complex(spence(1.0 - w)), abs=5e-15)
-    assert cauchy._dilogarithm.py_func(0.0, 0.0, 0j) == pytest.approx(math.pi**2 / 6.0, abs=1e-15)
-    assert cauchy._dilogarithm.py_func(math.pi, 0.0, complex(math.log(2.0), 0.0)) == pytest.approx(-(math.pi**2) / 12.0)
+    assert dilogarithm(0.0, 0.0, 0j) == pytest.approx(math.pi**2 / 6.0, abs=1e-15)
+    assert dilogarithm(math.pi, 0.0, complex(math.log(2.0), 0.0)) == pytest.approx(-(math.pi**2) / 12.0)
 
 
 def test_coefficients_are_integrals():

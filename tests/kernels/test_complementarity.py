@@ -9,16 +9,15 @@ import pytest
 
 from fastpin.kernels import complementarity
 from fastpin.kernels.complementarity import RAY, SOLVED, UNFINISHED
+from tests.support.kernels import run_as_python
 
 
 @pytest.fixture(params=["compiled", "python"])
 def lemke(request, monkeypatch):
     """Return the code and z of a problem, by compiled code or by plain Python."""
-    kernel = complementarity.lemke
     if request.param == "python":
-        for name in ("_lexically_smaller", "_leaving_row", "_pivot"):
-            monkeypatch.setattr(complementarity, name, getattr(complementarity, name).py_func)
-        kernel = complementarity.lemke.py_func
+        run_as_python(complementarity, monkeypatch)
+    kernel = complementarity.lemke
 
     def solve(matrix, vector, most_pivots=1000, cover=None):
         k = vector.size

@@ -8,22 +8,19 @@ import pytest
 from fastpin.kernels import conditions
 from fastpin.kernels.arrays import ContactValues, Equations
 from fastpin.kernels.status import OPEN, STICK
+from tests.support.kernels import run_as_python
 from tests.support.tiers import seeds
 
 NODES = 12
-INNER = ("_larger", "_largest", "_displaced", "_balance")
 
 
 @pytest.fixture(params=["compiled", "python"])
 def kernels(request, monkeypatch):
     """The kernels by name, compiled or as plain Python."""
     names = ("residuals", "drift", "imbalance", "correct", "put_on_bounds", "beyond_bounds", "wanted_status")
-    found = {name: getattr(conditions, name) for name in names}
     if request.param == "python":
-        for name in INNER:
-            monkeypatch.setattr(conditions, name, getattr(conditions, name).py_func)
-        found = {name: kernel.py_func for name, kernel in found.items()}
-    return found
+        run_as_python(conditions, monkeypatch)
+    return {name: getattr(conditions, name) for name in names}
 
 
 class Drawn:

@@ -18,6 +18,7 @@ from fastpin.solver import configuration
 from fastpin.solver.configuration import Solution, solve_statuses, solve_unknowns
 from fastpin.solver.unknowns import DenseUnknowns
 from tests.support.joints import joint
+from tests.support.kernels import run_as_python
 
 BOTTOM = -0.5 * np.pi
 CASES = {
@@ -33,9 +34,7 @@ CASES = {
 @pytest.fixture(params=["compiled", "python"])
 def solve(request, monkeypatch):
     if request.param == "python":
-        for name in ("_norm", "_eliminate"):
-            monkeypatch.setattr(equations, name, getattr(equations, name).py_func)
-        return equations.solve_few.py_func
+        run_as_python(equations, monkeypatch)
     return equations.solve_few
 
 

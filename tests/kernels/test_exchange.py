@@ -30,6 +30,7 @@ from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
+from tests.support.kernels import python, run_as_python
 from tests.support.tiers import gate
 
 BOTTOM = -0.5 * np.pi
@@ -44,9 +45,7 @@ def kernel(request, monkeypatch):
     """Kernels by name, compiled or as plain Python with all that they call."""
     if request.param == "compiled":
         return compiled_kernel
-    for name, function in vars(exchange).items():
-        if hasattr(function, "py_func"):
-            monkeypatch.setattr(exchange, name, function.py_func)
+    run_as_python(exchange, monkeypatch)
     return lambda name: getattr(exchange, name)
 
 
@@ -65,6 +64,20 @@ def system(titanium_in_aluminium):
 
 def loads(**values):
     return np.array([values.get(name, 0.0) for name in LOADS])
+
+
+def test_the_slipping_node_that_stops_first_holds_the_pin():
+    """Only slipping nodes with friction can stop the motion, and only those that it drives backwards."""
+    relief = python(exchange._relief)
+    status = np.array([1, STICK, OPEN, 1, -1, 1, -1], dtype=np.int8)
+    friction = np.array([0.3, 0.3, 0.3, 0.0, 0.3, 0.3, 0.3])
+    motion = np.r_[np.zeros(7), -np.ones(7), 0.0]
+    rates = np.r_[np.zeros(7), 0.1, 0.1, 0.1, 0.1, 0.1, 0.4, -0.3]
+    assert relief(motion, status, friction, rates, 0, 1.0) == 5
+    assert relief(motion, status, friction, rates, 5, 1.0) == 0
+    assert relief(motion, status, friction, rates, 0, -1.0) == 4
+    assert relief(motion, status, friction, rates, 4, -1.0) == 6
+    assert relief(motion, status, 0.0 * friction, rates, 0, 1.0) == -1
 
 
 # --- exchange steps -----------------------------------------------------------------------------------------

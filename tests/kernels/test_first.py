@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -13,8 +11,12 @@ import pytest
 from fastpin.kernels import first
 from fastpin.runtime import jit, machine
 from fastpin.runtime.threads import cores
+from tests.support.processes import ROOT, finished, python, started
 
-pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored")
+pytestmark = [
+    pytest.mark.gate,
+    pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored"),
+]
 
 SEEN = """
 import sys
@@ -33,7 +35,7 @@ print(*found, sep="\\n", file=sys.stderr)
 
 @pytest.mark.gate
 def test_the_list_has_the_kernels_and_types_of_a_run() -> None:
-    done = subprocess.run([sys.executable, "-c", SEEN], capture_output=True, text=True, check=True)
+    done = finished(python(SEEN))
     listed = [f"{one.__name__}: {jit.signature(jit.argument_types(tuple(given)))}" for one, *given in first.kernels()]
     names = {kernel.__name__ for kernel, *_ in first.kernels()}
     seen = [line for line in done.stderr.splitlines() if line.split(":")[0] in names]
@@ -43,45 +45,43 @@ def test_the_list_has_the_kernels_and_types_of_a_run() -> None:
 
 
 MODULE = """
+import os, sys
 from fastpin.kernels.influence import clausen
 from fastpin.runtime import beside
-import sys, time
 if __name__ == "__main__":
-    time.sleep(0.5)
+    os.read(int(os.environ["GO"]), 1)
     if beside.is_needed():
         clausen.prepare(1.0)
 """
 PARENT = """
-import sys, time
-from pathlib import Path
+import os, sys
 from fastpin.kernels.influence import log_kernels
 from fastpin.runtime import beside
-folder, waits = Path(sys.argv[1]), sys.argv[2] == "waits"
 beside.module = "other"
 print(beside.start(), flush=True)
-end = time.monotonic() + 120.0
-while waits and not list(folder.glob("*clausen*.machine")) and time.monotonic() < end:
-    time.sleep(0.05)
+os.close(int(os.environ["DONE"]))
+sys.stdin.read()
 """
 
 
 @pytest.mark.skipif(cores() < 2, reason="no core for a second process")
-@pytest.mark.parametrize("how", ["waits", "ends"])
-def test_a_second_process_compiles_as_long_as_the_first_one_runs(how: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("ends", [False, True])
+def test_a_second_process_compiles_as_long_as_the_first_one_runs(ends: bool, tmp_path: Path) -> None:
+    """The second process reads GO until this one closes it, and the system closes DONE when it has ended."""
     (tmp_path / "other.py").write_text(MODULE)
-    path = os.pathsep.join([str(tmp_path), str(Path(__file__).resolve().parents[2])])
-    variables = os.environ | {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-    words = [sys.executable, "-c", PARENT, str(tmp_path / "cache"), how]
-    done = subprocess.run(words, env=variables, capture_output=True, text=True, check=True)
-    number = int(done.stdout)
-    end = time.monotonic() + 60.0
-    while time.monotonic() < end:
-        try:
-            os.kill(number, 0)
-        except ProcessLookupError:
-            break
-        time.sleep(0.05)
-    else:
-        pytest.fail("the second process did not end")
+    (go, let_go), (done, ended) = os.pipe(), os.pipe()
+    variables = {"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}", "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    environment = os.environ | variables | {"GO": str(go), "DONE": str(ended)}
+    with started(python(PARENT), env=environment, pass_fds=(go, ended), stdin=subprocess.PIPE) as parent:
+        os.close(go)
+        os.close(ended)
+        assert parent.stdout is not None
+        assert int(parent.stdout.readline()) > 0
+        if ends:
+            parent.communicate()
+        os.close(let_go)
+        assert os.read(done, 1) == b""
+        assert parent.poll() == (0 if ends else None)
+    os.close(done)
     files = sorted(path.name.split("-")[0] for path in (tmp_path / "cache").glob("*.machine"))
-    assert files == (["influence.clausen"] if how == "waits" else [])
+    assert files == ([] if ends else ["influence.clausen"])

@@ -12,6 +12,7 @@ from fastpin.kernels import half_line
 from fastpin.reading.half_line import End, Tries, Try
 from fastpin.reading.half_line import half_line as line_of
 from tests.support.half_line import NaiveFit, columns, powers, shift
+from tests.support.kernels import python
 
 KERNELS = ("exponential", "solve", "match", "evaluate", "end_places", "value_errors", "least_squares")
 INNER = ("_product", "_unknowns", "_known_solution", "_fill", "_factor", "_invert", "_rotate", "_pseudo_invert",
@@ -34,7 +35,7 @@ def plain_python():
     """The kernels as plain Python: their parts are taken from the same module."""
     space = dict(vars(half_line))
     for name in (*INNER, *KERNELS):
-        function = getattr(getattr(half_line, name), "py_func", None) or getattr(half_line, name)
+        function = python(getattr(half_line, name))
         space[name] = type(function)(function.__code__, space, name)
     return SimpleNamespace(**{name: space[name] for name in KERNELS})
 

@@ -9,6 +9,7 @@ from fastpin.kernels import held
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.tableau import expected_ties, has_turned
+from tests.support.kernels import python
 from tests.support.tiers import seeds
 
 NODES = 14
@@ -16,7 +17,7 @@ NODES = 14
 
 @pytest.fixture(params=["compiled", "python"])
 def begin(request):
-    return held.begin if request.param == "compiled" else held.begin.py_func
+    return held.begin if request.param == "compiled" else python(held.begin)
 
 
 def drawn_contact(rng, rough):

@@ -13,6 +13,7 @@ import pytest
 from fastpin.kernels import influence
 from fastpin.model.grid import Grid
 from tests.support.integrals import log_integrals
+from tests.support.kernels import python
 
 RATIO = 0.31
 POINT, WEIGHT = np.polynomial.legendre.leggauss(16)
@@ -25,11 +26,6 @@ PLACES = SHARE[:-1, None] + 0.5 * PANEL[:, None] * (1.0 + POINT)
 """Points of an interval of length 1 in Gauss panels that shrink towards both ends, shape (panels, points)."""
 
 Kernel = Callable[[np.ndarray], np.ndarray]
-
-
-def python(function):
-    """The plain Python version of a compiled function (itself when compilation is switched off)."""
-    return getattr(function, "py_func", function)
 
 
 # --- the naive version ------------------------------------------------------------------------------------

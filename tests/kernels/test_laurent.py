@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import laurent
+from tests.support.kernels import python
 
 
 @pytest.fixture(params=["compiled", "python"])
 def add_polar(request):
-    return (
-        laurent.add_polar if request.param == "compiled" else getattr(laurent.add_polar, "py_func", laurent.add_polar)
-    )
+    return laurent.add_polar if request.param == "compiled" else python(laurent.add_polar)
 
 
 def test_sums_are_those_of_potentials(add_polar):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import planes
+from tests.support.kernels import python
 
 KERNELS = ("worst_planes",)
 INNER = ("_product", "_value", "_bounds", "_refined")
@@ -14,7 +15,7 @@ def python_kernel():
     """The kernel as plain Python: its parts are taken from the same module."""
     space = dict(vars(planes))
     for name in (*INNER, *KERNELS):
-        function = getattr(getattr(planes, name), "py_func", None) or getattr(planes, name)
+        function = python(getattr(planes, name))
         space[name] = type(function)(function.__code__, space, name)
     return space["worst_planes"]
 

@@ -7,6 +7,7 @@ import pytest
 
 from fastpin import damage
 from fastpin.kernels import planes, rainflow
+from tests.support.kernels import python
 from tests.support.tiers import seeds
 
 LIFE = np.array([np.log(2e3), np.log(5e5), -0.25, -0.7, -np.inf, 0.0, 0.0])
@@ -17,7 +18,7 @@ def python_kernel(name):
     """A kernel as plain Python: its parts are taken from the same module."""
     space = dict(vars(rainflow))
     for each in (*INNER, "worst_sums", "cycles_on_plane"):
-        function = getattr(getattr(rainflow, each), "py_func", None) or getattr(rainflow, each)
+        function = python(getattr(rainflow, each))
         space[each] = type(function)(function.__code__, space, each)
     return space[name]
 

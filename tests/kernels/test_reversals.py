@@ -5,9 +5,10 @@ import pytest
 
 from fastpin import damage
 from fastpin.kernels.reversals import closed_cycles
+from tests.support.kernels import python
 from tests.support.tiers import seeds
 
-PYTHON = getattr(closed_cycles, "py_func", closed_cycles)
+PYTHON = python(closed_cycles)
 
 
 def counted(rows, kernel=closed_cycles):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import spheres
+from tests.support.kernels import python
 from tests.support.tiers import gate
 
 
@@ -13,7 +14,7 @@ def python_kernel():
     """The kernel as plain Python: its parts are taken from the same module."""
     space = dict(vars(spheres))
     for name in ("_centre", "_distance", "_smallest", "enclosing_spheres"):
-        function = getattr(getattr(spheres, name), "py_func", None) or getattr(spheres, name)
+        function = python(getattr(spheres, name))
         space[name] = type(function)(function.__code__, space, name)
     return space["enclosing_spheres"]
 

@@ -15,6 +15,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver import path, unknowns
 from fastpin.solver.solving import solve
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
+from tests.support.kernels import python
 from tests.support.tiers import gate
 
 BOTTOM = -0.5 * np.pi
@@ -24,10 +25,6 @@ RIGID_PIN = MaterialPair(Material.rigid(), Material(70e9, 0.33))
 def dense(first, second, cross):
     upper = scipy.linalg.toeplitz(cross, -cross)
     return np.block([[scipy.linalg.toeplitz(first), upper], [-upper, scipy.linalg.toeplitz(second)]])
-
-
-def python(function):
-    return getattr(function, "py_func", function)
 
 
 @pytest.fixture(params=["compiled", "python"])

@@ -10,9 +10,6 @@ import json
 import os
 import re
 import shutil
-import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -38,8 +35,10 @@ from fastpin.model.units import units
 from fastpin.solver import WearResult
 from fastpin.states.curves import traction_patches
 from tests.support import seats
-from tests.support.live_pages import FREE, contact, served
+from tests.support.live_pages import FREE, LIMIT, contact, served
 from tests.support.lives import fretting
+from tests.support.processes import fastpin as fastpin_command
+from tests.support.processes import started
 
 BROWSER, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
 if not os.environ.get("FASTPIN_BROWSER"):
@@ -51,9 +50,6 @@ pytestmark = pytest.mark.browser
 
 SWITCHES = ("headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking",
             "disable-component-update", "disable-sync", "hide-scrollbars")  # fmt: skip
-WAIT = 20.0
-"""Seconds after which something is missing. Other processes may slow the machine down."""
-
 LOOP = 200_000
 """Additions of the loop in plain Python that measures how fast the processor is."""
 
@@ -79,6 +75,15 @@ def chrome(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrom
     driver.quit()
 
 
+def until(is_so: Callable[[], bool], why: str | Callable[[], str]) -> None:
+    """Wait until something is so."""
+    end = time.monotonic() + LIMIT
+    while not is_so():
+        if time.monotonic() > end:
+            raise AssertionError(why if isinstance(why, str) else why())
+        time.sleep(0.02)
+
+
 class Tab:
     """A tab of the browser that shows the page of a server."""
 
@@ -94,14 +99,9 @@ class Tab:
         self.chrome.switch_to.window(self.handle)
         return self.chrome.execute_script(script, *arguments)
 
-    def wait(self, script: str, *arguments: Any, seconds: float = WAIT) -> Any:
-        """Wait until a script returns something true, and return it."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            if found := self.run(script, *arguments):
-                return found
-            time.sleep(0.02)
-        raise AssertionError(f"nothing came of: {script}; the page says: {self.message}")
+    def wait(self, script: str, *arguments: Any) -> None:
+        """Wait until a script returns something true."""
+        until(lambda: bool(self.run(script, *arguments)), lambda: f"nothing came of: {script}; page: {self.message}")
 
     def click(self, name: str) -> None:
         self.chrome.switch_to.window(self.handle)
@@ -132,14 +132,13 @@ class Tab:
         )
         return x, y
 
-    def drag(self, path: Callable[[float], tuple[float, float]], events: int, pause: float = 0.0) -> None:
+    def drag(self, path: Callable[[float], tuple[float, float]], events: int) -> None:
         """Drag the arrow's tip along a path, in pixels from where it is."""
         x, y = self.tip()
         self.mouse("mousePressed", x, y)
         for k in range(1, events + 1):
             right, down = path(k / events)
             self.mouse("mouseMoved", x + right, y + down)
-            time.sleep(pause)
         self.mouse("mouseReleased", x + path(1.0)[0], y + path(1.0)[1], 0)
         self.settle()
 
@@ -335,7 +334,6 @@ def test_charts_show_a_narrow_contact_larger_until_the_whole_hole_is_wanted(
 
 def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
     tab.click("play-cycle")
-    time.sleep(0.2)
     tab.settle()
     (way, load) = tab.run("return fastpin.loops.chart.data[1]")
     cycle = solved(tab.live).cycle(first=1, last=len(way))
@@ -693,7 +691,6 @@ def test_wrong_input_gets_a_sentence_on_the_page_and_the_page_lives_on(tab: Tab)
 
 def test_two_ways_to_the_same_load_have_two_shears(tab: Tab) -> None:
     tab.click("play-two")
-    time.sleep(0.2)
     tab.settle()
     words = tab.run("return document.getElementById('lesson').textContent")
     assert words.startswith("Same load as the reference, reached in another way: the shear differs by up to")
@@ -709,7 +706,6 @@ def test_two_ways_to_the_same_load_have_two_shears(tab: Tab) -> None:
 
 def test_the_case_is_played_and_the_history_scrubbed(tab: Tab) -> None:
     tab.click("play-case")
-    time.sleep(0.2)
     tab.settle()
     assert tab.run("return fastpin.history.latest.load.Q") == 7.26e5
     count = tab.run("return fastpin.history.pictures.length")
@@ -720,7 +716,7 @@ def test_the_case_is_played_and_the_history_scrubbed(tab: Tab) -> None:
         )
         == 3
     )
-    time.sleep(0.1)
+    tab.settle()
     assert tab.run("return document.getElementById('step').textContent") == f"step 4 of {count}"
     tab.keys("drawing", Keys.ARROW_LEFT)  # goes on from the latest state, not from the one that is shown
     tab.settle()
@@ -757,16 +753,14 @@ def test_a_reloaded_page_has_its_history(tab: Tab) -> None:
 
 
 def test_a_killed_server_leaves_the_history_on_the_page(chrome: webdriver.Chrome) -> None:
-    command = [sys.executable, "-m", "fastpin", "live", "--no-browser", "--nodes", "61"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
+    with started(fastpin_command("live", "--no-browser", "--nodes", 61)) as process:
         address = process.stdout.readline().split()[-1]
         tab = Tab(chrome, None)
         chrome.get(address)
         tab.wait("return window.fastpin?.history.case !== null && fastpin.times.length > 0")
         tab.keys("drawing", Keys.ARROW_RIGHT)
         tab.settle()
-        process.send_signal(signal.SIGKILL)
+        process.kill()
         process.wait()
     tab.wait("return document.getElementById('connection').textContent === 'no server'")
     assert tab.message.startswith("The server has ended. The history stays on this page")
@@ -774,10 +768,7 @@ def test_a_killed_server_leaves_the_history_on_the_page(chrome: webdriver.Chrome
     tab.keys("drawing", Keys.ARROW_RIGHT)  # no harm
     tab.click("csv")
     file = chrome.folder / "loads.csv"
-    for _ in range(200):
-        if file.exists():
-            break
-        time.sleep(0.02)
+    until(file.exists, "no file was saved")
     loads = fastpin.LoadHistory.from_csv(file).values()
     assert loads.shape[0] == 2
     assert loads[-1, 0] == 2.42e6
@@ -812,9 +803,7 @@ def test_case_picture_and_recording_are_saved(tab: Tab, chrome: webdriver.Chrome
     files = [chrome.folder / name for name in ("case.toml", "recording.html", "fastpin.png")]
     for name in ("save-case", "save-recording", "save-image"):
         tab.click(name)
-    end = time.monotonic() + WAIT
-    while not all(file.exists() for file in files) and time.monotonic() < end:
-        time.sleep(0.02)
+    until(lambda: all(file.exists() for file in files), "the files were not saved")
     case = casefile.read_case(files[0])
     result = fastpin.solve(case.problem, case.history, **case.options.keywords())
     assert np.array_equal(result[-1].shear, tab.live.session.state.shear)

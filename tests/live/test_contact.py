@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -27,7 +28,14 @@ from fastpin.verification.body_cases import ring_compliance
 from tests.support.live_pages import FREE, NODES, Page, contact, floats, message
 
 P, Q = 2.42e6, 7.26e5
+MOST_LEFT = contact_module.MOST_LEFT
 ARRAYS = {"pressure": "pressure", "shear": "shear", "gap": "gap"}
+
+
+@pytest.fixture(autouse=True)
+def hardly_collected(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Collecting garbage among the objects of all tests takes longer than a step."""
+    monkeypatch.setattr(contact_module, "MOST_LEFT", 1_000)
 
 
 def drag(page: Page, gesture: int, count: int = 12, turn: float = 1.0) -> None:
@@ -151,8 +159,9 @@ def test_a_change_of_the_problem_follows_the_load_or_the_history(follow: str) ->
     assert_shown(page.pictures[-1], result[-1])
 
 
+@pytest.mark.gate
 def test_bodies_and_materials_can_be_changed() -> None:
-    page = Page(contact())
+    page = Page(contact(nodes=21))
     page.tell("change", changes={"pin_bore": 4e-3})
     assert page.live.session.problem.pin_body == Tube(4e-3, "uniform")
     page.tell("change", changes={"plate_body": "ring"})
@@ -175,7 +184,7 @@ def test_bodies_and_materials_can_be_changed() -> None:
 
 
 def assert_every_control_can_be_sent_back(text: str | None, changes: dict[str, Any]) -> None:
-    page = Page(contact(text, nodes=21))
+    page = Page(contact(text, nodes=21, limits=Limits(nodes=21)))
     if changes:
         page.tell("change", changes=changes)
     before = page.live.session.problem
@@ -190,6 +199,7 @@ def assert_every_control_can_be_sent_back(text: str | None, changes: dict[str, A
     assert np.allclose(problem.gap_at(theta)[0], before.gap_at(theta)[0], rtol=0.0, atol=1e-20)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     "changes", [{}, {"pin_bore": 4e-3}, {"plate_body": "ring"}, {"plate_body": "bushing"}], ids=str
 )
@@ -197,6 +207,7 @@ def test_every_control_can_be_sent_back_unchanged(changes: dict[str, Any]) -> No
     assert_every_control_can_be_sent_back(None, changes)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("changes", [{}, {"friction_along": "uniform", "pin_lobes": "5"}], ids=str)
 def test_every_control_of_an_oval_hole_can_be_sent_back_unchanged(changes: dict[str, Any]) -> None:
     assert_every_control_can_be_sent_back(OVAL, changes)
@@ -262,6 +273,7 @@ def test_a_uniform_friction_has_one_slider() -> None:
     assert answer["sentence"] == "most_friction: the friction of the case is the same all round"
 
 
+@pytest.mark.gate
 def test_hole_and_pin_get_lobes_by_words() -> None:
     page = Page(contact())
     assert [controls_of(page)[f"{body}_lobes"]["value"] for body in ("hole", "pin")] == ["0", "0"]
@@ -287,6 +299,7 @@ def test_hole_and_pin_get_lobes_by_words() -> None:
     assert len(page.live.session.problem.gap.given) == 2
 
 
+@pytest.mark.gate
 def test_lobes_of_the_case_are_controlled_and_its_other_terms_stay() -> None:
     page = Page(contact(OVAL))
     assert page.latest["sentence"] == ""
@@ -431,17 +444,17 @@ def test_a_new_page_gets_the_whole_history() -> None:
 
 
 def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(contact_module, "MOST_UNDONE", 30)
-    page = Page(contact(nodes=21, limits=Limits(pictures=20)))
-    drag(page, 5, 30)
-    assert len(page.pictures) == 20
+    monkeypatch.setattr(contact_module, "MOST_UNDONE", 7)
+    page = Page(contact(nodes=21, limits=Limits(pictures=5)))
+    drag(page, 5, 8)
+    assert len(page.pictures) == 5
     assert page.live.session.history is not None
-    assert len(page.live.session.history) == 31
-    for gesture in range(10, 50):
+    assert len(page.live.session.history) == 9
+    for gesture in range(10, 20):
         page.tell("load", loads={"Q": 1e3 * gesture}, gesture=gesture)
-    assert page.latest["undos"] == 30
-    assert len(page.live._pictures) == 20
-    for _ in range(25):
+    assert page.latest["undos"] == 7
+    assert len(page.live._pictures) == 5
+    for _ in range(6):
         page.tell("undo")
     assert page.pictures == []  # they are forgotten, but the contact is there
     assert page.live.session.state is not None
@@ -526,14 +539,24 @@ def systems() -> int:
     return sum(isinstance(one, System) for one in gc.get_objects())
 
 
-def test_gestures_that_can_be_undone_hold_no_matrices() -> None:
-    page = Page(contact(nodes=41))
+@pytest.fixture
+def frozen() -> Iterator[None]:
+    """Leave all objects of other tests alone, and collect garbage as often as usual."""
+    gc.freeze()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(contact_module, "MOST_LEFT", MOST_LEFT)
+        yield
+    gc.unfreeze()
+
+
+def test_gestures_that_can_be_undone_hold_no_matrices(frozen: None) -> None:
+    page = Page(contact(nodes=21))
     before = systems()
-    for k in range(15):
+    for k in range(8):
         page.tell("change", changes={"friction": 0.2 + 0.01 * k}, gesture=k)
         page.tell("load", loads={"Q": 1e5}, gesture=k)
-    assert page.latest["undos"] == 15
-    assert systems() - before <= contact_module.MOST_LEFT + 1
+    assert page.latest["undos"] == 8
+    assert systems() - before <= MOST_LEFT + 1
     page.tell("undo")
     page.tell("load", loads={"Q": 2e5}, gesture=99)
     session = page.live.session

@@ -13,10 +13,12 @@ from tests.support.live_pages import floats, recorded
 from tests.support.lives import fretting
 from tests.support.wear_cases import WEAR_CASES
 
+pytestmark = pytest.mark.gate
+
 
 @pytest.fixture(scope="module")
 def result() -> WearResult:
-    return fretting()
+    return fretting(cycles=10, at=(3,), nodes=21)
 
 
 @pytest.fixture(scope="module")
@@ -26,10 +28,10 @@ def recording(result: WearResult) -> dict:
 
 def test_a_recording_holds_the_states_of_all_stored_cycles(result: WearResult, recording: dict) -> None:
     cycles = recording["life"]["cycles"]
-    assert [each["cycle"] for each in cycles] == [0, 3, 10, 100, 1000, 3000]
+    assert [each["cycle"] for each in cycles] == [0, 3, 10]
     assert (recording["add"], recording["case"]["title"]) == ([], "Fretting")
     serials = [picture["serial"] for each in cycles for picture in each["pictures"]]
-    assert serials == list(range(1, 19))
+    assert serials == list(range(1, 10))
     for each, worn in zip(cycles, result, strict=True):
         for picture, state in zip(each["pictures"], worn.states, strict=True):
             assert picture["load"] == state.load
@@ -72,22 +74,22 @@ def test_the_damage_is_that_of_the_material_that_is_still_there(result: WearResu
 
 def test_depths_round_the_whole_hole_go_on_to_the_top() -> None:
     case = WEAR_CASES["lobed hole"]
-    result = fastpin.wear(case.problem, case.history(), cycles=2, plate=5.0, tolerance=0.0, grid=case.grid(41))
+    result = fastpin.wear(case.problem, case.history(), cycles=2, plate=5.0, tolerance=0.0, grid=case.grid(21))
     worn = recorded(record_life(result))["life"]["cycles"][-1]["worn"]
     degrees, hole = floats(worn["degrees"]), floats(worn["hole"])
-    assert (degrees[0], degrees[-1], degrees.size) == (-180.0, 180.0, 43)
+    assert (degrees[0], degrees[-1], degrees.size) == (-180.0, 180.0, 23)
     assert hole[0] == hole[-1]
     assert not floats(worn["pin"]).any()
     assert hole.max() == np.float32(result[-1].depth)
 
 
 def test_of_many_cycles_an_even_choice_is_recorded(result: WearResult, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(life_module, "MOST_PICTURES", 11)
+    monkeypatch.setattr(life_module, "MOST_PICTURES", 6)
     life = recorded(record_life(result))["life"]
-    assert [each["cycle"] for each in life["cycles"]] == [0, 10, 3000]
-    assert [len(each["values"]) for each in life["quantities"]] == [3] * 5
-    assert [len(texts) for texts in life["damage"]["values"].values()] == [3]
-    assert life["stored"] == 6
+    assert [each["cycle"] for each in life["cycles"]] == [0, 10]
+    assert [len(each["values"]) for each in life["quantities"]] == [2] * 5
+    assert [len(texts) for texts in life["damage"]["values"].values()] == [2]
+    assert life["stored"] == 3
 
 
 def test_what_is_not_modelled_and_what_is_in_doubt_is_told(result: WearResult, recording: dict) -> None:
@@ -98,7 +100,7 @@ def test_what_is_not_modelled_and_what_is_in_doubt_is_told(result: WearResult, r
     history = fastpin.LoadHistory([{"P": 1e6}]) + fastpin.LoadHistory([{"rotation": -0.1}, {"rotation": 0.1}]).repeated(
         1
     )
-    turned = fastpin.wear(problem, history, pin=1e-15, nodes=41, tolerance=0.0)
+    turned = fastpin.wear(problem, history, pin=1e-15, nodes=21, tolerance=0.0)
     (doubt,) = recorded(record_life(turned))["case"]["doubts"]
     assert "the pin slips by" in doubt
     assert [str(each) for each in turned.doubts] == [doubt]

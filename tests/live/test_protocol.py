@@ -14,10 +14,11 @@ from fastpin.live.protocol import FIELDS, Message, read_message
 from fastpin.live.server import RateLimit
 
 LOAD = {"kind": "load", "id": 7, "loads": {"P": 1}, "gesture": 3, "drag": True}
-JSON = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
-    max_leaves=4,
+LEAF = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
+JSON = (
+    LEAF
+    | st.lists(LEAF, max_size=3)
+    | st.dictionaries(st.text(max_size=8), LEAF | st.lists(LEAF, max_size=3), max_size=3)
 )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 import tracemalloc
 from pathlib import Path
 
@@ -265,14 +264,15 @@ def test_keep() -> None:
 
 
 @pytest.mark.parametrize("line", ["\n", "# " + "x" * 1000 + "\n", " " * 5000 + "\n", "#\r"])
-def test_a_csv_file_without_corners_is_not_read_to_its_end(line: str, tmp_path: Path) -> None:
+def test_a_csv_file_without_corners_is_not_read_to_its_end(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(history_csv, "MOST_AROUND", 100_000)
     path = tmp_path / "loads.csv"
     lines = history_csv.MOST_AROUND // max(len(line), history_csv.SHORTEST_LINE) + 10
     path.write_text("P\n1\n" + line * (2 * lines), newline="")
-    began = time.monotonic()
     with pytest.raises(CaseFileError, match="the lines up to here are too long or too many for 1 corners") as caught:
         LoadHistory.from_csv(path)
-    assert time.monotonic() - began < 10.0
     assert caught.value.problems[0][0] < lines + 10
 
 

@@ -20,6 +20,7 @@ from fastpin.cli.options import join_words, parser
 from fastpin.solver import Interrupted
 from tests.support.documents import DOCS, blocks
 from tests.support.interrupts import StopAt
+from tests.support.processes import finished
 
 RECIPES = DOCS / "cluster"
 JOBS = ("sweep.sbatch", "cases.sbatch")
@@ -71,10 +72,7 @@ def job(
         (folder / program).chmod(stat.S_IRWXU)
     slurm = {"SLURM_ARRAY_JOB_ID": "7", "SLURM_ARRAY_TASK_ID": str(task), "SLURM_CPUS_PER_TASK": "1"}
     environment = os.environ | slurm | variables | {"PATH": f"{folder}{os.pathsep}{os.environ['PATH']}"}
-    return subprocess.run(
-        ["bash", str(RECIPES / name), *arguments],
-        cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120, check=False,
-    )  # fmt: skip
+    return finished(["bash", RECIPES / name, *arguments], cwd=tmp_path, env=environment, check=False)
 
 
 def test_the_page_shows_the_recipes() -> None:
@@ -85,7 +83,7 @@ def test_the_page_shows_the_recipes() -> None:
 @needs_bash
 @pytest.mark.parametrize("name", JOBS)
 def test_bash_reads_the_jobs(name: str) -> None:
-    subprocess.run(["bash", "-n", str(RECIPES / name)], check=True)
+    finished(["bash", "-n", RECIPES / name])
 
 
 def test_the_command_lines_of_all_recipes_exist() -> None:
@@ -153,11 +151,7 @@ def test_snakemake_plans_all_parts_and_cases(tmp_path: Path) -> None:
     (tmp_path / "cases").mkdir()
     for name in ("plan.toml", "cases/a.toml", "cases/b.toml"):
         (tmp_path / name).touch()
-    planned = subprocess.run(
-        ["snakemake", "-n", "--quiet", "rules", "-s", str(RECIPES / "Snakefile"), "-d", str(tmp_path)],
-        capture_output=True, text=True, timeout=120, check=False,
-    )  # fmt: skip
-    assert planned.returncode == 0, planned.stderr
+    planned = finished(["snakemake", "-n", "--quiet", "rules", "-s", RECIPES / "Snakefile", "-d", tmp_path])
     counts = dict(re.findall(r"^(\w+) +(\d+)$", planned.stdout + planned.stderr, re.MULTILINE))
     assert counts == {"all": "1", "case": "2", "part": "4", "sweep": "1", "total": "8"}
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import ast
 import inspect
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 import fastpin
 from tests.support import layout
+from tests.support.processes import finished, python
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -167,7 +166,7 @@ def test_completion_shows_the_same_before_and_after_a_solve():
         "fastpin.solve(problem, [{'P': 1.0}], nodes=41)\n"
         "assert dir(fastpin) == before == sorted(fastpin.__all__), dir(fastpin)\n"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+    finished(python(code))
 
 
 def test_importing_the_package_loads_nothing_heavy():
@@ -175,8 +174,7 @@ def test_importing_the_package_loads_nothing_heavy():
         "import sys, fastpin, fastpin.cli.main\n"
         "print([name for name in ('numpy', 'numba', 'scipy', 'matplotlib', 'h5py', 'tqdm') if name in sys.modules])\n"
     )
-    found = subprocess.run([sys.executable, "-c", code], check=True, timeout=60, capture_output=True, text=True)
-    assert found.stdout == "[]\n"
+    assert finished(python(code)).stdout == "[]\n"
 
 
 # -- the tests -----------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from fastpin.model.materials import MaterialPair
-from fastpin.report.convergence import one_digit, reported_series, text
+from fastpin.report.convergence import one_digit, reported_series, series_columns, text
 from fastpin.studies.convergence import Convergence
 from tests.support.studies import small_problem, small_study
 
@@ -36,6 +36,14 @@ def test_every_verdict_has_words(study: Convergence) -> None:
     }
     for (verdict, order, scatter), expected in words.items():
         assert replace(row, verdict=verdict, order=order, scatter=scatter).words == expected
+
+
+def test_small_values_have_the_digits_of_their_bar(study: Convergence) -> None:
+    row = reported_series(study.studies[0], study.problem, 3)[0]
+    row = replace(row, unit="m", values=(1.23456789e-20,), verdict="observed", limit=1.23456789e-20, bar=1e-26)
+    cells = {name: column[0] for name, _, column in series_columns(study.studies[0], [row])}
+    assert cells["unit"] == "pm"
+    assert cells["limit"] == "1.2345679e-08"
 
 
 def test_values_that_agree_to_some_digits_have_converged(study: Convergence) -> None:

@@ -6,7 +6,6 @@ import ast
 import importlib
 import inspect
 import os
-import pickle
 import shutil
 import subprocess
 import sys
@@ -36,7 +35,7 @@ assert doubled(1.5) == 3.0
 print("numba" in sys.modules)
 """
 pytestmark = pytest.mark.skipif(jit.PLAIN, reason="nothing is compiled")
-keeps = pytest.mark.skipif(not machine.CAN_LOAD, reason="Numba keeps the code")
+keeps = pytest.mark.skipif(not machine.CAN_LOAD, reason="results of Numba are stored")
 
 
 @pytest.fixture
@@ -80,30 +79,11 @@ def test_kept_beside_the_package_until_it_does_not_fit_any_more(installed: Path,
     assert not compiles(moved)
 
     (file,) = cache(moved).glob("*.machine")
-    content = file.read_bytes()
-    file.write_bytes(content[:-100] + bytes([content[-100] ^ 1]) + content[-99:])
-    assert compiles(moved)
-    assert file.read_bytes() == content
-
     with (moved / "fastpin" / "kernels" / "small.py").open("a") as source:
         source.write("# changed\n")
     assert compiles(moved)
     assert stored_in(cache(moved)) == ["small.doubled"]
     assert not file.exists()
-
-
-@pytest.mark.gate
-@keeps
-def test_a_list_of_numba_that_names_what_is_gone_is_compiled_anew(installed: Path) -> None:
-    """As after an upgrade to a version without a class that arguments had."""
-    assert compiles(installed)
-    (index,) = cache(installed).glob("small.product-*.nbi")
-    version = pickle.dumps(pickle.loads(index.read_bytes()))
-    index.write_bytes(version + b"cfastpin.kernels.arrays\nGone\n.")
-    for file in cache(installed).glob("*.machine"):
-        file.unlink()
-    assert compiles(installed)
-    assert not compiles(installed)
 
 
 REPLACED = """
@@ -126,7 +106,7 @@ def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file
     done = subprocess.run(words, capture_output=True, text=True, check=True, env=variables, cwd=installed)
     assert done.stdout.split() == ["3.0"]
     assert stored_in(cache(installed)) == []
-    assert not list(cache(installed).glob("*.nb?"))  # Numba's own files, of inner kernels
+    assert not list(cache(installed).glob("*.n*"))  # nor a result of Numba
     assert compiles(installed)
     assert stored_in(cache(installed)) == ["small.doubled"]
 
@@ -163,8 +143,8 @@ def arguments_of_columns(rng: np.random.Generator) -> tuple[object, ...]:
 @keeps
 def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
     arguments = arguments_of_columns(np.random.default_rng(1))
-    entry, code = compiler.compile_kernel(influence._columns, arguments, stores=True)
-    assert code is not None
+    entry, code = compiler.compile_kernel(influence._columns, arguments)
+    assert isinstance(code, machine.Code)
     loaded = machine.load(code, "_columns", "fastpin.kernels.influence")
     entry(*arguments)
     direct, cross = arguments[-2:]
@@ -220,42 +200,11 @@ def test_other_types_are_left_to_the_compiler() -> None:
 
 def test_compiling_is_announced_once(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     monkeypatch.setattr(jit, "CACHED", False)
-    monkeypatch.setattr(compiler, "CACHED", False)
     jit._announce.cache_clear()
     kernel = jit.compiled(lambda x: x + x)
     with caplog.at_level("INFO", "fastpin.compiler"):
         assert (kernel(1), kernel(1.5), kernel(2)) == (2, 3.0, 4)
     assert [record.message for record in caplog.records] == ["compiling the solver; this takes some seconds"]
-
-
-KEPT = """
-import sys
-from fastpin.kernels import influence
-if len(sys.argv) > 1:
-    from fastpin.runtime import compiler
-    compiler._object_code = lambda result: 1 / 0  # a Numba whose parts have other names
-print(influence.clausen(1.0), "numba" in sys.modules)
-"""
-
-
-@pytest.mark.gate
-def test_numba_keeps_code_that_can_not_be_stored(tmp_path: Path) -> None:
-    variables = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-
-    def run(*arguments: str) -> list[str]:
-        done = subprocess.run(
-            [sys.executable, "-c", KEPT, *arguments], env=variables, capture_output=True, text=True, check=True
-        )
-        return done.stdout.split()
-
-    value = repr(float(influence.clausen(1.0)))
-    assert run("changed") == [value, "True"]
-    assert run() == [value, "True"]
-    assert list(tmp_path.rglob("influence.clausen*.nbc"))  # Numba's own file
-    for path in tmp_path.glob("influence.clausen*.machine"):
-        path.unlink()
-    assert run() == [value, "True"]
-    assert run() == [value, "False"]
 
 
 def test_only_kernels_call_inner_kernels() -> None:

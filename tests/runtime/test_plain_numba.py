@@ -1,4 +1,4 @@
-"""Kernels where the private parts of Numba that load stored code have changed: Numba keeps the code, the same bits."""
+"""Kernels where private parts of Numba have changed: results of Numba are stored, with the same bits."""
 
 from __future__ import annotations
 
@@ -10,14 +10,13 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import numba
 import pytest
 from numba.core import intrinsics
 
 from fastpin.kernels import influence
 from fastpin.runtime import compiler, extensions, jit, machine, stored
 
-pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="Numba keeps the code")
+pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no machine code is stored")
 
 
 def without(name: str, *attributes: str) -> Any:
@@ -53,7 +52,6 @@ CHANGES: dict[str, tuple[object, str, object]] = {
     "no list of mathematics": (intrinsics, "INTR_MATH", None),
     "no object code": (compiler, "_object_code", refuse),
     "no engine": (machine, "_engine", refuse),
-    "no versions": (stored, "folder", lambda name: Path(os.devnull, name)),
 }
 
 
@@ -61,7 +59,6 @@ CHANGES: dict[str, tuple[object, str, object]] = {
 def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """The only directory of stored code."""
     monkeypatch.setattr(stored.StoredCode, "_directories", lambda self: iter([tmp_path]))
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
     yield tmp_path
     forget()
 
@@ -74,7 +71,7 @@ def forget() -> None:
 
 @pytest.mark.gate
 @pytest.mark.parametrize("change", CHANGES)
-def test_numba_keeps_the_code_when_a_part_changes(
+def test_a_result_of_numba_is_stored_when_a_part_changes(
     change: str, directory: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def value() -> float:
@@ -87,9 +84,25 @@ def test_numba_keeps_the_code_when_a_part_changes(
     monkeypatch.setattr(*CHANGES[change])
     assert value() == before
     file.unlink()
-    assert value() == before  # there is no way to store the code
-    assert value() == before  # Numba keeps it
-    assert list(directory.rglob("*.nbc"))
+    assert value() == before
+    assert file.with_suffix(stored.NUMBA).is_file()
+    monkeypatch.setattr(compiler, "compile_kernel", refuse)
+    assert value() == before
+
+
+def test_code_is_stored_for_versions_that_have_no_file(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    forget()
+    monkeypatch.setattr(stored, "folder", lambda name: Path(os.devnull, name))
+    jit.Kernel(influence.clausen.py_func, inner=False)(1.0)
+    assert len(list(directory.glob("*.machine"))) == 1
+
+
+def test_code_that_can_not_be_stored_is_compiled_each_time(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("_object_code", "_pack"):
+        monkeypatch.setattr(compiler, name, refuse)
+    for _ in range(2):
+        assert jit.Kernel(influence.clausen.py_func, inner=False)(1.0) == pytest.approx(1.0139591323607684, rel=1e-14)
+    assert not list(directory.iterdir())
 
 
 SOLVE = """
@@ -119,4 +132,4 @@ def test_a_history_has_the_same_bits_without_any_part(tmp_path: Path) -> None:
     expected = run()
     assert run("without", NUMBA_CACHE_DIR=str(tmp_path)) == expected
     assert run("without", NUMBA_CACHE_DIR=str(tmp_path)) == expected
-    assert list(tmp_path.rglob("*.nbc"))
+    assert list(tmp_path.glob("*.numba"))

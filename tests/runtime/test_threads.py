@@ -1,6 +1,10 @@
 """Work in threads: all items in order, errors handed on, and no threads where there are to be none."""
 
+import ctypes
+import signal
 import threading
+from collections.abc import Callable
+from functools import partial
 
 import pytest
 
@@ -47,3 +51,45 @@ def test_errors_are_handed_on(monkeypatch):
     monkeypatch.setattr(threads, "cores", lambda: 2)
     with pytest.raises(ZeroDivisionError):
         threads.in_threads(lambda item: 1 / item, [1, 0, 2])
+
+
+class Stop(BaseException):
+    """Raised by a signal, or in another thread."""
+
+
+def stop(*_: object) -> None:
+    raise Stop
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="a system without signals to threads")
+def test_signals_and_exceptions_wait_for_undisturbed_work() -> None:
+    caller, ends = threading.get_ident(), []
+    thrown = ctypes.pythonapi.PyThreadState_SetAsyncExc, ctypes.c_ulong(caller), ctypes.py_object(Stop)
+
+    def work(disturb: Callable[..., object], *arguments: object) -> int:
+        disturb(*arguments)
+        ends.append(threads.undisturbed(threading.get_ident) == threading.get_ident() != caller)
+        return len(ends)
+
+    before = signal.signal(signal.SIGUSR1, stop)
+    try:
+        for disturbance in ((signal.pthread_kill, caller, signal.SIGUSR1), thrown):
+            with pytest.raises(Stop):
+                threads.undisturbed(partial(work, *disturbance))
+        assert threads.undisturbed(partial(work, int)) == 3
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+    assert ends == [True, True, True]
+
+
+def test_undisturbed_work_raises_its_own_errors_and_needs_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(ZeroDivisionError):
+        threads.undisturbed(lambda: 1 // 0)
+
+    def refuse(thread: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")
+
+    size = threading.stack_size()
+    monkeypatch.setattr(threading.Thread, "start", refuse)
+    assert threads.undisturbed(threading.get_ident) == threading.get_ident()
+    assert threading.stack_size() == size

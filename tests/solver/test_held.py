@@ -26,6 +26,7 @@ from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns
+from tests.support.kernels import python, run_as_python
 from tests.support.tiers import gate, some_gate
 from tests.survey.histories import generate
 
@@ -85,7 +86,7 @@ def begun(system, table, contact, memory):
 def response(columns, given, updates=0):
     """The product of the tableau and `given`, as the corrections of a held contact compute it."""
     values = np.empty_like(given)
-    conditions._respond.py_func(columns.tableau, updates, given, values)
+    python(conditions._respond)(columns.tableau, updates, given, values)
     return values
 
 
@@ -118,9 +119,7 @@ def test_a_held_contact_begins_with_the_tableau_of_a_factorisation(titanium_in_a
 @pytest.mark.parametrize("way", ["compiled", "python"])
 def test_columns_and_updates_of_a_held_contact_are_those_of_the_naive_way(titanium_in_aluminium, way, monkeypatch):
     if way == "python":
-        for name, function in vars(exchange).items():
-            if hasattr(function, "py_func"):
-                monkeypatch.setattr(exchange, name, function.py_func)
+        run_as_python(exchange, monkeypatch)
     system = system_of(titanium_in_aluminium)
     closed = zones((15, 45))
     contact = contact_of(closed)
@@ -153,9 +152,7 @@ def test_columns_and_updates_of_a_held_contact_are_those_of_the_naive_way(titani
 def test_corrections_of_a_held_contact_are_those_of_whole_arrays(titanium_in_aluminium, way, grid, monkeypatch):
     """A solution that lacks some digits is corrected to all of them, and put on its bounds."""
     if way == "python":
-        for name, function in vars(conditions).items():
-            if hasattr(function, "py_func"):
-                monkeypatch.setattr(conditions, name, function.py_func)
+        run_as_python(conditions, monkeypatch)
     system, closed = system_of(titanium_in_aluminium, grid=grid), zones((15, 45))
     now = unloaded_configuration(system)
     now.load, now.status[closed] = rate(), STICK

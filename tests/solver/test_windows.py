@@ -107,6 +107,18 @@ def test_the_survey_finds_the_contacts_of_the_exact_run():
         assert any(abs(angle - middle) < 0.3 * width and abs(found - width) < 0.3 * width for angle, found in places)
 
 
+def test_a_survey_begins_on_a_grid_for_the_width_of_the_contact(monkeypatch):
+    case, load = problem(), np.array([{"P": 1e-4}.get(name, 0.0) for name in LOADS])
+    (start, stop), *_ = solve(case, [{"P": 1e-4}], nodes=101)[0].contact
+    seen = []
+    monkeypatch.setattr(surveys._Survey, "_change_grid", lambda _, places: seen.extend(places))
+    for finer in (1.0, 0.5):
+        surveys._Survey(case, 1.0, 1.0)._look_where_it_begins(load, finer)
+        angle, width = seen.pop()
+        assert angle == pytest.approx(BOTTOM)
+        assert width == pytest.approx(finer * (stop - start), rel=0.03)
+
+
 def test_a_survey_ends_where_the_pin_snaps_and_snaps(monkeypatch):
     tried = []
 

@@ -19,6 +19,7 @@ from fastpin.errors import InputError
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.model.ties import TIE
 from fastpin.solver.result import Result
 from fastpin.states import extremes, reading_bounds
 from fastpin.states.extremes import MARKS, READINGS, KeptStates, marked_extremes, marked_places
@@ -84,9 +85,9 @@ def test_extremes_are_the_readings_of_all_states(result: Result) -> None:
         if np.isnan(values).all():
             assert name not in found
             continue
-        assert found[name].smallest.value == np.nanmin(values), name
-        assert found[name].largest.value == np.nanmax(values), name
-        for extreme in found[name]:
+        for extreme, away in zip(found[name], (values, -values), strict=True):
+            least = np.nanmin(away)
+            assert extreme.place == np.flatnonzero(away <= least + TIE * abs(least))[0], name
             assert values[extreme.place] == extreme.value
             assert extreme.load_point == result[extreme.place].step + 1
 

@@ -288,6 +288,17 @@ def test_without_slip_sums_the_rest_is_there() -> None:
     assert "friction_energy" not in cycle.columns()
 
 
+def test_columns_hold_the_extremes_of_the_nodes(result: Result) -> None:
+    cycle = result.cycle()
+    columns = cycle.columns()
+    for name in ("pressure", "shear"):
+        values = np.array([getattr(state, name) for state in cycle.states])
+        low, high = (columns[f"{name}_{end}"][0] for end in ("min", "max"))
+        assert np.all(low <= values.min(axis=0))
+        assert np.all(high >= values.max(axis=0))
+        assert np.any(low < high)
+
+
 def test_frictionless_cycles() -> None:
     problem = Problem.from_load_parameter(LIKE, 0.2, 0.0, "centre", "fixed")
     history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"P": 0.5}, {"P": 1.0}]).repeated(2)

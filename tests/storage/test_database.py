@@ -7,8 +7,6 @@ import shutil
 import signal
 import sqlite3
 import struct
-import subprocess
-import sys
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
@@ -23,6 +21,7 @@ from fastpin.studies import sweep
 from fastpin.studies.index import Index
 from fastpin.studies.plan import Plan, parse_plan
 from tests.support.files import contents
+from tests.support.processes import finished, python
 
 PAGE = 16  # place of the page size in the header
 RUN = "0123456789abcdef"
@@ -146,7 +145,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 
 def test_readers_see_the_last_transaction_after_a_kill_and_write_nothing(plan: Plan, directory: Path) -> None:
     whole = sweep.load(directory)
-    ended = subprocess.run([sys.executable, "-c", KILLED, directory / INDEX], timeout=60)
+    ended = finished(python(KILLED, directory / INDEX), check=False)
     assert ended.returncode == -signal.SIGKILL
     assert journal_of(directory).stat().st_size > 0
     assert b"half done" in (directory / INDEX).read_bytes()

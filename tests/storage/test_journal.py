@@ -5,8 +5,6 @@ from __future__ import annotations
 import errno
 import os
 import struct
-import subprocess
-import sys
 import zlib
 from pathlib import Path
 
@@ -17,9 +15,8 @@ from fastpin.errors import InputError, OutputError
 from fastpin.storage import journal
 from fastpin.storage.files import check_free
 from fastpin.storage.journal import JournaledFile, journal_of
+from tests.support.processes import python, started
 from tests.support.rows import ARRAYS, ROWS, SIZE, rows_in
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 class Machine:
@@ -194,6 +191,25 @@ def test_one_writer_at_a_time(tmp_path: Path) -> None:
     JournaledFile(path, new=False).release()
 
 
+READER = """
+import fcntl, pathlib, sys
+from tests.support.rows import rows_in
+flock = fcntl.flock
+def told(file, kind):
+    if kind & fcntl.LOCK_NB:
+        return flock(file, kind)
+    try:
+        flock(file, kind | fcntl.LOCK_NB)
+    except BlockingIOError:
+        print("waits", flush=True)
+        flock(file, kind)
+fcntl.flock = told
+print(rows_in(pathlib.Path(sys.argv[1])))
+"""
+"""Tells before it waits for a lock."""
+
+
+@pytest.mark.gate
 def test_readers_wait_for_the_end_of_a_transaction(tmp_path: Path) -> None:
     path = tmp_path / "a.h5"
     written(path, 2)
@@ -203,15 +219,11 @@ def test_readers_wait_for_the_end_of_a_transaction(tmp_path: Path) -> None:
     for k in range(ARRAYS):
         h5[f"array{k}"].resize(1, axis=0)
     h5.flush()  # in the midst of a transaction
-    code = "import sys, pathlib; from tests.support.rows import rows_in; print('begun', flush=True)"
-    code += "; print(rows_in(pathlib.Path(sys.argv[1])))"
-    reader = subprocess.Popen([sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE, text=True, cwd=ROOT)
-    assert reader.stdout is not None
-    assert reader.stdout.readline() == "begun\n"
-    with pytest.raises(subprocess.TimeoutExpired):
-        reader.wait(0.3)
-    file.commit()
-    assert reader.communicate(timeout=20)[0] == "1\n"
+    with started(python(READER, path)) as reader:
+        assert reader.stdout is not None
+        assert reader.stdout.readline() == "waits\n"
+        file.commit()
+        assert reader.communicate() == ("1\n", "")
     h5.close()
     file.commit()
     file.release()

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import random
-import subprocess
-import sys
-import time
-from pathlib import Path
+import signal
 from typing import Any
 
 import h5py
@@ -20,7 +17,9 @@ from fastpin.solver.fat_cycles import FatCycles, Worn
 from fastpin.solver.wear_result import WearResult
 from fastpin.storage import wear_files
 from fastpin.storage.journal import JournaledFile
+from fastpin.storage.recording import stored_case
 from tests.support.interrupts import StopAt
+from tests.support.processes import finished, python
 from tests.support.wear_cases import BUMPED, BUMPED_TURNS, WEAR_CASES, life
 
 CASE = WEAR_CASES["unlike"]
@@ -190,44 +189,71 @@ def test_a_damaged_file_is_told_in_one_sentence(tmp_path, part):
         fastpin.load_wear(path)
 
 
+def shorten(array):
+    group, name, values = array.parent, array.name, array[:-1]
+    del group[name]
+    group[name] = values
+
+
+def spoil(array):
+    array[-1] = np.nan if array.dtype.kind == "f" else -1
+
+
+@pytest.mark.parametrize("damage", [spoil, shorten, lambda array: array.resize(10**8, axis=0)])
+def test_a_damaged_life_is_not_continued(tmp_path, damage):
+    path = tmp_path / "life.h5"
+    with pytest.raises(Interrupted):
+        life(path, progress=StopAt(5))
+    before = path.read_bytes()
+    for part in ("cycle", "next_jump", "removed", "plate_depth"):
+        path.write_bytes(before)
+        with h5py.File(path, "r+") as file:
+            damage(file[f"wear/{part}"])
+        with pytest.raises(InputError, match=rf"life\.h5: is damaged: .*wear/(cycle|{part}) "):
+            life(path, resume=True)
+
+
+def test_a_life_without_a_stored_cycle_keeps_its_title(tmp_path, monkeypatch):
+    path = tmp_path / "life.h5"
+
+    def full(*_):
+        raise MemoryError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(wear_files.WearFile, "add", full)
+        with pytest.raises(MemoryError):
+            life(path, title="one life")
+    life(path, resume=True, title="one life")
+    assert stored_case(path).title == "one life"
+
+
 KILLED = """
+import os, signal, sys
 from pathlib import Path
-from typing import Any
 from fastpin.storage import wear_files
 from tests.support.wear_cases import life
-wear_files.CHECKPOINT_EVERY = 0.02
-path = Path({path!r})
+wear_files.CHECKPOINT_EVERY = 0.0
+path, left, before = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3] == "True"
+write = wear_files._write_place
+def counted(*arguments):
+    global left
+    left -= 1
+    if left or not before:
+        write(*arguments)
+    if left == 0:
+        os.kill(os.getpid(), signal.SIGKILL)
+wear_files._write_place = counted
 life(path, cycles=3000, tolerance=0.005, resume=path.exists())
 """
+"""Dies before it writes a place, or before the file of this place is finished."""
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_a_life_that_is_killed_ten_times_has_the_same_bits(tmp_path):
-    """Each process dies some hundredths of a second after it has written one or two more checkpoints."""
-    path, root = tmp_path / "life.h5", Path(__file__).parents[2]
-    checkpoint = wear_files.checkpoint_of(path)
-    program = KILLED.format(path=str(path))
-    chance, kills = random.Random(5), 0
-
-    def written():
-        try:
-            return checkpoint.stat().st_mtime_ns
-        except FileNotFoundError:
-            return 0
-
-    while kills < 10:
-        with subprocess.Popen([sys.executable, "-c", program], cwd=root, stderr=subprocess.PIPE, text=True) as process:
-            for _ in range(chance.randint(1, 2)):
-                before = written()
-                while process.poll() is None and written() == before:
-                    time.sleep(0.002)
-            time.sleep(0.03 * chance.random())
-            if process.poll() is None:
-                process.kill()
-                kills += 1
-            else:
-                assert process.returncode == 0, process.communicate()[1]
-                break
-    assert kills == 10
+    """Each process dies with its second to fifth place: a checkpoint, or that of a chosen cycle."""
+    path, chance = tmp_path / "life.h5", random.Random(5)
+    for _ in range(10):
+        done = finished(python(KILLED, path, chance.randint(2, 5), chance.random() < 0.5), check=False)
+        assert done.returncode == -signal.SIGKILL, done.stderr
     life(path, cycles=3000, tolerance=0.005, resume=True)
     assert_same_life(fastpin.load_wear(path), life(cycles=3000, tolerance=0.005))

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +26,10 @@ from fastpin.studies.workers import Pool
 from scripts.inline import Inline
 from tests.support.outcomes import FILE
 from tests.support.plans import FRICTION, assert_same_as_serial
+from tests.support.processes import LONGEST, ROOT, fastpin, finished, python, started
+from tests.support.turnstiles import Turnstile
 
-ROOT = Path(__file__).resolve().parents[2]
+pytestmark = pytest.mark.gate
 
 OUTCOME = """
 [outcomes]
@@ -81,8 +82,7 @@ def test_a_worker_of_others_has_one_thread(many_threads: None) -> None:
         "from threadpoolctl import threadpool_info\nfrom fastpin.studies.workers import one_thread\n"
         "one_thread()\nprint({library['num_threads'] for library in threadpool_info()})"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert done.stdout == "{1}\n"
+    assert finished(python(code)).stdout == "{1}\n"
 
 
 @pytest.mark.gate
@@ -120,12 +120,17 @@ def test_the_run_that_kills_its_worker_is_found(size: int, tmp_path: Path, monke
     assert_same_as_serial(plan, tmp_path)
 
 
-def started(path: Path, directory: Path) -> subprocess.Popen[str]:
+def sweeping(path: Path, directory: Path, *folders: Path) -> AbstractContextManager[subprocess.Popen[str]]:
     """The command line's main process, leader of a process group as in a terminal."""
-    command = [sys.executable, "-m", "fastpin", "sweep", str(path), "-o", str(directory), "--workers", "2"]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    pipe = subprocess.PIPE
-    return subprocess.Popen(command, text=True, stdout=pipe, stderr=pipe, env=environment, start_new_session=True)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (*folders, ROOT)))}
+    return started(fastpin("sweep", path, "-o", directory, "--workers", 2), env=environment)
+
+
+@pytest.fixture
+def turnstile(tmp_path: Path) -> Iterator[Turnstile]:
+    found = Turnstile(tmp_path)
+    yield found
+    found.close()
 
 
 def workers(main: int) -> list[psutil.Process]:
@@ -138,68 +143,64 @@ def workers(main: int) -> list[psutil.Process]:
     return found
 
 
-@pytest.mark.gate
-def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -> None:
+def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path, turnstile: Turnstile) -> None:
     path = tmp_path / "plan.toml"
-    path.write_text(FRICTION.replace("COUNT", "41"))
-    with started(path, tmp_path / "out") as process:
-        while len(workers(process.pid)) < 2:
-            time.sleep(0.01)
-        time.sleep(0.2)  # they import what they need
-        os.killpg(process.pid, signal.SIGINT)
-        err = process.communicate(timeout=30)[1]
-    assert process.returncode == 130
-    assert re.fullmatch(
-        r"fastpin: interrupted; \d+ of 41 runs are finished and kept; the same command continues\n", err
+    path.write_text(FRICTION.replace("COUNT", "12"))
+    (tmp_path / "sitecustomize.py").write_text(
+        f"import sys\nif 'spawn_main' in ' '.join(sys.orig_argv):\n    {turnstile.code}\n"
     )
+    with sweeping(path, tmp_path / "out", tmp_path) as process:
+        turnstile.come(2)
+        os.killpg(process.pid, signal.SIGINT)
+        turnstile.let_go(2)
+        err = process.communicate()[1]
+    assert process.returncode == 130
+    assert err == "fastpin: interrupted; 0 of 12 runs are finished and kept; the same command continues\n"
 
 
-@pytest.mark.gate
-def test_an_interrupted_and_a_killed_sweep_go_on_with_their_outcomes(tmp_path: Path) -> None:
+def test_an_interrupted_and_a_killed_sweep_go_on_with_their_outcomes(tmp_path: Path, turnstile: Turnstile) -> None:
+    """Runs wait with their outcomes. So few are left that each is sent by itself."""
     path, directory = tmp_path / "plan.toml", tmp_path / "out"
-    (tmp_path / "mine.py").write_text(FILE)
-    path.write_text(FRICTION.replace("COUNT", "41") + OUTCOME)
+    (tmp_path / "mine.py").write_text(FILE.replace("return Largest(", f"{turnstile.code}; return Largest("))
+    path.write_text(FRICTION.replace("COUNT", "12") + OUTCOME)
     plan = read_plan(path)
 
-    def wait_for(done: int) -> None:
-        until = time.monotonic() + 60.0
+    def let_end(runs: int, done: int) -> None:
+        """Let so many more runs end, and wait until so many are kept."""
+        turnstile.let_go(runs)
         while sweep.status(plan, directory).done < done:
-            assert time.monotonic() < until
+            assert process.poll() is None
             time.sleep(0.005)
 
-    with started(path, directory) as process:
-        wait_for(3)
+    with sweeping(path, directory) as process:
+        let_end(3, 3)
         os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does: the workers are meant, too
-        out, err = process.communicate(timeout=30)
-    kept = sweep.status(plan, directory)
-    assert process.returncode == 130
-    assert 3 <= kept.done < 41
-    assert out == ""
-    assert err == f"fastpin: interrupted; {kept.done} of 41 runs are finished and kept; the same command continues\n"
+        out, err = process.communicate()
+    assert (process.returncode, out, sweep.status(plan, directory).done) == (130, "", 3)
+    assert err == "fastpin: interrupted; 3 of 12 runs are finished and kept; the same command continues\n"
 
-    with started(path, directory) as process:
-        wait_for(kept.done + 3)
+    with sweeping(path, directory) as process:
+        let_end(3, 6)
         left = workers(process.pid)
         process.kill()
-        process.communicate(timeout=30)
-    assert len(left) == 2
-    assert psutil.wait_procs(left, timeout=10)[1] == []
+        process.wait()
+        assert len(left) == 2
+        assert psutil.wait_procs(left, timeout=LONGEST)[1] == []
     known = [row for row in sweep.rows(plan, directory) if row["status"] == "done"]
-    before = len(known)
-    assert kept.done + 3 <= before < 41
+    assert len(known) == 6
     assert all(row["pressure"] == row["max_pressure"] for row in known)  # they come with the end of the run
 
-    with started(path, directory) as process:
-        out, err = process.communicate(timeout=60)
+    turnstile.let_go(6)
+    with sweeping(path, directory) as process:
+        out, err = process.communicate()
     assert (process.returncode, err) == (0, "")
-    assert f"41 runs in {directory}: 41 done, 0 failed, 0 waiting; {41 - before} in " in out
+    assert f"12 runs in {directory}: 12 done, 0 failed, 0 waiting; 6 in " in out
     assert "were read from their results" not in out
     assert all(row["pressure"] == row["max_pressure"] for row in sweep.rows(plan, directory))
     assert list((directory / "results").iterdir()) == []
     assert_same_as_serial(plan, directory)
 
 
-@pytest.mark.gate
 def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 
@@ -230,7 +231,7 @@ def test_a_script_that_its_workers_run_again_is_told(tmp_path: Path) -> None:
         f"studies.sweep.run(plan, {str(tmp_path / 'out')!r}, workers=1)\n"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, env=environment, check=False)
+    done = finished([sys.executable, script], check=False, env=environment)
     assert done.returncode == 1
     assert "must do so under if __name__" in done.stderr.splitlines()[-1]
     assert {row["status"] for row in sweep.load(tmp_path / "out")} == {"waiting"}

@@ -1,4 +1,7 @@
-"""The live page for tests: messages, a server in a thread, and the pictures as a page would keep them."""
+"""The live page for tests: messages, a server in a thread, and the pictures as a page would keep them.
+
+A talk of a page and a server needs no network: :func:`talked` runs both in one loop, with a :class:`Wire` as websocket.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +11,21 @@ import contextlib
 import json
 import re
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from typing import Any
 
 import numpy as np
+import pytest
+from aiohttp import WSMessage, WSMsgType
 
 from fastpin import casefile
 from fastpin.live.contact import LiveContact
 from fastpin.live.protocol import ALONE, Limits, Message, read_message
 from fastpin.live.server import Server
 from tests.support.case_texts import PRESSED
+
+LIMIT = 120.0
+"""Seconds after which a test that waits in vain fails. No test passes or fails by it otherwise."""
 
 NODES = 61
 """Few nodes: the tests are of the page, not of the numbers."""
@@ -78,6 +86,121 @@ def recorded(page: str) -> dict[str, Any]:
     return content
 
 
+class Talk:
+    """What a page says to its server and hears from it."""
+
+    def __init__(self, say: Callable[[str], Awaitable[None]], hear: Callable[[], Awaitable[str]]) -> None:
+        self.say, self._hear, self.number = say, hear, 0
+
+    async def hear(self) -> dict[str, Any]:
+        answer: dict[str, Any] = json.loads(await self._hear())
+        return answer
+
+    async def send(self, kind: str, **fields: Any) -> int:
+        self.number += 1
+        await self.say(json.dumps({"kind": kind, "id": self.number, **fields}))
+        return self.number
+
+    async def answer(self, number: int | None) -> dict[str, Any]:
+        """Return the answer to a message; others are passed over."""
+        while True:
+            found = await self.hear()
+            if found["id"] == number and found["kind"] != "welcome":
+                return found
+
+    async def tell(self, kind: str, **fields: Any) -> dict[str, Any]:
+        return await self.answer(await self.send(kind, **fields))
+
+    async def load(self, shear: float, drag: bool = False) -> dict[str, Any]:
+        """Lead the load `Q`, in gesture 1."""
+        return await self.tell("load", loads={"Q": shear}, gesture=1, drag=drag)
+
+    async def hello(self, session: str = "") -> tuple[str, dict[str, Any]]:
+        """Return the name of the session, and the pictures."""
+        await self.send("hello", session=session)
+        welcome = await self.hear()
+        assert welcome["kind"] == "welcome", welcome
+        return welcome["session"], await self.answer(welcome["id"])
+
+
+class Wire:
+    """A websocket without a network: a server reads it and sends to it, a page says something to it and hears it."""
+
+    def __init__(self, server: Server) -> None:
+        self._said: asyncio.Queue[WSMessage | None] = asyncio.Queue()
+        self.heard: asyncio.Queue[str] = asyncio.Queue()
+        self.code = 0
+        self._served = asyncio.create_task(server.serve_page(self))  # type: ignore[arg-type]
+
+    async def __aiter__(self) -> AsyncIterator[WSMessage]:
+        while (one := await self._said.get()) is not None:
+            yield one
+            self._said.task_done()
+
+    async def send_str(self, text: str) -> None:
+        self.heard.put_nowait(text)
+
+    async def close(self, code: int) -> None:
+        self.code = code
+
+    async def say(self, text: str, kind: WSMsgType = WSMsgType.TEXT) -> None:
+        self._said.put_nowait(WSMessage(kind, text, ""))
+
+    async def read(self) -> None:
+        """Wait until the server has read all that was said."""
+        await self._said.join()
+
+    async def go(self) -> None:
+        """Go away, and wait until the server has noticed."""
+        self._said.put_nowait(None)
+        await self._served
+
+    def talk(self) -> Talk:
+        return Talk(self.say, self.heard.get)
+
+
+def talked(server: Server, work: Callable[[Callable[[], Wire]], Awaitable[None]]) -> None:
+    """Run a server and the work of its pages in one loop. The work gets a function that opens a page."""
+    wires: list[Wire] = []
+
+    def opened() -> Wire:
+        wires.append(Wire(server))
+        return wires[-1]
+
+    async def run() -> None:
+        async with asyncio.timeout(LIMIT):
+            await work(opened)
+            for wire in wires:
+                await wire.go()
+
+    asyncio.run(run())
+
+
+class HeldSteps:
+    """Steps of all contacts, each of which waits until a test lets it go."""
+
+    def __init__(self, patch: pytest.MonkeyPatch) -> None:
+        self._begun, self._free = threading.Semaphore(0), threading.Semaphore(0)
+        self.taken: list[LiveContact] = []
+        step = LiveContact._step
+
+        def held(contact: LiveContact, *arguments: Any) -> None:
+            self.taken.append(contact)
+            self._begun.release()
+            assert self._free.acquire(timeout=LIMIT)
+            step(contact, *arguments)
+
+        patch.setattr(LiveContact, "_step", held)
+
+    async def begun(self) -> LiveContact:
+        """Wait until one more step has begun, and return its contact."""
+        assert await asyncio.to_thread(self._begun.acquire, timeout=LIMIT)
+        return self.taken[-1]
+
+    def let_go(self, count: int = 1) -> None:
+        self._free.release(count)
+
+
 @contextlib.contextmanager
 def served(
     make: Callable[[], LiveContact] = contact, port: int = 0, host: str = "", limits: Limits = ALONE
@@ -101,7 +224,7 @@ def served(
             ready.set()
             loop.close()
 
-    thread = threading.Thread(target=work)
+    thread = threading.Thread(target=work, daemon=True)
     thread.start()
     ready.wait()
     try:
@@ -111,4 +234,5 @@ def served(
     finally:
         if thread.is_alive():
             loop.call_soon_threadsafe(end.set)
-        thread.join()
+        thread.join(LIMIT)
+        assert not thread.is_alive(), "the server does not end"

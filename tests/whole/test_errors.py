@@ -94,13 +94,14 @@ def test_an_error_of_a_real_run_keeps_its_result(similar):
     assert (again.step, again.fraction, again.load) == (1, raised.value.fraction, raised.value.load)
 
 
+@pytest.mark.gate
 def test_an_error_leaves_a_worker_process():
     text = "[pin]\n"
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as executor:
         with pytest.raises(InputError, match="E: Young's modulus must be positive"):
-            executor.submit(fastpin.Material, -1.0, 0.3).result(timeout=60)
+            executor.submit(fastpin.Material, -1.0, 0.3).result()
         with pytest.raises(CaseFileError) as raised:
-            executor.submit(fastpin.casefile.parse_case, text).result(timeout=60)
+            executor.submit(fastpin.casefile.parse_case, text).result()
     with pytest.raises(CaseFileError) as here:
         fastpin.casefile.parse_case(text)
     assert raised.value.problems == here.value.problems

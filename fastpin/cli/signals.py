@@ -1,0 +1,53 @@
+"""The signals that stop a command: they all raise KeyboardInterrupt, as Ctrl-C does."""
+
+from __future__ import annotations
+
+import _thread
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from fastpin.runtime.stopping import STOPPING
+
+AGAIN = 0.05
+"""Seconds until a lost interrupt is raised again."""
+
+
+@contextmanager
+def stopped_by_signals() -> Iterator[None]:
+    """Interrupt the block by each of these signals, unless the parent of this process has made it ignore the signal.
+
+    Python drops an interrupt that falls into a finalizer or a callback, and prints a note. It is raised again.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    taken = [number for number in STOPPING if signal.getsignal(number) == signal.SIG_DFL]
+    hook = sys.unraisablehook
+
+    def hear_again(lost: Any) -> None:
+        if issubclass(lost.exc_type, KeyboardInterrupt):
+            _thread.start_new_thread(_interrupt, ())
+        else:
+            hook(lost)
+
+    for number in taken:
+        signal.signal(number, signal.default_int_handler)
+    sys.unraisablehook = hear_again
+    try:
+        yield
+    finally:
+        sys.unraisablehook = hook
+        for number in taken:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _interrupt() -> None:
+    """Interrupt the main thread once it has left its callback, by a signal that it does not ignore."""
+    time.sleep(AGAIN)
+    heard = [number for number in STOPPING if callable(signal.getsignal(number))]
+    _thread.interrupt_main(*heard[:1])

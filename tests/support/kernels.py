@@ -1,0 +1,21 @@
+"""Kernels as plain Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+
+def python(kernel: Callable[..., Any]) -> Callable[..., Any]:
+    """A kernel as plain Python. NUMBA_DISABLE_JIT=1 leaves no other form."""
+    return getattr(kernel, "py_func", kernel)
+
+
+def run_as_python(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Replace all kernels of a module by plain Python."""
+    for name, function in vars(module).items():
+        if hasattr(function, "py_func"):
+            monkeypatch.setattr(module, name, function.py_func)
