@@ -210,4 +210,5 @@ def test_no_test_imports_a_test_or_changes_the_path():
 
 def test_every_test_of_the_survey_is_marked():
     for path in (ROOT / "tests" / "survey").glob("test_*.py"):
-        assert "\npytestmark = pytest.mark.survey\n" in path.read_text(encoding="utf-8"), path
+        text = path.read_text(encoding="utf-8")
+        assert re.search(r"^pytestmark = \[?\s*pytest\.mark\.survey", text, re.MULTILINE), path
