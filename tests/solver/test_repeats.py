@@ -55,9 +55,7 @@ def test_what_repeats_has_the_bits_of_what_is_solved_again(request, kind, progra
         assert short.statistics["events"] < whole.statistics["events"]
 
 
-@pytest.mark.parametrize(
-    "program", some_gate(some_gate(list(PROGRAMS), "pressed again and again"), "begins inside a period")
-)
+@pytest.mark.parametrize("program", some_gate(PROGRAMS, "pressed again and again", "begins inside a period"))
 def test_a_split_history_has_the_bits_of_the_whole(free, program):
     history = PROGRAMS[program]
     whole = solve(free, history, grid=grid_of(free, program))
