@@ -60,11 +60,11 @@ def load(code: Code, name: str, module: str) -> Callable[..., Any]:
 
     :class:`ImportError` if it is not whole, or the process lacks a symbol, with which LLVM would end the process.
     """
+    if missing := unknown_symbols(code.foreign):
+        raise ImportError(f"no {', '.join(missing)}")
     parsed = llvm.ObjectFileRef.from_data(code.machine_code)
     if not parsed:
         raise ImportError("no object file")
-    if missing := unknown_symbols(code.foreign):
-        raise ImportError(f"no {', '.join(missing)}")
     _name_symbols(code.mathematics)
     engine = _engine()
     engine.add_object_file(parsed)

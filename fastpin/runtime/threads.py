@@ -17,6 +17,7 @@ STACK = 2**24
 """Bytes of the stack of an undisturbed thread: compilers go deep, and some systems give threads little."""
 
 _alone = ContextVar("_alone", default=False)
+_starting = threading.Lock()
 
 
 def cores() -> int:
@@ -73,11 +74,12 @@ class _Undisturbed(threading.Thread):
             self.works.release()
 
     def start(self) -> None:
-        before = threading.stack_size(STACK)
-        try:
-            super().start()
-        finally:
-            threading.stack_size(before)
+        with _starting:
+            before = threading.stack_size(STACK)
+            try:
+                super().start()
+            finally:
+                threading.stack_size(before)
 
 
 def undisturbed(work: Callable[[], Found]) -> Found:

@@ -57,6 +57,7 @@ def test_cracks_beside_a_pin(cycle, name):
     assert found.K_II[at] / 1e6 == pytest.approx(lowest[:, 1], rel=2e-4, abs=2e-3 if is_small else 1e-4)
 
 
+@pytest.mark.gate
 def test_an_inclined_crack_beside_a_pin(cycle):
     found = stress_intensity(cycle("bulk"), Crack(math.radians(-120.0), math.radians(20.0)), LENGTHS)
     assert found.K_I.max(axis=0) / 1e6 == pytest.approx([1.3593, 4.0419, 9.0847, 12.816], rel=2e-5, abs=6e-5)

@@ -74,6 +74,7 @@ def test_cycles_below_the_threshold_do_nothing(levels):
     assert never.arrest == never.length[0]
 
 
+@pytest.mark.gate
 def test_a_crack_stops_where_its_largest_cycle_does(cycle):
     stops, crack = cycle("small"), Crack(math.radians(-24.0))
     law = Walker(1e-10, 3.0, 0.5, 3.0 * M, intrinsic_length=50e-6)

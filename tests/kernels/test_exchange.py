@@ -112,6 +112,7 @@ def dense(matrix, tableau, updates):
     return matrix
 
 
+@pytest.mark.gate
 def test_exchange_solves_for_the_other_member_of_the_pair(kernel):
     rng = np.random.default_rng(1)
     m, n, p = 9, 6, 2
@@ -129,6 +130,7 @@ def test_exchange_solves_for_the_other_member_of_the_pair(kernel):
     assert np.allclose(new @ swapped_z + tableau.rates, swapped_y, atol=1e-12)
 
 
+@pytest.mark.gate
 def test_row_and_column_operations_and_columns_brought_up_to_date(kernel):
     rng = np.random.default_rng(2)
     matrix, rates = rng.normal(size=(7, 5)), rng.normal(size=7)
@@ -207,6 +209,7 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
         assert np.abs((rates - others)[kept]).max() < 1e-9 * np.abs(others).max()
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("sets", [*gate("stuck"), "zones"])
 def test_columns_by_chunks_are_those_one_by_one(system, sets, monkeypatch):
     """Hundreds of updates: products by chunks, single columns, the naive way, and products with the whole tableau."""

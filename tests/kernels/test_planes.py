@@ -97,6 +97,7 @@ def test_a_swing_without_push_counts_nothing():
     assert np.isnan(out[0, 1])
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("excess", [1e-1, 1e-3, 1e-5, 1e-7])
 def test_planes_that_are_hardly_pushed_are_found(excess):
     """V is above 0 on a few planes only, by a small excess."""

@@ -189,6 +189,7 @@ def test_stick_zones_have_no_gaps_and_no_jogs() -> None:
     assert np.abs(np.diff(np.log(wide["rho_deg"][conforming]), 2)).max() < 0.012
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("name", SWEEPS)
 def test_sweeps_agree_with_separate_solutions(name: str) -> None:
     for curve in computed(name)[1::2]:

@@ -100,6 +100,7 @@ def test_every_rule_holds(texts):
     assert layout.broken(texts) == []
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     "name",
     some_gate(

@@ -192,6 +192,7 @@ def test_code_is_chosen_by_the_types_of_the_arguments() -> None:
             assert (one == other) == (kind == other_kind), (kind, other_kind)
 
 
+@pytest.mark.gate
 def test_other_types_are_left_to_the_compiler() -> None:
     with pytest.raises(KeyError):
         jit.argument_types((np.float32(1.0),))

@@ -90,6 +90,7 @@ def test_a_result_of_numba_is_stored_when_a_part_changes(
     assert value() == before
 
 
+@pytest.mark.gate
 def test_code_is_stored_for_versions_that_have_no_file(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     forget()
     monkeypatch.setattr(stored, "folder", lambda name: Path(os.devnull, name))

@@ -412,6 +412,7 @@ def test_a_bonded_bush_sits_in_a_lug_of_any_outline():
     _check(results[0].states)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("method", [*gate({}), {"method": "increment", "increments": 20}])
 def test_a_bonded_bush_must_be_held_by_its_press_fit(method):
     problem = _bonded(joint(0.28, 0.1, inside=lug(0.33, "strain")))

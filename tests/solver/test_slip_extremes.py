@@ -125,6 +125,7 @@ def test_readings_across_snaps_approach_the_extremes(name: str) -> None:
     assert missed[1] < 0.3 * missed[0]
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("name", list(CASES))
 def test_extremes_do_not_depend_on_the_states_between(name: str) -> None:
     first = solved(name)

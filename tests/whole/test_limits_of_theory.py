@@ -38,6 +38,7 @@ def order(curve: Curve, first: float, last: float) -> float:
 # --- half-planes ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     ("quantity", "first", "last", "expected"),
     [
