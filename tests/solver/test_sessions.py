@@ -18,7 +18,7 @@ from fastpin.solver.place import ROWS, Loads
 from fastpin.solver.run import Run
 from fastpin.states.state import State
 from fastpin.verification.body_cases import BRONZE
-from tests.support.tiers import seeds, some_gate
+from tests.support.tiers import seeds
 
 BOTTOM = -0.5 * np.pi
 WALK = [
@@ -144,11 +144,12 @@ GROWING = {
     "large clearance": ({"clearance": 50.0}, [{"P": 1.0}, {"P": 2.0, "Q": 0.1}, {"Q": -0.1}]),
     "driven": ({"drive": "both"}, [{"uy": -0.3}, {"ux": 0.1}, {"ux": 0.3, "uy": -0.35}, {"ux": -0.2}]),
     "ring": ({"plate_body": Ring(2.0, "half")}, [{"P": 0.5}, {"Q": 0.6}, {"P": 0.0, "Q": -0.5}]),
-    "neat fit": ({"clearance": 0.0}, [{"P": 1.0}, {"P": 0.0}, {"Q": 0.3, "P": 1.0}]),
+    # A neat fit without load touches all round, or nowhere: rounding decides. So it keeps a hundredth of its load.
+    "neat fit": ({"clearance": 0.0}, [{"P": 1.0}, {"P": 0.01}, {"Q": 0.3, "P": 1.0}]),
 }
 
 
-@pytest.mark.parametrize("name", some_gate(GROWING, "neat fit"))
+@pytest.mark.parametrize("name", GROWING)
 def test_a_grown_arc_has_the_states_of_solve_on_it(titanium_in_aluminium, name):
     fields, loads = GROWING[name]
     problem = problem_of(titanium_in_aluminium, **fields)
