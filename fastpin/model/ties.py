@@ -7,9 +7,9 @@ their places: the first one in time, or the place farthest to the right round th
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fastpin.model.angles import AT_TOP
 
@@ -17,7 +17,7 @@ TIE = 1e-9
 """Relative difference up to which two largest values are equal. Mirrored histories agree to 1e-12."""
 
 
-def top(values: ArrayLike) -> int:
+def top(values: Sequence[float] | np.ndarray) -> int:
     """The place of the largest of `values`, in time: of equal ones the first."""
     found = np.ravel(values)
     return int(np.argmax(is_top(found)))

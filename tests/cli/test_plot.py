@@ -107,7 +107,7 @@ def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, of_kind, tm
             assert (tmp_path / "memory.svg").read_bytes() == (tmp_path / "file.svg").read_bytes(), name
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 @pytest.mark.usefixtures("coarse")
 def test_all_kinds_but_that_of_cycles_show_a_life_of_wear(life, tmp_path, monkeypatch, capsys):
     for name, kind in KINDS.items():

@@ -19,7 +19,7 @@ from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
 from fastpin.solver.snap import _step_on_springs, find_state_beyond
 from tests.support.snap_cases import GRIPPED, TURNED, problem
-from tests.support.tiers import gate
+from tests.support.tiers import some_survey
 
 
 @pytest.fixture
@@ -139,7 +139,7 @@ def test_a_pin_that_creeps_to_an_end_of_the_arc_is_an_error(pressed):
 
 @pytest.mark.parametrize(
     "nodes",
-    [{"grid": Grid.circle(120)}, *gate({"nodes": 121})],
+    some_survey([{"grid": Grid.circle(120)}, {"nodes": 121}], {"nodes": 121}),
     ids=["a given grid", "a grid that is searched for"],
 )
 def test_a_snap_to_nowhere_is_told(nodes, monkeypatch):
