@@ -87,7 +87,7 @@ def written(path: Path, transactions: int, machine: Machine | None = None) -> No
     file.release()
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_a_process_may_die_after_any_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every single moment: 75 transactions are enough for the index of the rows to split."""
     machine = Machine(monkeypatch)
