@@ -43,12 +43,17 @@ def said(*command: object) -> str:
     return out.getvalue()
 
 
+TIED = ("place", "load_point")
+"""Where an extreme is. Rounding chose among equal ones before there was a rule."""
+
+
 def assert_kept(new: Any, old: Any, place: str = "") -> None:
     """Check that nothing of an older summary is missing or different. Numbers may differ by rounding."""
     if isinstance(old, dict):
         assert old.keys() <= new.keys(), place
         for key in old:
-            assert_kept(new[key], old[key], f"{place}.{key}")
+            if not (".extremes." in place and key in TIED):
+                assert_kept(new[key], old[key], f"{place}.{key}")
     elif isinstance(old, list):
         assert len(new) == len(old), place
         for index, both in enumerate(zip(new, old, strict=True)):

@@ -146,7 +146,7 @@ def test_a_tolerance_study_has_the_swing_of_the_least_margin(folder, capsys):
     at = next(k for k, line in enumerate(lines) if line.startswith("least: nominal "))
     fields = [line.split()[0] for line in lines[at + 2 :] if line.strip()]
     assert {"loads", "plate.yield_strength"} <= set(fields[:3])
-    assert (folder / "tornado.png").stat().st_size > 10_000
+    assert (folder / "tornado.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(
