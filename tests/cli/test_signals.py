@@ -39,7 +39,7 @@ COMMANDS = {
     ),
     "wear cycles.toml --cycles 1e7 --coefficient 1e-15 --nodes 61 -o a.h5": (
         "a.h5",
-        r" after .*; continue with the same command and --resume",
+        r"( after .*)?; continue with the same command and --resume",
     ),
     "sweep plan.toml -o out --workers 2": ("out/index.sqlite", f"; {KEPT}"),
     "tolerances tolerances.toml -o out --workers 2": ("out/index.sqlite", f"; {KEPT}"),
