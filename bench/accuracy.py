@@ -479,7 +479,8 @@ def _count_quantities(state: State, better: list[State], pairs: Found, studies: 
             abs(sequence[-1][name] - true[name]),
         )
         if math.isinf(bars[name]) or math.isnan(doubt):
-            pairs[group] += [None] * (not math.isnan(value))
+            if not math.isnan(value):
+                pairs[group].append(None)
         elif error > rounding:
             pairs[group].append((error, doubt, bars[name]))
         found = estimate((8.0, 4.0, 2.0, 1.0), [each[name] for each in sequence], rounding)

@@ -101,7 +101,7 @@ class Copy:
         """Copy the files that git knows, and the machine code."""
         command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
         listed = subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=True).stdout.split("\0")
-        codes = checkout.glob("fastpin/*/__pycache__/*.nb*")
+        codes = (path for path in checkout.glob("fastpin/*/__pycache__/*") if path.suffix != ".pyc")
         for path in [*(checkout / name for name in listed if name), *codes]:
             if path.is_file():
                 target = folder / path.relative_to(checkout)

@@ -294,10 +294,10 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
     """
     if body not in elastic_bodies(problem) or not any(state.in_contact for state in states):
         return ""
-    known: dict[Hashable, State] = {}
+    first: dict[Hashable, State] = {}
     for state in states:  # Steady cycles repeat their states, and a peak takes some milliseconds.
-        known.setdefault(_identity(state), state)
-    distinct = list(known.values())
+        first.setdefault(_identity(state), state)
+    distinct = list(first.values())
     state = distinct[top([state.peak_hoop_stress(body).value for state in distinct])]
     peak = state.peak_hoop_stress(body)
     resolved = "" if peak.resolved else " (not resolved by the nodes)"

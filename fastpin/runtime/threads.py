@@ -88,7 +88,8 @@ def undisturbed(work: Callable[[], Found]) -> Found:
     """
     if isinstance(threading.current_thread(), _Undisturbed):
         return work()
-    thread, raised = _Undisturbed(work), None
+    thread = _Undisturbed(work)
+    raised: BaseException | None = None
     try:
         thread.start()
     except RuntimeError:  # no more threads, or the interpreter is about to end

@@ -24,6 +24,7 @@ from fastpin.report import json_schema
 from fastpin.report.case import describe
 from fastpin.report.summary import document
 from tests.support.strategies import laminates
+from tests.support.tiers import gate
 
 OWN = "{ E1 = 135e9, E2 = 9e9, G12 = 5e9, nu12 = 0.3, thickness = 0.2e-3"
 LAYUP = 'layup = "[0/45/-45/90]2s"\nply = "T300/5208"\n'
@@ -263,7 +264,7 @@ CONSTANTS = FatigueConstants(1e9, -0.1, 0.5, -0.6, 5e8, -0.1, 0.5, -0.6)
 @pytest.mark.parametrize(
     "call",
     [
-        lambda states: damage.fatigue(states, "smith-watson-topper", "plate", constants=CONSTANTS),
+        *gate(lambda states: damage.fatigue(states, "smith-watson-topper", "plate", constants=CONSTANTS)),
         lambda states: damage.spectrum_damage(states, "smith-watson-topper", "plate", constants=CONSTANTS),
         lambda states: cracks.stress_intensity(states[0], cracks.Crack(0.3), [1e-4]),
         lambda states: check_crack(states[0].problem, CrackGrowth(1e-4, 1e-3, cracks.Walker(1e-11, 3.0))),

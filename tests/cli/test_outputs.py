@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+import fastpin
 from fastpin.casefile.lug import LUG_EXAMPLE
 from fastpin.casefile.reader import EXAMPLE
 from fastpin.cli.main import main
@@ -87,7 +88,8 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "tolerances.toml").write_text(
         'case = "case.toml"\nsamples = 2\n[tolerances]\ncontact.friction = { from = 0.2, to = 0.5 }\n'
     )
-    assert main(["run", str(folder / "case.toml"), "--nodes", "41", "-o", str(folder / "r.h5")]) == 0
+    case = fastpin.read_case(folder / "case.toml")
+    fastpin.record(case.problem, case.history, folder / "r.h5", nodes=41)
     plan = read_plan(folder / "plan.toml")
     with Index(folder, write=True) as index:
         index.expect(plan, plan.points)

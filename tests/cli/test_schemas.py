@@ -70,7 +70,7 @@ def test_every_command_with_json_has_a_schema() -> None:
 
 
 @pytest.mark.parametrize(
-    "case", some_gate(CASES, "example", "dimensionless", "bushed", "bush that slips", "not followed")
+    "case", some_gate(CASES, "example", "dimensionless", "bushed", "bush that slips", "not followed", "lug")
 )
 def test_summaries(case: str, tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(CASES[case])

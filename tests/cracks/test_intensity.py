@@ -39,6 +39,7 @@ TABLE = {
 LENGTHS = [1e-5, 1e-4, 1e-3, 1e-2]
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("name", TABLE)
 def test_cracks_beside_a_pin(cycle, name):
     found = stress_intensity(cycle(name), Crack(math.radians(DIRECTION[name])), LENGTHS)

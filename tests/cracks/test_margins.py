@@ -8,6 +8,7 @@ import pytest
 from fastpin.cracks import Crack, Growth, Nasgro, Walker, growth, paris, spectrum_growth
 from fastpin.cracks.margins import crack_margins
 from fastpin.states.margins import smallest_margin
+from tests.support.tiers import gate
 
 M = 1e6
 """Pa sqrt(m) in MPa sqrt(m)."""
@@ -83,7 +84,7 @@ def test_without_a_toughness_fracture_is_not_known(small_states):
         assert row.remark.startswith("not known: the law of growth has no toughness; length ")
 
 
-@pytest.mark.parametrize("follow", [growth, spectrum_growth])
+@pytest.mark.parametrize("follow", [growth, *gate(spectrum_growth)])
 def test_the_state_with_the_largest_K_governs(small_states, follow):
     """At each length the load point is that of the state whose own K_I is the largest."""
     law = Nasgro(1e-10, 2.5, 1.0, 1.0, 1.0 * M, 30.0 * M)

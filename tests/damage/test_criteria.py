@@ -109,6 +109,7 @@ def test_findley_by_hand():
     assert math.tan(2.0 * abs(found.angle[0])) == pytest.approx(0.5 / k, rel=1e-12)
 
 
+@pytest.mark.gate
 def test_dang_van_takes_off_the_residual_stress():
     """A mean shear stress does nothing; a mean tension counts through the hydrostatic stress only."""
     a = 0.4

@@ -125,6 +125,7 @@ def test_a_longer_life_leaves_a_smaller_factor(spectrum):
     assert just.factor == pytest.approx(1.0, rel=1e-5)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("method", some_gate(["point", "line", *gate("area")], "point"))
 def test_the_place_at_a_distance_is_that_of_the_edge(spectrum, method):
     how = FatigueAssessment(life=1e4, bodies="seat", method=method)

@@ -298,6 +298,7 @@ def test_a_repeated_block_enters_with_its_number():
     assert found.damage[at] == pytest.approx(counted.worst(history, every)[0][0], rel=1e-9)
 
 
+@pytest.mark.gate
 def test_bodies_are_ranked_with_their_own_constants():
     weak = dataclasses.replace(MATERIAL.fatigue, fatigue_strength=800e6)
     bush = Bushing(fastpin.Material(110e9, 0.34, "bronze", weak), 12.5e-3, 10e-6)

@@ -24,6 +24,7 @@ def problem(pin=STEEL, plate=TURNED, **fields) -> Problem:
     return Problem.from_load_parameter(MaterialPair(pin, plate, "stress"), 0.1, 0.3, **fields)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("body", [*gate({}), {"pin_body": Tube(0.4)}], ids=["solid", "tube"])
 @pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS.keys())
 def test_an_operator_without_stored_entries_is_the_same(monkeypatch, grid, body):

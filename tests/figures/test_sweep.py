@@ -157,6 +157,7 @@ def test_contours_of_decades_stand_at_powers_of_ten(smooth: Chart) -> None:
     assert figure.axes[1].get_yscale() == "log"
 
 
+@pytest.mark.gate
 def test_numbers_of_logarithmic_axes_are_plain(smooth: Chart) -> None:
     figure = plot_sweep(smooth)
     figure.draw_without_rendering()

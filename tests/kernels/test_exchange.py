@@ -206,7 +206,7 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
         assert np.abs((rates - others)[kept]).max() < 1e-9 * np.abs(others).max()
 
 
-@pytest.mark.parametrize("sets", ["stuck", "zones"])
+@pytest.mark.parametrize("sets", [*gate("stuck"), "zones"])
 def test_columns_by_chunks_are_those_one_by_one(system, sets, monkeypatch):
     """Hundreds of updates: products by chunks, single columns, the naive way, and products with the whole tableau."""
     monkeypatch.setattr(solver_unknowns, "LEAST_NEIGHBOURS", 2)

@@ -14,6 +14,7 @@ from fastpin.kernels import influence
 from fastpin.model.grid import Grid
 from tests.support.integrals import log_integrals
 from tests.support.kernels import python
+from tests.support.tiers import gate
 
 RATIO = 0.31
 POINT, WEIGHT = np.polynomial.legendre.leggauss(16)
@@ -124,7 +125,7 @@ def cauchy(grid: Grid, uniform: bool) -> np.ndarray:
 # --- Clausen's function -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("call", [influence.clausen, python(influence.clausen)], ids=["compiled", "python"])
+@pytest.mark.parametrize("call", [*gate(influence.clausen), python(influence.clausen)], ids=["compiled", "python"])
 def test_clausen_against_mpmath(call):
     points = [0.0, 1e-300, 1e-9, 0.3, 1.999, 2.001, math.pi, 3.5, 6.28, 6.3, 20.0, 1000.0]
     for x in [*points, *(-p for p in points), *np.linspace(-7.0, 7.0, 80)]:

@@ -47,7 +47,8 @@ def test_it_is_the_inverse(inverse, size):
 
 
 def test_a_singular_leading_block_is_not_hidden():
-    found = toeplitz.inverse(np.array([1.0, 1.0]), np.array([2.0, 0.0]), np.zeros(2))
+    with np.errstate(all="ignore"):  # compiled code divides by zero without a warning
+        found = toeplitz.inverse(np.array([1.0, 1.0]), np.array([2.0, 0.0]), np.zeros(2))
     assert not np.all(np.isfinite(found))
 
 

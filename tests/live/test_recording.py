@@ -43,6 +43,7 @@ def test_a_title_cannot_end_the_script() -> None:
     assert recorded(page)["case"]["title"] == title
 
 
+@pytest.mark.gate
 def test_a_recording_is_the_same_every_time() -> None:
     page = Page(contact(nodes=21))
     page.tell("load", loads={"Q": 1e5})

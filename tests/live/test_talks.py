@@ -290,6 +290,7 @@ def test_a_long_history_is_stopped_by_its_page(monkeypatch: pytest.MonkeyPatch) 
     talked(Server(small), work)
 
 
+@pytest.mark.gate
 def test_a_long_history_of_one_visitor_lets_the_others_pass(monkeypatch: pytest.MonkeyPatch) -> None:
     server = Server(small, clock=step_by_step())
 

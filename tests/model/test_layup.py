@@ -92,6 +92,7 @@ def test_a_stack_has_a_usual_text(angles: list[float], text: str) -> None:
     assert layup_text(angles) == text
 
 
+@pytest.mark.gate
 @given(
     st.lists(st.sampled_from([0.0, 90.0, 45.0, -45.0]) | st.floats(-360.0, 360.0), min_size=1, max_size=30),
     st.booleans(),

@@ -272,6 +272,7 @@ def test_a_convergence_study_is_shown(only: Callable[..., None], tmp_path: Path)
     assert "There is no convergence study" not in words
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(
     only: Callable[..., None], tmp_path: Path

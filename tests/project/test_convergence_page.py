@@ -20,6 +20,7 @@ def values(line: str) -> list[str]:
     return [cells[0], *cells[2 : 2 + COLUMNS]]
 
 
+@pytest.mark.gate
 def test_the_study_of_the_built_in_case_has_its_values(capsys: pytest.CaptureFixture[str]) -> None:
     start = PAGE.index("corner 3: P = 2.42 MN/m")
     shown = [values(line) for line in PAGE[start : PAGE.index("increment solver", start)].splitlines()[3:] if line]

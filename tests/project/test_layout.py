@@ -101,7 +101,11 @@ def test_every_rule_holds(texts):
 
 
 @pytest.mark.parametrize(
-    "name", some_gate(list(BREAKS), "a folder without a rank", "a kernel that imports the package")
+    "name",
+    some_gate(
+        some_gate(list(BREAKS), "a folder without a rank", "a kernel that imports the package"),
+        "a folder inside a folder",
+    ),
 )
 def test_a_broken_rule_is_noticed(name, texts):
     rule, file, text = BREAKS[name]
@@ -206,4 +210,5 @@ def test_no_test_imports_a_test_or_changes_the_path():
 
 def test_every_test_of_the_survey_is_marked():
     for path in (ROOT / "tests" / "survey").glob("test_*.py"):
-        assert "\npytestmark = pytest.mark.survey\n" in path.read_text(encoding="utf-8"), path
+        text = path.read_text(encoding="utf-8")
+        assert re.search(r"^pytestmark = \[?\s*pytest\.mark\.survey", text, re.MULTILINE), path

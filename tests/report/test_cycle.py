@@ -82,6 +82,7 @@ def in_sheet(fatigue: FatigueConstants | None, **options: object) -> Result:
     return solve(Problem(pair, 0.01, 2e-5, 0.4), HISTORY, nodes=61, **options)
 
 
+@pytest.mark.gate
 def test_the_fatigue_of_the_plate_is_told_with_plane_and_life() -> None:
     result = in_sheet(MATERIALS["2024-T3"].fatigue)
     spot = result.fatigue("smith-watson-topper").hot_spot
@@ -98,6 +99,7 @@ def test_fatigue_is_told_without_a_life_if_constants_for_it_are_missing() -> Non
     assert "Smith-Watson-Topper" in fatigue_lines(result.states, result.cycles[-1])[0]
 
 
+@pytest.mark.gate
 def test_fatigue_of_bush_and_plate_is_told_if_they_have_constants() -> None:
     known, bronze = MATERIALS["2024-T3"].fatigue, Material(103e9, 0.34)
     history = LoadHistory([{"P": 1e6}, {"P": 2e5}]).repeated(2)
@@ -133,6 +135,7 @@ def test_no_fatigue_is_told_without_constants_or_states() -> None:
     assert fatigue_lines(corners[:-1], result.cycles[-1]) == []
 
 
+@pytest.mark.gate
 def test_the_damage_of_a_history_without_cycles_is_told() -> None:
     """All corners must be there, three at least, and not too many; the material needs constants of the life."""
     history = LoadHistory([{"P": 1e6}, {"P": 2e6, "Q": 4e5}, {"P": 5e5}])

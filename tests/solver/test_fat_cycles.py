@@ -319,6 +319,7 @@ def test_a_body_that_does_not_wear_keeps_its_profile():
     assert nothing.gap.hole == case.problem.gap.hole
 
 
+@pytest.mark.gate
 def test_states_lie_over_one_cycle_on_the_worn_profile():
     last = every_cycle()[-1]
     loads = [state.load["Q"] for state in last.states]

@@ -94,7 +94,7 @@ CONTACTS = [zones((15, 45)), zones((10, 20), (30, 50)), zones((28, 32))]
 
 
 @pytest.mark.parametrize("grid", some_gate(GRIDS, "arc"))
-@pytest.mark.parametrize("case", some_gate(CASES, "plain"))
+@pytest.mark.parametrize("case", some_gate(CASES, "plain", "driven"))
 def test_a_held_contact_begins_with_the_tableau_of_a_factorisation(titanium_in_aluminium, case, grid):
     system = system_of(titanium_in_aluminium, case, grid)
     memory = TableauMemory(system)

@@ -32,7 +32,7 @@ def free(similar):
     return Problem.from_load_parameter(similar, 0.05, 0.55, "body")
 
 
-@pytest.mark.parametrize("keep", ["all", "cycles", "every 3"])
+@pytest.mark.parametrize("keep", some_gate(["all", "cycles", "every 3"], "all", "all", "all"))
 @pytest.mark.parametrize(
     "program",
     some_gate(list(PROGRAMS), "pressed again and again", "pressed again and again", "pressed again and again"),
@@ -55,7 +55,7 @@ def test_what_repeats_has_the_bits_of_what_is_solved_again(request, kind, progra
         assert short.statistics["events"] < whole.statistics["events"]
 
 
-@pytest.mark.parametrize("program", some_gate(list(PROGRAMS), "pressed again and again"))
+@pytest.mark.parametrize("program", some_gate(PROGRAMS, "pressed again and again", "begins inside a period"))
 def test_a_split_history_has_the_bits_of_the_whole(free, program):
     history = PROGRAMS[program]
     whole = solve(free, history, grid=grid_of(free, program))

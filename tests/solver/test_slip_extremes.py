@@ -58,6 +58,7 @@ def assert_contains(states: Sequence[State]) -> None:
         corner = [state] if state.fraction == 1.0 else corner
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(  # increments end at a snap
     ("name", "method"),
     [(name, method) for name in CASES for method in METHODS if method == "path" or "snap" not in name],

@@ -96,6 +96,7 @@ def test_more_nodes_keep_the_grading():
 # --- the survey and the grid it gives -----------------------------------------------------------------------
 
 
+@pytest.mark.gate
 def test_the_survey_finds_the_contacts_of_the_exact_run():
     case = problem()
     values = LoadHistory(SMALL_FIRST).values()

@@ -145,6 +145,7 @@ def test_only_the_end_of_a_file_goes_on_with_bars(problem, expected, path):
         solve(problem, q(0.1), start=part, error_bars=True)
 
 
+@pytest.mark.gate
 def test_damaged_coarse_states_are_one_sentence(problem, path):
     record(problem, HISTORY[:3], path, error_bars=True, **OPTIONS)
     with h5py.File(path, "r+") as file:

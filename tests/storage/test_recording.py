@@ -88,6 +88,7 @@ def test_the_file_holds_what_a_solution_returns(problem, path, program, keep):
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
 
 
+@pytest.mark.gate
 def test_a_history_that_begins_inside_a_cycle_goes_on_as_it_was(problem, path):
     history = (P + q(0.2, -0.2, 0.1).repeated(4))[2:]
     with pytest.raises(Interrupted):
@@ -202,6 +203,7 @@ def test_a_second_ctrl_c_ends_at_once_and_the_file_stays_good(problem, whole, pa
     assert_file(path, whole)
 
 
+@pytest.mark.gate
 def test_a_lost_load_is_kept_with_what_was_solved(similar, path):
     problem = Problem.from_load_parameter(similar, 0.5, 0.55)
     history = LoadHistory([{"P": 1.0}, {"Q": 0.2}, {"M": 2.0}])
@@ -344,6 +346,7 @@ def left(died, whole, path):
     return whole
 
 
+@pytest.mark.gate
 def test_a_dead_run_goes_on_from_its_checkpoint(left, path):
     assert checkpoint_of(path).exists()
     steps = []
@@ -353,6 +356,7 @@ def test_a_dead_run_goes_on_from_its_checkpoint(left, path):
     assert not checkpoint_of(path).exists()
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("damage", ["missing", "cut", "other"])
 def test_without_a_good_checkpoint_a_run_goes_on_from_its_beginning(left, path, damage, problem, caplog):
     checkpoint = checkpoint_of(path)
@@ -371,6 +375,7 @@ def test_without_a_good_checkpoint_a_run_goes_on_from_its_beginning(left, path, 
     assert "differ from those in the file" not in caplog.text
 
 
+@pytest.mark.gate
 def test_an_unfinished_run_is_not_overwritten_by_accident(left, path, problem):
     with pytest.raises(InputError, match="unfinished run"):
         follow(problem, RANDOM, path, nodes=61)
@@ -395,6 +400,7 @@ def test_an_unfinished_run_is_not_overwritten_by_accident(left, path, problem):
         follow(problem, RANDOM[:4], "/dev/null", nodes=61)
 
 
+@pytest.mark.gate
 def test_an_unfinished_run_can_be_looked_at_but_not_gone_on_from_its_end(left, path, problem):
     found = store.load(path)
     assert 25 <= len(found) <= 31
@@ -407,6 +413,7 @@ def test_an_unfinished_run_can_be_looked_at_but_not_gone_on_from_its_end(left, p
         store.load(path, after=len(found) + 1)
 
 
+@pytest.mark.gate
 def test_states_that_differ_from_those_in_the_file_are_reported(left, path, caplog):
     checkpoint_of(path).unlink()
     with h5py.File(path, "a") as file:
@@ -611,6 +618,7 @@ def test_bad_input_leaves_no_file(problem, path):
     assert len(list(path.parent.iterdir())) == 1
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("again", ["resume", "replace"])
 def test_a_checkpoint_that_is_a_link_is_neither_read_nor_written(left, path, again, problem):
     """A stranger's folder may hold a link to a file of the user beside a result."""
@@ -623,6 +631,7 @@ def test_a_checkpoint_that_is_a_link_is_neither_read_nor_written(left, path, aga
     assert precious.read_text() == "keep"
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("beside", [checkpoint_of, coarse_of])
 @pytest.mark.parametrize("again", ["resume", "replace"])
 def test_a_directory_beside_a_result_is_refused_before_the_work(left, path, beside, again, problem):

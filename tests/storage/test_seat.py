@@ -13,6 +13,7 @@ from fastpin.storage import store
 from tests.support.seats import sample_case, sample_seat, stored_sample
 
 
+@pytest.mark.gate
 def test_joint_and_seat_are_datasets_of_their_own(tmp_path: Path) -> None:
     path, result = stored_sample(tmp_path / "joint.h5"), sample_seat()
     assert result.seat is not None

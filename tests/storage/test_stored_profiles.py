@@ -81,6 +81,7 @@ def test_a_recorded_run_is_resumed_to_the_same_bits(tmp_path: Path) -> None:
     jsonschema.validate(found | {"problem": plain}, json_schema("run"))
 
 
+@pytest.mark.gate
 def test_a_profile_enters_ids_with_every_bit(tmp_path: Path) -> None:
     save(sample_result(), tmp_path / "plain.h5")
     assert '"gap"' not in canonical_json(canonical(stored_case(tmp_path / "plain.h5")))

@@ -119,6 +119,7 @@ def test_a_life_that_needs_finer_nodes_later_begins_anew_there(tmp_path, monkeyp
         life(**{**given, "grid": CASE.grid(21)})
 
 
+@pytest.mark.gate
 def test_a_life_that_ended_before_its_first_transaction_begins_anew(tmp_path, monkeypatch):
     path = tmp_path / "life.h5"
 
@@ -199,6 +200,7 @@ def spoil(array):
     array[-1] = np.nan if array.dtype.kind == "f" else -1
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("damage", [spoil, shorten, lambda array: array.resize(10**8, axis=0)])
 def test_a_damaged_life_is_not_continued(tmp_path, damage):
     path = tmp_path / "life.h5"
@@ -213,6 +215,7 @@ def test_a_damaged_life_is_not_continued(tmp_path, damage):
             life(path, resume=True)
 
 
+@pytest.mark.gate
 def test_a_life_without_a_stored_cycle_keeps_its_title(tmp_path, monkeypatch):
     path = tmp_path / "life.h5"
 

@@ -54,12 +54,14 @@ def test_a_smooth_peak_is_of_second_order(similar: MaterialPair) -> None:
             assert abs(each.values[-1] - true) <= each.estimate.bar
 
 
+@pytest.mark.gate
 def test_what_balance_and_symmetry_make_exact_has_no_order(study: Convergence) -> None:
     for name, corner in (("P", 1), ("Q", 3), ("M", 2), ("rotation", 1), ("dx", 1), ("shear_integral", 1)):
         assert series(study, name, corner).estimate.verdict == "to rounding", name
     assert series(study, "work").estimate.verdict != "to rounding"
 
 
+@pytest.mark.gate
 def test_differences_are_relative_to_the_value_and_for_places_to_the_contact(study: Convergence) -> None:
     peak, place, motion = (series(study, name) for name in ("peak_pressure", "peak_shear_angle", "contact_1_start"))
     width = series(study, "contact_width").values[-1]
@@ -71,6 +73,7 @@ def test_differences_are_relative_to_the_value_and_for_places_to_the_contact(stu
     assert zero.reference == convergence.LEAST_REFERENCE * zero.size > abs(zero.values[-1])
 
 
+@pytest.mark.gate
 def test_all_grids_have_one_arc_and_a_node_under_the_first_force(study: Convergence, problem: Problem) -> None:
     assert study.complete
     assert list(study.loads) == [1, 2, 3]
@@ -82,6 +85,7 @@ def test_all_grids_have_one_arc_and_a_node_under_the_first_force(study: Converge
         assert solve(problem, CORNERS, grid=grid)[-1].dissipation == value
 
 
+@pytest.mark.gate
 def test_increments_tend_to_the_path_on_the_same_grid(study: Convergence, problem: Problem) -> None:
     path, increment = study.studies
     assert (path.method, path.counts, increment.method, increment.counts) == (

@@ -311,6 +311,7 @@ def test_interference_fit_opens_evenly_under_one_sided_stress(titanium_in_alumin
         assert state.work - state.energy - state.dissipation == pytest.approx(0.0, abs=1e-3 * abs(state.energy))
 
 
+@pytest.mark.gate
 def test_a_contact_narrower_than_the_nodes_gets_nodes_where_it_is(titanium_in_aluminium):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
     corners = [{"P": 1e-4}, {"P": 1.0}]

@@ -145,6 +145,7 @@ def test_the_check_knows_the_displacement_of_a_lug_by_loads():
     assert max(each["slip"] for each in found) < 1e-12
 
 
+@pytest.mark.gate
 def test_wrong_directions_of_slip_are_found():
     case = generate("moderate_stress", 2)
     result = solve(case.problem, case.history, between=39, **case.options)
