@@ -27,11 +27,11 @@ def stopped_by_signals() -> Iterator[None]:
         yield
         return
     taken = [number for number in STOPPING if signal.getsignal(number) == signal.SIG_DFL]
-    hook = sys.unraisablehook
+    hook, thread = sys.unraisablehook, threading.get_ident()
 
     def hear_again(lost: Any) -> None:
         if issubclass(lost.exc_type, KeyboardInterrupt):
-            _thread.start_new_thread(_interrupt, ())
+            _thread.start_new_thread(_interrupt, (thread,))
         else:
             hook(lost)
 
@@ -46,8 +46,11 @@ def stopped_by_signals() -> Iterator[None]:
             signal.signal(number, signal.SIG_DFL)
 
 
-def _interrupt() -> None:
+def _interrupt(thread: int) -> None:
     """Interrupt the main thread once it has left its callback, by a signal that it does not ignore."""
     time.sleep(AGAIN)
     heard = [number for number in STOPPING if callable(signal.getsignal(number))]
-    _thread.interrupt_main(*heard[:1])
+    if heard and hasattr(signal, "pthread_kill"):  # it also wakes a thread that sleeps or waits
+        signal.pthread_kill(thread, heard[0])
+    else:
+        _thread.interrupt_main(*heard[:1])

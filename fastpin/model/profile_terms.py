@@ -245,7 +245,10 @@ class Crown(Term):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "height", _size("height", self.height))
-        number("half_width", positive("half_width", self.half_width), LEAST_ANGLE, math.pi)
+        width = positive("half_width", self.half_width)
+        if not LEAST_ANGLE <= width <= math.pi:
+            limits = f"must lie between {math.degrees(LEAST_ANGLE):.2g} and 180 degrees"
+            raise InputError("half_width", f"{limits}, not {math.degrees(width):.6g}")
         self._check_angles()
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
@@ -331,8 +334,11 @@ class Samples(Term):
             angles, heights = angles[:-1], heights[:-1]
         if not 4 <= angles.size <= MOST_SAMPLES:
             raise InputError("angles", f"must be from 4 to {MOST_SAMPLES} angles within a turn, not {angles.size}")
-        if np.any(np.diff(angles) < LEAST_ANGLE) or angles[-1] - angles[0] >= turn:
+        if np.any(np.diff(angles) <= 0.0) or angles[-1] - angles[0] >= turn:
             raise InputError("angles", "must increase, all within one turn")
+        if (least := float(np.diff(angles).min())) < LEAST_ANGLE:
+            words = f"neighbours are {math.degrees(least):.2g} degrees apart, less than"
+            raise InputError("angles", f"{words} {math.degrees(LEAST_ANGLE):.2g}")
         widest = float(np.diff(angles, append=angles[0] + turn).max())
         if widest > WIDEST:
             words = (

@@ -69,6 +69,7 @@ FAULTS = {
     'small_cycles = "original"\nknee = -1': "knee: must lie between 1 and 1e+18, not -1",
     "length = 1e-5": 'length: belongs to the methods "point", "line" and "area", but method is "edge"',
     'method = "line"\nlength = 0': "length: must be positive, not 0",
+    'method = "area"\nlength = 1e300': "length: must lie between 1e-30 and 1e+30, not 1e+300",
     "angles = 400": "angles: must lie between -360 and 360, not 400",
     "straight = 1": "straight: must be true or false, not 1",
 }

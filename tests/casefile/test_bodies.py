@@ -270,6 +270,8 @@ def wrong_file(path: Path, kind: str) -> None:
         matrix[3, 3] = np.nan
     elif kind == "short":
         matrix = matrix[:5]
+    elif kind == "large":
+        matrix[2, 2] = 1e308
     texts = {
         "foreign": json.dumps({"name": "something else"}),
         "text": "no JSON",
@@ -278,6 +280,10 @@ def wrong_file(path: Path, kind: str) -> None:
         "version": json.dumps(good | {"version": 99}),
         "no matrix": json.dumps({key: value for key, value in good.items() if key != "matrix"}),
         "column": json.dumps(good | {"columns": {"P": [0.0] * 18}}),
+        "large column": json.dumps(good | {"columns": {"syy": [1e308] * 18}}),
+        "order": json.dumps(good | {"order": 10**9}),
+        "order in words": json.dumps(good | {"order": "4"}),
+        "true order": json.dumps(good | {"order": True}),
         "material": plate(nu=0.3).to_text(),
         "plane": plate(plane="stress").to_text(),
         "hole": plate(hole_radius=0.02).to_text(),
@@ -310,6 +316,11 @@ def wrong_file(path: Path, kind: str) -> None:
         ("version", "version: must be 1, not 99"),
         ("no matrix", "matrix: is missing"),
         ("column", 'columns: must be "sxx", "syy" or "sxy", not "P"'),
+        ("large", "matrix: must be at least -1e+09 and at most 1e+09, not 1e+308"),
+        ("large column", "columns.syy: must be at least -1e+09 and at most 1e+09, not 1e+308"),
+        ("order", "order: must be 4, the last harmonic of the matrix, not 1000000000"),
+        ("order in words", 'order: must be 4, the last harmonic of the matrix, not "4"'),
+        ("true order", "order: must be 4, the last harmonic of the matrix, not true"),
         ("huge", "is larger than 10,000,000 bytes"),
         ("missing", "there is no such file"),
         ("folder", "is a directory, a file is needed"),

@@ -151,6 +151,12 @@ GAPS: dict[str, str] = {
     "ends of a turn, not 0 and 2e-06",
     "pin = { angles = [0, 90, 180], values = [0, 1e-6, 0, 1e-6, 2e-6] }": "pin.values: must be as many as the angles, "
     "3, not 5",
+    "hole = { crown = 1e-6, centre = 0, half_width = 1e-300 }": "hole.half_width: must lie between 5.7e-08 and 180 "
+    "degrees, not 1e-300",
+    "hole = { crown = 1e300, centre = 0, half_width = 9 }": "hole.crown: must lie between -1e+100 "
+    "and 1e+100, not 1e+300",
+    "pin = { angles = [0, 1e-9, 120, 240], values = [0, 1e-6, 0, 0] }": "pin.angles: neighbours are 1e-09 degrees "
+    "apart, less than 5.7e-08",
     'pin = "none.csv"': "pin: none.csv: there is no such file",
     "pin = true": "pin: must be a number, not true",
     "hol = 1e-6": 'unknown key "hol" in [gap], did you mean "hole"?',

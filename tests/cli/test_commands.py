@@ -8,7 +8,6 @@ import logging
 import os
 import re
 import runpy
-import subprocess
 import sys
 import tomllib
 from collections.abc import Callable
@@ -28,6 +27,7 @@ from fastpin.runtime import jit, machine
 from fastpin.solver import solving
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.version import __version__
+from tests.support.processes import finished, python
 from tests.support.samples import sample_result
 from tests.support.tiers import some_gate
 
@@ -156,9 +156,7 @@ def test_heavy_imports_wait_until_they_are_needed(needed: str, case: Path) -> No
         "    print('\\nimported', command.split('|'), *(name for name in names if name in sys.modules))"
     )
     commands = [[str(case) if word == "CASE" else word for word in command] for command in LIGHT[needed]]
-    done = subprocess.run(
-        [sys.executable, "-c", code, *map("|".join, commands)], capture_output=True, text=True, check=True, cwd=ROOT
-    )
+    done = finished(python(code, *map("|".join, commands)))
     imported = [line for line in done.stdout.splitlines() if line.startswith("imported ")]
     assert imported == [f"imported {command} {needed}".strip() for command in commands]
 
@@ -178,7 +176,7 @@ def test_a_second_run_imports_neither_compiler_nor_large_packages() -> None:
         f"main(['run'])\nprint([name for name in {HEAVY} if name in sys.modules])"
     )
     for _ in range(2):  # the first one may have to compile
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+        done = finished(python(code))
         if done.stdout.splitlines()[-1] == "[]":
             break
     assert done.stdout.splitlines()[-1] == "[]"
@@ -201,7 +199,7 @@ def test_public_names_are_imported_when_they_are_asked_for() -> None:
         "assert set(fastpin.__all__) <= set(dir(fastpin))\n"
         "from fastpin import *\nprint([name for name in fastpin.__all__ if name not in globals()])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    done = finished(python(code))
     assert done.stdout == "[]\n"
     assert fastpin.solve is solving.solve
     with pytest.raises(AttributeError, match="attribute nothing"):
@@ -412,8 +410,7 @@ def test_a_file_that_can_not_be_written_does_not_cost_the_others(
 @pytest.mark.gate
 def test_a_reader_that_leaves_is_no_error() -> None:
     command = '"$0" -m fastpin example | true; exit "${PIPESTATUS[0]}"'
-    words = ["bash", "-c", command, sys.executable]
-    done = subprocess.run(words, capture_output=True, text=True, cwd=ROOT, check=False)
+    done = finished(["bash", "-c", command, sys.executable], check=False)
     assert (done.returncode, done.stderr) == (141, "")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import pytest
 
 from fastpin.cli.main import main
 from fastpin.cli.options import SHELLS
+from tests.support.processes import finished
 
 COMPLETE = r"""
 source "$1"; shift
@@ -30,7 +30,7 @@ def test_each_shell_has_a_script(shell: str, tmp_path: Path, capsys: pytest.Capt
     long = "error-bars" if shell == "fish" else "--error-bars"
     assert long in script.read_text() or shell == "tcsh"
     if shutil.which(shell):
-        assert subprocess.run([shell, "-n", script], capture_output=True, check=True).stderr == b""
+        assert finished([shell, "-n", script]).stderr == ""
 
 
 @pytest.mark.gate
@@ -42,8 +42,7 @@ def test_bash_completes_commands_options_choices_and_files(tmp_path: Path, capsy
     (tmp_path / "case.toml").write_text("")
 
     def completed(*words: str) -> list[str]:
-        command = ["bash", "-c", COMPLETE, "bash", str(script), *words]
-        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+        return finished(["bash", "-c", COMPLETE, "bash", script, *words]).stdout.split()
 
     assert completed("sw") == ["sweep"]
     assert completed("run", "--nod") == ["--nodes"]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -13,6 +11,7 @@ import pytest
 from fastpin.cli.main import main
 from fastpin.errors import printable
 from tests.support.case_texts import PRESSED
+from tests.support.processes import fastpin, finished
 
 CASE = f"""{PRESSED}[[load]]
 Q = [1e5, -1e5]
@@ -37,9 +36,8 @@ def test_texts_become_escapes_where_the_terminal_has_ascii_only(tmp_path: Path) 
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
 
     def output(*arguments: str) -> tuple[int, str, str]:
-        command = [sys.executable, "-m", "fastpin", *arguments]
-        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, timeout=120, check=False)
-        return done.returncode, done.stdout.decode("ascii"), done.stderr.decode("ascii")
+        done = finished(fastpin(*arguments), cwd=tmp_path, env=environment, encoding="ascii", check=False)
+        return done.returncode, done.stdout, done.stderr
 
     code, shown, trouble = output("run", "case.toml")
     assert (code, trouble) == (0, "")

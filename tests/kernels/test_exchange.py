@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import functools
 import os
-import subprocess
-import sys
 from dataclasses import replace
 
 import numba
@@ -30,6 +28,7 @@ from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
+from tests.support import processes
 from tests.support.kernels import python, run_as_python
 from tests.support.tiers import gate
 
@@ -465,8 +464,6 @@ def test_little_friction_tends_to_none(system):
 
 PLAIN = """
 import numpy as np
-from tests.support.tiers import gate
-from tests.support.tiers import some_gate
 from fastpin import MATERIALS, MaterialPair, Problem, solve
 pair = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 problem = Problem.from_load_parameter(pair, 0.1, 0.4, "body")
@@ -481,10 +478,7 @@ for state in result:
 @pytest.mark.gate
 def test_compiled_and_plain_python_give_the_same_states():
     def run(disabled):
-        environment = {**os.environ, "NUMBA_DISABLE_JIT": disabled}
-        done = subprocess.run(
-            [sys.executable, "-c", PLAIN], env=environment, capture_output=True, text=True, check=True
-        )
+        done = processes.finished(processes.python(PLAIN), env={**os.environ, "NUMBA_DISABLE_JIT": disabled})
         return np.array([line.split() for line in done.stdout.splitlines()], dtype=float)
 
     compiled, plain = run("0"), run("1")

@@ -14,7 +14,6 @@ import re
 import shlex
 import shutil
 import sqlite3
-import subprocess
 import sys
 import tomllib
 from collections.abc import Mapping
@@ -36,6 +35,7 @@ from fastpin.elasticity import plate_compliance
 from fastpin.studies import parse_plan, sweep
 from fastpin.studies.tolerances import KEYS as TOLERANCE_KEYS
 from scripts.inline import Inline
+from tests.support.processes import finished
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -160,11 +160,8 @@ def run_as_script(codes: list[str]) -> None:
     lines = "".join(f"    {line}\n" for line in outcomes.splitlines())
     Path("script.py").write_text(f"from wear import wear\n\n{script}\n{lines}", encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{Path.cwd()}"}
-    done = subprocess.run(
-        [sys.executable, "script.py"], capture_output=True, text=True, timeout=120, check=False, env=environment
-    )
-    assert done.returncode == 0, done.stderr
-    assert len(done.stdout.splitlines()) == 3
+    said = finished([sys.executable, "script.py"], cwd=Path.cwd(), env=environment).stdout
+    assert len(said.splitlines()) == 3
 
 
 def test_pages_that_run_elsewhere_are_named_there() -> None:
@@ -216,7 +213,7 @@ def test_commands_exist(page: Path) -> None:
 @pytest.mark.parametrize("page", with_blocks("sh", "bash"))
 def test_shell_scripts_can_be_read(page: Path) -> None:
     for text in blocks(page, "sh", "bash"):
-        subprocess.run(["bash", "-n"], input=text, text=True, check=True)
+        finished(["bash", "-n"], said=text)
 
 
 def check_command(line: str) -> None:

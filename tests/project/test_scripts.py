@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from scripts import corpus
+from tests.support.processes import finished, started
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -63,14 +64,8 @@ def environment(project: Path, **more: str) -> dict[str, str]:
 
 
 def run(project: Path, script: str, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [project / "scripts" / script, *arguments],
-        capture_output=True,
-        text=True,
-        cwd="/",
-        env=environment(project, **more),
-        check=False,
-    )
+    command = [project / "scripts" / script, *arguments]
+    return finished(command, cwd="/", env=environment(project, **more), check=False)
 
 
 def log(project: Path) -> list[str]:
@@ -95,8 +90,8 @@ def log(project: Path) -> list[str]:
 )
 def test_scripts_can_be_run_and_parsed(name: str) -> None:
     assert os.access(ROOT / name, os.X_OK)
-    subprocess.run(["bash", "-n", ROOT / name], check=True)
-    subprocess.run(["bash", "-n", ROOT / "scripts" / "environment.sh"], check=True)
+    finished(["bash", "-n", ROOT / name])
+    finished(["bash", "-n", ROOT / "scripts" / "environment.sh"])
 
 
 @pytest.mark.gate
@@ -162,22 +157,14 @@ def test_exit_codes_come_through(script: str, arguments: tuple[str, ...], projec
 def test_called_through_a_link(project: Path) -> None:
     link = project.parents[1] / "fp"
     link.symlink_to(project / "scripts" / "run")
-    done = subprocess.run([link, "x"], env=environment(project), capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    finished([link, "x"], env=environment(project))
 
 
 @pytest.mark.gate
 def test_two_at_once_install_once(project: Path) -> None:
-    both = [
-        subprocess.Popen(
-            [project / "scripts" / "run", "x"], env=environment(project, INSTALLS="0.2"), stderr=subprocess.PIPE
-        )
-        for _ in range(2)
-    ]
-    assert [process.wait() for process in both] == [0, 0]
-    for process in both:
-        assert process.stderr is not None
-        process.stderr.close()
+    command, slow = [project / "scripts" / "run", "x"], environment(project, INSTALLS="0.2")
+    with started(command, env=slow) as one, started(command, env=slow) as other:
+        assert (one.wait(), other.wait()) == (0, 0)
     assert sorted(line.split()[0] for line in log(project)).count("pip") == 1
 
 
@@ -221,13 +208,7 @@ def test_a_failed_installation_shows_why_and_is_tried_again(project: Path) -> No
 
 @pytest.mark.gate
 def test_the_oldest_versions_are_the_lower_bounds() -> None:
-    done = subprocess.run(
-        [ROOT / "scripts" / "oldest-versions", "--list"],
-        capture_output=True,
-        text=True,
-        env={**os.environ, "PYTHON": sys.executable},
-        check=True,
-    )
+    done = finished([ROOT / "scripts" / "oldest-versions", "--list"], env={**os.environ, "PYTHON": sys.executable})
     listed = dict(line.split("==") for line in done.stdout.splitlines())
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"].values()

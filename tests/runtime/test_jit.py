@@ -7,7 +7,6 @@ import importlib
 import inspect
 import os
 import shutil
-import subprocess
 import sys
 from collections import namedtuple
 from pathlib import Path
@@ -17,6 +16,7 @@ import pytest
 
 from fastpin.kernels import exchange, influence
 from fastpin.runtime import compiler, jit, machine, source
+from tests.support.processes import finished, python
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
 KERNEL = """
@@ -63,8 +63,7 @@ def compiles(installed: Path, **more: str) -> bool:
     switches = {"NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "FASTPIN_CACHE", "XDG_CACHE_HOME"}
     environment = {name: value for name, value in os.environ.items() if name not in switches}
     environment |= {"PYTHONPATH": str(installed), "HOME": str(installed), **more}
-    words = [sys.executable, "-c", CODE]
-    done = subprocess.run(words, capture_output=True, text=True, check=True, env=environment, cwd=installed)
+    done = finished(python(CODE), env=environment, cwd=installed)
     assert done.stderr == ""
     return done.stdout.split() == ["True"]
 
@@ -102,8 +101,7 @@ def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file
     """The text on disk is not the text that it has imported, as after an upgrade while it runs."""
     path = installed / "fastpin" / file
     variables = {**os.environ, "PYTHONPATH": str(installed), "HOME": str(installed), "NUMBA_CACHE_DIR": ""}
-    words = [sys.executable, "-c", REPLACED, str(path), "# upgraded\n"]
-    done = subprocess.run(words, capture_output=True, text=True, check=True, env=variables, cwd=installed)
+    done = finished(python(REPLACED, path, "# upgraded\n"), env=variables, cwd=installed)
     assert done.stdout.split() == ["3.0"]
     assert stored_in(cache(installed)) == []
     assert not list(cache(installed).glob("*.n*"))  # nor a result of Numba
@@ -235,11 +233,11 @@ assert numba.config.NUMBA_NUM_THREADS == 1
 @pytest.mark.gate
 def test_packages_that_are_imported_later_work() -> None:
     influence.clausen(1.0)  # its machine code is stored now
-    assert subprocess.run([sys.executable, "-c", AFTER], capture_output=True, text=True, check=True).stderr == ""
+    assert finished(python(AFTER)).stderr == ""
 
 
 @pytest.mark.gate
 def test_modules_come_when_they_are_asked_for():
     code = "import fastpin; print(fastpin.model.LOADS[0], hasattr(fastpin, 'nothing'))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = finished(python(code))
     assert done.stdout.split() == ["P", "False"]

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,6 +13,7 @@ from numba.core import intrinsics
 
 from fastpin.kernels import influence
 from fastpin.runtime import compiler, extensions, jit, machine, stored
+from tests.support.processes import finished, python
 
 pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no machine code is stored")
 
@@ -127,8 +126,7 @@ print(hashlib.sha256(arrays + numbers.encode()).hexdigest())
 def test_a_history_has_the_same_bits_without_any_part(tmp_path: Path) -> None:
     def run(*arguments: str, **more: str) -> str:
         variables = {name: value for name, value in os.environ.items() if name != "FASTPIN_CACHE"} | more
-        words = [sys.executable, "-c", SOLVE, *arguments]
-        return subprocess.run(words, env=variables, capture_output=True, text=True, check=True).stdout
+        return finished(python(SOLVE, *arguments), env=variables).stdout
 
     expected = run()
     assert run("without", NUMBA_CACHE_DIR=str(tmp_path)) == expected

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -13,6 +11,7 @@ import pytest
 from fastpin.runtime import products
 from fastpin.runtime.products import add_product
 from fastpin.runtime.threads import in_one_thread
+from tests.support.processes import finished, python
 
 
 def arrays(m, k, n):
@@ -118,10 +117,7 @@ def test_results_have_the_same_bits_with_any_number_of_threads_and_cores():
     for threads, before in (("1", ""), ("4", ""), ("2", one_core)):
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": threads, "OMP_NUM_THREADS": threads}
         environment["NUMBA_NUM_THREADS"] = threads
-        done = subprocess.run(
-            [sys.executable, "-c", before + HISTORY], env=environment, capture_output=True, text=True, check=True
-        )
-        digests.add(done.stdout)
+        digests.add(finished(python(before + HISTORY), env=environment).stdout)
     assert len(digests) == 1
 
 

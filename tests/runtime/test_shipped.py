@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ import pytest
 
 from fastpin.runtime import jit, machine, source, stored
 from scripts import platform_wheel
+from tests.support.processes import finished
 
 pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored")
 
@@ -56,8 +56,7 @@ def run(site: Path, cache: Path, **more: str) -> list[str]:
     """The digest of the kernel's values, and whether Numba was imported, in a process with this cache."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith(("NUMBA_", "FASTPIN_"))}
     variables = kept | {"PYTHONPATH": str(site), "NUMBA_CACHE_DIR": str(cache), **more}
-    words = [sys.executable, "-P", "-c", CALLS]
-    return subprocess.run(words, cwd=site, env=variables, capture_output=True, text=True, check=True).stdout.split()
+    return finished([sys.executable, "-P", "-c", CALLS], cwd=site, env=variables).stdout.split()
 
 
 def runs(level: str) -> bool:

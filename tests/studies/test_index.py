@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, printable
 from fastpin.storage.packed import INDEX
-from fastpin.studies.index import Index, lock_directory
+from fastpin.studies.index import LONGEST_WORDS, Index, lock_directory
 from fastpin.studies.plan import Plan, Point, parse_plan
 from fastpin.studies.run_end import KEY_FIGURES, RunEnd
 
@@ -233,3 +233,11 @@ def test_a_damaged_row_is_described(tmp_path, statement, reason):
     with Index(tmp_path) as index, pytest.raises(InputError, match=reason) as raised:
         index.rows()
     assert "\n" not in str(raised.value)
+
+
+def test_a_reason_of_millions_of_characters_is_cut(directory: Path) -> None:
+    """Characters that are to be made printable, one after the other, would take seconds."""
+    with contextlib.closing(sqlite3.connect(directory / INDEX, isolation_level=None)) as database:
+        database.execute("UPDATE runs SET reason = ?", ("\x1b" * 4_000_000,))
+    with Index(directory) as index:
+        assert {row["reason"] for row in index.rows()} == {printable("\x1b" * LONGEST_WORDS)}

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -18,6 +16,7 @@ from fastpin.model.loads import LOADS
 from fastpin.studies import plan
 from fastpin.studies.identity import canonical, run_id
 from fastpin.studies.plan import Plan, parse_plan, read_plan
+from tests.support.processes import finished, python
 
 ROOT = Path(__file__).resolve().parents[2]
 DIMENSIONLESS = """
@@ -310,12 +309,7 @@ def test_ids_are_the_same_in_every_process() -> None:
         "from fastpin.casefile import builtin_case; from fastpin.studies.identity import *; "
         "print(run_id(canonical(builtin_case()), '1'))"
     )
-    found = [
-        subprocess.run(
-            [sys.executable, "-c", code], env={"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}, capture_output=True
-        ).stdout.decode()
-        for seed in ("1", "2")
-    ]
+    found = [finished(python(code), env={"PYTHONHASHSEED": seed}).stdout for seed in ("1", "2")]
     assert found == [run_id(canonical(builtin_case()), "1") + "\n"] * 2
 
 
