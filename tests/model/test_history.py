@@ -252,12 +252,7 @@ def test_keep() -> None:
     assert kept("cycles") == [1, 3, 4]
     assert kept("every 2") == kept("every-2") == kept("every2") == [1, 3, 4]
     assert kept("every 9") == [4]
-    assert [KeepRule.read(which).inside for which in ("all", "corners", "cycles", "every 2")] == [
-        True,
-        False,
-        False,
-        False,
-    ]
+    assert [which for which in ("all", "corners", "cycles", "every 2") if KeepRule.read(which).inside] == ["all"]
     assert [str(KeepRule.read(which)) for which in ("all", "cycles", "every:7")] == ["all", "cycles", "every 7"]
     for wrong in ("", "some", "every", "every 0", "every -1", "every x", 3, None):
         with pytest.raises(InputError, match='"every N"'):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +9,7 @@ import pytest
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.storage import store
+from tests.support.processes import finished, python
 
 SAVE = """
 import resource, signal, sys
@@ -58,8 +57,7 @@ def source(similar, tmp_path_factory) -> Path:
 
 def output_of(program: str, *words: object) -> str:
     """What a program prints. It may print nothing on standard error."""
-    command = [sys.executable, "-c", program, *map(str, words)]
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    ended = finished(python(program, *words))
     assert ended.stderr == ""
     return ended.stdout
 
