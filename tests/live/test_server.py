@@ -271,6 +271,8 @@ def test_a_page_that_reads_nothing_does_not_keep_the_server_from_ending(monkeypa
     with served() as running, raw_socket(running) as raw:
         raw.sendall(UPGRADE.replace("\n", "\r\n").format(token=running.token, host=host_of(running)).encode())
         assert b"101" in raw.recv(20)
+        while not running._sockets:  # the server notes the page after its answer
+            select.select([], [], [], 0.01)
         (request,) = running._sockets.values()
         assert request.transport is not None
         request.transport.get_extra_info("socket").setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)

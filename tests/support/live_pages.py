@@ -24,8 +24,9 @@ from fastpin.live.contact import LiveContact
 from fastpin.live.protocol import ALONE, Limits, Message, read_message
 from fastpin.live.server import Server
 from tests.support.case_texts import PRESSED
+from tests.support.processes import LONGEST
 
-LIMIT = 120.0
+LIMIT = LONGEST
 """Seconds after which a test that waits in vain fails. No test passes or fails by it otherwise."""
 
 NODES = 61
