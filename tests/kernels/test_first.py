@@ -33,7 +33,6 @@ print(*found, sep="\\n", file=sys.stderr)
 """
 
 
-@pytest.mark.gate
 def test_the_list_has_the_kernels_and_types_of_a_run() -> None:
     done = finished(python(SEEN))
     listed = [f"{one.__name__}: {jit.signature(jit.argument_types(tuple(given)))}" for one, *given in first.kernels()]
@@ -64,7 +63,6 @@ sys.stdin.read()
 """
 
 
-@pytest.mark.gate
 @pytest.mark.skipif(cores() < 2, reason="no core for a second process")
 @pytest.mark.parametrize("ends", [False, True])
 def test_a_second_process_compiles_as_long_as_the_first_one_runs(ends: bool, tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ from selenium.webdriver.common.keys import Keys
 
 import fastpin
 from fastpin import casefile
+from fastpin.bodies import Ring
 from fastpin.live.contact import LiveContact
 from fastpin.live.life import record_life
 from fastpin.live.pictures import CURVE_ERROR
@@ -35,7 +36,7 @@ from fastpin.model.units import units
 from fastpin.solver import WearResult
 from fastpin.states.curves import traction_patches
 from tests.support import seats
-from tests.support.live_pages import FREE, LIMIT, contact, served
+from tests.support.live_pages import FREE, LIMIT, contact, served, solved
 from tests.support.lives import fretting
 from tests.support.processes import fastpin as fastpin_command
 from tests.support.processes import started
@@ -92,8 +93,11 @@ class Tab:
         chrome.switch_to.new_window("tab")
         self.handle = chrome.current_window_handle
         if server is not None:
-            chrome.get(server.address)
-            self.wait("return fastpin.history.case !== null && fastpin.times.length > 0")
+            self.open(server.address)
+
+    def open(self, address: str) -> None:
+        self.chrome.get(address)
+        self.wait("return window.fastpin?.history.case && fastpin.times.length > 0")
 
     def run(self, script: str, *arguments: Any) -> Any:
         self.chrome.switch_to.window(self.handle)
@@ -103,20 +107,41 @@ class Tab:
         """Wait until a script returns something true."""
         until(lambda: bool(self.run(script, *arguments)), lambda: f"nothing came of: {script}; page: {self.message}")
 
+    def text(self, name: str) -> str:
+        """The text of an element, without those of its cells apart."""
+        return str(self.run("return document.getElementById(arguments[0]).textContent", name))
+
+    def value(self, name: str) -> str:
+        return str(self.run("return document.getElementById(arguments[0]).value", name))
+
+    def shown(self, name: str) -> Any:
+        """An attribute of the history that the page shows."""
+        return self.run(f"return fastpin.history.{name}")
+
     def click(self, name: str) -> None:
         self.chrome.switch_to.window(self.handle)
         self.chrome.find_element(By.ID, name).click()
+        self.settle()
 
     def keys(self, name: str, *keys: str) -> None:
         self.chrome.switch_to.window(self.handle)
         self.chrome.find_element(By.ID, name).send_keys(*keys)
+        self.settle()
+
+    def press(self, *keys: str) -> None:
+        """Press keys where the focus is, as a user does who has just opened the page."""
+        self.chrome.switch_to.window(self.handle)
+        webdriver.ActionChains(self.chrome).send_keys(*keys).perform()
+        self.settle()
 
     def set(self, key: str, value: object, event: str = "change") -> None:
         """Set a field, a slider or a choice, as a user does."""
         self.run(
-            "const place = document.querySelector(`[data-key='${arguments[0]}']`); place.value = arguments[1];"
+            "const place = document.querySelector(`[data-key='${arguments[0]}']`) ??"
+            "document.getElementById(arguments[0]); place.value = arguments[1];"
             "place.dispatchEvent(new Event(arguments[2], {bubbles: true}))", key, value, event,
         )  # fmt: skip
+        self.settle()
 
     def mouse(self, kind: str, x: float, y: float, buttons: int = 1) -> None:
         self.chrome.execute_cdp_cmd(
@@ -143,18 +168,15 @@ class Tab:
         self.settle()
 
     def settle(self) -> None:
-        """Wait until nothing is under way, and all is drawn."""
+        """Wait until nothing is under way, and all is drawn. A page without a server asks for nothing."""
+        if self.server is None:
+            return
         self.wait("return !fastpin.leader.busy && fastpin.link.waiting.size === 0 && !fastpin.player.plays")
         self.chrome.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
 
     @property
     def message(self) -> str:
-        return str(
-            self.run(
-                "const place = document.getElementById('message');"
-                "return place.hidden ? '' : document.getElementById('sentence').textContent"
-            )
-        )
+        return "" if self.run("return document.getElementById('message').hidden") else self.text("sentence")
 
     @property
     def live(self) -> LiveContact:
@@ -164,12 +186,16 @@ class Tab:
 
     def curve(self, name: str) -> np.ndarray:
         """The data of a chart, shape (series, points); a gap is NaN."""
-        data = json.loads(
-            self.run(
-                "return JSON.stringify(fastpin.charts.charts[arguments[0]].data.map((one) => Array.from(one)))", name
-            )
-        )
-        return np.array(data, dtype=float)
+        script = "return JSON.stringify(fastpin.charts.charts[arguments[0]].data.map((one) => Array.from(one)))"
+        return np.array(json.loads(self.run(script, name)), dtype=float)
+
+    @contextlib.contextmanager
+    def sized(self, width: int, height: int = 900) -> Iterator[None]:
+        """Let the page have this size. A window has at least 500 pixels."""
+        sizes = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", sizes)
+        yield
+        self.chrome.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
     def trouble(self) -> list[str]:
         """Messages of the browser's console."""
@@ -198,15 +224,19 @@ def tab(chrome: webdriver.Chrome, server: Server) -> Tab:
     return Tab(chrome, server)
 
 
+Opened = Callable[..., Tab]
+
+
+@pytest.fixture
+def opened(chrome: webdriver.Chrome) -> Iterator[Opened]:
+    """Opens the page of a case's text, at a server of its own."""
+    with contextlib.ExitStack() as stack:
+        yield lambda text=None, nodes=61: Tab(chrome, stack.enter_context(served(lambda: contact(text, nodes))))
+
+
 def circle(part: float) -> tuple[float, float]:
     """A drag to the right, up and back."""
     return 70.0 * np.sin(np.pi * part), -25.0 * (1.0 - np.cos(np.pi * part))
-
-
-def solved(live: LiveContact) -> fastpin.Result:
-    """The result of the history of a page, in Python."""
-    session = live.session
-    return fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
 
 
 def test_a_drag_has_the_state_of_the_same_history_in_python_bit_by_bit(tab: Tab) -> None:
@@ -215,8 +245,8 @@ def test_a_drag_has_the_state_of_the_same_history_in_python_bit_by_bit(tab: Tab)
     assert len(result) > 5
     for name in ("pressure", "shear", "gap", "slip", "status"):
         assert np.array_equal(getattr(state, name), getattr(result[-1], name))
-    assert tab.run("return fastpin.history.latest.load") == state.load
-    assert tab.run("return fastpin.history.latest.dissipation") == state.dissipation
+    assert tab.shown("latest.load") == state.load
+    assert tab.shown("latest.dissipation") == state.dissipation
     assert tab.trouble() == []
 
 
@@ -232,11 +262,9 @@ def test_charts_show_the_tractions_of_solve(tab: Tab) -> None:
     assert np.allclose(upper, 0.4 * pressure)
     assert np.array_equal(lower, -upper)
     where, _, hoop = tab.curve("hoop")
-    assert f"{hoop.max():.4g} MPa" in tab.run("return document.getElementById('numbers').textContent")
+    assert f"{hoop.max():#.4g} MPa" in tab.text("numbers")
     assert np.allclose(hoop, 1e-6 * state.hoop_stress("plate", np.radians(where - 90.0)), rtol=1e-5, atol=1e-4)
-    (shown,) = re.findall(
-        r"peak pressure([\d.]+) MPa", tab.run("return document.getElementById('numbers').textContent")
-    )
+    (shown,) = re.findall(r"peak pressure([\d.]+) MPa", tab.text("numbers"))
     assert float(shown) == float(f"{1e-6 * state.peak_pressure:.4g}")
 
 
@@ -306,35 +334,32 @@ NARROW = FREE.replace("clearance = 1e-5", "clearance = 1e-4").replace("P = 1e6",
 
 @pytest.mark.parametrize("load", [{"P": 1e5}, {"P": -1e5}, {"P": 0.0, "Q": -1e5}])
 def test_charts_show_a_narrow_contact_larger_until_the_whole_hole_is_wanted(
-    chrome: webdriver.Chrome, load: dict[str, float]
+    opened: Opened, load: dict[str, float]
 ) -> None:
-    with served(lambda: contact(NARROW, 100)) as running:
-        tab = Tab(chrome, running)
-        tab.run("return fastpin.link.ask('reset')")
-        tab.run("return fastpin.link.ask('load', {loads: arguments[0], gesture: 1, drag: false})", load)
-        state = tab.live.session.state
-        ((start, stop),) = [np.degrees(ends) + 90.0 for ends in state.contact]
-        for low, high in zoomed(tab):
-            turn = 360.0 * round((0.5 * (low + high - start - stop)) / 360.0)
-            assert low < start + turn < stop + turn < high
-            assert high - low < 2.0 * (stop - start)
-        angle, _, pressure = tab.curve("pressure")
-        assert np.isfinite(pressure).sum() > 30
-        assert np.nanmax(pressure) == pytest.approx(1e-6 * state.peak_pressure, rel=1e-3)
-        tab.click("zoom")
-        assert zoomed(tab) == [(-180, 180)] * 4
-        tab.click("zoom")
-        assert zoomed(tab)[0][1] - zoomed(tab)[0][0] < 2.0 * (stop - start)
-        assert np.array_equal(tab.curve("pressure")[0], angle)
-        tab.set("clearance", "-5")  # a contact all round is shown with the whole hole
-        tab.settle()
-        assert zoomed(tab) == [(-180, 180)] * 4
-        assert not tab.run("return document.getElementById('zoom').offsetWidth")
+    tab = opened(NARROW, 100)
+    tab.run("return fastpin.link.ask('reset')")
+    tab.run("return fastpin.link.ask('load', {loads: arguments[0], gesture: 1, drag: false})", load)
+    state = tab.live.session.state
+    ((start, stop),) = [np.degrees(ends) + 90.0 for ends in state.contact]
+    for low, high in zoomed(tab):
+        turn = 360.0 * round((0.5 * (low + high - start - stop)) / 360.0)
+        assert low < start + turn < stop + turn < high
+        assert high - low < 2.0 * (stop - start)
+    angle, _, pressure = tab.curve("pressure")
+    assert np.isfinite(pressure).sum() > 30
+    assert np.nanmax(pressure) == pytest.approx(1e-6 * state.peak_pressure, rel=1e-3)
+    tab.click("zoom")
+    assert zoomed(tab) == [(-180, 180)] * 4
+    tab.click("zoom")
+    assert zoomed(tab)[0][1] - zoomed(tab)[0][0] < 2.0 * (stop - start)
+    assert np.array_equal(tab.curve("pressure")[0], angle)
+    tab.set("clearance", "-5")  # a contact all round is shown with the whole hole
+    assert zoomed(tab) == [(-180, 180)] * 4
+    assert not tab.run("return document.getElementById('zoom').offsetWidth")
 
 
 def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
     tab.click("play-cycle")
-    tab.settle()
     (way, load) = tab.run("return fastpin.loops.chart.data[1]")
     cycle = solved(tab.live).cycle(first=1, last=len(way))
     loop = cycle.loops["Q"]
@@ -342,9 +367,7 @@ def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
     assert np.allclose(load, 1e-3 * loop.load)
     tab.click("loop-bent")
     bent, same = tab.run("return fastpin.loops.chart.data[1]")
-    scale = {"nm": 1e-9, "µm": 1e-6}[
-        tab.run("return document.getElementById('loop-unit').textContent").split("[")[-1][:-1]
-    ]
+    scale = {"nm": 1e-9, "µm": 1e-6}[tab.text("loop-unit").split("[")[-1][:-1]]
     assert np.ptp(bent) * scale < 0.2 * np.ptp(loop.displacement)
 
     def area(way: list[float], unit: float) -> float:
@@ -356,104 +379,71 @@ def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
 
 
 def test_the_loop_begins_with_the_load_that_acts(tab: Tab) -> None:
-    shown = "return document.getElementById('loop-load').value"
-    assert tab.run(shown) == "P"  # only P acts
+    assert tab.value("loop-load") == "P"  # only P acts
     assert tab.run("return fastpin.loops.chart.data[1][1]") == [2.42]
     tab.drag(lambda part: (40.0 * part, 0.0), 5)
-    assert tab.run(shown) == "Q"
+    assert tab.value("loop-load") == "Q"
     tab.set("sxx", "20")
-    tab.settle()
-    assert tab.run(shown) == "sxx"
-    tab.run(
-        "const place = document.getElementById('loop-load'); place.value = 'P';"
-        "place.dispatchEvent(new Event('change', {bubbles: true}))"
-    )
+    assert tab.value("loop-load") == "sxx"
+    tab.set("loop-load", "P")
     tab.set("sxx", "30")
-    tab.settle()
-    assert tab.run(shown) == "P"  # a choice of the user stays
+    assert tab.value("loop-load") == "P"  # a choice of the user stays
 
 
 def test_undo_redo_and_reset(tab: Tab) -> None:
-    start = tab.run("return fastpin.history.latest.load")
+    start = tab.shown("latest.load")
     tab.drag(circle, 10)
-    there = tab.run("return fastpin.history.latest.load")
+    there = tab.shown("latest.load")
     tab.click("undo")
-    tab.settle()
-    assert tab.run("return fastpin.history.latest.load") == start
+    assert tab.shown("latest.load") == start
     tab.keys("drawing", Keys.CONTROL, "y")
-    tab.settle()
-    assert tab.run("return fastpin.history.latest.load") == there
+    assert tab.shown("latest.load") == there
     tab.click("reset")
-    tab.settle()
-    assert tab.run("return fastpin.history.pictures.length") == 0
+    assert tab.shown("pictures.length") == 0
     tab.keys("drawing", Keys.CONTROL, "z")
-    tab.settle()
-    assert tab.run("return fastpin.history.latest.load") == there
-
-
-def test_arrow_keys_move_the_load(tab: Tab) -> None:
-    load = tab.run("return fastpin.history.latest.load")
-    size = tab.run("return fastpin.history.case.axes[0].size")
-    tab.keys("drawing", Keys.ARROW_RIGHT)
-    tab.settle()
-    moved = tab.run("return fastpin.history.latest.load")
-    assert (moved["P"], moved["Q"]) == (load["P"], pytest.approx(0.02 * size))
-    tab.keys("drawing", Keys.SHIFT + Keys.ARROW_UP)
-    tab.settle()
-    assert tab.run("return fastpin.history.latest.load.P") == pytest.approx(load["P"] - 0.1 * size)
-    assert tab.run("return fastpin.history.undos") == 2
-
-
-def press(tab: Tab, *keys: str) -> None:
-    """Press keys where the focus is, as a user does who has just opened the page."""
-    tab.chrome.switch_to.window(tab.handle)
-    webdriver.ActionChains(tab.chrome).send_keys(*keys).perform()
-    tab.settle()
+    assert tab.shown("latest.load") == there
 
 
 def test_arrow_keys_move_the_load_wherever_the_focus_is(tab: Tab) -> None:
-    chrome = tab.chrome
-    chrome.execute_cdp_cmd(
-        "Emulation.setDeviceMetricsOverride", {"width": 800, "height": 500, "deviceScaleFactor": 1, "mobile": False}
-    )
-    size = tab.run("return fastpin.history.case.axes[0].size")
-    press(tab, Keys.ARROW_RIGHT, Keys.ARROW_DOWN)
-    load = tab.run("return fastpin.history.latest.load")
-    assert (load["Q"], load["P"]) == (pytest.approx(0.02 * size), pytest.approx(2.42e6 + 0.02 * size))
-    assert tab.run("return window.scrollY") == 0
-    tab.run("document.getElementById('field-friction').focus({preventScroll: true})")
-    press(tab, Keys.ARROW_RIGHT)
-    tab.run("document.querySelector(`[data-key='Q slider']`).focus({preventScroll: true})")
-    press(tab, Keys.ARROW_UP)  # a slider has its own keys
-    after = tab.run("return fastpin.history.latest.load")
-    assert after["P"] == load["P"]
-    tab.run("document.activeElement.blur(); window.scrollTo(0, document.body.scrollHeight)")
-    before = tab.run("return window.scrollY")
-    assert tab.run("return fastpin.drawing.canvas.getBoundingClientRect().bottom") < 0
-    press(tab, Keys.ARROW_UP)  # the drawing is out of sight: the key scrolls the page
-    tab.wait("return window.scrollY < arguments[0]", before)
-    assert tab.run("return fastpin.history.latest.load.P") == after["P"]
-    chrome.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    size, start = tab.shown("case.axes[0].size"), tab.shown("latest.load")
+    with tab.sized(800, 500):
+        tab.press(Keys.ARROW_RIGHT)
+        tab.keys("drawing", Keys.SHIFT + Keys.ARROW_UP)
+        load = tab.shown("latest.load")
+        assert (load["Q"], load["P"]) == (pytest.approx(0.02 * size), pytest.approx(start["P"] - 0.1 * size))
+        assert tab.shown("undos") == 2
+        assert tab.run("return window.scrollY") == 0
+        tab.run("document.getElementById('field-friction').focus({preventScroll: true})")
+        tab.press(Keys.ARROW_RIGHT)
+        tab.run("document.querySelector(`[data-key='Q slider']`).focus({preventScroll: true})")
+        tab.press(Keys.ARROW_UP)  # a slider has its own keys
+        assert tab.shown("latest.load.P") == load["P"]
+        tab.run("document.activeElement.blur(); window.scrollTo(0, document.body.scrollHeight)")
+        before = tab.run("return window.scrollY")
+        assert tab.run("return fastpin.drawing.canvas.getBoundingClientRect().bottom") < 0
+        tab.press(Keys.ARROW_UP)  # the drawing is out of sight: the key scrolls the page
+        tab.wait("return window.scrollY < arguments[0]", before)
+        assert tab.shown("latest.load.P") == load["P"]
 
 
-@pytest.mark.parametrize(
-    ("text", "friction"),
-    [("0,3", 0.3), ("0.3", 0.3), (" ,3 ", 0.3), ("3e-1", 0.3), ("2,5E-1", 0.25), ("1,000.5", None), ("0,3,1", None),
-     ("a", None), ("1 0", None)],
-)  # fmt: skip
-def test_a_decimal_comma_is_read_as_one(tab: Tab, text: str, friction: float | None) -> None:
+TYPED = {"0,3": 0.3, "0.25": 0.25, " ,3 ": 0.3, "2e-1": 0.2, "2,5E-1": 0.25, "1,000.5": None, "0,3,1": None, "a": None,
+         "1 0": None, "-1": None}  # fmt: skip
+"""What a user types as friction, and the number that it is."""
+
+
+def test_a_decimal_comma_is_read_as_one_and_wrong_input_gets_a_sentence(tab: Tab) -> None:
     """The browser is English. Its number fields would take 0,3 for 3."""
-    field = tab.chrome.find_element(By.ID, "field-friction")
-    tab.chrome.switch_to.window(tab.handle)
-    field = tab.chrome.find_element(By.ID, "field-friction")
-    field.send_keys(Keys.CONTROL, "a")
-    field.send_keys(text, Keys.ENTER)
-    tab.settle()
-    assert tab.live.session.problem.friction == (0.4 if friction is None else friction)
-    expected = f'friction μ: "{text}" is no number; write 1234.5 or 1234,5' if friction is None else ""
-    assert tab.message == expected
-    if friction is None:
-        assert tab.run("return document.getElementById('field-friction').value") == "0.4000"
+    expected = 0.4
+    for text, friction in TYPED.items():
+        tab.keys("field-friction", Keys.CONTROL, "a")
+        tab.keys("field-friction", text, Keys.ENTER)
+        expected = expected if friction is None else friction
+        sentence = f'friction μ: "{text}" is no number; write 1234.5 or 1234,5' if friction is None else ""
+        assert tab.live.session.problem.friction == expected, text
+        assert tab.message == ("friction: must not be negative, not -1" if text == "-1" else sentence)
+        assert friction is not None or tab.value("field-friction") == f"{expected:.4f}"
+    tab.drag(circle, 5)
+    assert tab.message == ""
 
 
 def test_the_handle_of_a_large_load_stays_inside(tab: Tab) -> None:
@@ -464,82 +454,64 @@ def test_the_handle_of_a_large_load_stays_inside(tab: Tab) -> None:
         )
 
     tab.set("P", "30")
-    tab.settle()
     assert max(tip()) < 0.99
     assert min(tip()) > 0.01
-    note = tab.run("return document.getElementById('scale-note').textContent")
+    note = tab.text("scale-note")
     assert note.endswith("; arrow of the load at 1/10")
     before = tab.live.session.state.load["Q"]
     tab.drag(lambda part: (30.0 * part, 0.0), 3)  # a drag keeps the scale
     moved = tab.live.session.state.load["Q"] - before
     tab.click("undo")
     tab.click("undo")
-    tab.settle()
     tab.drag(lambda part: (30.0 * part, 0.0), 3)
     assert moved == pytest.approx(10.0 * tab.live.session.state.load["Q"], rel=0.1)
 
 
-def test_gaps_are_described_plainly(chrome: webdriver.Chrome) -> None:
-    note = "return document.getElementById('scale-note').textContent"
-    with served(lambda: contact(FREE.replace("clearance = 1e-5", "clearance = 1e-3"), 61)) as running:
-        tab = Tab(chrome, running)
-        assert tab.run(note) == "gaps to scale"
-        tab.set("clearance", "0.01")
-        tab.settle()
-        assert re.fullmatch(r"gaps enlarged \d+ times", tab.run(note))
+def test_gaps_are_described_plainly(opened: Opened) -> None:
+    tab = opened(FREE.replace("clearance = 1e-5", "clearance = 1e-3"))
+    assert tab.text("scale-note") == "gaps to scale"
+    tab.set("clearance", "0.01")
+    assert re.fullmatch(r"gaps enlarged \d+ times", tab.text("scale-note"))
 
 
-def test_rounding_is_shown_as_zero(chrome: webdriver.Chrome) -> None:
-    with served(lambda: contact(nodes=200)) as running:
-        tab = Tab(chrome, running)
-        numbers = tab.run("return document.getElementById('numbers').innerText").replace("\t", " ")
-        assert "pin turns 0 rad" in numbers
-        assert "pin moves right 0 m" in numbers
+def test_rounding_is_shown_as_zero(opened: Opened) -> None:
+    numbers = opened(None, 200).text("numbers")
+    assert "pin turns0 rad" in numbers
+    assert "pin moves right0 m" in numbers
 
 
-def test_a_bush_that_slips_is_drawn_with_its_zones(chrome: webdriver.Chrome) -> None:
-    with served(lambda: contact(seats.TEXT, 48)) as running:
-        tab = Tab(chrome, running)
-        tab.set("Q", "20")
-        tab.settle()
-        numbers = tab.run("return document.getElementById('numbers').innerText").replace("\t", " ")
-        assert "bush turns" in numbers
-        assert "bush slips up to" in numbers
-        assert tab.run("return fastpin.history.shown.seat.zones.length") > 1
-        assert tab.trouble() == []
+def test_a_bush_that_slips_is_drawn_with_its_zones(opened: Opened) -> None:
+    tab = opened(seats.TEXT, 48)
+    tab.set("Q", "20")
+    assert re.search("bush turns.*bush slips up to", tab.text("numbers"), re.DOTALL)
+    assert tab.shown("shown.seat.zones.length") > 1
+    assert tab.trouble() == []
 
 
 @pytest.mark.parametrize("thickness", ["", "thickness = 0.01\n"])
-def test_units_of_kilonewtons_and_millimetres(chrome: webdriver.Chrome, thickness: str) -> None:
+def test_units_of_kilonewtons_and_millimetres(opened: Opened, thickness: str) -> None:
     text = FREE.replace("friction = 0.3\n", f"friction = 0.3\n{thickness}")
     if thickness:
         text = text.replace("P = 1e6", "P = 1e4")
-    with served(lambda: contact(text, 61)) as running:
-        tab = Tab(chrome, running)
-        tab.run(
-            "const place = document.getElementById('units'); place.value = 'kN, mm';"
-            "place.dispatchEvent(new Event('change', {bubbles: true}))"
-        )
-        tab.settle()
-        force = "kN" if thickness else "kN/m"
-        page = tab.run("return document.body.innerText").replace("\t", " ")
-        assert f"\nP {'10.00' if thickness else '1000'} {force} " in page
-        assert "µm" not in page
-        assert ("/m" not in page) == bool(thickness)
-        assert tab.run("return document.getElementById('field-clearance').value") == "0.01000"
-        tab.set("P", "5,5" if thickness else "550")
-        tab.set("clearance", "0,02")
-        tab.settle()
-        assert tab.live.session.state.load["P"] == pytest.approx(5.5e5, rel=1e-15)
-        assert tab.live.session.problem.clearance == 2e-5
+    tab = opened(text)
+    tab.set("units", "kN, mm")
+    force = "kN" if thickness else "kN/m"
+    page = tab.run("return document.body.innerText").replace("\t", " ")
+    assert f"\nP {'10.00' if thickness else '1000'} {force} " in page
+    assert "µm" not in page
+    assert ("/m" not in page) == bool(thickness)
+    assert tab.value("field-clearance") == "0.01000"
+    tab.set("P", "5,5" if thickness else "550")
+    tab.set("clearance", "0,02")
+    assert tab.live.session.state.load["P"] == pytest.approx(5.5e5, rel=1e-15)
+    assert tab.live.session.problem.clearance == 2e-5
 
 
-def test_a_prescribed_rotation_and_its_kind_have_controls_of_their_own(chrome: webdriver.Chrome) -> None:
+def test_a_prescribed_rotation_and_its_kind_have_controls_of_their_own(opened: Opened) -> None:
     text = FREE.replace("friction = 0.3\n", 'friction = 0.3\nrotation = "fixed"\n') + "rotation = 0.001\n"
-    with served(lambda: contact(text, 61)) as running:
-        tab = Tab(chrome, running)
-        assert tab.run("return document.getElementById('field-rotation').value") == "1.000"
-        assert tab.run("return document.querySelector(`select[data-key='rotation']`).value") == "fixed"
+    tab = opened(text)
+    assert tab.value("field-rotation") == "1.000"
+    assert tab.run("return document.querySelector(`select[data-key='rotation']`).value") == "fixed"
 
 
 def test_a_shared_page_shows_its_qr_code(chrome: webdriver.Chrome, server: Server) -> None:
@@ -548,7 +520,7 @@ def test_a_shared_page_shows_its_qr_code(chrome: webdriver.Chrome, server: Serve
         tab = Tab(chrome, running)
         tab.click("share")
         tab.wait("return document.getElementById('code').naturalWidth > 20")
-        assert tab.run("return document.getElementById('shared').textContent") == running.address
+        assert tab.text("shared") == running.address
         tab.click("shared-close")
         assert tab.trouble() == []
         choices = tab.run("return [...document.querySelector(`[data-key='nodes']`).options].map((one) => one.value)")
@@ -556,22 +528,12 @@ def test_a_shared_page_shows_its_qr_code(chrome: webdriver.Chrome, server: Serve
 
 
 @pytest.mark.parametrize("width", [420, 360])
-def test_texts_of_the_drawing_do_not_overlap(chrome: webdriver.Chrome, width: int) -> None:
-    with served(lambda: contact(FREE, 61)) as running:
-        tab = Tab(chrome, running)
-        sizes = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
-        chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", sizes)
+def test_texts_of_the_drawing_do_not_overlap(opened: Opened, width: int) -> None:
+    tab = opened(FREE)
+    with tab.sized(width):
         tab.set("P", "30")
-        tab.settle()
-        help_box, note = (
-            tab.run(
-                "const box = document.getElementById(arguments[0]).getBoundingClientRect();"
-                "return [box.top, box.bottom]", name
-            )
-            for name in ("help", "scale-note")
-        )  # fmt: skip
-        chrome.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-        assert help_box[1] < note[0]
+        edges = "return document.getElementById(arguments[0]).getBoundingClientRect()[arguments[1]]"
+        assert tab.run(edges, "help", "bottom") < tab.run(edges, "scale-note", "top")
 
 
 OUTLINE = """
@@ -588,68 +550,53 @@ from the top on."""
 def test_lobes_are_chosen_by_words_and_drawn_enlarged(tab: Tab) -> None:
     assert tab.run(OUTLINE) == pytest.approx([1.0] * 721)
     tab.set("hole_lobes", "2")
-    tab.settle()
     tab.set("hole_amplitude", "8")
-    tab.settle()
     tab.set("hole_axis slider", "30", "input")
-    tab.settle()
     gap = tab.live.session.problem.gap
     theta = np.radians(np.arange(-180.0, 180.5, 0.5) - 90.0)
     assert np.allclose(
         gap.values(theta, 0.01)[0], 8e-6 * np.cos(2.0 * (theta + np.radians(60.0))), rtol=0.0, atol=1e-18
     )
-    (times,) = re.findall(
-        r"gaps enlarged (\S+) times", tab.run("return document.getElementById('scale-note').textContent")
-    )
+    (times,) = re.findall(r"gaps enlarged (\S+) times", tab.text("scale-note"))
     enlarged = 1.0 + float(times) / 0.01 * gap.values(theta, 0.01)[0]
     assert tab.run(OUTLINE) == pytest.approx(enlarged.tolist(), abs=1e-3)  # the words have two digits
-    assert "hole profile: oval of 8 um" in tab.run("return document.getElementById('profiles').textContent")
-    assert tab.run("return fastpin.history.latest.peak_pressure") == solved(tab.live)[-1].peak_pressure
+    assert "hole profile: oval of 8 um" in tab.text("profiles")
+    assert tab.shown("latest.peak_pressure") == solved(tab.live)[-1].peak_pressure
     tab.set("hole_lobes", "0")
-    tab.settle()
     assert tab.run(OUTLINE) == pytest.approx([1.0] * 721)
     assert not tab.run("return document.querySelector(`[data-key='hole_amplitude']`)")
     assert tab.trouble() == []
 
 
-def test_bounds_of_the_shear_follow_friction_along_the_rim_and_its_change(chrome: webdriver.Chrome) -> None:
+def test_bounds_of_the_shear_follow_friction_along_the_rim_and_its_change(opened: Opened) -> None:
     varied = "friction = [{ constant = 0.2 }, { zone = 0.2, start = -10, stop = 180 }]"
-    with served(lambda: contact(FREE.replace("friction = 0.3", varied), 61)) as running:
-        tab = Tab(chrome, running)
-        for change in (0.0, 0.5):
-            tab.set("friction_change", str(change))
-            tab.settle()
-            angle, _, upper, lower, _ = tab.curve("shear")
-            pressure = tab.curve("pressure")[2]
-            state, apart = tab.live.session.state, np.abs(angle + 10.0) > 0.25  # the page has four values a degree
-            bound = state.friction_at(np.radians(angle - 90.0)) * pressure
-            assert np.allclose(upper[apart], bound[apart], rtol=1e-5, equal_nan=True)
-            assert np.array_equal(lower, -upper, equal_nan=True)
-            assert np.nanmax(upper / pressure) == pytest.approx(0.4 * (1.0 + change))
-        tab.set("most_friction slider", "0.1", "input")
-        tab.settle()
-        assert tab.live.session.problem.most_friction == pytest.approx(0.1)
-        assert tab.live.session.problem.least_friction == pytest.approx(0.05)
-        assert tab.trouble() == []
+    tab = opened(FREE.replace("friction = 0.3", varied))
+    for change in (0.0, 0.5):
+        tab.set("friction_change", str(change))
+        angle, _, upper, lower, _ = tab.curve("shear")
+        pressure = tab.curve("pressure")[2]
+        state, apart = tab.live.session.state, np.abs(angle + 10.0) > 0.25  # the page has four values a degree
+        bound = state.friction_at(np.radians(angle - 90.0)) * pressure
+        assert np.allclose(upper[apart], bound[apart], rtol=1e-5, equal_nan=True)
+        assert np.array_equal(lower, -upper, equal_nan=True)
+        assert np.nanmax(upper / pressure) == pytest.approx(0.4 * (1.0 + change))
+    tab.set("most_friction slider", "0.1", "input")
+    assert tab.live.session.problem.most_friction == pytest.approx(0.1)
+    assert tab.live.session.problem.least_friction == pytest.approx(0.05)
+    assert tab.trouble() == []
 
 
-@pytest.mark.parametrize(
-    ("key", "value", "field", "found"),
-    [
-        ("friction", "0.25", "friction", 0.25),
-        ("clearance", "40", "clearance", 4e-5),
-        ("friction slider", "0.3", "friction", 0.3),
-        ("pin_bore", "4", "has_bodies", True),
-        ("plate_body", "ring", "has_bodies", True),
-    ],
-)
-def test_fields_and_sliders_change_the_problem(tab: Tab, key: str, value: str, field: str, found: object) -> None:
-    tab.set(key, value, "input" if "slider" in key else "change")
-    tab.settle()
-    assert getattr(tab.live.session.problem, field) == pytest.approx(found)
-    state = solved(tab.live)[-1]
-    assert tab.run("return fastpin.history.latest.peak_pressure") == state.peak_pressure
-    assert tab.message == ""
+def test_fields_and_sliders_change_the_problem_and_the_load(tab: Tab) -> None:
+    for key, value in (("clearance", "40"), ("friction slider", "0.3"), ("pin_bore", "4"), ("plate_body", "ring")):
+        tab.set(key, value, "input" if "slider" in key else "change")
+        assert tab.shown("latest.peak_pressure") == solved(tab.live)[-1].peak_pressure
+        assert tab.message == ""
+    tab.set("sxx", "50")
+    tab.set("Q slider", "300000", "input")
+    problem, load = tab.live.session.problem, tab.live.session.state.load
+    assert (problem.clearance, problem.friction) == (4e-5, 0.3)
+    assert (problem.pin_body.bore_radius, type(problem.plate_body)) == (4e-3, Ring)
+    assert (load["sxx"], load["Q"]) == (50e6, 300000.0)
 
 
 def test_a_slider_can_be_dragged_while_the_contact_follows(tab: Tab) -> None:
@@ -664,35 +611,16 @@ def test_a_slider_can_be_dragged_while_the_contact_follows(tab: Tab) -> None:
     tab.settle()
     friction = tab.live.session.problem.friction
     assert friction == pytest.approx(0.81 * 1.2, abs=0.05)
-    assert float(tab.run("return document.getElementById('field-friction').value")) == pytest.approx(friction, abs=1e-3)
+    assert float(tab.value("field-friction")) == pytest.approx(friction, abs=1e-3)
     tab.chrome.switch_to.active_element.send_keys(Keys.CONTROL, "z")  # the slider has the focus
     tab.settle()
     assert tab.live.session.problem.friction == 0.4
-    assert tab.run("return document.getElementById('field-friction').value") == "0.4000"
-
-
-def test_load_sliders_and_remote_stress(tab: Tab) -> None:
-    tab.set("sxx", "50")
-    tab.settle()
-    tab.set("Q slider", "300000", "input")
-    tab.settle()
-    load = tab.live.session.state.load
-    assert (load["sxx"], load["Q"]) == (50e6, 300000.0)
-
-
-def test_wrong_input_gets_a_sentence_on_the_page_and_the_page_lives_on(tab: Tab) -> None:
-    tab.set("friction", "-1")
-    tab.settle()
-    assert tab.message == "friction: must not be negative, not -1"
-    assert tab.run("return document.getElementById('field-friction').value") == "0.4000"
-    tab.drag(circle, 5)
-    assert tab.message == ""
+    assert tab.value("field-friction") == "0.4000"
 
 
 def test_two_ways_to_the_same_load_have_two_shears(tab: Tab) -> None:
     tab.click("play-two")
-    tab.settle()
-    words = tab.run("return document.getElementById('lesson').textContent")
+    words = tab.text("lesson")
     assert words.startswith("Same load as the reference, reached in another way: the shear differs by up to")
     _, before, _, _, shear = tab.curve("shear")
     straight = np.max(np.abs(np.nan_to_num(before) - np.nan_to_num(shear)))
@@ -706,20 +634,12 @@ def test_two_ways_to_the_same_load_have_two_shears(tab: Tab) -> None:
 
 def test_the_case_is_played_and_the_history_scrubbed(tab: Tab) -> None:
     tab.click("play-case")
-    tab.settle()
-    assert tab.run("return fastpin.history.latest.load.Q") == 7.26e5
-    count = tab.run("return fastpin.history.pictures.length")
-    assert (
-        tab.run(
-            "const place = document.getElementById('scrub'); place.value = 3;"
-            "place.dispatchEvent(new Event('input')); return fastpin.history.place"
-        )
-        == 3
-    )
-    tab.settle()
-    assert tab.run("return document.getElementById('step').textContent") == f"step 4 of {count}"
+    assert tab.shown("latest.load.Q") == 7.26e5
+    count = tab.shown("pictures.length")
+    tab.set("scrub", 3, "input")
+    assert tab.shown("place") == 3
+    assert tab.text("step") == f"step 4 of {count}"
     tab.keys("drawing", Keys.ARROW_LEFT)  # goes on from the latest state, not from the one that is shown
-    tab.settle()
     assert tab.run("return fastpin.history.isLatest && fastpin.history.pictures.length") == count + 1
 
 
@@ -727,44 +647,39 @@ def test_two_tabs_have_two_contacts(tab: Tab, chrome: webdriver.Chrome, server: 
     other = Tab(chrome, server)
     tab.drag(circle, 5)
     assert tab.live is not other.live
-    assert other.run("return fastpin.history.pictures.length") == 1
+    assert other.shown("pictures.length") == 1
     other.drag(circle, 5)
     assert np.array_equal(solved(other.live)[-1].shear, other.live.session.state.shear)
 
 
-def test_a_lost_connection_comes_back_with_its_history(tab: Tab) -> None:
+def test_a_lost_connection_and_a_reloaded_page_come_back_with_their_history(tab: Tab) -> None:
     tab.drag(circle, 10)
-    before = tab.run("return fastpin.history.pictures.map((one) => one.serial)")
+    serials = "return fastpin.history.pictures.map((one) => one.serial)"
+    before = tab.run(serials)
     tab.run("fastpin.link.socket.close()")
     tab.wait("return !fastpin.link.open")
     tab.wait("return fastpin.link.open && fastpin.link.waiting.size === 0")
-    assert tab.run("return fastpin.history.pictures.map((one) => one.serial)") == before
-    tab.drag(circle, 5)
-    assert tab.run("return fastpin.history.pictures.length") > len(before)
-    assert tab.message == ""
-
-
-def test_a_reloaded_page_has_its_history(tab: Tab) -> None:
-    tab.drag(circle, 10)
-    before = tab.run("return fastpin.history.pictures.map((one) => one.serial)")
+    assert tab.run(serials) == before
     tab.chrome.refresh()
     tab.wait("return window.fastpin?.history.case && fastpin.link.waiting.size === 0")
-    assert tab.run("return fastpin.history.pictures.map((one) => one.serial)") == before
+    assert tab.run(serials) == before
+    tab.drag(circle, 5)
+    assert tab.run(serials)[: len(before)] == before
+    assert tab.shown("pictures.length") > len(before)
+    assert tab.message == ""
 
 
 def test_a_killed_server_leaves_the_history_on_the_page(chrome: webdriver.Chrome) -> None:
     with started(fastpin_command("live", "--no-browser", "--nodes", 61)) as process:
         address = process.stdout.readline().split()[-1]
         tab = Tab(chrome, None)
-        chrome.get(address)
-        tab.wait("return window.fastpin?.history.case !== null && fastpin.times.length > 0")
+        tab.open(address)
         tab.keys("drawing", Keys.ARROW_RIGHT)
-        tab.settle()
+        tab.wait("return fastpin.history.pictures.length === 2")
         process.kill()
         process.wait()
     tab.wait("return document.getElementById('connection').textContent === 'no server'")
     assert tab.message.startswith("The server has ended. The history stays on this page")
-    assert tab.run("return fastpin.history.pictures.length") == 2
     tab.keys("drawing", Keys.ARROW_RIGHT)  # no harm
     tab.click("csv")
     file = chrome.folder / "loads.csv"
@@ -775,27 +690,23 @@ def test_a_killed_server_leaves_the_history_on_the_page(chrome: webdriver.Chrome
     chrome.get_log("browser")  # the refused connections
 
 
-def test_a_load_that_nothing_carries_says_so(chrome: webdriver.Chrome) -> None:
-    with served(lambda: contact(FREE, 61)) as running:
-        tab = Tab(chrome, running)
-        tab.set("M", "5")
-        tab.settle()
-        before = tab.live.session.state
-        assert "spins" in tab.message
-        assert tab.message.endswith("The contact stays at the last load that was carried.")
-        tab.drag(circle, 5)
-        assert tab.message == ""
-        assert tab.live.session.state is not before
+def test_a_load_that_nothing_carries_says_so(opened: Opened) -> None:
+    tab = opened(FREE)
+    tab.set("M", "5")
+    before = tab.live.session.state
+    assert "spins" in tab.message
+    assert tab.message.endswith("The contact stays at the last load that was carried.")
+    tab.drag(circle, 5)
+    assert tab.message == ""
+    assert tab.live.session.state is not before
 
 
-def test_a_case_that_fails_at_once_says_so_on_the_page(chrome: webdriver.Chrome) -> None:
-    with served(lambda: contact(FREE + "M = 1e6\n", 61)) as running:
-        tab = Tab(chrome, running)
-        assert "the pin spins" in tab.message
-        assert tab.run("return fastpin.history.pictures.length") == 0
-        tab.set("P", "1")
-        tab.settle()
-        assert (tab.message, tab.live.session.state.load["P"]) == ("", pytest.approx(1e6, rel=1e-15))
+def test_a_case_that_fails_at_once_says_so_on_the_page(opened: Opened) -> None:
+    tab = opened(FREE + "M = 1e6\n")
+    assert "the pin spins" in tab.message
+    assert tab.shown("pictures.length") == 0
+    tab.set("P", "1")
+    assert (tab.message, tab.live.session.state.load["P"]) == ("", pytest.approx(1e6, rel=1e-15))
 
 
 def test_case_picture_and_recording_are_saved(tab: Tab, chrome: webdriver.Chrome) -> None:
@@ -808,21 +719,19 @@ def test_case_picture_and_recording_are_saved(tab: Tab, chrome: webdriver.Chrome
     result = fastpin.solve(case.problem, case.history, **case.options.keywords())
     assert np.array_equal(result[-1].shear, tab.live.session.state.shear)
     assert files[2].read_bytes().startswith(b"\x89PNG")
-    assert_replays(chrome, files[1], tab.run("return fastpin.history.pictures.length"))
+    assert_replays(chrome, files[1], tab.shown("pictures.length"))
 
 
 def assert_replays(chrome: webdriver.Chrome, file: Path, count: int) -> None:
     """A recording is replayed from a file, without server and without trouble."""
     tab = Tab(chrome, None)
     chrome.get_log("browser")
-    chrome.get(file.as_uri())
-    tab.wait("return window.fastpin?.times.length > 0")
-    assert tab.run("return fastpin.history.pictures.length") == count
+    tab.open(file.as_uri())
+    assert tab.shown("pictures.length") == count
     tab.run("fastpin.history.place = 0")
     tab.click("replay")
     tab.wait("return fastpin.history.isLatest && !fastpin.player.plays")
-    assert tab.trouble() == []
-    assert not tab.run("return performance.getEntriesByType('resource').some((one) => one.name.startsWith('http'))")
+    assert_alone(tab)
 
 
 def test_the_recording_of_a_run_is_replayed(chrome: webdriver.Chrome, tmp_path: Path) -> None:
@@ -831,6 +740,12 @@ def test_the_recording_of_a_run_is_replayed(chrome: webdriver.Chrome, tmp_path: 
     file = tmp_path / "page.html"
     file.write_text(record_page(case, list(result)), encoding="utf-8")
     assert_replays(chrome, file, len(result))
+
+
+def assert_alone(tab: Tab) -> None:
+    """A page asks for nothing over a network, and has no trouble."""
+    assert tab.trouble() == []
+    assert not tab.run("return performance.getEntriesByType('resource').some((one) => one.name.startsWith('http'))")
 
 
 SLIDE = """
@@ -847,8 +762,7 @@ def life_of(chrome: webdriver.Chrome, folder: Path, life: WearResult) -> Tab:
     file.write_text(record_life(life, "Fretting"), encoding="utf-8")
     tab = Tab(chrome, None)
     chrome.get_log("browser")
-    chrome.get(file.as_uri())
-    tab.wait("return window.fastpin?.times.length > 0")
+    tab.open(file.as_uri())
     return tab
 
 
@@ -859,7 +773,7 @@ def test_the_slider_of_cycles_moves_through_a_life_of_wear(chrome: webdriver.Chr
         f"return document.getElementById('{name}').textContent" for name in ("cycle", "numbers", "worn-unit")
     )
     assert tab.run(words) == "after 3,000 cycles"
-    places = tab.run("return fastpin.history.life.scale.places")
+    places = tab.shown("life.scale.places")
     assert places[0] == 0.0
     assert places[1:] == pytest.approx(0.08 + 0.92 * np.log10(life.numbers[1:] / 3.0) / 3.0)
     for k in (0, 4, 2):
@@ -882,46 +796,39 @@ def test_the_slider_of_cycles_moves_through_a_life_of_wear(chrome: webdriver.Chr
         assert f"largest pressure{1e-6 * cycle.largest_pressure:#.4g} MPa" in text
         assert tab.run("return fastpin.map.columns.length") == k + 1
     assert np.nanmax(tab.curve("damage")[-1]) == pytest.approx(life.fatigue().hot_spots[2].damage, rel=1e-6)
-    before = tab.run("return fastpin.history.shown.serial")
-    tab.run("const place = document.getElementById('scrub'); place.value = 0; place.dispatchEvent(new Event('input'))")
-    assert tab.run("return fastpin.history.shown.serial") == before - 2
+    before = tab.shown("shown.serial")
+    tab.set("scrub", 0, "input")
+    assert tab.shown("shown.serial") == before - 2
     tab.keys("drawing", Keys.ARROW_RIGHT)
     assert tab.run("return [fastpin.history.cycle.cycle, fastpin.history.place]") == [100, 0]  # the state stays
     tab.keys("cycles", Keys.HOME)
-    assert tab.run("return fastpin.history.cycle.cycle") == 0
+    assert tab.shown("cycle.cycle") == 0
     tab.click("play-life")
     tab.wait("return fastpin.history.cycle.cycle === 3000 && !fastpin.player.plays")
-    assert tab.trouble() == []
-    assert not tab.run("return performance.getEntriesByType('resource').some((one) => one.name.startsWith('http'))")
+    assert_alone(tab)
+
+
+WIDTHS = "return [document.documentElement.scrollWidth, innerWidth]"
 
 
 @pytest.mark.parametrize("width", [1400, 800, 400])
-def test_nothing_of_a_life_lies_beyond_the_window(chrome: webdriver.Chrome, tmp_path: Path, width: int) -> None:
-    tab = life_of(chrome, tmp_path, fretting(1, ()))
-    sizes = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
-    chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", sizes)
-    wide, inner = tab.run("return [document.documentElement.scrollWidth, innerWidth]")
-    chrome.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-    assert wide <= inner == width
-    assert tab.run("return document.getElementById('cycle').textContent") == "after 1 cycle"
-    assert tab.trouble() == []
-
-
-@pytest.mark.parametrize("width", [1400, 800, 400])
-def test_nothing_lies_beyond_the_window(chrome: webdriver.Chrome, server: Server, width: int) -> None:
-    tab = Tab(chrome, server)
-    sizes = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
-    chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", sizes)  # a window has at least 500 pixels
-    tab.drag(circle, 5)
-    wide, inner = tab.run("return [document.documentElement.scrollWidth, innerWidth]")
-    assert wide <= inner
-    boxes = tab.run(
-        "return Array.from(document.querySelectorAll('button, canvas, input, select'), (one) => "
-        "{const box = one.getBoundingClientRect();"
-        " return [one.id || one.dataset.key || one.className, box.left, box.right, box.width]})"
-    )
-    assert [box for box in boxes if box[3] > 0 and not 0 <= box[1] <= box[2] <= inner] == []
-    assert inner == width
+def test_nothing_lies_beyond_the_window(tab: Tab, chrome: webdriver.Chrome, tmp_path: Path, width: int) -> None:
+    with tab.sized(width):
+        tab.drag(circle, 5)
+        wide, inner = tab.run(WIDTHS)
+        boxes = tab.run(
+            "return Array.from(document.querySelectorAll('button, canvas, input, select'), (one) => "
+            "{const box = one.getBoundingClientRect();"
+            " return [one.id || one.dataset.key || one.className, box.left, box.right, box.width]})"
+        )
+        assert [box for box in boxes if box[3] > 0 and not 0 <= box[1] <= box[2] <= inner] == []
+        assert wide <= inner == width
+    life = life_of(chrome, tmp_path, fretting(1, ()))
+    with life.sized(width):
+        wide, inner = life.run(WIDTHS)
+        assert wide <= inner == width
+        assert life.text("cycle") == "after 1 cycle"
+        assert life.trouble() == []
 
 
 DRAG = """

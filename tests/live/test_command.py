@@ -49,41 +49,26 @@ def test_without_its_packages_the_command_says_how_to_install_them(
     assert capsys.readouterr() == ("", sentence)
 
 
-def test_the_command_prints_the_address_and_says_that_there_is_no_browser(
+def test_the_command_prints_the_address_and_who_can_reach_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    asked: list[object] = []
+
     def serve(
         make: Callable[[], LiveContact], port: int, ready: Callable[[str], None], host: str, limits: Limits
     ) -> None:
-        assert (make().session.grid.size, port, host, limits) == (71, 0, "", ALONE)
-        ready("http://127.0.0.1:1/token/")
-
-    opened: list[str] = []
-
-    def no_browser(address: str) -> bool:
-        opened.append(address)
-        return False
+        asked[:] = make().session.grid.size, port, host, limits
+        ready(f"http://{host or '127.0.0.1'}:1/token/")
 
     monkeypatch.setattr(live_command.live, "serve", serve)
-    monkeypatch.setattr("webbrowser.open", no_browser)
+    monkeypatch.setattr("webbrowser.open", asked.append)  # returns nothing, as where there is no browser
     assert main(["live", "--nodes", "71"]) == 0
+    assert asked == [71, 0, "", ALONE, "http://127.0.0.1:1/token/"]
     printed = capsys.readouterr()
     assert printed.out == "live page: http://127.0.0.1:1/token/\nCtrl-C ends it\n"
     assert printed.err == "note: no browser was found; open the address above in one\n"
-    assert opened == ["http://127.0.0.1:1/token/"]
-
-
-def test_the_command_says_who_can_reach_a_shared_page(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def serve(
-        make: Callable[[], LiveContact], port: int, ready: Callable[[str], None], host: str, limits: Limits
-    ) -> None:
-        assert (make().session.grid.size, host, limits) == (100, SHARED, CLASS)
-        ready(f"http://{SHARED}:1/token/")
-
-    monkeypatch.setattr(live_command.live, "serve", serve)
     assert main(["live", "--no-browser", "--host", SHARED]) == 0
+    assert asked == [100, 0, SHARED, CLASS]
     said = capsys.readouterr().out
     assert f"whoever reaches {SHARED} over the network and has this whole address can open the page" in said
     assert "nothing is encrypted" in said

@@ -25,7 +25,7 @@ from fastpin.model.angles import angle_at
 from fastpin.states.curves import traction_patches
 from fastpin.states.state import State
 from fastpin.verification.body_cases import ring_compliance
-from tests.support.live_pages import FREE, NODES, Page, contact, floats, message
+from tests.support.live_pages import FREE, NODES, Page, contact, floats, solved
 
 P, Q = 2.42e6, 7.26e5
 MOST_LEFT = contact_module.MOST_LEFT
@@ -68,7 +68,7 @@ def test_a_drag_has_the_states_of_solve_bit_by_bit() -> None:
     drag(page, 5)
     page.tell("load", loads={"Q": -Q}, gesture=6)
     session = page.live.session
-    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+    result = solved(page.live)
     assert len(result) == len(page.pictures) == 14
     for picture, state in zip(page.pictures, result, strict=True):
         assert_shown(picture, state)
@@ -115,33 +115,22 @@ def test_undo_takes_back_a_gesture_and_redo_brings_it_again() -> None:
     assert page.pictures[:-1] == after_drag
     page.tell("load", loads={"Q": 0.0}, gesture=8)  # goes on from there, and forgets what was undone
     assert page.tell("redo")["sentence"] == "redo: nothing was undone"
-    session = page.live.session
-    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
-    assert_shown(page.pictures[-1], result[-1])
+    assert_shown(page.pictures[-1], solved(page.live)[-1])
 
 
-def test_changes_of_one_gesture_are_undone_together() -> None:
+def test_changes_of_one_gesture_are_undone_together_and_none_is_joined_after_undo() -> None:
     page = Page(contact())
     for friction in (0.3, 0.35, 0.5):
         page.tell("change", changes={"friction": friction}, gesture=4)
     page.tell("undo")
     assert page.live.session.problem.friction == 0.4
     assert page.latest["undos"] == 0
-
-
-def test_a_load_after_undo_is_not_joined_to_the_gesture_before() -> None:
-    page = Page(contact())
-    drag(page, 5, 3)
-    page.tell("undo")
-    drag(page, 5, 3)
-    page.tell("undo")
-    assert len(page.pictures) == 1
-
-
-def test_reset_can_be_undone() -> None:
-    page = Page(contact())
-    drag(page, 5, 3)
-    before = page.pictures
+    for _ in range(2):
+        drag(page, 5, 3)
+        before = page.pictures
+        page.tell("undo")
+        assert len(page.pictures) == 1
+    page.tell("redo")
     page.tell("reset")
     assert page.live.session.state is None
     page.tell("undo")
@@ -156,11 +145,9 @@ def test_a_change_of_the_problem_follows_the_load_or_the_history(follow: str) ->
     session = page.live.session
     assert (session.problem.friction, session.problem.clearance) == (0.25, 3e-5)
     assert len(page.pictures) == (1 if follow == "load" else 7)
-    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
-    assert_shown(page.pictures[-1], result[-1])
+    assert_shown(page.pictures[-1], solved(page.live)[-1])
 
 
-@pytest.mark.gate
 @pytest.mark.gate
 def test_bodies_and_materials_can_be_changed() -> None:
     page = Page(contact(nodes=21))
@@ -185,7 +172,25 @@ def test_bodies_and_materials_can_be_changed() -> None:
     assert page.latest["case"]["plate"] == "plate"
 
 
-def assert_every_control_can_be_sent_back(text: str | None, changes: dict[str, Any]) -> None:
+VARIED = FREE.replace("friction = 0.3\n", "friction = [{ constant = 0.2 }, { zone = 0.2, start = -30, stop = 30 }]\n")
+"""A case whose friction varies along the rim."""
+
+OVAL = VARIED.replace(
+    "[[load]]",
+    "[gap]\nhole = [{ crown = 1e-6, centre = 0, half_width = 20 }, { ellipse = 4e-6, axis = 30 }]\n"
+    "pin = [{ flat = 1e-6, centre = 90 }]\n[[load]]",
+    1,
+)
+"""The same with initial gaps of hole and pin."""
+
+
+SENT = [(None, {}), (None, {"pin_bore": 4e-3}), (None, {"plate_body": "ring"}), (None, {"plate_body": "bushing"}),
+        (OVAL, {}), (OVAL, {"friction_along": "uniform", "pin_lobes": "5"})]  # fmt: skip
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize(("text", "changes"), SENT)
+def test_every_control_can_be_sent_back_unchanged(text: str | None, changes: dict[str, Any]) -> None:
     page = Page(contact(text, nodes=21, limits=Limits(nodes=21)))
     if changes:
         page.tell("change", changes=changes)
@@ -199,34 +204,6 @@ def assert_every_control_can_be_sent_back(text: str | None, changes: dict[str, A
     theta = np.linspace(-np.pi, np.pi, 73)
     assert np.array_equal(problem.friction_at(theta), before.friction_at(theta))
     assert np.allclose(problem.gap_at(theta)[0], before.gap_at(theta)[0], rtol=0.0, atol=1e-20)
-
-
-@pytest.mark.gate
-@pytest.mark.gate
-@pytest.mark.parametrize(
-    "changes", [{}, {"pin_bore": 4e-3}, {"plate_body": "ring"}, {"plate_body": "bushing"}], ids=str
-)
-def test_every_control_can_be_sent_back_unchanged(changes: dict[str, Any]) -> None:
-    assert_every_control_can_be_sent_back(None, changes)
-
-
-@pytest.mark.gate
-@pytest.mark.gate
-@pytest.mark.parametrize("changes", [{}, {"friction_along": "uniform", "pin_lobes": "5"}], ids=str)
-def test_every_control_of_an_oval_hole_can_be_sent_back_unchanged(changes: dict[str, Any]) -> None:
-    assert_every_control_can_be_sent_back(OVAL, changes)
-
-
-VARIED = FREE.replace("friction = 0.3\n", "friction = [{ constant = 0.2 }, { zone = 0.2, start = -30, stop = 30 }]\n")
-"""A case whose friction varies along the rim."""
-
-OVAL = VARIED.replace(
-    "[[load]]",
-    "[gap]\nhole = [{ crown = 1e-6, centre = 0, half_width = 20 }, { ellipse = 4e-6, axis = 30 }]\n"
-    "pin = [{ flat = 1e-6, centre = 90 }]\n[[load]]",
-    1,
-)
-"""The same with initial gaps of hole and pin."""
 
 
 def controls_of(page: Page) -> dict[str, dict]:
@@ -252,10 +229,9 @@ def test_friction_that_varies_is_scaled_by_its_slider_and_keeps_its_shape() -> N
     values = around(page, "contact.friction")
     assert values.size == 1440
     assert (values[0], values[720]) == pytest.approx((0.1, 0.2))  # at the top and at the bottom
-    session = page.live.session
-    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
-    assert_shown(page.pictures[-1], result[-1])
-    assert np.all(np.abs(session.state.shear) <= session.state.friction * session.state.pressure * (1.0 + 1e-12))
+    assert_shown(page.pictures[-1], solved(page.live)[-1])
+    state = page.live.session.state
+    assert np.all(np.abs(state.shear) <= state.friction * state.pressure * (1.0 + 1e-12))
 
 
 def test_friction_that_varies_can_be_made_uniform_and_be_brought_back() -> None:
@@ -268,16 +244,12 @@ def test_friction_that_varies_can_be_made_uniform_and_be_brought_back() -> None:
     assert page.live.session.problem.friction == given.scaled(0.5)
     page.tell("undo")
     assert page.live.session.problem.friction == 0.2
-
-
-def test_a_uniform_friction_has_one_slider() -> None:
-    page = Page(contact())
-    assert not controls_of(page).keys() & {"most_friction", "friction_along"}
-    answer = page.tell("change", changes={"most_friction": 0.2})
+    one = Page(contact())
+    assert not controls_of(one).keys() & {"most_friction", "friction_along"}
+    answer = one.tell("change", changes={"most_friction": 0.2})
     assert answer["sentence"] == "most_friction: the friction of the case is the same all round"
 
 
-@pytest.mark.gate
 @pytest.mark.gate
 def test_hole_and_pin_get_lobes_by_words() -> None:
     page = Page(contact())
@@ -293,8 +265,7 @@ def test_hole_and_pin_get_lobes_by_words() -> None:
     session = page.live.session
     assert np.allclose(session.problem.gap_at(theta)[0], gap.values(theta, 0.01)[0], rtol=0.0, atol=1e-20)
     assert around(page, "gap.hole")[720 + 4 * 30] == pytest.approx(4e-6, rel=1e-6)  # 30 degrees from the bottom
-    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
-    assert_shown(page.pictures[-1], result[-1])
+    assert_shown(page.pictures[-1], solved(page.live)[-1])
     page.tell("change", changes={"hole_lobes": "6"})
     assert controls_of(page)["hole_axis"]["value"] == pytest.approx(-30.0)  # that of the lobe next to the bottom
     assert controls_of(page)["hole_amplitude"]["value"] == pytest.approx(4e-6)
@@ -304,7 +275,6 @@ def test_hole_and_pin_get_lobes_by_words() -> None:
     assert len(page.live.session.problem.gap.given) == 2
 
 
-@pytest.mark.gate
 @pytest.mark.gate
 def test_lobes_of_the_case_are_controlled_and_its_other_terms_stay() -> None:
     page = Page(contact(OVAL))
@@ -397,7 +367,9 @@ def test_a_narrow_contact_gets_more_nodes_until_it_is_wide_again() -> None:
     assert np.count_nonzero(page.live.session.state.pressure) >= contact_module.LEAST_CLOSED
     page.tell("change", changes={"clearance": 1e-5})
     assert page.live.session.grid.size == 101
+    load = page.pictures[-1]["load"]
     page.tell("nodes", nodes=201)
+    assert (page.live.session.grid.size, page.pictures[-1]["load"]) == (201, load)
     page.tell("undo")
     assert (page.live.session.grid.size, page.latest["case"]["nodes"]) == (101, 101)
 
@@ -409,19 +381,8 @@ def test_a_contact_too_narrow_for_the_circle_gets_nodes_of_its_own() -> None:
     session = page.live.session
     assert np.count_nonzero(session.state.pressure) > 5
     page.tell("load", loads={"Q": 1e3}, gesture=2)
-    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+    result = solved(page.live)
     assert page.live.session.state.peak_pressure == pytest.approx(result[-1].peak_pressure, rel=1e-9)
-
-
-def test_other_nodes_keep_the_load() -> None:
-    page = Page(contact())
-    drag(page, 5, 4)
-    load = page.pictures[-1]["load"]
-    page.tell("nodes", nodes=101)
-    assert page.live.session.grid.size == 101
-    assert page.pictures[-1]["load"] == load
-    page.tell("undo")
-    assert page.live.session.grid.size == NODES
 
 
 def test_displacements_can_be_led() -> None:
@@ -467,6 +428,10 @@ def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch)
     assert page.live.session.state is not None
     page.tell("load", loads={"Q": 5.0}, gesture=1)
     assert page.pictures[-1]["load"]["Q"] == 5.0
+    page = Page(contact(nodes=21, limits=Limits(undone_nodes=5 * 21)))
+    for k in range(8):
+        page.tell("load", loads={"Q": 1e4 * k}, gesture=k)
+    assert page.latest["undos"] == 5  # they have few nodes together
 
 
 def test_the_states_of_the_session_stay_small() -> None:
@@ -504,28 +469,6 @@ def test_a_plate_from_a_compliance_file_is_not_saved_but_its_loads_are_pointed_t
     assert live.session.state is not None
     with pytest.raises(fastpin.InputError, match=r"^case: a plate from a compliance file .* save the loads \(CSV\)"):
         live.case_text()
-
-
-def test_a_long_history_can_be_stopped() -> None:
-    page = Page(contact())
-    drag(page, 5, 6)
-    session, pictures = page.live.session, page.pictures
-    advance, count = fastpin.Session.advance, 0
-
-    def stopping(self: fastpin.Session, loads: dict[str, float]) -> State:
-        nonlocal count
-        count += 1
-        if count == 3:
-            page.live.stop()
-        return advance(self, loads)
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(fastpin.Session, "advance", stopping)
-        answer = page.tell("change", changes={"friction": 0.3}, follow="history")
-    assert answer["sentence"] == "history: was stopped on the way; the contact is where it was"
-    assert (count, page.live.session) == (3, session)
-    page.tell("load", loads={"Q": 0.0}, gesture=9)
-    assert page.pictures[:-1] == pictures
 
 
 @pytest.mark.parametrize("nodes", [61, 201])
@@ -567,16 +510,7 @@ def test_gestures_that_can_be_undone_hold_no_matrices(frozen: None) -> None:
     assert systems() - before <= MOST_LEFT + 1
     page.tell("undo")
     page.tell("load", loads={"Q": 2e5}, gesture=99)
-    session = page.live.session
-    again = fastpin.solve(session.problem, session.history, grid=session.grid)[-1]
-    assert np.array_equal(session.state.shear, again.shear)
-
-
-def test_states_for_undo_have_few_nodes_together() -> None:
-    page = Page(contact(limits=Limits(undone_nodes=10 * NODES)))
-    for k in range(20):
-        page.tell("load", loads={"Q": 1e4 * k}, gesture=k)
-    assert page.latest["undos"] == 10
+    assert np.array_equal(page.live.session.state.shear, solved(page.live)[-1].shear)
 
 
 @pytest.mark.parametrize("load", [{"P": P}, {"P": -P}, {"P": 0.0, "Q": P}, {"P": 0.0, "Q": -P}])
@@ -621,21 +555,6 @@ def test_curves_across_the_top_have_a_part_at_either_end() -> None:
     degrees = floats(page.pictures[-1]["curves"]["degrees"])
     assert not np.isnan(degrees).any()
     assert np.all(np.diff(degrees) >= 0.0)
-
-
-@pytest.mark.gate
-def test_a_long_history_pauses_and_leaves_the_contact_where_it_was() -> None:
-    page = Page(contact(nodes=41))
-    drag(page, 5, 6)
-    before = page.live.session
-    work = page.live.steps(message("change", changes={"friction": 0.3}, follow="history"))
-    for _ in range(3):
-        next(work)
-    assert page.live.session is not before
-    work.close()
-    assert page.live.session is before
-    answer = page.tell("change", changes={"friction": 0.3}, follow="history")
-    assert (answer["kind"], len(page.pictures)) == ("pictures", 7)
 
 
 def test_a_class_has_fewer_nodes() -> None:

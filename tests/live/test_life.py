@@ -55,7 +55,6 @@ def test_worn_depths_and_numbers_are_those_of_the_life(result: WearResult, recor
     assert np.array_equal(floats(worn["hole"]), result[-1].plate_depth[order].astype("<f4"))
 
 
-@pytest.mark.gate
 def test_the_damage_is_that_of_the_material_that_is_still_there(result: WearResult, recording: dict) -> None:
     """The titanium of the pin has no constants for a life."""
     life, found = recording["life"], result.fatigue()
@@ -73,7 +72,6 @@ def test_the_damage_is_that_of_the_material_that_is_still_there(result: WearResu
             assert degrees[np.argmax(values)] == pytest.approx(np.degrees(spot.theta) + 90.0, abs=1e-3)
 
 
-@pytest.mark.gate
 def test_depths_round_the_whole_hole_go_on_to_the_top() -> None:
     case = WEAR_CASES["lobed hole"]
     result = fastpin.wear(case.problem, case.history(), cycles=2, plate=5.0, tolerance=0.0, grid=case.grid(21))
@@ -85,7 +83,6 @@ def test_depths_round_the_whole_hole_go_on_to_the_top() -> None:
     assert hole.max() == np.float32(result[-1].depth)
 
 
-@pytest.mark.gate
 def test_of_many_cycles_an_even_choice_is_recorded(result: WearResult, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(life_module, "MOST_PICTURES", 6)
     life = recorded(record_life(result))["life"]
@@ -95,7 +92,6 @@ def test_of_many_cycles_an_even_choice_is_recorded(result: WearResult, monkeypat
     assert life["stored"] == 3
 
 
-@pytest.mark.gate
 def test_what_is_not_modelled_and_what_is_in_doubt_is_told(result: WearResult, recording: dict) -> None:
     """A pin that slips by more than a node distance turns its own profile."""
     assert recording["life"]["remark"] == "debris is not modelled"
@@ -110,11 +106,16 @@ def test_what_is_not_modelled_and_what_is_in_doubt_is_told(result: WearResult, r
     assert [str(each) for each in turned.doubts] == [doubt]
 
 
-def test_a_life_that_ended_at_its_beginning_has_one_cycle_and_no_damage(result: WearResult) -> None:
-    begun = fastpin.solver.WearResult(
+def begun_with(result: WearResult, cycles: int) -> WearResult:
+    """A life that ended with its first cycles."""
+    return WearResult(
         **{name: getattr(result, name) for name in ("problem", "history", "law", "tolerance", "coefficients", "grid")},
-        cycles=result.cycles[:1], complete=False, statistics={},
+        cycles=result.cycles[:cycles], complete=False, statistics={},
     )  # fmt: skip
+
+
+def test_a_life_that_ended_at_its_beginning_has_one_cycle_and_no_damage(result: WearResult) -> None:
+    begun = begun_with(result, 1)
     found = recorded(record_life(begun, sentence="interrupted"))
     assert found["sentence"] == "interrupted"
     assert [each["cycle"] for each in found["life"]["cycles"]] == [0]
@@ -124,9 +125,5 @@ def test_a_life_that_ended_at_its_beginning_has_one_cycle_and_no_damage(result: 
 def test_what_is_no_life_with_cycles_is_refused(result: WearResult) -> None:
     with pytest.raises(fastpin.InputError, match=r"result: must be a fastpin\.solver\.WearResult"):
         record_life([])  # type: ignore[arg-type]
-    none = fastpin.solver.WearResult(
-        **{name: getattr(result, name) for name in ("problem", "history", "law", "tolerance", "coefficients", "grid")},
-        cycles=(), complete=False, statistics={},
-    )  # fmt: skip
     with pytest.raises(fastpin.InputError, match="result: there is no stored cycle to record"):
-        record_life(none)
+        record_life(begun_with(result, 0))

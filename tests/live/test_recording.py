@@ -64,7 +64,6 @@ def test_nothing_to_record_is_refused() -> None:
 
 
 @pytest.mark.gate
-@pytest.mark.gate
 def test_run_show_and_a_lost_run_write_recordings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     page, other, stored = tmp_path / "page.html", tmp_path / "other.html", tmp_path / "run.h5"
     assert main(["run", "--nodes", "21", "--between", "1", "--record", str(page), "-o", str(stored)]) == 0

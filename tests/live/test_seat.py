@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import fastpin
-from tests.support.live_pages import Page, contact
+from tests.support.live_pages import Page, contact, solved
 from tests.support.seats import TEXT
 
 FORCE = 4e6
@@ -27,11 +27,9 @@ def turn(page: Page, count: int = 3) -> None:
 
 
 @pytest.mark.gate
-@pytest.mark.gate
 def test_a_drag_has_the_states_of_solve_with_the_bush(page: Page) -> None:
     turn(page)
-    session = page.live.session
-    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+    result = solved(page.live)
     assert len(result) == len(page.pictures) == 4
     for picture, state in zip(page.pictures, result, strict=True):
         seat, shown = state.seat, picture["seat"]
@@ -45,7 +43,6 @@ def test_a_drag_has_the_states_of_solve_with_the_bush(page: Page) -> None:
 
 
 @pytest.mark.gate
-@pytest.mark.gate
 def test_undo_and_redo_lead_back_to_the_same_seat(page: Page) -> None:
     turn(page)
     before = page.pictures[-1]
@@ -57,8 +54,7 @@ def test_undo_and_redo_lead_back_to_the_same_seat(page: Page) -> None:
     last = page.live.session.state
     assert last is not None
     assert last.seat is not None
-    session = page.live.session
-    again = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")[-1].seat
+    again = solved(page.live)[-1].seat
     assert again is not None
     assert np.array_equal(again.slip, last.seat.slip)
 

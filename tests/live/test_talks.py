@@ -270,7 +270,9 @@ def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
     talked(Server(small), work)
 
 
-def test_a_long_history_is_stopped_by_its_page(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_history_is_stopped_by_its_page_and_leaves_the_contact_where_it_was(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     async def work(opened: Opened) -> None:
         wire = opened()
         talk = wire.talk()
@@ -283,9 +285,13 @@ def test_a_long_history_is_stopped_by_its_page(monkeypatch: pytest.MonkeyPatch) 
         await steps.begun()
         await talk.send("stop")
         await wire.read()
-        steps.let_go()
-        assert "was stopped on the way" in (await talk.answer(number))["sentence"]
+        steps.let_go(9)
+        sentence = "history: was stopped on the way; the contact is where it was"
+        assert (await talk.answer(number))["sentence"] == sentence
         assert len(steps.taken) == 2
+        assert (await talk.load(0.0))["keep"] == 6
+        again = await talk.answer(await follow(talk))  # nothing is left of the first try
+        assert (again["keep"], len(again["add"]), again["case"]["friction"]) == (0, 7, 0.3)
 
     talked(Server(small), work)
 

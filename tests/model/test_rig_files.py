@@ -67,78 +67,38 @@ def test_columns_units_and_signs(
 @pytest.mark.parametrize(
     ("text", "columns", "thickness", "line", "words"),
     [
-        (
-            "# rig 3\nTime [s],Force [N]\n0,1\n",
-            {"P": "Forze [N]"},
-            1.0,
-            2,
-            'P: the file has no column "Forze [N]"; its columns are "Time [s]", "Force [N]", did you mean "Force [N]"?',
-        ),
+        ("# rig 3\nTime [s],Force [N]\n0,1\n", {"P": "Forze [N]"}, 1.0, 2,
+         'P: the file has no column "Forze [N]"; its columns are "Time [s]", "Force [N]", did you mean "Force [N]"?'),
         ("F,F\n0,1\n", {"P": "F"}, None, 1, 'P: 2 columns of the file are "F"; its columns are "F", "F"'),
-        (
-            "Force [N]\n1\n",
-            None,
-            None,
-            1,
-            'column 1: unknown load "Force [N]"; the loads are P, Q, M, sxx, syy, rotation, sxy, ux, uy, '
-            'friction_change; a [[load]] block reads it with P = { column = "Force [N]" }',
-        ),
-        (
-            "P [MPa]\n1\n",
-            None,
-            1.0,
-            1,
-            'P: a force must be in N, kN, MN, daN, kgf, lbf or kip, not "MPa" (column "P [MPa]")',
-        ),
-        (
-            "P [kN]\n1\n",
-            None,
-            None,
-            1,
-            'P: a force must be in N/m, kN/m, MN/m, N/mm, kN/mm or lbf/in, not "kN"; give the thickness for loads in N '
-            'and N m (column "P [kN]")',
-        ),
-        (
-            "P [kN/m]\n1\n",
-            None,
-            1.0,
-            1,
-            'P: a force must be in N, kN, MN, daN, kgf, lbf or kip, not "kN/m"; with a thickness loads are in N '
-            'and N m (column "P [kN/m]")',
-        ),
+        ("Force [N]\n1\n", None, None, 1,
+         'column 1: unknown load "Force [N]"; the loads are P, Q, M, sxx, syy, rotation, sxy, ux, uy, '
+         'friction_change; a [[load]] block reads it with P = { column = "Force [N]" }'),
+        ("P [MPa]\n1\n", None, 1.0, 1,
+         'P: a force must be in N, kN, MN, daN, kgf, lbf or kip, not "MPa" (column "P [MPa]")'),
+        ("P [kN]\n1\n", None, None, 1,
+         'P: a force must be in N/m, kN/m, MN/m, N/mm, kN/mm or lbf/in, not "kN"; give the thickness for loads in N '
+         'and N m (column "P [kN]")'),
+        ("P [kN/m]\n1\n", None, 1.0, 1,
+         'P: a force must be in N, kN, MN, daN, kgf, lbf or kip, not "kN/m"; with a thickness loads are in N '
+         'and N m (column "P [kN/m]")'),
         ("P\n1\n", {"P": {"column": "P", "unit": "KN"}}, 1.0, 1, 'lbf or kip, not "KN", did you mean "kN"?'),
         ("F [N]\n1\n", {"P": {"column": "F", "unit": "kN"}}, 1.0, 1, "P: the unit is kN, and the header says N; give"),
         ("F [N]\nkN\n1\n", {"P": "F"}, 1.0, 2, "P: the unit is N, and the line below the header says kN; give"),
         ("P,Q\nMPa,N\n1,2\n", None, 1.0, 2, 'P: a force must be in N, kN, MN, daN, kgf, lbf or kip, not "MPa"'),
         ("Force [N]\n1\nx\n", {"P": "Force"}, 1.0, 3, 'P: must be a number, not "x" (column "Force [N]")'),
         ("P\tQ;M\n1\t2;3\n", None, None, 1, "the header has tabs and semicolons; separate the cells by one of them"),
-        (
-            "P,Q\n1,5,2,5\n",
-            None,
-            None,
-            2,
-            "the line has 4 cells, the header has 2; with decimal commas the cells must be separated by semicolons or",
-        ),
-        (
-            "P;Q\n1,5;2\n1;2.5\n",
-            None,
-            None,
-            3,
-            "a number has a decimal point, and one in line 2 a decimal comma; write one of them in the whole file",
-        ),
-        (
-            "P\tQ\n1,500\t2\n1\t-2,500\n",
-            None,
-            None,
-            2,
-            "the comma of each number may be a decimal comma or separate thousands; write decimal points",
-        ),
+        ("P,Q\n1,5,2,5\n", None, None, 2,
+         "the line has 4 cells, the header has 2; with decimal commas the cells must be separated by semicolons or"),
+        ("P;Q\n1,5;2\n1;2.5\n", None, None, 3,
+         "a number has a decimal point, and one in line 2 a decimal comma; write one of them in the whole file"),
+        ("P\tQ\n1,500\t2\n1\t-2,500\n", None, None, 2,
+         "the comma of each number may be a decimal comma or separate thousands; write decimal points"),
         ("P;Q\n1.234,5;2\n", None, None, 2, 'P: thousands must not be separated: write 1234.5, not "1.234,5"'),
         ("P;Q\n1,234,567;2\n", None, None, 2, 'P: thousands must not be separated: write 1234.5, not "1,234,567"'),
         ("# P,Q\n1,2\n", None, None, 2, "the first line must name the columns, and not begin with #"),
         ("P\n,\n\n", None, None, 0, "holds no load corners"),
     ],
-)
+)  # fmt: skip
 def test_faults_name_line_column_and_what_is_allowed(
     text: str, columns: dict[str, Any] | None, thickness: float | None, line: int, words: str, tmp_path: Path
 ) -> None:

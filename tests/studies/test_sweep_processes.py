@@ -65,7 +65,6 @@ def many_threads(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(name, "2")
 
 
-@pytest.mark.gate
 def test_a_worker_has_one_thread(many_threads: None) -> None:
     pool = Pool(1)
     try:
@@ -76,7 +75,6 @@ def test_a_worker_has_one_thread(many_threads: None) -> None:
     assert set(found) == {1}
 
 
-@pytest.mark.gate
 def test_a_worker_of_others_has_one_thread(many_threads: None) -> None:
     code = (
         "from threadpoolctl import threadpool_info\nfrom fastpin.studies.workers import one_thread\n"
@@ -85,7 +83,6 @@ def test_a_worker_of_others_has_one_thread(many_threads: None) -> None:
     assert finished(python(code)).stdout == "{1}\n"
 
 
-@pytest.mark.gate
 def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     plan = parse_plan(FRICTION.replace("COUNT", "8"))
 
@@ -95,7 +92,6 @@ def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     assert_same_as_serial(plan, tmp_path)
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("size", [1, 3])
 def test_the_run_that_kills_its_worker_is_found(size: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also among others of its batch."""
@@ -222,7 +218,6 @@ def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
         assert_same_as_serial(plan, directory)
 
 
-@pytest.mark.gate
 def test_a_script_that_its_workers_run_again_is_told(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(

@@ -18,13 +18,15 @@ import numpy as np
 import pytest
 from aiohttp import WSMessage, WSMsgType
 
+import fastpin
 from fastpin import casefile
 from fastpin.live.contact import LiveContact
 from fastpin.live.protocol import ALONE, Limits, Message, read_message
 from fastpin.live.server import Server
 from tests.support.case_texts import PRESSED
+from tests.support.processes import LONGEST
 
-LIMIT = 120.0
+LIMIT = LONGEST
 """Seconds after which a test that waits in vain fails. No test passes or fails by it otherwise."""
 
 NODES = 61
@@ -72,6 +74,12 @@ class Page:
             kept = self.pictures[answer["drop"] :][: answer["keep"]]
             self.pictures = kept + answer["add"]
             self.latest |= answer
+
+
+def solved(live: LiveContact) -> fastpin.Result:
+    """The history of a contact, by fastpin.solve."""
+    session = live.session
+    return fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
 
 
 def floats(text: str) -> np.ndarray:
