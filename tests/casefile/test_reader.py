@@ -346,12 +346,7 @@ def test_empty_file_says_what_is_missing() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    [
-        "contact = 3\npin = [1]\nload = 5\nsolve = 'x'",
-        "a = " + "[" * 5000,
-        "a = " + "9" * 5000,
-        "[[pin]]\n[[load]]\n",
-    ],
+    ["contact = 3\npin = [1]\nload = 5\nsolve = 'x'", "a = " + "[" * 5000, "a = " + "9" * 5000, "[[pin]]\n[[load]]\n"],
     ids=["no tables", "nested", "digits", "arrays"],
 )
 def test_strange_files_give_a_case_file_error(text: str) -> None:

@@ -54,11 +54,7 @@ def test_the_handbook_formula_agrees_to_its_own_error(friction: float) -> None:
 def test_arrays_have_the_values_of_numbers() -> None:
     at, friction = np.meshgrid([0.0, 0.2, 5.0], [0.0, 0.35], indexing="ij")
     cycled = {"alpha": 0.2, "beta": 0.03, "load_ratio": 0.2, "rotation": "fixed"}
-    for name, given in (
-        ("kt_bearing", {}),
-        ("kt_bearing", {"alpha": 0.2, "beta": 0.03}),
-        ("cycle_kt_bearing", cycled),
-    ):
+    for name, given in (("kt_bearing", {}), ("kt_bearing", {"alpha": 0.2, "beta": 0.03}), ("cycle_kt_bearing", cycled)):
         if name in CYCLE:
             at, friction = np.meshgrid([0.02, 0.2, 3.0], [0.3, 0.6], indexing="ij")
         whole = lookup(name, load_parameter=at, friction=friction, **given)
@@ -77,10 +73,7 @@ def test_a_value_is_that_of_its_only_parameters() -> None:
     alpha, beta = strain.dundurs()
     nu = (3.0 - strain.pin_kolosov) / (1.0 + strain.pin_kolosov)  # of the same constant in plane stress
     stress = MaterialPair.from_dundurs(alpha, beta, nu, "stress", beta_star=3.0 * strain.beta_star)
-    for problem in (
-        Problem(strain, 0.01, 2e-5, 0.4, "body"),
-        Problem(stress, 0.05, 6e-5, 0.4, "body"),
-    ):
+    for problem in (Problem(strain, 0.01, 2e-5, 0.4, "body"), Problem(stress, 0.05, 6e-5, 0.4, "body")):
         force = problem.clearance / (0.2 * problem.pair.beta_star)
         state, found = solve(problem, [{"P": force}], nodes=201)[-1], joint_values(problem, force)
         bearing = 0.5 * force / problem.hole_radius

@@ -243,10 +243,7 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
     ("arguments", "message"),
     [
         (["hoop", "--component", "sxx"], "--component: has no effect on hoop; it is for map"),
-        (
-            ["slip", "--states", "last"],
-            "--states: has no effect on slip; it is for tractions, polar, stick-slip, ",
-        ),
+        (["slip", "--states", "last"], "--states: has no effect on slip; it is for tractions, polar, stick-slip, "),
         (["sketch", "--csv", "a.csv"], "--csv: has no effect on sketch; it is for tractions, polar, stick-slip, gap"),
         (["animation", "--states", "last"], "--states: an animation needs two states or more"),
         (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
@@ -259,10 +256,7 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
             )
         ),
         (["hoop", "--sketch"], "--sketch: has no effect on hoop; it is for tractions"),
-        (
-            ["hoop", "--states", "now"],
-            "load points such as 2,3.5, 1-9 or 10-, not 'now'",
-        ),
+        (["hoop", "--states", "now"], "load points such as 2,3.5, 1-9 or 10-, not 'now'"),
         (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),
         (["map", "--component", "x"], "--component: must be "),
         (["profile", "--body", "both"], '--body: must be "plate", "pin" or "seat"'),

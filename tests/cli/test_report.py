@@ -63,10 +63,7 @@ def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path, capsys: p
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (
-            ["case.toml", "-o", "page.png"],
-            "--output: must be the name of a page, which ends in .html, .htm or .pdf",
-        ),
+        (["case.toml", "-o", "page.png"], "--output: must be the name of a page, which ends in .html, .htm or .pdf"),
         (["case.toml", "--author", "a\tb"], "--author: must be one line of printable characters, without \\t"),
         (["case.toml", "--plan", "x"], "--plan: has no effect on a case file; it is for the directory of a sweep"),
         (["a.h5", "--error-bars"], "--error-bars: has no effect on a stored result; it is for a case file"),

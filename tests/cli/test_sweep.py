@@ -151,11 +151,7 @@ def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.Capt
     ],
 )
 def test_what_can_not_be_done_is_told_before_the_runs(
-    arguments: list[str],
-    words: str,
-    path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
+    arguments: list[str], words: str, path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sweep_command, "CLUSTER_SECONDS", 0.1)
     assert main(["sweep", str(path), *arguments]) == 2

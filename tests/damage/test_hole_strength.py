@@ -7,13 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.damage import (
-    JointStrength,
-    joint_strength,
-    least_strength,
-    ply_failure,
-    ply_stresses,
-)
+from fastpin.damage import JointStrength, joint_strength, least_strength, ply_failure, ply_stresses
 from fastpin.damage.hole_strength import JOINT_MODES
 from fastpin.errors import InputError
 from fastpin.model.laminate import Laminate

@@ -18,12 +18,7 @@ from fastpin.model import FatigueConstants
 from tests.support.tiers import seeds
 
 SWT, FS = "smith-watson-topper", "fatemi-socie"
-LIFE = {
-    "fatigue_strength": 1100e6,
-    "strength_exponent": -0.124,
-    "fatigue_ductility": 0.22,
-    "ductility_exponent": -0.59,
-}
+LIFE = {"fatigue_strength": 1100e6, "strength_exponent": -0.124, "fatigue_ductility": 0.22, "ductility_exponent": -0.59}
 MATERIAL = fastpin.Material(70e9, 0.33, "aluminium", FatigueConstants(**LIFE))
 
 

@@ -21,11 +21,7 @@ from fastpin.verification.body_cases import ring_compliance
 from tests.support.kernels import python
 
 BOTTOM = -0.5 * np.pi
-GRIDS = {
-    "arc": Grid.arc(BOTTOM - 1.7, BOTTOM + 1.6, 61),
-    "circle": Grid.circle(72),
-    "odd circle": Grid.circle(61),
-}
+GRIDS = {"arc": Grid.arc(BOTTOM - 1.7, BOTTOM + 1.6, 61), "circle": Grid.circle(72), "odd circle": Grid.circle(61)}
 
 
 @pytest.fixture(params=["solid", "bodies", "compliance", "driven"])

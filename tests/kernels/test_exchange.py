@@ -331,11 +331,7 @@ def naive_path(system, start, after):
         with np.errstate(divide="ignore", invalid="ignore"):
             steps = [
                 np.where(~closed & (r.gap < -1e-10) & (now.gap > 1e-14), now.gap / -r.gap, np.inf),
-                np.where(
-                    closed & (r.pressure < -1e-10) & (now.pressure > 1e-14),
-                    now.pressure / -r.pressure,
-                    np.inf,
-                ),
+                np.where(closed & (r.pressure < -1e-10) & (now.pressure > 1e-14), now.pressure / -r.pressure, np.inf),
             ]
             for side in (-1.0, 1.0):
                 room, shrink = mu * now.pressure - side * now.shear, side * r.shear - mu * r.pressure

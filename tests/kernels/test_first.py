@@ -13,10 +13,7 @@ from fastpin.runtime import jit, machine
 from fastpin.runtime.threads import cores
 from tests.support.processes import ROOT, finished, python, started
 
-pytestmark = [
-    pytest.mark.gate,
-    pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored"),
-]
+pytestmark = [pytest.mark.gate, pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored")]
 
 SEEN = """
 import sys

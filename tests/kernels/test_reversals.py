@@ -24,13 +24,7 @@ def counted(rows, kernel=closed_cycles):
 
 def test_cycles_by_hand():
     rows = [[0, 3, 1, 2, 0, 0], [1, 1, 1, 1, 1, 1], [5, 0, 5, 0, 5, 0], [0, 1, 2, 3, 2, 1], [1, 4, 2, 3, 2, 3]]
-    assert counted(rows) == [
-        [(2, 1), (3, 0)],
-        [],
-        [(5, 0), (5, 0), (5, 0)],
-        [(3, 0)],
-        [(3, 2), (3, 2), (4, 1)],
-    ]
+    assert counted(rows) == [[(2, 1), (3, 0)], [], [(5, 0), (5, 0), (5, 0)], [(3, 0)], [(3, 2), (3, 2), (4, 1)]]
 
 
 def test_compiled_python_and_pylife_agree():

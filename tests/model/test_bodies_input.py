@@ -91,11 +91,7 @@ def test_a_hollow_pin_carries_a_moment_and_may_be_held(load, rotation):
             "outer_radius",
             "outer radius of the bush 0.0125",
         ),
-        (
-            {"plate_body": Bushing(SOFT, 0.0125)},
-            "material",
-            "the moduli of pin and bush must not differ",
-        ),
+        ({"plate_body": Bushing(SOFT, 0.0125)}, "material", "the moduli of pin and bush must not differ"),
     ],
 )
 def test_bodies_that_do_not_fit_are_refused_in_one_sentence(given, field, words):

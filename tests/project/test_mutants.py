@@ -49,10 +49,7 @@ def test_expressions(before: str, after: set[str]) -> None:
 def test_statements_are_dropped_where_no_name_gets_lost() -> None:
     source = "def f(x):\n    {}\n    {}\n    return x\n"
     first, second = "if x: return y", "x.y = z"
-    assert changed(source.format(first, second)) == {
-        source.format("if x: pass", second),
-        source.format(first, "pass"),
-    }
+    assert changed(source.format(first, second)) == {source.format("if x: pass", second), source.format(first, "pass")}
 
 
 def test_annotations_decorators_and_documentation_are_left_alone() -> None:

@@ -38,9 +38,7 @@ def extension(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 
 @pytest.mark.parametrize(
-    "path",
-    some_survey(EXAMPLES, *(path for path in EXAMPLES if path.stem not in QUICK)),
-    ids=lambda path: path.stem,
+    "path", some_survey(EXAMPLES, *(path for path in EXAMPLES if path.stem not in QUICK)), ids=lambda path: path.stem
 )
 def test_an_example_runs_and_draws_a_figure(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each example also asserts a fact of its own."""

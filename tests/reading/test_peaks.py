@@ -116,10 +116,7 @@ def test_peaks_at_both_ends_of_an_arc_are_mirrored(node: int) -> None:
 
 @pytest.mark.parametrize(
     ("nodes", "parameter", "friction", "corners"),
-    [
-        (161, 0.7, 0.74, [{"P": 1.0}, {"P": 0.343, "Q": 0.11}]),
-        (161, 0.0155, 2.97, [{"P": 1.0}]),
-    ],
+    [(161, 0.7, 0.74, [{"P": 1.0}, {"P": 0.343, "Q": 0.11}]), (161, 0.0155, 2.97, [{"P": 1.0}])],
 )
 def test_coarse_peaks_of_solved_contacts_are_near_those_of_a_fine_grid(
     nodes: int, parameter: float, friction: float, corners: list[dict[str, float]], similar: MaterialPair

@@ -66,11 +66,7 @@ def configuration_after(system: System, corners: list[Corner]) -> Configuration:
 
 
 # Nodes, peak pressure, rotation and int T of two cases, from another program.
-REFERENCE = [
-    (61, 0.50786, 0.02135, -0.10402),
-    (121, 0.50783, 0.02138, -0.10390),
-    (241, 0.50780, 0.02136, -0.10385),
-]
+REFERENCE = [(61, 0.50786, 0.02135, -0.10402), (121, 0.50783, 0.02138, -0.10390), (241, 0.50780, 0.02136, -0.10385)]
 
 
 @pytest.mark.gate

@@ -17,19 +17,7 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.storage.recording import record
 from fastpin.storage.store import load, save
-from tests.support.programs import (
-    EXTREMES,
-    FIELDS,
-    NUMBERS,
-    PROGRAMS,
-    RANDOM,
-    SLIP,
-    P,
-    assert_same,
-    grid_of,
-    known,
-    q,
-)
+from tests.support.programs import EXTREMES, FIELDS, NUMBERS, PROGRAMS, RANDOM, SLIP, P, assert_same, grid_of, known, q
 from tests.support.slip_cases import CASES, LIKE, METHODS, UNLIKE, random_states, solved, unitless
 from tests.support.tiers import seeds, some_gate
 
@@ -109,10 +97,7 @@ def held() -> Problem:
 
 
 @pytest.mark.parametrize("keep", ["all", "every 5", "cycles", "corners", "every 3"])
-@pytest.mark.parametrize(
-    "program",
-    some_gate(PROGRAMS, *(PROGRAMS.keys() - {"cycles", "corners", "minus zero"})),
-)
+@pytest.mark.parametrize("program", some_gate(PROGRAMS, *(PROGRAMS.keys() - {"cycles", "corners", "minus zero"})))
 def test_what_repeats_has_the_bits_of_what_is_solved_again(held: Problem, program: str, keep: str, tmp_path) -> None:
     history = PROGRAMS[program]
     keep = keep if history.longest_cycle or keep != "cycles" else "every 7"

@@ -19,13 +19,7 @@ from fastpin.solver.solving import solve
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.export import to_xarray
-from fastpin.storage.layout import (
-    CYCLE_FIELDS,
-    NODE_FIELDS,
-    NUMBER_FIELDS,
-    SLIP_FIELDS,
-    WITH_LAMINATE,
-)
+from fastpin.storage.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS, SLIP_FIELDS, WITH_LAMINATE
 from fastpin.storage.store import load, load_points, save
 from tests.support.samples import PAIR, sample_result
 

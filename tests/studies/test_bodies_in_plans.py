@@ -121,11 +121,7 @@ def test_a_solid_pin_replaces_a_hollow_one(tmp_path):
         (RING, "contact.hole_radius = [3e-2]", "line 1: case.toml, line 13: outer_radius: must lie between 0.03125"),
         (BUSH, "plate_body.interference = [-1e-6]", "line 3: plate_body.interference: must not be negative"),
         (BUSH, "plate_body.ring_outer_radius = [1e-3]", "line 3: plate_body.ring_outer_radius: must lie between"),
-        (
-            RING.replace("half", "held"),
-            "load.1.sxx = [1e6]",
-            "line 3: load.1.sxx: a held rim leaves no remote stress",
-        ),
+        (RING.replace("half", "held"), "load.1.sxx = [1e6]", "line 3: load.1.sxx: a held rim leaves no remote stress"),
     ],
 )
 def test_faults_of_bodies_in_plans(base, text, words, tmp_path):

@@ -153,11 +153,7 @@ def test_an_arc_too_narrow_for_the_fine_grid_is_widened_for_all(
         ({"increments": (20, 10, 40)}, "increments", "but 10 follows 20"),
         ({"increments": (0, 10, 40)}, "increments", "at least 1, not 0"),
         ({"increment_nodes": 101}, "increment_nodes", "give increments"),
-        (
-            {"increments": (5, 10, 20), "increment_nodes": 20},
-            "increment_nodes",
-            "from 51 to 20000, not 20",
-        ),
+        ({"increments": (5, 10, 20), "increment_nodes": 20}, "increment_nodes", "from 51 to 20000, not 20"),
         ({"corner": 4}, "corner", "1 to 3, not 4"),
         ({"corner": 0}, "corner", "at least 1"),
         ({"arc": (1.0, 0.0)}, "arc", "from a smaller to a larger angle"),

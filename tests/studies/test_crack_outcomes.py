@@ -78,12 +78,7 @@ def test_a_sweep_tells_the_fate_of_cracks(folder: Path) -> None:
     [
         ('"life"', '"lief"', 6, 'life: crack: must be "fate", "life"'),
         ('{ crack = "life" }', '{ crack = "life", fist = 3 }', 6, 'life: unknown key "fist"'),
-        (
-            '{ crack = "life" }',
-            '{ crack = "life", last = 1e-5 }',
-            6,
-            "life: last: must be longer than the first",
-        ),
+        ('{ crack = "life" }', '{ crack = "life", last = 1e-5 }', 6, "life: last: must be longer than the first"),
         ("m = 3, thres", "m = 0, thres", 7, "short: m: must be positive, not 0"),
         ("load.1.P", "crack.first = [1e-4]\nload.1.P", 3, '"crack.first": no run of a sweep grows a crack'),
     ],

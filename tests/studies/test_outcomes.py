@@ -297,9 +297,7 @@ take = "most"
 
 def test_capital_letters_make_no_difference(tmp_path: Path) -> None:
     text = '[grid]\nsolve.nodes = [41]\n[outcomes]\na = { quantity = "dx" }\nA = { quantity = "dy" }\n'
-    assert faults(text, tmp_path) == [
-        "plan, line 5: A: there is a already; capital letters make no difference",
-    ]
+    assert faults(text, tmp_path) == ["plan, line 5: A: there is a already; capital letters make no difference"]
 
 
 @pytest.mark.parametrize(
@@ -429,10 +427,7 @@ def test_a_link_does_not_lead_out_of_the_folder_of_the_plan(link: str, tmp_path:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (
-            "import nowhere_at_all\ndef f(r): return 1.0\n",
-            "a.py: can't be imported: ModuleNotFoundError: No ",
-        ),
+        ("import nowhere_at_all\ndef f(r): return 1.0\n", "a.py: can't be imported: ModuleNotFoundError: No "),
         ("def f(r): return 1.0\nraise SystemExit('no')\n", r"a.py: can't be imported: SystemExit: no \(a.py, line 2\)"),
         ("def f(r): return 1.0\ndel f\n", "a.py: can't be imported: AttributeError: "),
     ],

@@ -104,9 +104,7 @@ def test_persson_solves_the_equation_of_frictionless_contact(mismatch):
     node = half_angle * np.cos(k)
     weight = half_angle * np.pi / (n + 1) * np.sin(k) * closed_forms.persson_pressure(node, half_angle)
 
-    def cauchy(
-        theta,
-    ):  # theta midway between the nodes: Gauss-Chebyshev quadrature is exact for principal values
+    def cauchy(theta):  # theta midway between the nodes: Gauss-Chebyshev quadrature is exact for principal values
         return np.sum(weight / np.tan((theta - node) / 2.0))
 
     total, step = [], np.pi / (n + 1)
@@ -216,8 +214,7 @@ def test_bulk_stress_shifts_the_stick_zone():
 
 
 @pytest.mark.parametrize(
-    ("ratio", "stick"),
-    [(0.2, 0.001553), (1 / 3, 0.035922), (0.5, 0.171573), (1.0, 0.707107), (2.0, 0.985171)],
+    ("ratio", "stick"), [(0.2, 0.001553), (1 / 3, 0.035922), (0.5, 0.171573), (1.0, 0.707107), (2.0, 0.985171)]
 )
 def test_spence_table(ratio, stick):
     assert closed_forms.spence_stick_ratio(ratio) == pytest.approx(stick, abs=6e-7)

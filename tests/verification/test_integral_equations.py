@@ -175,11 +175,7 @@ def test_traction_at_the_end_of_an_arc_has_no_principal_value():
 
 
 def test_cauchy_matrix_picks_the_quick_fill_only_on_uniform_grids():
-    for grid in (
-        Grid.arc(-2.5, -0.5, 21),
-        graded(-2.5, -0.5, 21),
-        Grid(np.linspace(-2.5, -0.5, 21), closed=True),
-    ):
+    for grid in (Grid.arc(-2.5, -0.5, 21), graded(-2.5, -0.5, 21), Grid(np.linspace(-2.5, -0.5, 21), closed=True)):
         left, right = grid.knots()
         out = np.empty((grid.size, grid.size))
         influence.fill_cauchy(grid.theta, left, right, False, grid.closed, out)

@@ -69,10 +69,7 @@ def test_order_of_edge_and_peak_pressure(similar):
         for k, nodes in enumerate(sizes):
             arc = (BOTTOM - wide[0], BOTTOM + wide[1])
             state = solve(
-                Problem.from_load_parameter(similar, load_parameter, 0.0),
-                [{"P": 1.0}],
-                nodes=int(nodes),
-                arc=arc,
+                Problem.from_load_parameter(similar, load_parameter, 0.0), [{"P": 1.0}], nodes=int(nodes), arc=arc
             )[-1]
             edge[k] += (state.contact[0][1] - BOTTOM - exact) ** 2 + (state.contact[0][0] - BOTTOM + exact) ** 2
             peak[k] += (state.peak_pressure / top - 1.0) ** 2
@@ -135,11 +132,7 @@ def test_where_the_rotation_is_held(similar, hub, integral):
 def test_hub_at_the_papers_datum_is_the_default(similar):
     datum = 1.0 / math.sqrt(similar.pin_kolosov + 1.0)
     one, two = (
-        solve(
-            Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed", hub_radius=hub),
-            CYCLE[:2],
-            nodes=81,
-        )
+        solve(Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed", hub_radius=hub), CYCLE[:2], nodes=81)
         for hub in (None, datum)
     )
     assert np.abs(one[-1].shear - two[-1].shear).max() < 1e-10

@@ -275,10 +275,7 @@ STATE = SOLVED[-1]
             lambda: fastpin.Session(PROBLEM).change(friction=0.3, new_arc="no"),
             'new_arc: must be true or false, not "no"',
         ),
-        (
-            lambda: fastpin.Session(PROBLEM, undo=10**30),
-            "undo: must be a whole number from 0 to 100000000, not",
-        ),
+        (lambda: fastpin.Session(PROBLEM, undo=10**30), "undo: must be a whole number from 0 to 100000000, not"),
         (lambda: fastpin.casefile.case_text("x"), 'case: must be a Case, not "x"'),
         (lambda: fastpin.report.state_table(PROBLEM, [STATE], 5), "rows: must be the rows of table_rows, not 5"),
         (lambda: bodies.Compliance.from_document([1]), "content: must be a table, not [1]"),
@@ -303,10 +300,7 @@ STATE = SOLVED[-1]
             lambda: fastpin.plot_tractions(SOLVED, states=range(2**62)),
             "states: must be last, cycle, all or load points",
         ),
-        (
-            lambda: SOLVED.plot(states=slice(None, None, 0)),
-            "states: must be a slice of whole numbers with a step",
-        ),
+        (lambda: SOLVED.plot(states=slice(None, None, 0)), "states: must be a slice of whole numbers with a step"),
         (lambda: SOLVED.history[::0], "history: must be a slice of whole numbers with a step other than 0"),
         (lambda: SOLVED.history["x":], "history: must be a slice of whole numbers"),
     ],

@@ -38,8 +38,5 @@ def test_a_raw_error_a_slow_call_and_a_crash_are_findings(monkeypatch):
     made = list(calls.examine(lambda *_: todo))
     assert [ending.kind for _, ending in made] == ["raw", "slow", "slow", "raw", "accepted"]
     assert made[0][1].words.startswith("AttributeError: shape")
-    assert [ending.words for _, ending in made[1:3]] == [
-        "no end within 0.1 s of the processor",
-        "no end within 2 s",
-    ]
+    assert [ending.words for _, ending in made[1:3]] == ["no end within 0.1 s of the processor", "no end within 2 s"]
     assert "exit code 3" in made[3][1].words

@@ -158,8 +158,7 @@ def test_increments_lose_the_same_load(similar):
 
 
 @pytest.mark.parametrize(
-    ("history", "step"),
-    [([{"M": 0.1}], 0), ([{"P": 1.0}, {"P": 0.0}, {"M": 0.1}], 2), ([{"P": 1.0, "M": 0.5}], 0)],
+    ("history", "step"), [([{"M": 0.1}], 0), ([{"P": 1.0}, {"P": 0.0}, {"M": 0.1}], 2), ([{"P": 1.0, "M": 0.5}], 0)]
 )
 def test_a_moment_that_nothing_holds(similar, history, step):
     problem = Problem.from_load_parameter(similar, 0.5, 0.3, "centre", "free")

@@ -82,11 +82,7 @@ UNKNOWN_KEYS: list[tuple[str, str, str]] = [
     ("nodes = 401", "nodes = 401\nxyzzy = 1", 'unknown key "xyzzy" in [solve]; the keys are nodes, method, increments'),
     ("[solve]", "[solver]", 'unknown section [solver], did you mean "solve"?'),
     ("[contact]", "[geometry]", 'unknown section [geometry], did you mean "contact"?'),
-    (
-        "[solve]",
-        "[[repeat]]\nn = 3\n[solve]",
-        "unknown section [[repeat]]; repeat is a key in [[load]] or [history]",
-    ),
+    ("[solve]", "[[repeat]]\nn = 3\n[solve]", "unknown section [[repeat]]; repeat is a key in [[load]] or [history]"),
     (
         "[solve]",
         "[xyzzy]\n[solve]",
@@ -333,11 +329,7 @@ DOUBTFUL: list[tuple[str, str, str]] = [
         'pin_load = "centre"\ndrive = "uy"',
         "uy: -0.5 m is 50 hole radii; lengths are in m: 1 mm is 1e-3",
     ),
-    (
-        'rotation = "free"',
-        'rotation = "fixed"',
-        "rotation: 5 rad is 286 degrees; rotations are in rad, and small",
-    ),
+    ('rotation = "free"', 'rotation = "fixed"', "rotation: 5 rad is 286 degrees; rotations are in rad, and small"),
     ("nodes = 401", "nodes = 401\narc = [-90, -87]", "arc: -90 rad is more than two turns; angles are in rad"),
 ]
 """A line of the example, the line that is typed instead, and the only doubt."""
@@ -544,10 +536,7 @@ SOLID: dict[str, tuple[fastpin.Problem, dict[str, float]]] = {
     "dimensionless": (fastpin.Problem.from_load_parameter(PAIR, 3.0, 0.3), {"P": 1.0, "sxx": 5.0}),
     "rigid pin": (fastpin.Problem(fastpin.MaterialPair(fastpin.Material.rigid(), STEEL), 0.01, 1e-5, 0.3), {"P": 1e6}),
     "rubber": (fastpin.Problem(fastpin.MaterialPair(STEEL, fastpin.Material(5e6, 0.499)), 0.01, 0.0, 0.8), {"P": 1e3}),
-    "incompressible": (
-        fastpin.Problem(fastpin.MaterialPair(STEEL, FIRM), 0.01, 0.0, 1.0),
-        {"P": 1e5},
-    ),
+    "incompressible": (fastpin.Problem(fastpin.MaterialPair(STEEL, FIRM), 0.01, 0.0, 1.0), {"P": 1e5}),
     "all sticks": (fastpin.Problem(PAIR, 0.01, 1e-5, 1e6), {"P": 1e6}),
     "interference alone": (fastpin.Problem(PAIR, 0.01, -1e-5, 0.3), {"P": 10.0}),
     "no load": (fastpin.Problem(PAIR, 0.01, 1e-5, 0.3), {"P": 0.0}),

@@ -31,14 +31,7 @@ def problem(titanium_in_aluminium):
 def test_mirror(problem, solver):
     """Turning Q round mirrors the state: theta -> -pi - theta, T and slip and rotation change sign."""
     one, two = (
-        solve(
-            problem,
-            [{"P": 1.0}, {"Q": s * 0.3}, {"Q": -s * 0.3}],
-            nodes=101,
-            arc=ARC,
-            **solver,
-        )
-        for s in (1.0, -1.0)
+        solve(problem, [{"P": 1.0}, {"Q": s * 0.3}, {"Q": -s * 0.3}], nodes=101, arc=ARC, **solver) for s in (1.0, -1.0)
     )
     for here, there in zip(one, two, strict=True):
         assert np.abs(here.pressure - there.pressure[::-1]).max() < 1e-10
@@ -114,22 +107,12 @@ def test_a_symmetric_contact_is_symmetric(titanium_in_aluminium):
 
 @pytest.mark.parametrize(
     ("load", "rotation", "extra"),
-    [
-        ("body", "free", {}),
-        ("centre", "fixed", {}),
-        ("centre", "free", {"M": 0.05}),
-        ("body", "free", {"sxx": 0.03}),
-    ],
+    [("body", "free", {}), ("centre", "fixed", {}), ("centre", "free", {"M": 0.05}), ("body", "free", {"sxx": 0.03})],
 )
 def test_work_is_energy_plus_dissipation(titanium_in_aluminium, load, rotation, extra):
     """Exactly along the path; what is left is the asymmetry of collocation, which falls with the mesh."""
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, load, rotation)
-    history = [
-        {"P": 1.0},
-        {"Q": 0.3, **extra},
-        {"Q": -0.3, **{k: -v for k, v in extra.items()}},
-        {"P": 0.5, "Q": 0.1},
-    ]
+    history = [{"P": 1.0}, {"Q": 0.3, **extra}, {"Q": -0.3, **{k: -v for k, v in extra.items()}}, {"P": 0.5, "Q": 0.1}]
     worst = []
     for nodes in (101, 201, 401):
         result = solve(problem, history, nodes=nodes, arc=(BOTTOM - 1.6, BOTTOM + 1.6))
