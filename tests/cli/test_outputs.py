@@ -149,24 +149,23 @@ KINDS: dict[str, tuple[Callable[[Path, Path, str], object], str]] = {
 """Ways to make an existing file at a path, and words of its refusal."""
 
 
-@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("command", "option", "ending"), ENDINGS)
 def test_no_text_or_figure_replaces_another_kind(
-    command: str, option: str, ending: str, kind: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
+    command: str, option: str, ending: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if kind == "input" and command in ("benchmarks", "charts", "verify"):
-        return  # they have no input
-    path = Path(f"keep{ending}")
-    make, words = KINDS[kind]
-    make(path, samples, command)
-    before, outside = contents(folder), contents(samples)
-    with locked(path) if kind == "running" else nothing(path):
-        assert main([*COMMANDS[command], option, str(path)]) == 2
-    said = capsys.readouterr().err.splitlines()
-    assert len(said) == 1
-    assert str(path) in said[0]
-    assert words in said[0] or (command, kind) == ("report", "input")  # the page is refused before the result is read
-    assert (contents(folder), contents(samples)) == (before, outside)
+    for kind, (make, words) in KINDS.items():
+        if kind == "input" and command in ("benchmarks", "charts", "verify"):
+            continue  # they have no input
+        path = Path(f"{kind}{ending}")
+        make(path, samples, command)
+        before, outside = contents(folder), contents(samples)
+        with locked(path) if kind == "running" else nothing(path):
+            assert main([*COMMANDS[command], option, str(path)]) == 2, kind
+        (said,) = capsys.readouterr().err.splitlines()
+        assert str(path) in said
+        # The page is refused before the result is read.
+        assert words in said or (command, kind) == ("report", "input"), kind
+        assert (contents(folder), contents(samples)) == (before, outside), kind
 
 
 @pytest.mark.parametrize(

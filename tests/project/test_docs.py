@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -23,48 +24,38 @@ ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted((ROOT / "docs").glob("*.md"))
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
-def test_links_lead_somewhere(document: Path) -> None:
-    for target in re.findall(r"\]\(([^):#]+)", document.read_text(encoding="utf-8")):
-        assert (document.parent / target).exists(), target
+def found(pattern: str, paths: Iterable[Path] = DOCUMENTS) -> set[tuple[Path, str]]:
+    """Where a pattern stands: files and words."""
+    return {(path, word) for path in paths for word in re.findall(pattern, path.read_text(encoding="utf-8"))}
 
 
-@pytest.fixture(scope="module")
-def tests() -> set[str]:
-    """The names of all tests."""
-    paths = (ROOT / "tests").rglob("test_*.py")
-    return {name for path in paths for name in re.findall(r"\bdef (test_\w+)\(", path.read_text(encoding="utf-8"))}
+def test_links_lead_somewhere() -> None:
+    assert [(path.name, to) for path, to in found(r"\]\(([^):#]+)") if not (path.parent / to).exists()] == []
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
-def test_named_tests_and_scripts_exist(document: Path, tests: set[str]) -> None:
-    text = document.read_text(encoding="utf-8")
-    for name in set(re.findall(r"`(test_\w+)`", text)):
-        assert name in tests, name
-    for name in set(re.findall(r"`((?:tests|scripts|fastpin)/[\w/]+(?:\.py)?)`", text)):
-        assert (ROOT / name).exists(), name
+def test_named_tests_and_scripts_exist() -> None:
+    tests = {name for _, name in found(r"\bdef (test_\w+)\(", (ROOT / "tests").rglob("test_*.py"))}
+    assert [(path.name, name) for path, name in found(r"`(test_\w+)`") if name not in tests] == []
+    files = found(r"`((?:tests|scripts|fastpin)/[\w/]+(?:\.py)?)`")
+    assert [(path.name, name) for path, name in files if not (ROOT / name).exists()] == []
 
 
 def test_names_of_the_package_exist() -> None:
     """In docstrings and documents, such as ``fastpin.studies.sweep.run``."""
     files = [*sorted((ROOT / "fastpin").rglob("*.py")), *DOCUMENTS, ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
-    wrong = []
-    for path in files:
-        for name in set(re.findall(r"(?<![\w./\"])fastpin(?:\.[A-Za-z_]\w*)+", path.read_text(encoding="utf-8"))):
-            if not name.endswith((".py", ".toml")) and not exists(name):
-                wrong.append(f"{path.relative_to(ROOT)}: {name}")
-    assert wrong == []
+    named = found(r"(?<![\w./\"])fastpin(?:\.[A-Za-z_]\w*)+", files)
+    assert [(path, name) for path, name in named if not name.endswith((".py", ".toml")) and not exists(name)] == []
 
 
 def exists(name: str) -> bool:
     """Whether a dotted name is a module, or an attribute of a module or class."""
-    found, parts = importlib.import_module("fastpin"), name.split(".")
+    value, parts = importlib.import_module("fastpin"), name.split(".")
     for count, part in enumerate(parts[1:], start=2):
         try:
-            found = getattr(found, part)
+            value = getattr(value, part)
         except AttributeError:
             try:
-                found = importlib.import_module(".".join(parts[:count]))
+                value = importlib.import_module(".".join(parts[:count]))
             except ImportError:
                 return False
     return True

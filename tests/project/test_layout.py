@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import inspect
 import re
 from pathlib import Path
@@ -12,7 +13,6 @@ import pytest
 import fastpin
 from tests.support import layout
 from tests.support.processes import finished, python
-from tests.support.tiers import some_gate
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -130,10 +130,10 @@ def test_an_exception_that_is_not_needed_is_noticed(texts, monkeypatch):
 # -- the public face -----------------------------------------------------------------------------------------
 
 
-def stub_names(path: Path) -> list[str]:
+def stub_names(path: Path, also_files: bool = True) -> list[str]:
     """Names that an ``__init__.pyi`` makes public."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    return [alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+    nodes = [node for node in ast.parse(path.read_text(encoding="utf-8")).body if isinstance(node, ast.ImportFrom)]
+    return [alias.name for node in nodes if also_files or node.module for alias in node.names]
 
 
 def test_the_public_face_is_small_and_listed_once():
@@ -143,25 +143,28 @@ def test_the_public_face_is_small_and_listed_once():
     assert dir(fastpin) == sorted(names)
 
 
-@pytest.mark.parametrize("folder", ["", *layout.RANKS])
-def test_public_names_exist_and_are_documented(folder):
-    module = fastpin if not folder else __import__(f"fastpin.{folder}", fromlist=["x"])
-    stub = ROOT / "fastpin" / folder / "__init__.pyi"
-    for name in stub_names(stub) if stub.exists() else []:
-        value = getattr(module, name)
-        if inspect.ismodule(value) or inspect.isclass(value) or inspect.isroutine(value):
-            assert inspect.getdoc(value), name
+def stubs() -> list[Path]:
+    """The lists of public names."""
+    return [path for folder in ("", *layout.RANKS) if (path := ROOT / "fastpin" / folder / "__init__.pyi").exists()]
 
 
-@pytest.mark.parametrize("folder", layout.RANKS)
-def test_no_public_name_is_also_the_name_of_a_file(folder):
+def test_public_names_exist_and_are_documented():
+    for stub in stubs():
+        module = importlib.import_module(".".join(stub.relative_to(ROOT).parent.parts))
+        for name in stub_names(stub):
+            value = getattr(module, name)
+            if inspect.ismodule(value) or inspect.isclass(value) or inspect.isroutine(value):
+                assert inspect.getdoc(value), (stub, name)
+
+
+def test_no_public_name_is_also_the_name_of_a_file():
     """The import of the file would put the module in the place of the function."""
-    stub = ROOT / "fastpin" / folder / "__init__.pyi"
-    tree = ast.parse(stub.read_text(encoding="utf-8")) if stub.exists() else ast.Module([], [])
-    # "from . import FILE" makes the file itself public, and has no module.
-    taken = [node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module]
-    names = [alias.name for node in taken for alias in node.names]
-    assert [name for name in names if (stub.parent / f"{name}.py").exists()] == []
+    for stub in stubs():
+        if stub.parent.name == "fastpin":
+            continue
+        # "from . import FILE" makes the file itself public, and has no module.
+        names = stub_names(stub, also_files=False)
+        assert [name for name in names if (stub.parent / f"{name}.py").exists()] == [], stub
 
 
 @pytest.mark.gate
