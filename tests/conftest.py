@@ -1,7 +1,5 @@
 """Shared material pairs and problems."""
 
-from __future__ import annotations
-
 import gc
 from collections.abc import Callable, Iterator
 from pathlib import Path

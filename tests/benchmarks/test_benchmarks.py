@@ -1,7 +1,5 @@
 """The benchmarks: their words, and the numbers that docs/benchmarks.md states."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The formulas for a spreadsheet against closed forms and fresh solves."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

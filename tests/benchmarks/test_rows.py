@@ -1,7 +1,5 @@
 """Rows of benchmarks: their verdicts, and the words for them."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

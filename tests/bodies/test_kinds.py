@@ -1,7 +1,5 @@
 """The list of bodies: every kind is public and answers all questions, and old places of the names still work."""
 
-from __future__ import annotations
-
 import inspect
 
 import pytest

@@ -1,7 +1,5 @@
 """The sections [pin_body] and [plate_body] of case files."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Laminates in case files: read, written back, described, doubted and refused."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable
 

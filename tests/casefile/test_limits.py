@@ -1,7 +1,5 @@
 """Limits of case files: hostile texts end soon, in a short list of sentences."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

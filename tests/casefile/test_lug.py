@@ -1,7 +1,5 @@
 """Lug files: what is read, and that every fault is reported with its line."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

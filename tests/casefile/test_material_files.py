@@ -1,7 +1,5 @@
 """Files of materials, and the materials that fastpin names."""
 
-from __future__ import annotations
-
 import dataclasses
 import re
 from pathlib import Path
@@ -121,9 +119,7 @@ def test_a_plan_varies_them(folder: Path) -> None:
         (SHEET, "[sheet\n", 1, "not TOML"),
     ],
 )
-def test_a_fault_gets_one_sentence_in_python_and_in_a_case(
-    folder: Path, old: str, new: str, line: int, sentence: str
-) -> None:
+def test_a_fault_gets_one_sentence_in_python_and_in_a_case(folder, old, new, line, sentence):
     path = folder / "own.toml"
     path.write_text(SHEET.replace(old, new, 1))
     with pytest.raises(CaseFileError) as caught:

@@ -1,7 +1,5 @@
 """Profiles along the rim in case files: what is read, what is written, and the sentences of wrong ones."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Case files: what is read, and that every fault is reported with its line."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The section [strength] of case files."""
 
-from __future__ import annotations
-
 import pytest
 
 from fastpin import casefile

@@ -1,7 +1,5 @@
 """Loads in N: a case with a thickness is the case with loads in N/m, printed in N."""
 
-from __future__ import annotations
-
 import json
 import math
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Case files that are written read back as the same case."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """The formulas for a spreadsheet against the charts, and their text as a spreadsheet reads it."""
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -1,7 +1,5 @@
 """Values of the charts: against fresh runs, closed forms and other materials; ranges and wrong input."""
 
-from __future__ import annotations
-
 import math
 import pickle
 from typing import Any

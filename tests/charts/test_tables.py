@@ -1,7 +1,5 @@
 """The tables: interpolation, regions, the file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """``fastpin benchmarks`` on the command line."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -44,9 +42,7 @@ def test_files_and_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
         (["kirsch", "-o", "FILE"], "--output: "),
     ],
 )
-def test_wrong_options_are_refused_before_the_work(
-    arguments: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_options_are_refused_before_the_work(arguments, message, tmp_path, capsys):
     (tmp_path / "FILE").write_text("")
     given = [str(tmp_path / word) if word in ("DIR", "FILE") else word for word in arguments]
     assert main(["benchmarks", *given]) == 2
@@ -54,9 +50,7 @@ def test_wrong_options_are_refused_before_the_work(
     assert not list(tmp_path.glob("**/*.csv"))
 
 
-def test_an_interrupted_run_says_what_is_finished(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_interrupted_run_says_what_is_finished(monkeypatch, capsys):
     def interrupt(progress: object = None) -> None:
         raise KeyboardInterrupt
 

@@ -1,7 +1,5 @@
 """``fastpin compliance``: the file, the report, the figure and wrong input."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -46,9 +44,7 @@ def test_the_example_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.gate
-def test_a_file_a_figure_and_a_report(
-    lug: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_a_figure_and_a_report(lug, capsys, monkeypatch):
     monkeypatch.setattr(compliance, "DOUBTFUL", 1e-2)  # the nodes are few here
     figure = lug.with_name("small.svg")
     assert main(["compliance", str(lug), "--plot", str(figure)]) == 0
@@ -73,9 +69,7 @@ def test_the_same_file_gives_the_same_bits(lug: Path) -> None:
 
 
 @pytest.mark.gate
-def test_a_doubtful_result_has_a_note(
-    lug: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_doubtful_result_has_a_note(lug, capsys, monkeypatch):
     monkeypatch.setattr(compliance, "DOUBTFUL", 1e-12)
     assert main(["compliance", str(lug)]) == 0
     assert capsys.readouterr().err.startswith("note: the estimated error is above 1e-12")

@@ -1,7 +1,5 @@
 """The command ``converge``: what it prints, its exit codes and its files."""
 
-from __future__ import annotations
-
 import csv
 import json
 from dataclasses import replace
@@ -111,14 +109,7 @@ def test_json_goes_to_standard_output_alone(case: Path, capsys: pytest.CaptureFi
         (["--csv", "a.toml"], "won't overwrite a.toml: by its name it is a case file"),
     ],
 )
-def test_options_are_checked_before_the_work(
-    arguments: list[str],
-    words: str,
-    case: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-    tmp_path: Path,
-) -> None:
+def test_options_are_checked_before_the_work(arguments, words, case, capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(convergence, "solve", None)
     assert main(["converge", str(case), *arguments]) == 2
@@ -129,9 +120,7 @@ def test_options_are_checked_before_the_work(
 
 
 @pytest.mark.gate
-def test_an_interrupted_command_hands_out_what_there_is(
-    case: Path, study: Convergence, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupted_command_hands_out_what_there_is(case, study, capsys, monkeypatch):
     kept: list[Convergence | None] = [replace(study, studies=study.studies[:1], complete=False), None]
 
     def interrupted(*_: object) -> Convergence:

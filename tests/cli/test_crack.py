@@ -1,7 +1,5 @@
 """``fastpin crack``: a crack that grows under the last cycle of a stored result."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math
@@ -107,12 +105,8 @@ def test_a_result_without_a_cycle(tmp_path, capsys):
 
 
 CASE = """
-[pin]
-material = "steel"
-[plate]
-E = 70e9
-nu = 0.33
-growth = { law = "walker", C = 1e-10, m = 3, exponent = 0.5, source = "own tests" }
+pin.material = "steel"
+plate = { E = 70e9, nu = 0.33, growth = { law = "walker", C = 1e-10, m = 3, exponent = 0.5, source = "own tests" } }
 [contact]
 hole_radius = 10e-3
 clearance = 20e-6

@@ -1,10 +1,7 @@
 """Notes of long work, and progress in whole load points."""
 
-from __future__ import annotations
-
 import io
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -34,9 +31,7 @@ def test_long_work_is_announced_in_words(length: float, words: str, capsys: pyte
 
 @pytest.mark.gate
 @pytest.mark.parametrize("command", ["run", "converge", "sweep"])
-def test_each_command_announces_long_work(
-    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_each_command_announces_long_work(command, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(progress, "LONG", 1e-3)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "case.toml").write_text(EXAMPLE)

@@ -16,10 +16,8 @@ jsonschema = pytest.importorskip("jsonschema")
 
 CASE = """\
 title = "A repeated Q"
-[pin]
-material = "Ti-6Al-4V"
-[plate]
-material = "2024-T3"
+pin.material = "Ti-6Al-4V"
+plate.material = "2024-T3"
 [contact]
 hole_radius = 10e-3
 clearance = 40e-6

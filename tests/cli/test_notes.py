@@ -1,7 +1,5 @@
 """Notes of the command line: unfinished results, nodes of the start, options without effect."""
 
-from __future__ import annotations
-
 import subprocess
 
 import h5py
@@ -13,10 +11,8 @@ from fastpin.storage.recording import record
 from tests.support.processes import python, started
 
 CASE = """
-[pin]
-material = "steel"
-[plate]
-material = "aluminium"
+pin.material = "steel"
+plate.material = "aluminium"
 [contact]
 hole_radius = 0.01
 clearance = 20e-6

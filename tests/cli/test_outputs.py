@@ -1,7 +1,5 @@
 """Every output option of every command, against every kind of file that it must not replace."""
 
-from __future__ import annotations
-
 import argparse
 import fcntl
 import os
@@ -150,9 +148,7 @@ KINDS: dict[str, tuple[Callable[[Path, Path, str], object], str]] = {
 
 
 @pytest.mark.parametrize(("command", "option", "ending"), ENDINGS)
-def test_no_text_or_figure_replaces_another_kind(
-    command: str, option: str, ending: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_no_text_or_figure_replaces_another_kind(command, option, ending, folder, samples, capsys):
     for kind, (make, words) in KINDS.items():
         if kind == "input" and command in ("benchmarks", "charts", "verify"):
             continue  # they have no input
@@ -180,9 +176,7 @@ def test_no_text_or_figure_replaces_another_kind(
     ],
 )
 @pytest.mark.parametrize("command", RESULTS)
-def test_a_result_replaces_results_only(
-    command: str, kind: str, words: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_result_replaces_results_only(command, kind, words, folder, samples, capsys):
     path = Path("case.toml" if kind == "input" else "keep.h5")
     if kind == "text":
         path.write_text("notes")
@@ -199,9 +193,7 @@ def test_a_result_replaces_results_only(
 
 
 @pytest.mark.parametrize(("command", "name"), [("paper", "figure03.png"), ("benchmarks", "kirsch.csv")])
-def test_files_in_a_directory_follow_the_rule(
-    command: str, name: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_files_in_a_directory_follow_the_rule(command, name, folder, samples, capsys):
     Path("out").mkdir()
     shutil.copyfile(samples / "r.h5", Path("out") / name)
     before = contents(folder)

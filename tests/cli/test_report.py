@@ -1,7 +1,5 @@
 """``fastpin report``: its kinds of sources, its options, its messages."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -74,9 +72,7 @@ def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path, capsys: p
         (["plan.toml"], "plan.toml: is a plan: name the directory of its sweep, such as plan"),
     ],
 )
-def test_wrong_input_is_refused_in_one_sentence(
-    arguments: list[str], message: str, case: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_input_is_refused_in_one_sentence(arguments, message, case, capsys):
     Path("junk.h5").write_bytes(b"junk")
     Path("plan.toml").write_text('case = "case.toml"\n[grid]\n"contact.friction" = [0.1, 0.2]\n')
     assert main(["report", *arguments]) == 2

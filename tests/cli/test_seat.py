@@ -1,7 +1,5 @@
 """``fastpin run``, ``show`` and ``plot`` of a joint whose bush slips in its seat."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Texts of anybody inside stored files: titles, names of materials, errors and hosts of results."""
 
-from __future__ import annotations
-
 import csv
 import json
 import sqlite3

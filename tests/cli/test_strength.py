@@ -1,7 +1,5 @@
 """``fastpin run``, ``show``, ``plot``, ``report`` and ``check`` of a case with a section [strength]."""
 
-from __future__ import annotations
-
 import csv
 import json
 from pathlib import Path
@@ -16,11 +14,8 @@ from fastpin.report import json_schema
 jsonschema = pytest.importorskip("jsonschema")
 
 CASE = """\
-[pin]
-material = "steel"
-[plate]
-layup = "[0/45/-45/90]2s"
-ply = "T300/914"
+pin.material = "steel"
+plate = { layup = "[0/45/-45/90]2s", ply = "T300/914" }
 [contact]
 plane = "stress"
 hole_radius = 3e-3

@@ -150,9 +150,7 @@ def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.Capt
         (["-o", "moment.toml"], "moment.toml: can't be made: File exists"),
     ],
 )
-def test_what_can_not_be_done_is_told_before_the_runs(
-    arguments: list[str], words: str, path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_can_not_be_done_is_told_before_the_runs(arguments, words, path, capsys, monkeypatch):
     monkeypatch.setattr(sweep_command, "CLUSTER_SECONDS", 0.1)
     assert main(["sweep", str(path), *arguments]) == 2
     captured = capsys.readouterr()
@@ -180,17 +178,13 @@ def test_a_foreign_index_is_one_sentence(path: Path, capsys: pytest.CaptureFixtu
         assert err.count("\n") == 1
 
 
-def test_the_cluster_extra_is_asked_for(
-    path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_cluster_extra_is_asked_for(path, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert main(["sweep", str(path), "--dask", "tcp://x:1"]) == 2
     assert "pip install 'fastpin[cluster]'" in capsys.readouterr().err
 
 
-def test_the_progress_bar_has_the_time_left(
-    path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_progress_bar_has_the_time_left(path, capsys, monkeypatch):
     shown = []
 
     class Bar:
@@ -216,9 +210,7 @@ def test_the_progress_bar_has_the_time_left(
 
 
 @pytest.mark.parametrize("command", ["sweep PLAN -o DIR --status", "report PLAN"])
-def test_reading_a_plan_moves_a_bar(
-    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_reading_a_plan_moves_a_bar(command, tmp_path, capsys, monkeypatch):
     (tmp_path / "plan.toml").write_text("[grid]\ncontact.friction = [0.3, 0.4]\nsolve.nodes = [41]\n")
     monkeypatch.setattr(progress, "DELAY", -1.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)

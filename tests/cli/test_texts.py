@@ -1,7 +1,5 @@
 """Texts of anybody on the terminal: titles, names of materials, names of files."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path
@@ -59,9 +57,7 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_names_of_files_never_steer_the_terminal(
-    command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_names_of_files_never_steer_the_terminal(command, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path(f"{HOSTILE}.toml").write_text("[contact]\nfriction = 7\n", encoding="utf-8")
     Path(f"{HOSTILE}-plan.toml").write_text('[grid]\n"contact.friction" = [0.1]\n', encoding="utf-8")
@@ -77,9 +73,7 @@ def test_names_of_files_never_steer_the_terminal(
 
 
 @pytest.mark.parametrize("command", ["check", "sweep"])
-def test_names_of_files_that_are_no_text_are_shown(
-    command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_names_of_files_that_are_no_text_are_shown(command, capsys, tmp_path):
     name = os.fsdecode(os.fsencode(tmp_path) + b"/caf\xe9.toml")
     Path(name).write_text(CASE, encoding="utf-8")
     code = main([command, name])

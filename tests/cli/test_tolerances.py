@@ -1,7 +1,5 @@
 """The command ``tolerances``: what it prints, its exit codes, its files and its report."""
 
-from __future__ import annotations
-
 import csv
 import json
 from collections.abc import Callable
@@ -27,10 +25,8 @@ pressure = { quantity = "peak_pressure", take = "largest" }
 """
 
 CASE = """
-[pin]
-material = "steel"
-[plate]
-material = "aluminium"
+pin.material = "steel"
+plate.material = "aluminium"
 [contact]
 hole_radius = 10e-3
 clearance = 20e-6
@@ -133,9 +129,7 @@ def test_figures_of_a_study_that_has_not_begun_are_empty(plan: str, capsys: pyte
 
 
 @pytest.mark.gate
-def test_a_study_that_is_interrupted_continues(
-    plan: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_study_that_is_interrupted_continues(plan, capsys, monkeypatch):
     def interrupted(_: object, tasks: list[str], submit: Callable[..., Any], size: int) -> Any:
         for number, end in enumerate(inline(tasks, submit)):
             if number == 4:

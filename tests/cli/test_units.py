@@ -5,8 +5,6 @@ power of two. So all states have the same bits, and each printed number is eithe
 times the other.
 """
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import functools

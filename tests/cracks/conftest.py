@@ -1,7 +1,5 @@
 """Load cycles of the tests of cracks. Their stress intensities were computed by another program first."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Stress intensities in closed fields: limits, known values, energy, and orders of convergence."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """Growth, life and arrest of cracks beside a pin, against another program and closed forms."""
 
-from __future__ import annotations
-
 import math
 import pickle
 from dataclasses import replace

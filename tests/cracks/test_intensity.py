@@ -1,7 +1,5 @@
 """Stress intensities of cracks beside a pin, against another program, and refusals."""
 
-from __future__ import annotations
-
 import math
 import pickle
 

@@ -1,7 +1,5 @@
 """Laws of growth by hand, and their limits."""
 
-from __future__ import annotations
-
 import math
 import pickle
 

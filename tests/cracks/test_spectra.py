@@ -1,7 +1,5 @@
 """Growth under spectra, against constant amplitudes, sums by hand and state by state."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Strength of a laminate round the hole of a solved state."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Strength of laminates: criteria of ply failure against plain Python, hand calculations and printed numbers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

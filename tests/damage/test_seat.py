@@ -1,7 +1,5 @@
 """Fatigue of bush and lug of a joint whose bush slips: the stresses are those of each state."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The term of a laminate in the operator, (T51): its forms agree, and it has the limits of the theory."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

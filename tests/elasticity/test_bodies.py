@@ -1,7 +1,5 @@
 """The matrices of hollow pins, ring lugs, bushes and compliances: limits, other bodies, raw conditions, reciprocity."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The displacement of the hub over the gauge circle, (T27) to (T29): fields from potentials, and the matrices."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -7,8 +7,6 @@ syy - sxx + 2i sxy = 2 (conj(z) Omega'' + omega'). With it (1)-(4) leave the edg
 else, and (10) leaves it out.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Stresses in a laminate: Lekhnitskii's open hole, tractions on the edge, equilibrium and compatibility inside."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

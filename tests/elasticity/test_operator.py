@@ -1,7 +1,5 @@
 """The operator of many equally spaced nodes against the stored one: entries, products, bodies, drives."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Compliances of finite plates: closed forms of rings, finite elements, reciprocity, symmetry and decay."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

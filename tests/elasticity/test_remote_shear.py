@@ -4,8 +4,6 @@ Pure shear sxy = s is sxx = s, syy = -s in axes turned by 45 degrees. On a whole
 nodes. So all tractions must agree node by node.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

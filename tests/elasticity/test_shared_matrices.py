@@ -1,7 +1,5 @@
 """Problems that differ in friction and fit only share their matrices: the same arrays, and the same bits of results."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 
 import numpy as np

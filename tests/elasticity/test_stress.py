@@ -1,7 +1,5 @@
 """Stresses of piecewise linear tractions by other ways: point loads, many digits, Clausen's function, mirror images."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

@@ -3,8 +3,6 @@
 Sizes of stresses are about 1 to 5. Tolerances are measured.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

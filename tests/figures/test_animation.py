@@ -1,7 +1,5 @@
 """Animations: their pictures, their formats, and one sentence for each fault."""
 
-from __future__ import annotations
-
 import base64
 import shutil
 

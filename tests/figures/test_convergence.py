@@ -1,7 +1,5 @@
 """The figure of a convergence study."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Profiles along the rim in figures: on their own, in captions, and exaggerated in sketches."""
 
-from __future__ import annotations
-
 import csv
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The figure of a load history: repeated blocks are drawn once, with the numbers of their corners."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

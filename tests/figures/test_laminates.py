@@ -1,7 +1,5 @@
 """Figures of laminates: stiffness by direction, strength round the hole, directions of plies."""
 
-from __future__ import annotations
-
 import csv
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The figure of a finite plate."""
 
-from __future__ import annotations
-
 import pytest
 
 from fastpin.errors import InputError

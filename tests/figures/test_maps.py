@@ -1,7 +1,5 @@
 """The map of stick and slip, the polar view and the sketch: what is drawn, and where."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """Figures of a life of wear: the scar, the numbers over the cycles, and the damage."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Figures of sweeps: maps and curves, with their gaps."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 from pathlib import Path
@@ -80,9 +78,7 @@ def test_curves_have_gaps_and_crosses_where_runs_failed(plan: Plan, rows: list[d
 
 @pytest.mark.gate
 @pytest.mark.parametrize("x", [None, "contact.clearance"])
-def test_figures_are_saved_without_a_trace(
-    plan: Plan, rows: list[dict[str, Any]], x: str | None, tmp_path: Path
-) -> None:
+def test_figures_are_saved_without_a_trace(plan, rows, x, tmp_path):
     before = dict(mpl.rcParams)
     path = tmp_path / "a.pdf"
     plot_sweep(chart(plan, rows, "peak_pressure", x), path)
@@ -99,9 +95,7 @@ def test_figures_without_any_value(plan: Plan, tmp_path: Path) -> None:
 
 @pytest.mark.gate
 @pytest.mark.parametrize(("value", "scale"), [(31.0, "log"), (29.0, "linear"), (-31.0, "linear")])
-def test_values_that_span_decades_have_a_logarithmic_scale(
-    value: float, scale: str, plan: Plan, rows: list[dict[str, Any]]
-) -> None:
+def test_values_that_span_decades_have_a_logarithmic_scale(value, scale, plan, rows):
     known = [row for row in rows if row.get("peak_pressure")]
     largest = max(known, key=lambda row: row["peak_pressure"])
     for row in known:

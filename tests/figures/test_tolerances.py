@@ -1,7 +1,5 @@
 """Tornados and samples of tolerance studies: their bars, marks and words."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

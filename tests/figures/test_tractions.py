@@ -1,7 +1,5 @@
 """Figures: what is drawn, where, and that none of the kinds of results breaks it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import matplotlib as mpl

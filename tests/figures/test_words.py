@@ -1,7 +1,5 @@
 """The words on axes and in captions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

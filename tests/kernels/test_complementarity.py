@@ -1,7 +1,5 @@
 """Lemke's method: compiled, as plain Python, and against trying all combinations."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The passes over the nodes: compiled, as plain Python, and against the same conditions written for whole arrays."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The solution of the equations of given statuses: compiled, as plain Python, and against a factorisation."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

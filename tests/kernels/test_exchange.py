@@ -1,7 +1,5 @@
 """The path solver's compiled core: against plain Python, and against a naive solver that factors at every event."""
 
-from __future__ import annotations
-
 import functools
 import os
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Kernels that a second process compiles in a first run: they are those of a run, and it ends with the first."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Fourier series of smooth kernels over hat functions, against quadrature and naive sums."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath

@@ -1,7 +1,5 @@
 """Compiled fits of the solutions of a half line: compiled, as plain Python, and against NumPy."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 

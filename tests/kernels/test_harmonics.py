@@ -1,7 +1,5 @@
 """Closed forms of walls and layers against solutions of the raw conditions on their rims, with hundreds of digits."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

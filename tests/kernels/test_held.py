@@ -1,7 +1,5 @@
 """The start of a step with all closed nodes held: compiled, as plain Python, and with products of whole arrays."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The compiled kernels: compiled, as plain Python, and against naive quadrature written independently."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from itertools import pairwise

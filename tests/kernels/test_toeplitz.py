@@ -1,7 +1,5 @@
 """The fast inverse of neighbours that all stick: compiled, as plain Python, and against factorisations."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.linalg

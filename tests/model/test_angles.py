@@ -1,7 +1,5 @@
 """Angles from the bottom of the hole."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loads and fields that a problem with other bodies allows, and the sentences for the others."""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle

@@ -1,7 +1,5 @@
 """The grid: knots, weights and moments of hat functions, and what it refuses."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath

@@ -1,7 +1,5 @@
 """Load histories: blocks, cycles, harmonic loads, CSV files."""
 
-from __future__ import annotations
-
 import math
 import tracemalloc
 from pathlib import Path
@@ -266,9 +264,7 @@ def test_keep() -> None:
 
 
 @pytest.mark.parametrize("line", ["\n", "# " + "x" * 1000 + "\n", " " * 5000 + "\n", "#\r"])
-def test_a_csv_file_without_corners_is_not_read_to_its_end(
-    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_csv_file_without_corners_is_not_read_to_its_end(line, tmp_path, monkeypatch):
     monkeypatch.setattr(history_csv, "MOST_AROUND", 100_000)
     path = tmp_path / "loads.csv"
     lines = history_csv.MOST_AROUND // max(len(line), history_csv.SHORTEST_LINE) + 10

@@ -1,7 +1,5 @@
 """Files that are read: a file named by a stranger may be a pipe, whose end never comes, or a device without an end."""
 
-from __future__ import annotations
-
 import os
 import threading
 from collections.abc import Callable, Iterator

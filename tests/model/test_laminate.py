@@ -1,7 +1,5 @@
 """Laminates given by compliances or moduli: their constants at the edge of a round hole, and refusals."""
 
-from __future__ import annotations
-
 import math
 import pickle
 from typing import Any

@@ -1,7 +1,5 @@
 """Plies and stacks of plies: classical lamination theory, stresses in plies, and the library of plies."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import pickle

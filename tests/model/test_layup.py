@@ -1,7 +1,5 @@
 """The notation of layups: texts and angles, there and back, and one sentence for a wrong text."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """Finite plates: parts and their geometry, and outlines, holes and supports that are refused."""
 
-from __future__ import annotations
-
 import pickle
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Profiles in Python: what stands for one, and the sentences of values that can't."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Records that can't be changed: their arrays and dicts are read-only, also in copies."""
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle

@@ -1,7 +1,6 @@
 """CSV files as test rigs and spreadsheets write them: columns of any name, units, signs, separators and commas."""
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -56,9 +55,7 @@ def loads(
         ('"Force, cell 1",Q\n"1",2\n', {"P": "Force, cell 1"}, None, {"P": [1]}),
     ],
 )
-def test_columns_units_and_signs(
-    text: str, columns: dict[str, Any] | None, thickness: float | None, found: dict[str, list[float]], tmp_path: Path
-) -> None:
+def test_columns_units_and_signs(text, columns, thickness, found, tmp_path):
     for encoding in ("utf-8", "utf-8-sig"):
         for end in ("\n", "\r\n"):
             assert loads(tmp_path, text.replace("\n", end), columns, thickness, encoding) == found
@@ -99,9 +96,7 @@ def test_columns_units_and_signs(
         ("P\n,\n\n", None, None, 0, "holds no load corners"),
     ],
 )  # fmt: skip
-def test_faults_name_line_column_and_what_is_allowed(
-    text: str, columns: dict[str, Any] | None, thickness: float | None, line: int, words: str, tmp_path: Path
-) -> None:
+def test_faults_name_line_column_and_what_is_allowed(text, columns, thickness, line, words, tmp_path):
     with pytest.raises(CaseFileError) as caught:
         loads(tmp_path, text, columns, thickness)
     ((place, sentence),) = caught.value.problems
@@ -149,9 +144,7 @@ HEADERS = {
 
 @pytest.mark.parametrize("header", HEADERS.values(), ids=list(HEADERS))
 @pytest.mark.parametrize("column", ["Forze", "F" * 900_000, ""])
-def test_a_hostile_header_of_twice_the_size_takes_twice_the_time(
-    header: Callable[[int], str], column: str, tmp_path: Path
-) -> None:
+def test_a_hostile_header_of_twice_the_size_takes_twice_the_time(header, column, tmp_path):
     def refused(size: int) -> None:
         with pytest.raises(CaseFileError, match=r"the file has no column|unknown load") as caught:
             loads(tmp_path, f"{header(size)}\n1\n", {"P": column} if column else None)

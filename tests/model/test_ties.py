@@ -1,7 +1,5 @@
 """Ties between places are decided by a rule, and not by rounding."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Units with prefixes."""
 
-from __future__ import annotations
-
 import pytest
 
 from fastpin.model.problem import Problem

@@ -1,7 +1,5 @@
 """How bodies wear: the coefficients, the law, the cycles."""
 
-from __future__ import annotations
-
 import pickle
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The PDF of a report: its pages, its head, its fonts, and what it refuses."""
 
-from __future__ import annotations
-
 import importlib.util
 import io
 import re
@@ -85,9 +83,7 @@ def test_no_figure_stands_above_the_title(tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
-def test_sections_stand_on_the_pages_that_the_contents_and_the_outline_name(
-    report: tuple[list[str], pypdf.PdfReader],
-) -> None:
+def test_sections_stand_on_the_pages_that_the_contents_and_the_outline_name(report):
     texts, pdf = report
     outline = [entry for entry in pdf.outline if not isinstance(entry, list)]
     assert len(outline) == len(SECTIONS) - 3  # no seat, no crack, no strength

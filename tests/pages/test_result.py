@@ -1,7 +1,5 @@
 """The page of a result: what it holds, what it escapes, what it refuses, and how it treats long histories."""
 
-from __future__ import annotations
-
 import base64
 import dataclasses
 import pickle
@@ -274,9 +272,7 @@ def test_a_convergence_study_is_shown(only: Callable[..., None], tmp_path: Path)
 
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
-def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(
-    only: Callable[..., None], tmp_path: Path
-) -> None:
+def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(only, tmp_path):
     only(provenance)
     file, page = tmp_path / "result.h5", tmp_path / "page.html"
     sample_result().save(file)
@@ -439,9 +435,7 @@ def test_words_cover_all_names() -> None:
         ({"progress": 5}, "progress", "must be"),
     ],
 )
-def test_wrong_input_is_one_sentence_and_loses_nothing(
-    change: dict[str, object], field: str, words: str, stored: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_wrong_input_is_one_sentence_and_loses_nothing(change, field, words, stored, monkeypatch):
     folder = stored.parent
     monkeypatch.chdir(folder)
     Path("junk.h5").write_bytes(b"junk")

@@ -1,7 +1,5 @@
 """The report of a joint whose bush slips: a section on its seat, and margins by its slip."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pypdf

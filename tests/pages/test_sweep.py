@@ -1,7 +1,5 @@
 """The page of a sweep: plan, maps, runs, failed runs; where the plan is found."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The page of a life of wear."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -113,9 +111,7 @@ def test_page_of_a_stored_life_is_whole(stored: Path, life: WearResult) -> None:
 
 @pytest.mark.survey
 @pytest.mark.usefixtures("undrawn")
-def test_a_life_in_memory_has_the_same_page(
-    stored: Path, life: WearResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_life_in_memory_has_the_same_page(stored, life, tmp_path, monkeypatch):
     monkeypatch.setattr("fastpin.pages.result.now", lambda: "today")
     about = About(project="Hinge")
     found = words_of(life, tmp_path / "memory.html", title="Worn lug", about=about)
@@ -149,9 +145,7 @@ def longer(life: WearResult, count: int) -> WearResult:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_a_long_table_is_cut_and_holds_the_extremes(
-    life: WearResult, only: Callable[..., None], tmp_path: Path
-) -> None:
+def test_a_long_table_is_cut_and_holds_the_extremes(life, only, tmp_path):
     only(overview, numbers)
     many = longer(life, 101)
     found = words_of(many, tmp_path / "page.html")
@@ -167,9 +161,7 @@ def test_a_long_table_is_cut_and_holds_the_extremes(
 
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
-def test_the_damage_of_many_cycles_says_from_how_many_it_is(
-    life: WearResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_damage_of_many_cycles_says_from_how_many_it_is(life, tmp_path, monkeypatch):
     monkeypatch.setattr(source, "MOST_SUMMED", 3)
     monkeypatch.setattr("fastpin.pages.result.WEAR_SECTIONS", [damage])
     assert "The damage is summed up from 3 of 4 stored cycles." in words_of(life, tmp_path / "page.html")

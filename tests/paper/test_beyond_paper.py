@@ -1,7 +1,5 @@
 """The figures of the system memory and of the onset of sliding, on few nodes and in few cases."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

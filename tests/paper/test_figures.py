@@ -1,7 +1,5 @@
 """The figures of the paper: each is computed on few nodes, checked against physics, drawn and written."""
 
-from __future__ import annotations
-
 import csv
 from functools import cache
 from pathlib import Path

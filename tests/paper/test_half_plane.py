@@ -1,7 +1,5 @@
 """Large load parameters: Cattaneo-Mindlin tractions of like half-planes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

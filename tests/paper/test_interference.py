@@ -1,7 +1,5 @@
 """The figures of interference fits and of the regimes of contact, on few nodes and in few cases."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

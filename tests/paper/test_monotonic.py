@@ -4,8 +4,6 @@ Each test names the statement that it checks. Where the numbers do not confirm i
 test asserts what is true instead, and its docstring says so.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

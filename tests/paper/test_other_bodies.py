@@ -1,7 +1,5 @@
 """The figures of other bodies, on few nodes and in few cases."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -12,6 +10,8 @@ from fastpin.elasticity import plates
 from fastpin.model.problem import Problem
 from fastpin.paper import catalog, half_plane, hollow_pins, rectangular_lug, rigid_pin, supports
 from fastpin.report.curves import Curve
+
+pytestmark = pytest.mark.gate
 
 NODES = 121
 
@@ -32,7 +32,6 @@ def words(name: str, curves: list[Curve]) -> str:
     return " ".join(item.get_text() for item in figure.findobj(Text))
 
 
-@pytest.mark.gate
 def test_rings_have_the_pressures_of_the_support_table():
     """The peaks with mu = 0.3 are those of an independent trial; 121 nodes give them to 1e-4."""
     curves = catalog.figure("rings").compute(NODES)
@@ -49,7 +48,6 @@ def test_rings_have_the_pressures_of_the_support_table():
         assert part in text
 
 
-@pytest.mark.gate
 def test_supports_tend_to_the_infinite_plate(monkeypatch):
     monkeypatch.setattr(supports, "OUTER_RADII", (2.0, 200.0))
     curves = catalog.figure("supports").compute(NODES)
@@ -66,7 +64,6 @@ def test_supports_tend_to_the_infinite_plate(monkeypatch):
         assert part in text
 
 
-@pytest.mark.gate
 def test_hollow_pins_tend_to_a_load_at_the_centre(monkeypatch):
     monkeypatch.setattr(hollow_pins, "BORES", (0.0, 0.02, 0.5))
     curves = catalog.figure("hollow-pins").compute(NODES)
@@ -81,7 +78,6 @@ def test_hollow_pins_tend_to_a_load_at_the_centre(monkeypatch):
         assert part in text
 
 
-@pytest.mark.gate
 def test_a_rectangular_lug_has_less_pressure_and_more_hoop_stress(monkeypatch):
     """An independent finite-element model has the peaks 0.563806 and 0.465317."""
     monkeypatch.setattr(plates, "FINE", plates.COARSE)  # errors of 2e-9
@@ -101,7 +97,6 @@ def test_a_rectangular_lug_has_less_pressure_and_more_hoop_stress(monkeypatch):
         assert part in text
 
 
-@pytest.mark.gate
 def test_rigid_pins_have_one_quantity_on_each_axis(monkeypatch):
     monkeypatch.setattr(rigid_pin, "RATIOS", (1.0, 10.0, 100.0))
     curves = catalog.figure("rigid-pin").compute(101)
@@ -121,7 +116,6 @@ def test_rigid_pins_have_one_quantity_on_each_axis(monkeypatch):
         assert part in text
 
 
-@pytest.mark.gate
 def test_every_line_of_the_half_plane_figure_has_its_quantity():
     like = Problem.from_load_parameter(half_plane.SIMILAR, 1.0, half_plane.FRICTION, "centre", "fixed")
     found = list(half_plane.like_errors(like.load_parameter(1.0), half_plane.FRICTION, 201))

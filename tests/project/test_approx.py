@@ -1,7 +1,5 @@
 """Arrays that are accepted as a whole are those that pytest accepts entry by entry."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

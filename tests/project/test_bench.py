@@ -1,7 +1,5 @@
 """The report of the benchmarks, on made-up times."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import math
@@ -155,9 +153,7 @@ def test_numbers(report: ModuleType, value: float | None) -> None:
     assert report.number(value) == expected[value]
 
 
-def test_newest_result(
-    report: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stored: dict[str, Any]
-) -> None:
+def test_newest_result(report, tmp_path, monkeypatch, stored):
     monkeypatch.setattr(report, "RESULTS", tmp_path)
     with pytest.raises(SystemExit, match="no results"):
         report.newest()

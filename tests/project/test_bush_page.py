@@ -1,7 +1,5 @@
 """The page of the bush that slips: its numbers come out, and its plan maps the walk."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The page bushed-lug.md: its files are those it shows, and its case prints its numbers."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The page on a bolt in a carbon laminate shows its files and prints its numbers."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path

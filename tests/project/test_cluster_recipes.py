@@ -1,7 +1,5 @@
 """The recipes of docs/cluster.md: the page shows the files, and the files work with a stand-in for SLURM."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -7,8 +7,6 @@
 * Queries run on a small sweep.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -1,7 +1,5 @@
 """The study in docs/convergence.md shows the values that ``fastpin converge`` finds today."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The page of cracks: it shows its files, and its map can be drawn."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path
@@ -22,9 +20,7 @@ def test_the_page_shows_its_plan() -> None:
 
 
 @pytest.mark.gate
-def test_the_map_is_drawn_by_one_command(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_map_is_drawn_by_one_command(tmp_path, monkeypatch, capsys):
     """The same plan on a small grid, with few nodes."""
     monkeypatch.chdir(tmp_path)
     for name in FILES:

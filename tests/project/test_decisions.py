@@ -1,7 +1,5 @@
 """The records of decisions have one form, and their index lists all of them."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The documents: what they link to exists, and the tests that they name are there."""
 
-from __future__ import annotations
-
 import importlib
 import re
 from collections.abc import Iterable
@@ -118,9 +116,7 @@ def test_the_examples_of_fatigue_print_their_numbers(capsys: pytest.CaptureFixtu
 
 
 @pytest.mark.gate
-def test_the_example_of_cracks_prints_its_numbers(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_example_of_cracks_prints_its_numbers(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "cracks.md").read_text(encoding="utf-8")
     code, printed = ("".join(re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL)) for kind in ("python", "text"))
@@ -168,9 +164,7 @@ def test_the_riveted_joint_shows_its_files() -> None:
 
 
 @pytest.mark.survey
-def test_the_riveted_joint_prints_its_numbers(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_riveted_joint_prints_its_numbers(monkeypatch, capsys):
     """The joint is symmetric, so the side of a printed angle is left to rounding."""
     monkeypatch.chdir(ROOT / "docs")
     run, printed = re.findall(r"```text\n(.*?)```", RIVET, re.DOTALL)

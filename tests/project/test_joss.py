@@ -1,7 +1,5 @@
 """The draft of the JOSS paper: its front matter, sections, length, citations and figures; the citation file."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

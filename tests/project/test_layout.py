@@ -1,7 +1,5 @@
 """The rules of the layout hold, and each rule notices when it is broken."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 import inspect

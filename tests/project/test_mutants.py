@@ -1,7 +1,5 @@
 """The changes of scripts/mutants.py: one thing at a time, in code that still can be read."""
 
-from __future__ import annotations
-
 import ast
 import random
 

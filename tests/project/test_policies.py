@@ -1,7 +1,5 @@
 """The pages on policies and reproducibility say what the code has: versions of formats, exit codes, attributes."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """README and CONTRIBUTING say what is true: the example runs, the commands exist, the map is complete."""
 
-from __future__ import annotations
-
 import re
 import shlex
 import tomllib

@@ -1,7 +1,5 @@
 """A change of the package stays cheap: scripts/rooms.py counts in how many files a noun stands."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

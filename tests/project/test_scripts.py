@@ -1,7 +1,5 @@
 """The scripts, with a Python that only records what it is asked to do."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

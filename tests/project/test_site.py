@@ -1,7 +1,5 @@
 """The documentation site: its examples run, its reference is complete, and every page is listed."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 import re
@@ -104,9 +102,7 @@ def test_every_key_of_a_case_file_is_explained(extension: ModuleType) -> None:
 
 
 @pytest.mark.gate
-def test_the_file_format_of_the_reference_has_every_array(
-    extension: ModuleType, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_file_format_of_the_reference_has_every_array(extension, monkeypatch):
     """The sample has few states: the extremes of many are stored."""
     for module in (__import__("file_layout"), extremes):
         monkeypatch.setattr(module, "LEAST_STORED", 6)

@@ -1,7 +1,5 @@
 """The pages that teach: their files, commands and scripts run, and print the numbers that the pages show."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The page tolerances.md: its plan runs, and prints its numbers."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -17,9 +15,7 @@ PAGE = (Path(__file__).resolve().parents[2] / "docs" / "tolerances.md").read_tex
 
 
 @pytest.mark.survey
-def test_the_plan_of_the_page_prints_its_numbers(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_plan_of_the_page_prints_its_numbers(tmp_path, monkeypatch, capsys):
     def inline(_: object, tasks: list[str], submit: Callable[..., Any], size: int) -> Any:
         for task in tasks:
             yield (task,), submit(Inline(), (task,)).result()

@@ -1,7 +1,5 @@
 """The page of wear: it shows its files, prints its numbers, and its fretting map can be drawn."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path

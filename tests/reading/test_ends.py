@@ -1,7 +1,5 @@
 """Ends of zones and peaks: made-up values whose answers are known, and how fast those of contacts converge."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

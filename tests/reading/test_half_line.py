@@ -1,7 +1,5 @@
 """The solutions of the half line against solved contacts of a few nodes, and readings with them."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether a peak of the hoop stress is resolved: by the number of nodes in contact, and by the shape of the peak."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

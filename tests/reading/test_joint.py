@@ -1,7 +1,5 @@
 """The displacement of a joint, and the interface between bush and plate."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Names that have moved to ``fastpin.reading`` are still found in ``fastpin.states``, with a warning."""
 
-from __future__ import annotations
-
 import pytest
 
 import fastpin

@@ -1,14 +1,11 @@
 """Peaks of shear are read beyond the nodes only where the values on both sides allow it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import pytest
 
 from fastpin.model.grid import Grid
-from fastpin.model.materials import MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.reading import peaks
 from fastpin.reading.cusps import ShearNodes
@@ -118,9 +115,7 @@ def test_peaks_at_both_ends_of_an_arc_are_mirrored(node: int) -> None:
     ("nodes", "parameter", "friction", "corners"),
     [(161, 0.7, 0.74, [{"P": 1.0}, {"P": 0.343, "Q": 0.11}]), (161, 0.0155, 2.97, [{"P": 1.0}])],
 )
-def test_coarse_peaks_of_solved_contacts_are_near_those_of_a_fine_grid(
-    nodes: int, parameter: float, friction: float, corners: list[dict[str, float]], similar: MaterialPair
-) -> None:
+def test_coarse_peaks_of_solved_contacts_are_near_those_of_a_fine_grid(nodes, parameter, friction, corners, similar):
     """Without limits their peaks are 19 and 6 % too high."""
     problem = Problem.from_load_parameter(similar, parameter, friction, "body")
     coarse = solve(problem, corners, nodes=nodes)

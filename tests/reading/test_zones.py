@@ -1,7 +1,5 @@
 """Edges, borders and peaks read between nodes, on made-up tractions whose answers are known."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Descriptions of cases."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Cells of CSV files that hold text."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

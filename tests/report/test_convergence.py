@@ -1,7 +1,5 @@
 """Tables of convergence studies."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -12,19 +10,19 @@ from fastpin.report.convergence import one_digit, reported_series, series_column
 from fastpin.studies.convergence import Convergence
 from tests.support.studies import small_problem, small_study
 
+pytestmark = pytest.mark.gate
+
 
 @pytest.fixture(scope="module")
 def study(similar: MaterialPair) -> Convergence:
     return small_study(small_problem(similar))
 
 
-@pytest.mark.gate
 def test_text_shows_zeros_as_zeros(study: Convergence) -> None:
     lines = [line.split() for line in text(study).splitlines()]
     assert ["rotation", "F", "beta*/R", "0", "0", "0", "converged", "to", "rounding", "-", "-"] in lines
 
 
-@pytest.mark.gate
 def test_every_verdict_has_words(study: Convergence) -> None:
     row = reported_series(study.studies[0], study.problem, 3)[0]
     words = {
@@ -40,7 +38,6 @@ def test_every_verdict_has_words(study: Convergence) -> None:
         assert replace(row, verdict=verdict, order=order, scatter=scatter).words == expected
 
 
-@pytest.mark.gate
 def test_small_values_have_the_digits_of_their_bar(study: Convergence) -> None:
     row = reported_series(study.studies[0], study.problem, 3)[0]
     row = replace(row, unit="m", values=(1.23456789e-20,), verdict="observed", limit=1.23456789e-20, bar=1e-26)
@@ -49,7 +46,6 @@ def test_small_values_have_the_digits_of_their_bar(study: Convergence) -> None:
     assert cells["limit"] == "1.2345679e-08"
 
 
-@pytest.mark.gate
 def test_values_that_agree_to_some_digits_have_converged(study: Convergence) -> None:
     """No value that agrees to three digits is said to lack something."""
     rows = [row for corner in study.loads for row in reported_series(study.studies[0], study.problem, corner)]

@@ -1,7 +1,5 @@
 """A load cycle in words, JSON and CSV."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

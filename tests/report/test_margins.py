@@ -1,7 +1,5 @@
 """The table of margins: its values, the states that govern, and what it says where data lack."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Tables of states."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

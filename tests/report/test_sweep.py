@@ -1,7 +1,5 @@
 """Tables of sweeps, and the numbers that their figures show."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

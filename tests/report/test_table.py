@@ -1,7 +1,5 @@
 """Tables of text: rows that repeat earlier ones, and rows that are left out."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

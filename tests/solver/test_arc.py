@@ -1,7 +1,5 @@
 """The choice of the arc of nodes: the quick coarse run finds the arc of the careful ones, within one of their nodes."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

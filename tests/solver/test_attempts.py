@@ -1,7 +1,5 @@
 """Attempts at a history: the order in which grids are tried."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Friction that changes along a step: exact events, limits, and checks by increments and by parts of the step."""
 
-from __future__ import annotations
-
 import math
 from itertools import cycle
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """The parts of the solver under prescribed displacements: Lemke's method, large systems, narrow contacts, unloading."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

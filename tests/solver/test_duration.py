@@ -1,7 +1,5 @@
 """Times that are expected of histories."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Lives of wear by single and by fat cycles: the promise of control, stability, limits, and contact that is lost."""
 
-from __future__ import annotations
-
 import functools
 import pickle
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The first contact: the slip of its first nodes, pins that the hole grips, and holes that change while it begins."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Steps that begin with all closed nodes held: their tables against factorisations, and whole histories both ways."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 

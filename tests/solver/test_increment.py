@@ -1,7 +1,5 @@
 """The increment solver: the second road to the same states."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

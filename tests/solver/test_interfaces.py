@@ -1,7 +1,5 @@
 """The pin as it sees the bore of a bush that sticks."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fastpin.elasticity.interfaces import SEAT

@@ -1,7 +1,5 @@
 """A pin in the hole of a laminate: reference numbers, limits and symmetries."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

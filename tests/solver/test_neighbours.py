@@ -1,7 +1,5 @@
 """The inverse of neighbouring nodes and the responses of the others, against dense matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Old borders between stick and slip: marked at corners, forgotten under later slip, stored, and used by readings."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Lives of wear with a known relation: mirrored and turned, without friction, and on arcs that the wear outgrows."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

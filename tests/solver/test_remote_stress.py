@@ -4,8 +4,6 @@ Its displacements (42), and (44), (45) with the singular equations, are checked 
 test_theory.py, full sliding under it in test_sliding.py, figure 10 of the paper in paper/test_monotonic.py.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

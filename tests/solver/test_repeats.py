@@ -1,7 +1,5 @@
 """Contacts that become periodic: recognised by the whole state; what is not solved again has the same bits."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

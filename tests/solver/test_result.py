@@ -1,7 +1,5 @@
 """A result shows, draws, stores and exports itself; short forms stay short."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 import sys

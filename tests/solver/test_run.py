@@ -1,7 +1,5 @@
 """The loop over corners: progress, and the place at which a load is lost."""
 
-from __future__ import annotations
-
 import logging
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A session is led from load to load: the states of `solve` to the same bits, undo, changes, errors."""
 
-from __future__ import annotations
-
 import copy
 import os
 import pickle

@@ -1,7 +1,5 @@
 """Statuses from complementarity problems: events at which exchanging violators cycles, and snaps of the pin."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 The sums of slip are compared with many states here too: both comparisons share the states.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
 from typing import Any

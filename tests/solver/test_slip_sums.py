@@ -1,7 +1,5 @@
 """Slip sums: the slip distance and the friction energy of each node, exact along every piece of a history."""
 
-from __future__ import annotations
-
 import itertools
 import pickle
 from typing import Any

@@ -1,7 +1,5 @@
 """Bad input: one clear sentence that names the field."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

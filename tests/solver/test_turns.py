@@ -1,7 +1,5 @@
 """One thread at a time may use a session: others are refused with one sentence, and nothing is lost."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 import threading

@@ -1,7 +1,5 @@
 """The linear systems of given statuses, and their memory."""
 
-from __future__ import annotations
-
 import gc
 import itertools
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Wear as one more load of the path solver."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

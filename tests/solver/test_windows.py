@@ -1,7 +1,5 @@
 """Narrow contacts: graded grids, the survey that chooses them, and the windows on which they are followed."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 

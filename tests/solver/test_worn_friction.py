@@ -1,7 +1,5 @@
 """Lives of wear whose friction a function of the user changes after chosen cycles."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Stresses of solved states of hollow pins, rings, bushes, plates with a reaction and compliances."""
 
-from __future__ import annotations
-
 import math
 import pickle
 from dataclasses import replace

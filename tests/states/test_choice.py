@@ -1,7 +1,5 @@
 """The choice of states: words, load points, slices, and one sentence for each fault."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

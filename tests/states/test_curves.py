@@ -1,7 +1,5 @@
 """Curves of the tractions, for figures."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fastpin.elasticity.tractions import RefinedTractions, Tractions

@@ -1,7 +1,5 @@
 """The quantities that are reported, how those of two grids are compared, and error bars of states."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

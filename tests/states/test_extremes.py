@@ -1,7 +1,5 @@
 """Extremes over all kept states equal the readings of each state, and few states are read."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

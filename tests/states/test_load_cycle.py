@@ -1,7 +1,5 @@
 """Quantities over a load cycle, against states, sums and energies."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Regimes of slip of states and of load cycles."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

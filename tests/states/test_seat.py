@@ -1,7 +1,5 @@
 """The stress of the plate at the seat of a bush: closed forms, depths, peaks, fatigue and words."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

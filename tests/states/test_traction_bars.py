@@ -1,7 +1,5 @@
 """Error bars of the tractions, at the nodes and of the curves."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

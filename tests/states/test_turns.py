@@ -1,7 +1,5 @@
 """Angles that are read lie at most half a turn from the bottom of the hole, wherever the nodes are."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any
@@ -56,9 +54,7 @@ def read(state: State) -> np.ndarray:
 
 @pytest.mark.parametrize("turns", [-3, -1, 1, 2])
 @pytest.mark.parametrize(("corners", "middle"), [(CORNERS, BOTTOM), (UPWARDS, TOP)])
-def test_an_arc_may_lie_whole_turns_away(
-    turns: int, corners: list[dict[str, float]], middle: float, problem: Problem
-) -> None:
+def test_an_arc_may_lie_whole_turns_away(turns, corners, middle, problem):
     near = solve(problem, corners, nodes=121, arc=(middle - 1.3, middle + 1.3), error_bars=True)[-1]
     arc = (middle - 1.3 + turns * TURN, middle + 1.3 + turns * TURN)
     away = solve(problem, corners, nodes=121, arc=arc, error_bars=True)[-1]
@@ -104,9 +100,7 @@ def test_a_circle_may_start_anywhere(start: float, corners: list[dict[str, float
 
 @pytest.mark.parametrize("start", [-1.5 * math.pi, 0.0, 2.0])
 @pytest.mark.parametrize("friction", [0.0, 0.4])
-def test_a_contact_all_round_is_from_top_to_top(
-    start: float, friction: float, titanium_in_aluminium: MaterialPair
-) -> None:
+def test_a_contact_all_round_is_from_top_to_top(start, friction, titanium_in_aluminium):
     fit = Problem(titanium_in_aluminium, 0.01, -1e-5, friction, "body")
     result = solve(fit, [{"P": 1e5}], grid=Grid.circle(120, start))
     (state,) = result

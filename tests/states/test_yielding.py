@@ -1,7 +1,5 @@
 """Warnings about von Mises stresses above yield strengths: closed forms of press fits, and states."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 

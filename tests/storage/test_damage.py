@@ -1,7 +1,5 @@
 """Results with damaged parts: every reader says in one sentence what is wrong."""
 
-from __future__ import annotations
-
 import resource
 import signal
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Indices of sweeps that come from strangers: reading writes nothing, and no query runs their expressions."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal
@@ -64,9 +62,7 @@ READERS: dict[str, Callable[[Plan, Path, Path], object]] = {
 
 
 @pytest.mark.parametrize("reader", READERS)
-def test_a_reader_deletes_no_file_that_a_journal_names(
-    reader: str, plan: Plan, directory: Path, tmp_path: Path
-) -> None:
+def test_a_reader_deletes_no_file_that_a_journal_names(reader, plan, directory, tmp_path):
     victim = tmp_path / "precious.txt"
     victim.write_text("keep")
     name_super_journal(directory, victim)
@@ -102,9 +98,7 @@ def test_a_journal_that_is_a_link_is_refused(first: bytes, plan: Plan, directory
 
 @pytest.mark.parametrize("ending", ["-wal", "-shm"])
 @pytest.mark.parametrize("name", [INDEX, "lock"])
-def test_a_log_beside_a_database_without_one_is_refused(
-    name: str, ending: str, plan: Plan, directory: Path, tmp_path: Path
-) -> None:
+def test_a_log_beside_a_database_without_one_is_refused(name, ending, plan, directory, tmp_path):
     """SQLite uses a log although the header of the database has none. As a link it leads out of the directory."""
     victim = tmp_path / "precious.txt"
     victim.write_text("keep")

@@ -1,7 +1,5 @@
 """Files are written whole or not at all."""
 
-from __future__ import annotations
-
 import errno
 import os
 import pickle
@@ -61,9 +59,7 @@ def test_a_full_disk_is_one_sentence_and_keeps_the_old_file(tmp_path: Path) -> N
     assert (path.read_text(), list(tmp_path.iterdir())) == ("old", [path])
 
 
-def test_a_link_under_the_name_of_a_temporary_file_is_not_followed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_link_under_the_name_of_a_temporary_file_is_not_followed(tmp_path, monkeypatch):
     victim = tmp_path / "precious.txt"
     victim.write_text("keep")
     monkeypatch.setattr("os.urandom", lambda _: b"\x01\x23")

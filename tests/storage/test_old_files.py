@@ -4,8 +4,6 @@ It holds results of both versions of the format with their summaries (``show --j
 its table. ``python -m scripts.corpus`` wrote them. A new format adds files, and leaves the old ones.
 """
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import io

@@ -1,7 +1,5 @@
 """Results in few bytes: everything comes back, and every change of a byte is noticed."""
 
-from __future__ import annotations
-
 import json
 import sqlite3
 import zlib
@@ -113,9 +111,7 @@ def test_every_changed_byte_is_noticed(result: Result) -> None:
             store.unpack(content[:size], Path("a"))
 
 
-def test_the_path_of_a_file_reads_the_result_in_an_index(
-    result: Result, path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_path_of_a_file_reads_the_result_in_an_index(result, path, capsys):
     assert_same(store.load(path), result)
     assert len(store.load(path, states=[-1])) == 1
     assert storage.load_points(path).size == len(result)

@@ -1,7 +1,5 @@
 """Error bars of runs that write to a file: the same as in memory, also after an interrupt in either run."""
 
-from __future__ import annotations
-
 import h5py
 import numpy as np
 import pytest

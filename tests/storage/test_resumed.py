@@ -1,7 +1,5 @@
 """Files of runs that were interrupted and resumed, against files of uninterrupted runs."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any
@@ -81,9 +79,7 @@ def whole(options: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> 
 
 @pytest.mark.gate
 @pytest.mark.parametrize("corners", [[0.5], [1.0], [4.5], [8.0, 10.5, 13.0], [22.5], [25.0, 30.5, 36.0]])
-def test_a_resumed_run_differs_in_the_named_parts_only(
-    corners: list[float], options: dict[str, Any], whole: dict[str, Any], tmp_path: Path
-) -> None:
+def test_a_resumed_run_differs_in_the_named_parts_only(corners, options, whole, tmp_path):
     interrupted(tmp_path / "parts.h5", corners, **options)
     resumed = parts(tmp_path / "parts.h5")
     others = {name for name in whole.keys() | resumed.keys() if not is_equal(whole.get(name), resumed.get(name))}

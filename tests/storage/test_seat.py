@@ -1,7 +1,5 @@
 """The seat of a bush that slips as a dataset, a data frame and a file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

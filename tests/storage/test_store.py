@@ -1,7 +1,5 @@
 """Results in HDF5 files come back as they were, or with one clear error."""
 
-from __future__ import annotations
-
 import dataclasses
 import sys
 from pathlib import Path

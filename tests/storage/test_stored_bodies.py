@@ -1,7 +1,5 @@
 """Bodies of problems in HDF5 files: equal when read back, and described when damaged."""
 
-from __future__ import annotations
-
 from enum import StrEnum
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Laminates in result files."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable
 from pathlib import Path

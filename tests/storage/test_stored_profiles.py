@@ -1,7 +1,5 @@
 """Profiles along the rim in HDF5 files and packed results: equal when read back, and described when damaged."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Slip sums in files: resumed runs, restarts, states that are read in part, and files without them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

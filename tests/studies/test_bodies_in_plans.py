@@ -1,7 +1,5 @@
 """Bodies in plans and in the ids of runs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Convergence studies: what they say of cases whose answer is known, and what they refuse."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -123,9 +121,7 @@ def test_other_ratios_and_the_whole_circle(problem: Problem) -> None:
     )
 
 
-def test_an_arc_too_narrow_for_the_fine_grid_is_widened_for_all(
-    problem: Problem, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_arc_too_narrow_for_the_fine_grid_is_widened_for_all(problem, monkeypatch):
     spans = []
 
     def narrow(*arguments: Any, grid: Grid, **options: Any) -> Result:
@@ -160,9 +156,7 @@ def test_an_arc_too_narrow_for_the_fine_grid_is_widened_for_all(
     ],
     ids=str,
 )
-def test_input_is_checked_before_anything_is_solved(
-    options: dict[str, Any], field: str, words: str, problem: Problem, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_input_is_checked_before_anything_is_solved(options, field, words, problem, monkeypatch):
     monkeypatch.setattr(convergence, "solve", None)
     with pytest.raises(InputError, match=words) as refused:
         converge(problem, CORNERS, **options)
@@ -184,9 +178,7 @@ def test_loads_that_a_grid_cannot_carry_name_it(problem: Problem) -> None:
 
 
 @pytest.mark.gate
-def test_a_grid_that_does_not_fit_in_memory_leaves_the_others(
-    problem: Problem, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_grid_that_does_not_fit_in_memory_leaves_the_others(problem, monkeypatch):
     def limited(*arguments: Any, grid: Grid, **options: Any) -> Result:
         if grid.size > 201:
             raise MemoryError

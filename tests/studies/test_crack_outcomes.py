@@ -1,7 +1,5 @@
 """Outcomes of cracks in sweeps: what becomes of a crack, its life, and faults of their tables."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Observed orders, limits and error bars of sequences whose limit is known."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

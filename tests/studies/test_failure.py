@@ -1,7 +1,5 @@
 """The load at which the first ply of a laminate fails round the hole."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """Outcomes of stress, slip and fatigue: their values, their reasons, and the commands that show them."""
 
-from __future__ import annotations
-
 import csv
 import math
 import pickle
@@ -210,10 +208,8 @@ def test_an_infinite_life_is_no_number(result: Result, monkeypatch: pytest.Monke
 # -- studies -----------------------------------------------------------------------------------------------------
 
 CASE = """
-[pin]
-material = "steel"
-[plate]
-material = "2024-T3"
+pin.material = "steel"
+plate.material = "2024-T3"
 [contact]
 plane = "stress"
 hole_radius = 2.4e-3
@@ -290,10 +286,8 @@ def test_a_convergence_study_gives_a_life_an_error_bar(plan: Path, capsys: pytes
 # -- the section [fatigue] -------------------------------------------------------------------------------------------
 
 SECTION_CASE = """\
-[pin]
-material = "Ti-6Al-4V"
-[plate]
-material = "2024-T3"
+pin.material = "Ti-6Al-4V"
+plate.material = "2024-T3"
 [contact]
 hole_radius = 10e-3
 clearance = 40e-6

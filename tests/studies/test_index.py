@@ -1,7 +1,5 @@
 """The index: what is written comes back, also to plain SQL, and what is no index is refused in one sentence."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import sqlite3

@@ -132,9 +132,7 @@ def test_a_dataset_can_be_written_and_read(plan: Plan, directory: Path, tmp_path
         assert read["work"].attrs["units"] == "J/m"
 
 
-def test_without_xarray_one_sentence_says_how_to_install_it(
-    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_xarray_one_sentence_says_how_to_install_it(plan, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "xarray", None)
     with pytest.raises(InputError, match=r"^xarray: is not installed: pip install 'fastpin\[xarray\]'$"):
         sweep.to_xarray(plan, tmp_path)

@@ -1,7 +1,5 @@
 """Laminates in plans, in tolerance plans and in the ids of runs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

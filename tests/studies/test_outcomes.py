@@ -1,10 +1,7 @@
 """Outcomes: the numbers that they read, and the faults of their tables, all at once and each with its line."""
 
-from __future__ import annotations
-
 import functools
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -97,9 +94,7 @@ def test_a_new_cycle_quantity_takes_one_line(result: Result, monkeypatch: pytest
 @pytest.mark.parametrize(
     ("places", "arc"), [([170.0, -170.0, 175.0], 20.0), ([-90.0, 90.0, 10.0], 180.0), ([30.0, 30.0], 0.0)]
 )
-def test_the_range_of_a_place_is_the_smallest_arc(
-    places: list[float], arc: float, result: Result, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_range_of_a_place_is_the_smallest_arc(places, arc, result, monkeypatch):
     left = iter(places)
     changed = QUANTITIES["peak_shear_angle"]._replace(of=lambda state: math.radians(next(left) - 90.0))
     monkeypatch.setitem(QUANTITIES, "peak_shear_angle", changed)

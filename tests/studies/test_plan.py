@@ -147,9 +147,7 @@ def test_loads_that_change_after_the_plan_was_read_are_not_run(change: Callable[
         ("pin.rigid = false", (116e9, 0.32), (69e9, 0.33)),
     ],
 )
-def test_one_way_to_give_a_material_replaces_the_others(
-    fields: str, pin: tuple[float, float], plate: tuple[float, float]
-) -> None:
+def test_one_way_to_give_a_material_replaces_the_others(fields, pin, plate):
     plan = parse_plan(f"[[list]]\n{fields}\n")
     pair = plan.case(plan.points[0]).problem.pair
     assert (pair.pin.E, pair.pin.nu) == pin

@@ -1,7 +1,5 @@
 """Profiles along the rim as axes of sweeps."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

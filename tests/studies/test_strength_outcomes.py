@@ -1,7 +1,5 @@
 """Outcomes of the strength of a laminate in sweeps, their faults, and envelopes of bearing and bypass."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -110,9 +108,7 @@ def test_an_envelope_follows_the_force_and_the_other_fields(folder: Path) -> Non
         (["--envelope"], "--envelope: says what a figure shows; --plot FILE is missing"),
     ],
 )
-def test_what_an_envelope_can_not_show(
-    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], sentence: str
-) -> None:
+def test_what_an_envelope_can_not_show(folder, capsys, words, sentence):
     assert main(["sweep", "plan.toml", *words]) == 2
     assert sentence in capsys.readouterr().err
     assert not Path("plan").exists()

@@ -1,10 +1,8 @@
 """Sweeps: what is run, kept, skipped, tried again, split and merged."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from pathlib import Path
@@ -323,9 +321,7 @@ def test_batches_take_as_long_as_a_message_is_worth() -> None:
 
 @pytest.mark.gate
 @pytest.mark.parametrize("executor", [Inline, lambda: ThreadPoolExecutor(2)], ids=["inline", "threads"])
-def test_any_executor_gives_the_same(
-    executor: Callable[[], Executor], plan: Plan, swept: tuple[Path, Summary], tmp_path: Path
-) -> None:
+def test_any_executor_gives_the_same(executor, plan, swept, tmp_path):
     with executor() as working:
         sweep.run(plan, tmp_path, working)
     assert comparable(tmp_path) == comparable(swept[0])
@@ -375,9 +371,7 @@ def test_a_worker_of_another_version_is_refused(plan: Plan, tmp_path: Path, monk
     assert summary.failed[0][1] == f"the worker has fastpin 0.0, the sweep {fastpin.__version__}"
 
 
-def test_a_result_that_does_not_arrive_is_a_failure(
-    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_result_that_does_not_arrive_is_a_failure(plan, tmp_path, monkeypatch):
     monkeypatch.setattr(store, "save", lambda *_, **__: None)  # as if to a disk of another machine
     summary = sweep.run(plan, tmp_path, Inline(), files=True)
     assert summary.done == 0
@@ -513,9 +507,7 @@ def test_results_that_disagree_are_refused(plan: Plan, copy: Path, swept: tuple[
 @pytest.mark.parametrize(
     ("name", "words"), [("plan", "belongs to another plan"), ("version", "was made by another version of fastpin")]
 )
-def test_other_plans_and_versions_are_not_merged(
-    name: str, words: str, copy: Path, swept: tuple[Path, Summary], tmp_path: Path
-) -> None:
+def test_other_plans_and_versions_are_not_merged(name, words, copy, swept, tmp_path):
     with sweep.Index(copy, write=True) as index:
         index._write_notes(**{name: "another"})
     with pytest.raises(InputError, match=words):

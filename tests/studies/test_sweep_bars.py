@@ -1,7 +1,5 @@
 """Error bars of sweeps: of key figures and outcomes, in the index, tables, CSV files and charts."""
 
-from __future__ import annotations
-
 import csv
 import math
 import shutil

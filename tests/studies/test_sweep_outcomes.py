@@ -1,7 +1,5 @@
 """Outcomes of sweeps: read in workers, kept, added later, changed, and what becomes of their failures."""
 
-from __future__ import annotations
-
 import shutil
 import sqlite3
 from pathlib import Path
@@ -67,9 +65,7 @@ def test_outcomes_are_those_of_the_results(tmp_path: Path) -> None:
     assert sweep.load(tmp_path)[0]["loss"] == sweep.rows(plan, tmp_path)[0]["loss"]
 
 
-def test_outcomes_that_are_added_later_are_read_and_nothing_is_solved(
-    bare: Plan, copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_outcomes_that_are_added_later_are_read_and_nothing_is_solved(bare, copy, tmp_path, monkeypatch):
     plan = parse_plan(CYCLES + TABLE).with_outcomes({"work": last_work})
     sweep.run(plan, tmp_path / "at once", Inline())
     started = [row["started"] for row in sweep.load(copy)]

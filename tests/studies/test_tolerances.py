@@ -1,7 +1,5 @@
 """Tolerance studies: points between the limits of fields, and the effects on outcomes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -22,10 +20,8 @@ from fastpin.studies.tolerances import (
 from scripts.inline import Inline
 
 CASE = """
-[pin]
-material = "steel"
-[plate]
-material = "aluminium"
+pin.material = "steel"
+plate.material = "aluminium"
 [contact]
 hole_radius = 10e-3
 clearance = 0.0

@@ -1,7 +1,5 @@
 """Fields of a plan replace what contradicts them in the base case."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

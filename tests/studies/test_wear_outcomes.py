@@ -1,7 +1,5 @@
 """Outcomes of wear: the numbers of a life on a profile that wears, their faults, and their failures."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

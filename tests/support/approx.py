@@ -1,7 +1,5 @@
 """Arrays compared as a whole: ``pytest.approx`` compares them entry by entry in Python, some 10 us each."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

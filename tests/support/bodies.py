@@ -1,7 +1,5 @@
 """Joints with hollow pins, ring lugs, bushes and compliances."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from fastpin.bodies import Bushing, Plate, Ring, Tube

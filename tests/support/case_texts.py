@@ -1,7 +1,5 @@
 """Texts of small cases."""
 
-from __future__ import annotations
-
 PRESSED = """
 [pin]
 material = "steel"

@@ -1,7 +1,5 @@
 """Joints of the tests of cracks."""
 
-from __future__ import annotations
-
 import fastpin
 
 LIKE = fastpin.Material(70e9, 0.33)

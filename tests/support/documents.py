@@ -6,8 +6,6 @@ namespace. A ``text`` block right below a ``python`` block is its output. Elsewh
 line that a command of the page has printed before.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import re

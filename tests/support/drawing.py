@@ -3,8 +3,6 @@
 Drawing a figure takes half a second, most of it for the layout of its words.
 """
 
-from __future__ import annotations
-
 import hashlib
 import html
 import struct

@@ -7,8 +7,6 @@ the limits are wider. Compiling a kernel is not counted: a machine does it once.
 in which a child process may have compiled one.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import sys

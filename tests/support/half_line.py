@@ -1,7 +1,5 @@
 """Fits with the solutions of a half line in NumPy, as they are written down: the reference of the compiled ones."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """The parts of an HTML page, for tests of pages."""
 
-from __future__ import annotations
-
 from html.parser import HTMLParser
 
 VOID = ("meta", "link", "br", "img", "hr", "input")

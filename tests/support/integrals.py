@@ -1,7 +1,5 @@
 """The influence integrals of a grid as matrices of their own, from the operator that the solver fills."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Interrupts at a given place of a history."""
 
-from __future__ import annotations
-
 import os
 import signal
 

@@ -1,7 +1,5 @@
 """Joints whose bush slips, and the ten cases of another program. All are dimensionless: displacements over F beta*."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Laminates of the tests, and their reference numbers: a lamina of 135, 9 and 5 GPa, nu12 = 0.3."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from fastpin.model.laminate import Laminate

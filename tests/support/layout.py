@@ -4,8 +4,6 @@ Each rule is a function from a :class:`Tree` to sentences that name the places w
 explains the rules.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 A talk of a page and a server needs no network: :func:`talked` runs both in one loop, with a :class:`Wire` as websocket.
 """
 
-from __future__ import annotations
-
 import asyncio
 import base64
 import contextlib

@@ -1,7 +1,5 @@
 """Small lives of wear, with partial slip and a plate that has constants of fatigue."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -37,10 +35,8 @@ def sample_life(path: Path | None = None, problem: Problem = JOINT, **changes: A
 
 FRETTING = """
 title = "Fretting"
-[pin]
-material = "Ti-6Al-4V"
-[plate]
-material = "2024-T3"
+pin.material = "Ti-6Al-4V"
+plate.material = "2024-T3"
 [contact]
 hole_radius = 0.01
 clearance = 5e-5

@@ -1,7 +1,5 @@
 """Finite plates for tests."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Histories that several tests compare with others, each solved once in a process."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any

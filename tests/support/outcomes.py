@@ -1,7 +1,5 @@
 """Outcomes for tests. Worker processes import the functions of this file."""
 
-from __future__ import annotations
-
 import os
 from typing import Any
 

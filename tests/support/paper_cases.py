@@ -3,8 +3,6 @@
 Ti is Ti-6Al-4V, a pair is pin/plate, half-angles and shifts are in degrees, tractions in F/R.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 

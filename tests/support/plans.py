@@ -1,7 +1,5 @@
 """Small plans, and ways to run and compare them, for the tests of sweeps."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Kolosov-Muskhelishvili potentials of pin and plate, and the displacements that the paper prints."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -12,8 +12,6 @@ Tests set no time limits. A process that runs longer than :data:`LONGEST` is kil
 ``readline``, ``wait`` and ``communicate`` end. Its exit code is then -9.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

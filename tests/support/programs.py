@@ -1,7 +1,5 @@
 """Load programs that become periodic, and comparisons of results bit by bit."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Files of growing rows, for the tests of the journal. A process of its own can import this file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A small result made by hand, for tests of what comes after the solver."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -20,10 +18,8 @@ from fastpin.states.state import State
 PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 
 JOINT = """
-[pin]
-material = "Ti-6Al-4V"
-[plate]
-material = "aluminium"
+pin.material = "Ti-6Al-4V"
+plate.material = "aluminium"
 [contact]
 hole_radius = 10e-3
 clearance = 20e-6

@@ -1,7 +1,5 @@
 """A joint whose bush slips in its seat, for tests of its outputs: few nodes, three cycles of Q to and fro."""
 
-from __future__ import annotations
-
 import functools
 from pathlib import Path
 
@@ -10,10 +8,8 @@ from fastpin import casefile
 from fastpin.model.case import Case
 
 BONDED = """
-[pin]
-material = "steel"
-[plate]
-material = "7075-T6"
+pin.material = "steel"
+plate.material = "7075-T6"
 [contact]
 hole_radius = 10e-3
 clearance = 60e-6

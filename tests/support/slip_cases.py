@@ -1,7 +1,5 @@
 """Problems and histories for tests of slip sums, by name: all kinds of loads, snaps, unloading, the whole circle."""
 
-from __future__ import annotations
-
 import functools
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Small kernels in a file and a store of their own. One is called both from Python and by another one."""
 
-from __future__ import annotations
-
 import math
 import os
 import subprocess

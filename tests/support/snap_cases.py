@@ -1,7 +1,5 @@
 """Joints whose pin snaps: problem and corners."""
 
-from __future__ import annotations
-
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 

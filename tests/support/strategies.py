@@ -1,7 +1,5 @@
 """Strategies of hypothesis: valid and odd input in Python, in case files and in plans."""
 
-from __future__ import annotations
-
 import dataclasses
 import datetime
 import json

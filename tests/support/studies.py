@@ -1,7 +1,5 @@
 """A small convergence study, for tests of studies, of their tables and of the command."""
 
-from __future__ import annotations
-
 from fastpin.model.materials import MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.studies.convergence import Convergence, converge

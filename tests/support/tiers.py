@@ -7,8 +7,6 @@
 A test that loops over :func:`seeds`, or that hypothesis repeats, gets the mark ``seeded``: each tier shows more of it.
 """
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import os

@@ -1,7 +1,5 @@
 """Processor times of this process. Other processes that run meanwhile don't change them much."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

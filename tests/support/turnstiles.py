@@ -1,7 +1,5 @@
 """Places in other processes where each waits until a test lets it go on."""
 
-from __future__ import annotations
-
 import os
 import select
 from pathlib import Path

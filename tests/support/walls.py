@@ -8,8 +8,6 @@ Each monomial of the potentials is put through Kolosov's formulas by itself:
 The amplitudes are real, and so are the coefficients (t_n, conj t_-n) and (u_n, conj u_-n).
 """
 
-from __future__ import annotations
-
 import math
 
 import mpmath

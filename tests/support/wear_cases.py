@@ -1,7 +1,5 @@
 """Lives of wear whose numbers are known, and a run that wears step by step."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Joints with finite bodies: closed forms of interference fits, and convergence in nodes and harmonics."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

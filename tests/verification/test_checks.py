@@ -1,7 +1,5 @@
 """``fastpin verify``: it passes here, its tolerances are close, and it fails where something is wrong."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

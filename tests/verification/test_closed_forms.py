@@ -1,7 +1,5 @@
 """Closed forms: round trips, limits, tabulated values and the equations they solve."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

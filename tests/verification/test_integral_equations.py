@@ -3,8 +3,6 @@
 Their displacements come from the logarithmic kernels: two forms of the theory are held against each other.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

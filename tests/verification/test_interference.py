@@ -3,8 +3,6 @@
 :data:`BODIES` lists the bodies that the tests of the solver run through.
 """
 
-from __future__ import annotations
-
 import math
 import pickle
 from typing import Any

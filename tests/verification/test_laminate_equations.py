@@ -1,7 +1,5 @@
 """The integral equations of a laminate, (T58): their residuals vanish with the distance of the nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

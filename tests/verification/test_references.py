@@ -1,7 +1,5 @@
 """Closed forms, reference values of an independent trial, and finite-element tractions."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Full sliding, Eq. (58), against closed forms, the other kernels of the package, and the path solver."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Limits of wear: numbers, and the conditions that they come from."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One wrong body gets one sentence: in Python, in a case file, in a plan and from fastpin check."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

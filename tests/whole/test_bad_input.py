@@ -1,7 +1,5 @@
 """One value gets one sentence: in Python, in a case file, in a plan and on the command line."""
 
-from __future__ import annotations
-
 import inspect
 import json
 import math
@@ -46,7 +44,7 @@ OPTIONS: list[tuple[str, Any]] = [
 FIELDS: list[tuple[str, str, Any]] = [
     *(("contact", "friction", value) for value in (-0.1, "rough", NAN, True, [0.4])),
     *(("contact", "hole_radius", value) for value in (0, -0.01, "wide", INF)),
-    *(("contact", "clearance", value) for value in (0.01, -0.02, "none", NAN)),
+    *(("contact", "clearance", value) for value in (0.01, 0.02, -0.02, "none", NAN)),
     *(("contact", "pin_load", value) for value in ("edge", "center", 1)),
     *(("contact", "rotation", value) for value in ("loose", "Free", 0)),
     *(("contact", "hub_radius", value) for value in (0.005, -1, "small")),
@@ -99,6 +97,9 @@ def python_reason(section: str, name: str, value: Any) -> str:
     with pytest.raises(InputError) as raised:
         build(section, {**with_method(name), name: value})
     assert raised.value.field == name
+    assert isinstance(raised.value, ValueError)
+    assert "\n" not in str(raised.value)
+    assert len(raised.value.reason.split()) > 4
     return raised.value.reason
 
 

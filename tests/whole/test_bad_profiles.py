@@ -1,7 +1,5 @@
 """A wrong profile along the rim gets the same sentence in Python, case files, plans and on the command line."""
 
-from __future__ import annotations
-
 import math
 import pickle
 from collections.abc import Callable

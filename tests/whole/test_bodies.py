@@ -1,7 +1,5 @@
 """What must hold with hollow pins, rings, bushes and compliances: mirror, split, scales, arcs, energy, increments."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The calls of tests/survey/test_calls.py notice raw errors, slow calls and crashes."""
 
-from __future__ import annotations
-
 import os
 import time
 

@@ -1,7 +1,5 @@
 """Prescribed displacements of the pin in place of forces: the same states, read from the other side."""
 
-from __future__ import annotations
-
 import cmath
 import json
 import math

@@ -1,7 +1,5 @@
 """Every error of the package survives pickle and copies, so that it can leave a worker process."""
 
-from __future__ import annotations
-
 import copy
 import importlib
 import multiprocessing

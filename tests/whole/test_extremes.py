@@ -1,7 +1,5 @@
 """The largest values of a long history are the same wherever they are told: text, page, figure, JSON, Python, file."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace
@@ -17,11 +15,11 @@ from fastpin.cli.main import main
 from fastpin.states.extremes import READINGS, Extreme, marked_places
 from tests.support.tiers import gate
 
+pytestmark = pytest.mark.gate
+
 CASE = """
-[pin]
-material = "steel"
-[plate]
-material = "{plate}"
+pin.material = "steel"
+plate.material = "{plate}"
 [contact]
 hole_radius = 10e-3
 clearance = {clearance}
@@ -90,7 +88,6 @@ def sentences(stored: Path, readings: dict[str, list[float]]) -> list[str]:
     return found
 
 
-@pytest.mark.gate
 def test_python_and_json_agree_with_every_state(stored: Path, readings: dict[str, list[float]], tmp_path: Path) -> None:
     result, peak = fastpin.load(stored), PEAKS[stored.stem]
     found = result.extremes()
@@ -104,10 +101,7 @@ def test_python_and_json_agree_with_every_state(stored: Path, readings: dict[str
     assert told.keys() == found.keys()
 
 
-@pytest.mark.gate
-def test_run_and_show_tell_the_largest_of_all(
-    stored: Path, sentences: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_run_and_show_tell_the_largest_of_all(stored, sentences, capsys):
     peak = PEAKS[stored.stem] + 1
     for words in (["show", str(stored)], ["run", str(stored.with_suffix(".toml"))]):
         assert main(words) == 0
@@ -118,10 +112,7 @@ def test_run_and_show_tell_the_largest_of_all(
         assert any(line.split()[:2] == [str(peak), "60"] for line in text.splitlines())
 
 
-@pytest.mark.gate
-def test_the_page_tells_and_draws_the_largest_of_all(
-    stored: Path, sentences: list[str], readings: dict[str, list[float]], tmp_path: Path
-) -> None:
+def test_the_page_tells_and_draws_the_largest_of_all(stored, sentences, readings, tmp_path):
     page = tmp_path / "page.html"
     assert main(["report", str(stored), "-o", str(page)]) == 0
     text = page.read_text(encoding="utf-8")
@@ -134,7 +125,6 @@ def test_the_page_tells_and_draws_the_largest_of_all(
     assert all(str(PEAKS[stored.stem] + 1) in each.split(", ") for each in drawn)
 
 
-@pytest.mark.gate
 def test_figures_draw_the_states_of_extremes(stored: Path, readings: dict[str, list[float]]) -> None:
     peak = PEAKS[stored.stem]
     for drawn in (figures.states.stored_states(stored), figures.states.drawn_states(fastpin.load(stored))):
@@ -175,7 +165,6 @@ def long(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.gate
 def test_a_file_has_extremes_from_so_many_states_on(long: Path, least: None, tmp_path: Path) -> None:
     result = fastpin.load(long)
     for size, stored in ((LEAST - 1, False), (LEAST, True)):
@@ -184,7 +173,6 @@ def test_a_file_has_extremes_from_so_many_states_on(long: Path, least: None, tmp
             assert ("extremes" in file) == stored
 
 
-@pytest.mark.gate
 def test_a_long_result_has_its_extremes_in_the_file(long: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     known = storage.marked_extremes(long)
     monkeypatch.setattr(storage.extremes.StoredStates, "blocks", lambda self: pytest.fail("all states were read"))
@@ -192,7 +180,6 @@ def test_a_long_result_has_its_extremes_in_the_file(long: Path, monkeypatch: pyt
     assert marked_places(known)
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("damage", ["absent", "place", *gate("value"), "states", "names", "shape", "text"])
 def test_extremes_in_a_file_are_checked(long: Path, tmp_path: Path, damage: str) -> None:
     path = tmp_path / "b.h5"
@@ -219,7 +206,6 @@ def test_extremes_in_a_file_are_checked(long: Path, tmp_path: Path, damage: str)
         assert storage.marked_extremes(path) == storage.marked_extremes(long)
 
 
-@pytest.mark.gate
 def test_a_saved_long_result_has_the_same_extremes(long: Path, least: None, tmp_path: Path) -> None:
     result = fastpin.load(long)
     result.save(tmp_path / "c.h5")

@@ -1,7 +1,5 @@
 """Generated input: valid input is accepted and comes back unchanged, and odd input gets one sentence."""
 
-from __future__ import annotations
-
 import copy
 import dataclasses
 import pickle
@@ -27,6 +25,8 @@ from fastpin.storage.recording import stored_case
 from fastpin.studies.plan import parse_plan
 from tests.support import strategies
 from tests.support.strategies import Tables, as_toml, tables_of, text_of
+
+pytestmark = pytest.mark.gate
 
 STEEL = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
 
@@ -71,7 +71,6 @@ def assert_one_sentence(error: FastpinError) -> None:
 # -- valid input ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.gate
 @given(strategies.problems(), st.data())
 def test_valid_input_survives_copies_and_pickle(problem, data):
     history, options = data.draw(strategies.histories(problem)), data.draw(strategies.options())
@@ -85,7 +84,6 @@ def test_valid_input_survives_copies_and_pickle(problem, data):
     check_loads(problem, history)
 
 
-@pytest.mark.gate
 @given(strategies.problems(), st.data())
 def test_parts_of_a_history_are_those_of_the_whole(problem, data):
     history = data.draw(strategies.histories(problem))
@@ -109,13 +107,11 @@ def is_valid_together(case: Case) -> bool:
     return repeatable(case)
 
 
-@pytest.mark.gate
 @given(strategies.cases().filter(is_valid_together))
 def test_a_case_written_as_a_file_is_read_again(case):
     assert_same_case(parse_case(text_of(case)), case)
 
 
-@pytest.mark.gate
 @given(case=strategies.cases().filter(is_valid_together), friction=st.floats(0.0, 1.5))
 def test_a_plan_makes_the_case_that_its_file_would_make(case, friction, tmp_path_factory):
     assume(friction > 0.0 or "friction_change" not in case.history.largest)
@@ -128,14 +124,12 @@ def test_a_plan_makes_the_case_that_its_file_would_make(case, friction, tmp_path
     assert_same_case(plan.case(plan.points[0]), parse_case(text_of(case, tables)))
 
 
-@pytest.mark.gate
 @settings(max_examples=15)
 @given(problem=strategies.problems(), data=st.data())
 def test_valid_input_is_solved_or_lost_with_a_reason(problem, data, tmp_path_factory):
     assert_solved_or_lost(problem, data.draw(strategies.corners(problem, 2)), tmp_path_factory.mktemp("result"))
 
 
-@pytest.mark.gate
 @settings(max_examples=20)
 @given(problem=strategies.problems(), data=st.data())
 def test_more_valid_input_is_solved_or_lost_with_a_reason(problem, data, tmp_path_factory):
@@ -202,7 +196,6 @@ CALLS: list[tuple[Any, dict[str, Any]]] = [
 """Public functions and good arguments."""
 
 
-@pytest.mark.gate
 @settings(max_examples=200)
 @given(st.data())
 def test_odd_arguments_are_accepted_or_refused_with_one_sentence(data):
@@ -239,7 +232,6 @@ def is_a_profile(value: Any) -> bool:
     return is_pair(value) or any(isinstance(part, dict) or (isinstance(part, str) and "." in part) for part in parts)
 
 
-@pytest.mark.gate
 @settings(max_examples=300)
 @given(st.sampled_from(KEYS), strategies.toml_values)
 def test_python_and_the_file_say_the_same(place, value):
@@ -260,7 +252,6 @@ def test_python_and_the_file_say_the_same(place, value):
     assert str(error) in [text for _, text in raised.value.problems]
 
 
-@pytest.mark.gate
 @settings(max_examples=150)
 @given(st.sampled_from(KEYS), strategies.toml_values, strategies.toml_values)
 def test_plans_accept_values_or_name_the_field(place, first, second):

@@ -1,7 +1,5 @@
 """A torsional spring that holds the rotation of the pin at its hub."""
 
-from __future__ import annotations
-
 import json
 import math
 

@@ -1,7 +1,5 @@
 """Initial gaps: exact relations, the table of reference, several contacts, grips, resumed runs and sessions."""
 
-from __future__ import annotations
-
 import functools
 import math
 import pickle

@@ -1,7 +1,5 @@
 """The limits: contacts of any size, lost and found again, interference, remote stress, no equilibrium."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

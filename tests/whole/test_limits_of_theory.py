@@ -1,7 +1,5 @@
 """Half-planes and rigid pins: from where on they are right, and how the solutions tend to them."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Bad and suspicious input, and the sentence that answers it: in Python, in a case file and on the command line."""
 
-from __future__ import annotations
-
 import dataclasses
 import inspect
 import re
@@ -149,9 +147,7 @@ def test_an_unknown_part_of_a_plan_is_named_with_what_is_allowed(text: str, sent
         ("[grid]\na.b = [1]\n", parse_case, "case file", "is a plan, not a case file; see fastpin sweep"),
     ],
 )
-def test_a_file_of_another_kind_is_told_in_one_sentence(
-    text: str, read: Callable[[str], object], kind: str, sentence: str
-) -> None:
+def test_a_file_of_another_kind_is_told_in_one_sentence(text, read, kind, sentence):
     with pytest.raises(CaseFileError) as error:
         read(text)
     assert str(error.value) == f"{kind}: {sentence}"
@@ -165,9 +161,7 @@ def test_a_file_of_another_kind_is_told_in_one_sentence(
         (["completion", "powershell"], 'shell: must be bash, zsh, fish or tcsh, not "powershell"'),
     ],
 )
-def test_a_word_of_the_command_line_that_is_not_allowed_is_answered_with_the_one_that_is_meant(
-    words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_word_of_the_command_line_that_is_not_allowed_is_answered_with_the_one_that_is_meant(words, sentence, capsys):
     with pytest.raises(SystemExit):
         main(words)
     assert re.search(f"error: .*{sentence}\n$", capsys.readouterr().err)
@@ -191,9 +185,7 @@ KEYWORDS: list[tuple[Callable[..., Any], dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("function", "keyword", "hint"), KEYWORDS)
-def test_an_unknown_keyword_is_answered_with_the_one_that_is_meant(
-    function: Callable[..., Any], keyword: dict[str, Any], hint: str
-) -> None:
+def test_an_unknown_keyword_is_answered_with_the_one_that_is_meant(function, keyword, hint):
     with pytest.raises(TypeError) as error:
         function(**keyword)
     assert str(error.value) == f"{function.__name__}() got an unexpected keyword argument {next(iter(keyword))!r}{hint}"
@@ -225,9 +217,7 @@ def test_an_unknown_load_is_answered_with_the_one_that_is_meant() -> None:
         (["run", "case.toml", "case.h5"], "unrecognized arguments: case.h5"),
     ],
 )
-def test_an_unknown_option_is_answered_with_the_one_that_is_meant(
-    words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_unknown_option_is_answered_with_the_one_that_is_meant(words, sentence, capsys):
     with pytest.raises(SystemExit):
         main(words)
     assert capsys.readouterr().err.endswith(f"fastpin: error: {sentence}\n")
@@ -348,9 +338,7 @@ def doubtful_text(line: str, typed: str) -> str:
 
 
 @pytest.mark.parametrize(("line", "typed", "sentence"), DOUBTFUL)
-def test_a_doubtful_value_gets_one_sentence_in_python_and_on_the_command_line(
-    line: str, typed: str, sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_doubtful_value_gets_one_sentence_in_python_and_on_the_command_line(line, typed, sentence, tmp_path, capsys):
     assert line in EXAMPLE
     path = tmp_path / "case.toml"
     path.write_text(doubtful_text(line, typed))
@@ -381,9 +369,7 @@ BUSH = fastpin.bodies.Bushing(fastpin.Material(110e9, 0.34), 12e-3, 1e-3)
         ),
     ],
 )  # fmt: skip
-def test_a_doubtful_body_gets_one_sentence(
-    pair: fastpin.MaterialPair, radius: float, clearance: float, body: Any, sentence: str
-) -> None:
+def test_a_doubtful_body_gets_one_sentence(pair, radius, clearance, body, sentence):
     problem = fastpin.Problem(pair, radius, clearance, 0.3, plate_body=body or fastpin.bodies.Plate())
     history = fastpin.LoadHistory([{"P": 1e3 if pair is not PAIR else 1e6}])
     if pair.pin.E == 1e5:  # a load that a soft pin carries
@@ -454,9 +440,7 @@ def test_a_plan_doubts_the_coefficients_of_its_outcomes_of_wear(tmp_path: Path) 
 
 @pytest.mark.gate
 @pytest.mark.parametrize("other", [False, True], ids=["named", "given"])
-def test_a_pressure_above_the_yield_strength_is_doubted(
-    other: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None
-) -> None:
+def test_a_pressure_above_the_yield_strength_is_doubted(other, tmp_path, capsys, undrawn):
     strength = "fatigue = { yield_strength = 100e6 }" if other else "yield_strength = 100e6"
     text = EXAMPLE.replace("nu = 0.33", f"nu = 0.33\n{strength}").replace("nodes = 401", "nodes = 51")
     case = parse_case(text)

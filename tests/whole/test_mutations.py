@@ -1,7 +1,5 @@
 """Some changed input files end in a result or in one sentence; tests/survey/test_mutations.py changes a thousand."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

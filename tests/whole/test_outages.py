@@ -1,7 +1,5 @@
 """Disturbed commands lose nothing; tests/survey/test_outages.py disturbs each of them a hundred times."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

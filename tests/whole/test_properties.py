@@ -1,7 +1,5 @@
 """What must hold whatever the numbers are: symmetry, splitting, energy, scale, and random histories."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Random histories over the whole space: the contact conditions anew, related cases, and the two solvers."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Numbers of extreme size: each is refused with one sentence, or gives finite results."""
 
-from __future__ import annotations
-
 import contextlib
 import re
 from typing import Any

@@ -1,7 +1,5 @@
 """Formulas of docs/theory.md that no other test checks, by its equation numbers."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath

@@ -3,8 +3,6 @@
 The remote stress turns as a tensor, (T16): sxx - syy + 2i sxy gains a factor exp(2i angle).
 """
 
-from __future__ import annotations
-
 import cmath
 import dataclasses
 import functools

@@ -1,7 +1,5 @@
 """Friction that varies along the rim: values of reference, exact relations, and other methods."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 ``PYTHONPATH=tests/support/elsewhere ./scripts/test`` runs the tests as on macOS, Windows or ARM, child processes too.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import sys
 from importlib.machinery import ModuleSpec
