@@ -469,7 +469,7 @@ for state in result:
 """
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_compiled_and_plain_python_give_the_same_states():
     def run(disabled):
         done = processes.finished(processes.python(PLAIN), env={**os.environ, "NUMBA_DISABLE_JIT": disabled})

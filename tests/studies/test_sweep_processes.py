@@ -154,6 +154,7 @@ def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path, t
     assert err == "fastpin: interrupted; 0 of 12 runs are finished and kept; the same command continues\n"
 
 
+@pytest.mark.survey
 def test_an_interrupted_and_a_killed_sweep_go_on_with_their_outcomes(tmp_path: Path, turnstile: Turnstile) -> None:
     """Runs wait with their outcomes. So few are left that each is sent by itself."""
     path, directory = tmp_path / "plan.toml", tmp_path / "out"

@@ -213,7 +213,7 @@ def test_a_life_that_fails_is_the_reason_of_its_outcome_alone(plan: Plan, tmp_pa
     assert [row["deep"] is None for row in rows] == [False, True]
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_worker_processes_read_the_same_numbers(plan: Plan, tmp_path: Path) -> None:
     sweep.run(plan, tmp_path / "one", Inline())
     sweep.run(plan, tmp_path / "two", workers=2)
