@@ -428,7 +428,7 @@ def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch)
     assert page.live.session.state is not None
     page.tell("load", loads={"Q": 5.0}, gesture=1)
     assert page.pictures[-1]["load"]["Q"] == 5.0
-    page = Page(contact(nodes=21, limits=Limits(undone_nodes=5 * 21)))
+    page = Page(contact(limits=Limits(undone_nodes=5 * NODES)))
     for k in range(8):
         page.tell("load", loads={"Q": 1e4 * k}, gesture=k)
     assert page.latest["undos"] == 5  # they have few nodes together
