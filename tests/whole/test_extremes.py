@@ -13,7 +13,7 @@ import fastpin
 from fastpin import figures, storage
 from fastpin.cli.main import main
 from fastpin.states.extremes import READINGS, Extreme, marked_places
-from tests.support.tiers import gate
+from tests.support.tiers import gate, some_survey
 
 pytestmark = pytest.mark.gate
 
@@ -55,7 +55,7 @@ def case_text(kind: str) -> str:
     return CASE.format(**given) + "\n".join(steps)
 
 
-@pytest.fixture(scope="module", params=["plain", "bush"])
+@pytest.fixture(scope="module", params=some_survey(["plain", "bush"], "bush"))
 def stored(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp(request.param) / f"{request.param}.toml"
     path.write_text(case_text(request.param), encoding="utf-8")

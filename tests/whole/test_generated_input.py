@@ -130,6 +130,7 @@ def test_valid_input_is_solved_or_lost_with_a_reason(problem, data, tmp_path_fac
     assert_solved_or_lost(problem, data.draw(strategies.corners(problem, 2)), tmp_path_factory.mktemp("result"))
 
 
+@pytest.mark.survey
 @settings(max_examples=20)
 @given(problem=strategies.problems(), data=st.data())
 def test_more_valid_input_is_solved_or_lost_with_a_reason(problem, data, tmp_path_factory):
