@@ -8,7 +8,7 @@ import pytest
 from tests.survey import calls
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_a_raw_error_a_slow_call_and_a_crash_are_findings(monkeypatch):
     monkeypatch.setattr(calls, "LONGEST", 0.1)
     monkeypatch.setattr(calls, "LONGEST_WAIT", 2.0)
