@@ -208,7 +208,7 @@ def test_every_command_is_walked() -> None:
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("part", some_survey(PARTS, "page of a life"))
+@pytest.mark.parametrize("part", some_survey(PARTS, "page", "page of a life"))
 def test_every_output_is_with_the_thickness_or_per_metre(part: str, tmp_path: Path) -> None:
     plain, thick = (Walk(tmp_path / name, name == "thick") for name in ("plain", "thick"))
     for found in (plain, thick):

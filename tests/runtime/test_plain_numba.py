@@ -122,7 +122,7 @@ print(hashlib.sha256(arrays + numbers.encode()).hexdigest())
 """
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_a_history_has_the_same_bits_without_any_part(tmp_path: Path) -> None:
     def run(*arguments: str, **more: str) -> str:
         variables = {name: value for name, value in os.environ.items() if name != "FASTPIN_CACHE"} | more

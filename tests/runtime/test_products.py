@@ -109,7 +109,7 @@ print(digest.hexdigest())
 """
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="cores can't be chosen")
 def test_results_have_the_same_bits_with_any_number_of_threads_and_cores():
     one_core = f"import os; os.sched_setaffinity(0, {{{min(os.sched_getaffinity(0))}}})\n"

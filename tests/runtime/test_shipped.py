@@ -63,7 +63,7 @@ def runs(level: str) -> bool:
     return stored.LEVELS[level] <= {name.removeprefix("+") for name in machine.target()[-1].split(",")}
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 @pytest.mark.parametrize("level", stored.LEVELS)
 def test_shipped_code_needs_no_compiler_and_gives_the_same_bits(site: Path, tmp_path: Path, level: str) -> None:
     if not runs(level):

@@ -55,7 +55,7 @@ def test_a_file_holds_the_life_to_the_last_bit(tmp_path):
     assert sorted(each.name for each in tmp_path.iterdir()) == ["life.h5"]
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_a_history_may_be_its_cycle_alone(tmp_path):
     path = tmp_path / "life.h5"
     history = fastpin.LoadHistory([{"P": 1.0}, {"P": 0.5}]).repeated(2)

@@ -142,7 +142,7 @@ def test_a_fault_is_one_sentence_with_its_line(folder: Path, old: str, new: str,
     assert found.startswith(sentence)
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_a_tolerance_study_has_the_strength_too(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("case.toml").write_text(CASE)
     Path("tolerances.toml").write_text(

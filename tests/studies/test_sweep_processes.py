@@ -198,6 +198,7 @@ def test_an_interrupted_and_a_killed_sweep_go_on_with_their_outcomes(tmp_path: P
     assert_same_as_serial(plan, directory)
 
 
+@pytest.mark.survey
 def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 

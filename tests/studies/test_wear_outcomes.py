@@ -201,7 +201,7 @@ i = { wear = "life", cycles = 10, plate = { zone = 1e-15, start = 10 } }
     assert starts == expected
 
 
-@pytest.mark.gate
+@pytest.mark.survey
 def test_a_life_that_fails_is_the_reason_of_its_outcome_alone(plan: Plan, tmp_path: Path) -> None:
     summary = sweep.run(plan, tmp_path, Inline())
     assert (summary.done, summary.failed) == (2, [])

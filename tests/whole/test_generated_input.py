@@ -107,11 +107,13 @@ def is_valid_together(case: Case) -> bool:
     return repeatable(case)
 
 
+@pytest.mark.survey
 @given(strategies.cases().filter(is_valid_together))
 def test_a_case_written_as_a_file_is_read_again(case):
     assert_same_case(parse_case(text_of(case)), case)
 
 
+@pytest.mark.survey
 @given(case=strategies.cases().filter(is_valid_together), friction=st.floats(0.0, 1.5))
 def test_a_plan_makes_the_case_that_its_file_would_make(case, friction, tmp_path_factory):
     assume(friction > 0.0 or "friction_change" not in case.history.largest)
