@@ -214,7 +214,7 @@ def test_a_wrong_life_names_its_line(tmp_path, capsys):
     path = tmp_path / "case.toml"
     path.write_text(CASE.replace("knee = 1e6", "knee = 1e6\nlife = 0.5"), encoding="utf-8")
     assert main(["check", str(path)]) != 0
-    assert "line 18: life: must lie between 1 and 1e+18, not 0.5" in capsys.readouterr().err
+    assert "line 16: life: must lie between 1 and 1e+18, not 0.5" in capsys.readouterr().err
 
 
 @pytest.mark.gate
