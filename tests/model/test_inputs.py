@@ -54,8 +54,9 @@ def pipe(tmp_path: Path) -> Iterator[Path]:
     thread.start()
     yield path
     is_done.set()
-    os.close(os.open(path, os.O_RDONLY | os.O_NONBLOCK))
+    end = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # as long as it is open, the thread waits for no reader
     thread.join()
+    os.close(end)
 
 
 @pytest.mark.parametrize("read", READERS.values(), ids=list(READERS))
