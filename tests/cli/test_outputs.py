@@ -147,6 +147,7 @@ KINDS: dict[str, tuple[Callable[[Path, Path, str], object], str]] = {
 """Ways to make an existing file at a path, and words of its refusal."""
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("command", "option", "ending"), ENDINGS)
 def test_no_text_or_figure_replaces_another_kind(command, option, ending, folder, samples, capsys):
     for kind, (make, words) in KINDS.items():

@@ -316,6 +316,7 @@ def test_a_result_that_was_cut_short_leaves_no_figure(stored, tmp_path, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.gate
 def test_a_cycle_without_its_corners_has_no_fatigue(tmp_path, capsys):
     path = tmp_path / "ends.h5"
     pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"])

@@ -34,6 +34,7 @@ def inline(tasks: list[str], submit: Callable[..., Any]) -> Any:
         yield (task,), submit(Inline(), (task,)).result()
 
 
+@pytest.mark.gate
 def test_a_sweep_says_what_was_done_and_what_failed(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(path), "--status"]) == 0
     out = capsys.readouterr().out

@@ -199,6 +199,7 @@ def rim_columns(problem, traction):
     return theta, found
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("load", "middle"), [(P, -0.5 * math.pi), *gate((Q, 0.0))])
 def test_half_of_a_rim(load, middle):
     """Pressure like the cosine on half of the rim, 2 force/(pi c) at most. Measured: 2e-16."""

@@ -46,6 +46,7 @@ def made():
     return plate_compliance(plate(loads=load), 10)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize("plane", [*gate("strain"), "stress"])
 def test_a_held_ring_agrees_with_its_closed_form(plane):
     lug = Lug(0.3, plane, 5e-3, disc(10e-3), {"rim": "both"})

@@ -97,6 +97,7 @@ def test_slip_without_friction_has_no_direction():
         assert not [text for text in legend_texts(figure) if "clockwise" in text or "narrow" in text]
 
 
+@pytest.mark.gate
 def test_many_cycles_show_their_first_states_and_no_slow_cycle():
     result = sample_result([{"P": 1e6 * (2 + k % 2)} for k in range(MOST_COLUMNS + 50)], nodes=21)
     result.cycles = tuple(Cycle(k, 2, k // 2, 0.0, 0.0, 0.0, 0.0, True) for k in range(3, len(result), 2))

@@ -21,7 +21,7 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.cycles import Cycle
 from tests.support.samples import PAIR, sample_result, with_values
-from tests.support.tiers import gate, some_gate
+from tests.support.tiers import gate
 
 
 def curves(panel: mpl.axes.Axes, thicker_than: float = 0.8) -> list[np.ndarray]:
@@ -45,7 +45,7 @@ def test_tractions_are_drawn_in_degrees_from_the_bottom_and_in_megapascal() -> N
     assert zones.get_xlabel() == "angle from the bottom of the hole, counter-clockwise (deg)"
 
 
-@pytest.mark.parametrize("half", some_gate([0.02, *gate(0.3), 1.0, 1.4], 0.02))
+@pytest.mark.parametrize("half", [*gate(0.02, 0.3), 1.0, 1.4])
 def test_both_ends_of_the_axis_of_angles_have_numbers(half: float) -> None:
     result = sample_result(nodes=401)
     away = np.abs(result[0].theta + 0.5 * np.pi)

@@ -37,7 +37,7 @@ def solved(paths):
     return out[:, :-1], out[:, -1]
 
 
-@pytest.mark.parametrize("dimension", [1, 2, *gate(3), 5])
+@pytest.mark.parametrize("dimension", [1, 2, *gate(3, 5)])
 def test_the_sphere_is_the_smallest_of_all_subsets(dimension):
     paths = np.random.default_rng(dimension).normal(size=(12, 10 if dimension < 5 else 9, dimension))
     centres, radii = solved(paths)

@@ -143,6 +143,7 @@ def test_what_it_is_not_for(small_sets, titanium_in_aluminium):
     assert StickingRun.of(smooth, stuck(60, 20, 40)) is None
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(("pin_load", "rotation"), [*gate(("body", "free")), ("centre", "fixed")])
 def test_histories_are_those_of_factorisations(small_sets, titanium_in_aluminium, monkeypatch, pin_load, rotation):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, pin_load, rotation)

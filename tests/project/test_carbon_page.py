@@ -9,6 +9,7 @@ import pytest
 
 from fastpin.cli.main import main
 from fastpin.studies import read_plan, sweep
+from tests.support.tiers import gate
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = (DOCS / "carbon-laminate.md").read_text(encoding="utf-8")
@@ -49,10 +50,13 @@ def test_python_prints_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out == blocks("text")[1]
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     ("criterion", "lengths", "start"),
     [
-        ("yamada-sun", "tension = 0.5e-3\ncompression = 1.5e-3", "| `yamada-sun`, curve of 0.5 mm and 1.5 mm | "),
+        *gate(
+            ("yamada-sun", "tension = 0.5e-3\ncompression = 1.5e-3", "| `yamada-sun`, curve of 0.5 mm and 1.5 mm | ")
+        ),
         ("hashin", "distance = 0.5e-3", "| `hashin`, 0.5 mm from the edge | "),
     ],
 )

@@ -112,6 +112,8 @@ def test_every_rule_is_broken_once():
     assert {rule.__name__ for rule in layout.RULES} - tried == {"exceptions_used"}
 
 
+@pytest.mark.gate
+@pytest.mark.gate
 def test_an_exception_that_is_not_needed_is_noticed(texts, monkeypatch):
     monkeypatch.setitem(layout.UPWARD, "model/grid.py", "no reason")
     monkeypatch.setitem(layout.LONG_FUNCTIONS, "solver/arc.py candidate_grids", "no reason")

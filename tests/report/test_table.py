@@ -23,6 +23,7 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.quantities import load_point
 from tests.support.samples import sample_result
+from tests.support.tiers import gate
 
 
 def lines(letters: str) -> list[str]:
@@ -80,7 +81,8 @@ def test_a_table_that_is_long_in_spite_of_repeats_is_cut() -> None:
     assert found[-1] == f"1045 {text[-1]}"
 
 
-@pytest.mark.parametrize(("cycles", "most"), [(1, 4), (7, 16), (1000, 16)])
+@pytest.mark.gate
+@pytest.mark.parametrize(("cycles", "most"), [(1, 4), (7, 16), *gate((1000, 16))])
 def test_a_fretting_history_prints_a_readable_table(cycles: int, most: int) -> None:
     """4, 22 and 3,001 states. The last state is always printed."""
     text = EXAMPLE.replace("# repeat = 1000  ", f"repeat = {cycles}  ")

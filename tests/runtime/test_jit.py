@@ -197,6 +197,7 @@ def test_other_types_are_left_to_the_compiler() -> None:
     assert influence.clausen(np.float32(1.0)) == pytest.approx(1.0139591323607684, abs=1e-7)
 
 
+@pytest.mark.gate
 def test_compiling_is_announced_once(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     monkeypatch.setattr(jit, "CACHED", False)
     jit._announce.cache_clear()

@@ -155,6 +155,7 @@ def test_another_solver_is_one_class(result, monkeypatch):
     assert {"begin", "advance", "leave"} == set(made[-1].calls)
 
 
+@pytest.mark.gate
 def test_a_result_without_states_is_exported(similar):
     problem = fastpin.Problem.from_load_parameter(similar, 0.1, 0.1)
     with pytest.raises(fastpin.NoEquilibriumError) as raised:

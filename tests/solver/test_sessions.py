@@ -509,6 +509,7 @@ def test_a_result_of_all_loads_can_be_saved(problem, tmp_path):
     assert len(session.result(keep="every 2")) == 2
 
 
+@pytest.mark.gate
 def test_memory_does_not_grow_with_a_bounded_undo(problem):
     session = fastpin.Session(problem, 21, arc=(-1.5 * np.pi, 0.5 * np.pi), undo=5)
     rng = np.random.default_rng(0)

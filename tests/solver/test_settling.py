@@ -79,7 +79,7 @@ def met(monkeypatch):
     return events
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", some_gate(CASES, "very rough"))
 @pytest.mark.parametrize("nodes", some_gate([61, 101], 101))
 def test_histories_whose_statuses_cycle_are_solved(name, nodes, met):
     case, history = CASES[name]
@@ -159,6 +159,7 @@ def test_statuses_that_are_left_alone_settle_without_lemke(met, titanium_in_alum
     assert result.statistics["resettled"] == result.statistics["jumps"] == 0
 
 
+@pytest.mark.gate
 def test_jumps_are_counted_and_end_in_states(met):
     case, history = VERY_ROUGH
     result = solve(case, history, nodes=61)

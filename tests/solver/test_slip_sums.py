@@ -37,6 +37,7 @@ def assert_balance(result: Result) -> None:
         assert np.all(after.slip_distance >= 0.0)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(  # increments end at a snap
     ("name", "method"),
     [(name, method) for name in CASES for method in METHODS if method == "path" or "snap" not in name],

@@ -153,6 +153,7 @@ def test_the_tally_of_wear_is_friction_energy_over_friction():
     assert sums[4].max() > 0.1
 
 
+@pytest.mark.gate
 def test_nodes_without_friction_have_a_tally_of_their_own():
     friction = Profile.constant(0.3) + Profile((Zone(-0.3, -1.4, -1.0),))
     case = WEAR_CASES["pulsating"]

@@ -165,6 +165,7 @@ def test_a_contact_lost_on_the_first_graded_grid_is_followed_on_a_second(monkeyp
     assert sizes[2] == result.grid.size > 1.5 * sizes[1]
 
 
+@pytest.mark.gate
 def test_too_many_nodes_are_refused_with_the_first_error(monkeypatch):
     monkeypatch.setattr(arc, "MOST_GRADED", 70)
     with pytest.raises(ResolutionError, match="narrower than the nodes"):

@@ -64,7 +64,7 @@ def assert_file(path: Path, expected) -> None:
     assert found.complete
 
 
-@pytest.mark.parametrize("keep", ["all", "cycles", "every 3"])
+@pytest.mark.parametrize("keep", some_gate(["all", "cycles", "every 3"], "every 3"))
 @pytest.mark.parametrize(
     "program",
     some_gate(
@@ -278,6 +278,7 @@ def test_a_full_disk_leaves_what_was_there(problem, whole, path, monkeypatch):
     assert_file(path, whole)
 
 
+@pytest.mark.gate
 def test_a_failure_of_any_kind_leaves_what_was_there(problem, whole, path):
     def progress(done: float, total: int) -> None:
         if total > 1 and done > 10.0:
@@ -311,6 +312,7 @@ def test_a_run_that_ended_before_it_began(problem, path):
     assert len(store.load(path)) == 3
 
 
+@pytest.mark.gate
 def test_links_lead_to_one_run(problem, whole, path, tmp_path):
     (tmp_path / "below").mkdir()
     link = tmp_path / "below" / "link.h5"
@@ -596,6 +598,7 @@ def test_the_arc_of_a_run_is_in_its_file(problem, path):
     assert stored_case(path).options.arc == (-3.0, -3.0 + 2.0 * np.pi)
 
 
+@pytest.mark.gate
 def test_graded_grids_and_increments_go_on_as_well(problem, path):
     theta = -0.5 * np.pi + 1.4 * np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 61))
     options = {"grid": Grid(theta), "method": "increment", "increments": 5}

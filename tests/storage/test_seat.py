@@ -29,6 +29,7 @@ def test_joint_and_seat_are_datasets_of_their_own(tmp_path: Path) -> None:
     assert stored.to_xarray().equals(seat)
 
 
+@pytest.mark.gate
 def test_the_data_frame_of_the_seat() -> None:
     seat = sample_seat().seat
     assert seat is not None

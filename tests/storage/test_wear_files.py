@@ -177,7 +177,7 @@ def test_other_files_hold_no_life(tmp_path):
         life(path, resume=True)
 
 
-@pytest.mark.parametrize("part", ["pin_depth", "cycle", "coefficients"])
+@pytest.mark.parametrize("part", ["pin_depth", "cycle", *gate("coefficients")])
 def test_a_damaged_file_is_told_in_one_sentence(tmp_path, part):
     path = tmp_path / "life.h5"
     life(path, cycles=2)
@@ -234,6 +234,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 from fastpin.storage import wear_files
+from tests.support.tiers import gate
 from tests.support.wear_cases import life
 wear_files.CHECKPOINT_EVERY = 0.0
 path, left, before = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3] == "True"

@@ -90,6 +90,7 @@ def result(plan: Plan) -> Result:
     return fastpin.solve(case.problem, case.history, **case.options.keywords())
 
 
+@pytest.mark.gate
 def test_rows_have_bars_of_key_figures_and_outcomes(plan: Plan, directory, result: Result) -> None:
     row, last = sweep.rows(plan, directory)[1], result[-1]
     for name in ("peak_pressure", "dx", "dissipation"):
@@ -174,6 +175,7 @@ def test_parts_keep_their_bars(plan: Plan, directory, tmp_path) -> None:
         }
 
 
+@pytest.mark.gate
 def test_tables_and_files_show_bars(plan: Plan, directory, tmp_path) -> None:
     rows = sweep.rows(plan, directory)
     table = text(plan, rows)
@@ -191,6 +193,7 @@ def test_tables_and_files_show_bars(plan: Plan, directory, tmp_path) -> None:
     assert list(lines[0])[:5] == ["id", "contact.friction", "load.2.amplitude.Q", "regime", "regime_bar"]
 
 
+@pytest.mark.gate
 def test_infinite_bars_and_other_classes_have_a_question_mark(plan: Plan, directory) -> None:
     rows = [row | {"stick_bar": math.inf, "regime_bar": 1.0} for row in sweep.rows(plan, directory)]
     table = text(plan, rows)
@@ -198,6 +201,7 @@ def test_infinite_bars_and_other_classes_have_a_question_mark(plan: Plan, direct
     assert table.count("partial slip ?") == 4
 
 
+@pytest.mark.gate
 def test_charts_have_bars_in_their_unit(plan: Plan, directory) -> None:
     rows = sweep.rows(plan, directory)
     found = chart(plan, rows, "peak")
@@ -238,6 +242,7 @@ def test_the_name_of_a_bar_is_no_outcome(folder, plan: Plan) -> None:
     assert np.size(parse_plan(PLAN + 'crow_bar = { quantity = "dx" }\n', folder=folder).points) == 4
 
 
+@pytest.mark.gate
 def test_a_damaged_bar_is_one_sentence(plan: Plan, directory, tmp_path) -> None:
     shutil.copytree(directory, tmp_path / "copy")
     with sqlite3.connect(tmp_path / "copy" / "index.sqlite") as database:

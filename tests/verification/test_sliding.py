@@ -187,6 +187,7 @@ def test_errors_of_like_bodies_fall_exponentially():
     assert max(peaks[3], ends[2], ends[3]) < 1e-13
 
 
+@pytest.mark.gate
 def test_errors_of_unlike_bodies_fall_with_the_fourth_power():
     _, ends = errors_in_terms(TITANIUM_ALUMINIUM, (8, 16, 32, 64), 128)
     assert -np.polyfit(np.log([8, 16, 32, 64]), np.log(ends), 1)[0] == pytest.approx(3.9, abs=0.4)

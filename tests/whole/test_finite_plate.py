@@ -71,6 +71,7 @@ def test_both_methods_follow_an_interference_fit_in_an_uneven_plate(uneven):
         assert one.shear == pytest.approx(other.shear, abs=1e-3)
 
 
+@pytest.mark.gate
 def test_an_interference_fit_in_a_held_disc_is_that_in_a_ring():
     body = rough_compliance(Lug(0.3, "strain", 1.0, disc(2.0), supports={"rim": "both"}), 12)
     found = solve(interference(body, 0.3), [{}, {"P": 0.5}], nodes=121)

@@ -144,6 +144,7 @@ def test_a_moment_beyond_friction_is_lost_where_statics_says(similar):
     assert "M = " in str(error)
 
 
+@pytest.mark.gate
 def test_increments_lose_the_same_load(similar):
     problem = Problem.from_load_parameter(similar, 2.0, 0.3, "centre", "free")
     lost = []
