@@ -235,6 +235,7 @@ import os, signal, sys
 from pathlib import Path
 from fastpin.storage import wear_files
 from tests.support.tiers import gate
+from tests.support.tiers import gate
 from tests.support.wear_cases import life
 wear_files.CHECKPOINT_EVERY = 0.0
 path, left, before = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3] == "True"
