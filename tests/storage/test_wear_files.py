@@ -20,6 +20,7 @@ from fastpin.storage.journal import JournaledFile
 from fastpin.storage.recording import stored_case
 from tests.support.interrupts import StopAt
 from tests.support.processes import finished, python
+from tests.support.tiers import gate
 from tests.support.wear_cases import BUMPED, BUMPED_TURNS, WEAR_CASES, life
 
 CASE = WEAR_CASES["unlike"]
@@ -234,8 +235,6 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 from fastpin.storage import wear_files
-from tests.support.tiers import gate
-from tests.support.tiers import gate
 from tests.support.wear_cases import life
 wear_files.CHECKPOINT_EVERY = 0.0
 path, left, before = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3] == "True"
