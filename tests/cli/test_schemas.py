@@ -53,6 +53,7 @@ def _inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.gate
 def test_every_command_with_json_has_a_schema() -> None:
     actions = next(action for action in parser()._actions if isinstance(action.choices, dict))
     commands = {

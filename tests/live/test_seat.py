@@ -59,6 +59,7 @@ def test_undo_and_redo_lead_back_to_the_same_seat(page: Page) -> None:
     assert np.array_equal(again.slip, last.seat.slip)
 
 
+@pytest.mark.gate
 @pytest.mark.parametrize(
     ("changes", "slips"),
     [

@@ -124,6 +124,7 @@ def test_a_life_in_memory_has_the_same_page(stored, life, tmp_path, monkeypatch)
     assert (tmp_path / "page.html").read_text() == (tmp_path / "memory.html").read_text()
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_the_case_file_must_be_that_of_the_life(stored: Path, only: Callable[..., None], tmp_path: Path) -> None:
     only(provenance)

@@ -86,6 +86,7 @@ def test_a_result_and_its_file_give_the_same_dataset(result, tmp_path):
     assert set(own.coords) == set(stored.coords)
 
 
+@pytest.mark.gate
 def test_a_data_frame_has_a_row_a_state(result):
     pytest.importorskip("pandas")
     frame = result.to_dataframe()

@@ -87,6 +87,7 @@ def test_right_from_this_load_parameter_on(quantity, five, one):
         assert found["right_to_1_percent_from"] == pytest.approx(one, rel=0.2)
 
 
+@pytest.mark.gate
 def test_threshold():
     load_parameter = np.geomspace(0.1, 1e4, 11)
     falling = -0.3 / np.sqrt(load_parameter)
@@ -97,6 +98,7 @@ def test_threshold():
     assert half_plane.threshold(load_parameter, falling, 1e-3) == math.inf
 
 
+@pytest.mark.gate
 def test_the_half_plane_errs_to_these_sides():
     """Too low in peak pressure and peak shear, too wide in contact."""
     assert np.all(error_curve("half-width")["error"][:8] > 0.0)
@@ -105,6 +107,7 @@ def test_the_half_plane_errs_to_these_sides():
     assert np.all(error_curve("peak shear, -Q")["error"][:8] < 0.0)
 
 
+@pytest.mark.gate
 def test_moving_the_contact_is_half_of_the_difference():
     """The other half is a part of N, not of mu N: shear that conformity makes, whatever the friction."""
     inside = slice(6, 13)
@@ -249,6 +252,7 @@ def test_floors_are_above_the_errors_of_the_discretisation(load_parameter):
         assert abs(one - two) < half_plane.floor(quantity, 201), quantity
 
 
+@pytest.mark.gate
 def test_half_plane_curves_leave_out_what_the_discretisation_hides():
     for curve in computed("half-plane"):
         least = half_plane.floor(str(curve.parameters["quantity"]), catalog.figure("half-plane").least_nodes)
