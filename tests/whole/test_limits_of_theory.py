@@ -87,7 +87,6 @@ def test_right_from_this_load_parameter_on(quantity, five, one):
         assert found["right_to_1_percent_from"] == pytest.approx(one, rel=0.2)
 
 
-@pytest.mark.gate
 def test_threshold():
     load_parameter = np.geomspace(0.1, 1e4, 11)
     falling = -0.3 / np.sqrt(load_parameter)
