@@ -91,7 +91,7 @@ def test_all_faults_of_a_case_are_listed(case: Path, capsys: pytest.CaptureFixtu
 @pytest.mark.gate
 def test_options_replace_who_made_the_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     about = '[about]\nproject = "<i>Hinge</i> \\";}</style>"\nrevision = "A"\nauthor = "A. Engineer"\n'
-    case.write_text(CASE.replace("[pin]", f"{about}[pin]", 1))
+    case.write_text(CASE.replace("[contact]", f"{about}[contact]", 1))
     assert main(["run", str(case), "-o", "result.h5"]) == 0
     for source in ("case.toml", "result.h5"):
         assert main(["report", source, "-o", "page.html", "--revision", "B", "--date", "1 May 2026"]) == 0
@@ -109,7 +109,7 @@ def test_options_replace_who_made_the_case(case: Path, capsys: pytest.CaptureFix
 
 @pytest.mark.gate
 def test_a_sweep_takes_who_made_its_base_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    case.write_text(CASE.replace("[pin]", '[about]\nproject = "Hinge"\n[pin]', 1))
+    case.write_text(CASE.replace("[contact]", '[about]\nproject = "Hinge"\n[contact]', 1))
     Path("plan.toml").write_text('case = "case.toml"\n[grid]\n"contact.friction" = [0.1, 0.2]\nsolve.nodes = [41]\n')
     assert main(["sweep", "plan.toml", "--workers", "1"]) == 0
     assert main(["report", "plan", "-o", "page.html", "--author", "A. Engineer"]) == 0
