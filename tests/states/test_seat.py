@@ -210,7 +210,8 @@ def test_fatigue_of_the_seat_takes_the_constants_of_the_plate():
     seat, bore = fatigue(states, "smith-watson-topper", "seat"), fatigue(states, "smith-watson-topper")
     assert seat.life is not None
     assert bore.life is None
-    assert seat.hot_spot.life == seat.life.min() < math.inf
+    assert seat.hot_spot.life == pytest.approx(seat.life.min(), rel=1e-7)  # of equal places the rightmost
+    assert seat.life.min() < math.inf
     assert seat.parameter.max() > 1e4
     # the same points by their radius, in the plate
     points = Points.at_radius(SEAT * (1.0 + 1e-9), seat.theta)
