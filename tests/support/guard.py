@@ -161,12 +161,14 @@ def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
     limit = LIMITS.get(max(tier, item.config.getoption("tier"), key=TIERS.index), math.inf)
     parts = [(seconds - sum(each for each, _ in _shared), ""), *_shared]
     broken = [f"{name}{each:.2f} s of processor time" for each, name in parts if each > limit]
-    if code != _age_of_code() or max(parts)[0] <= limit * slowness():
-        broken = []
     if broken:
-        item.user_properties.append(("above", "; ".join(broken)))
-    if max(parts)[0] <= MARGIN * limit * slowness():
-        broken = []
+        slow = slowness()
+        if code != _age_of_code() or max(parts)[0] <= limit * slow:
+            broken = []
+        else:
+            item.user_properties.append(("above", "; ".join(broken)))
+        if max(parts)[0] <= MARGIN * limit * slow:
+            broken = []
     broken += _seen if tier == "quick" else ()
     if broken and not item.get_closest_marker("browser"):
         above = TIERS[TIERS.index(tier) + 1]
