@@ -167,6 +167,29 @@ def test_two_at_once_install_once(project: Path) -> None:
 
 
 @pytest.mark.gate
+@pytest.mark.parametrize(
+    "failing", ["", "ruff check", "--prepare", "test --gate -m", "-n 0", "check-package", "--fresh"]
+)
+def test_the_gate_passes_if_all_of_its_commands_do(failing: str, project: Path) -> None:
+    """Some commands run beside others, and those that are left are ended."""
+    command = '#!/bin/bash\n[[ -z $FAIL || "${0##*/} $*" != *"$FAIL"* ]] || exit 7\n'
+    parts = {
+        project / "scripts": ("test", "docs", "check-package", "other-machines"),
+        project / ".venv" / "bin": ("ruff", "mypy", "python"),
+        project.parents[1] / "bin": ("chromium", "chromedriver"),
+    }
+    for folder, names in parts.items():
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in names:
+            (folder / name).write_text(command)
+            (folder / name).chmod(0o755)
+    shutil.copytree(ROOT / ".ci", project / ".ci")
+    done = finished([project / ".ci" / "run"], env=environment(project, FAIL=failing), check=False)
+    assert (done.returncode, done.stderr) == (7 if failing else 0, "")
+    assert done.stdout.endswith("\nall checks passed\n") == (not failing)
+
+
+@pytest.mark.gate
 def test_too_old_a_python_is_refused_in_one_sentence(project: Path) -> None:
     (project.parents[1] / "too-old").touch()
     done = run(project, "run")
