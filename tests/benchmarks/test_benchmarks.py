@@ -9,12 +9,14 @@ from fastpin.benchmarks import Outcome, catalog, handbook_formulas, klang
 from fastpin.benchmarks.rows import AGREES
 from fastpin.errors import InputError
 from fastpin.figures.style import save_drawing
+from tests.support.tiers import for_gate
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md").read_text(encoding="utf-8")
 QUICK = ("klang", "nasa-tp-1862", "fretting-half-plane", "brazilian-disk", "kirsch", "lekhnitskii", "shrink-fit")
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def outcomes() -> dict[str, Outcome]:
     return {name: catalog.BENCHMARKS[name].compute(None) for name in QUICK}
 
@@ -32,7 +34,6 @@ def test_every_benchmark_has_words_and_a_section(name: str) -> None:
     assert f"`{name}`" in PAGE
 
 
-@pytest.mark.gate
 def test_every_verdict_says_what_follows(outcomes: dict[str, Outcome]) -> None:
     for outcome in outcomes.values():
         for row in outcome.rows:
@@ -40,7 +41,6 @@ def test_every_verdict_says_what_follows(outcomes: dict[str, Outcome]) -> None:
             assert row.verdict.startswith(words), row.quantity
 
 
-@pytest.mark.gate
 def test_what_agrees(outcomes: dict[str, Outcome]) -> None:
     agreeing = {name: sum(row.agrees for row in outcome.rows) for name, outcome in outcomes.items()}
     assert agreeing == {
@@ -49,7 +49,6 @@ def test_what_agrees(outcomes: dict[str, Outcome]) -> None:
     }  # fmt: skip
 
 
-@pytest.mark.gate
 def test_klangs_slip_zone_agrees_and_his_stick_zone_does_not(outcomes: dict[str, Outcome]) -> None:
     pressures = outcomes["klang"].rows[: len(klang.PUBLISHED)]
     verdicts = [row.verdict for row in pressures]
@@ -60,14 +59,12 @@ def test_klangs_slip_zone_agrees_and_his_stick_zone_does_not(outcomes: dict[str,
     assert verdicts[17] == AGREES
 
 
-@pytest.mark.gate
 def test_the_stick_zones_of_klangs_problem(outcomes: dict[str, Outcome]) -> None:
     found = [row.ours for row in outcomes["klang"].rows if "stick" in row.quantity]
     assert found == pytest.approx([27.68, 22.64, 25.41, 38.99, 29.20, 29.12], abs=0.05)
     assert 27.0 < found[-1] < 33.0  # the nodes of Code_Aster's test at 30 and 33 degrees stick and slip
 
 
-@pytest.mark.gate
 def test_the_tensile_stress_concentration_of_a_neat_pin(outcomes: dict[str, Outcome]) -> None:
     found = ours(outcomes["nasa-tp-1862"])
     for pin in ("rigid pin", "steel pin"):
@@ -77,7 +74,6 @@ def test_the_tensile_stress_concentration_of_a_neat_pin(outcomes: dict[str, Outc
         assert peak == pytest.approx(0.933, abs=0.007)
 
 
-@pytest.mark.gate
 def test_klangs_figure(outcomes: dict[str, Outcome], tmp_path: Path) -> None:
     files = catalog.write("klang", outcomes["klang"], tmp_path)
     assert [file.name for file in files] == ["klang.csv", "klang-curves.png", "klang-curves.csv"]
@@ -85,7 +81,6 @@ def test_klangs_figure(outcomes: dict[str, Outcome], tmp_path: Path) -> None:
     assert files[0].read_text().splitlines()[3].startswith("pressure at 0 deg; body force; exact path,bar,178.13,open")
 
 
-@pytest.mark.gate
 def test_a_benchmark_without_curves_writes_its_rows_only(outcomes: dict[str, Outcome], tmp_path: Path) -> None:
     (file,) = catalog.write("kirsch", outcomes["kirsch"], tmp_path)
     assert file.name == "kirsch.csv"

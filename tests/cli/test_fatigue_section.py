@@ -11,6 +11,7 @@ from fastpin import cracks, damage
 from fastpin.cli.main import main
 from fastpin.model.doubts import doubts_given
 from fastpin.report import json_schema
+from tests.support.tiers import for_gate
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -37,6 +38,7 @@ HEAD = "fatigue over the whole history as a spectrum, Miner's rule modified by H
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def folder(tmp_path_factory):
     """A folder with a case and its stored result."""
     folder = tmp_path_factory.mktemp("fatigue")
@@ -49,7 +51,6 @@ def fatigue_lines(capsys):
     return [line for line in capsys.readouterr().out.splitlines() if line.startswith("fatigue ")]
 
 
-@pytest.mark.gate
 def test_run_and_show_print_the_ranked_bodies(folder, capsys):
     capsys.readouterr()
     assert main(["run", str(folder / "case.toml")]) == 0
@@ -64,7 +65,6 @@ def test_run_and_show_print_the_ranked_bodies(folder, capsys):
     assert len(ran) == 2
 
 
-@pytest.mark.gate
 def test_json_has_the_assessment(folder, capsys):
     capsys.readouterr()
     assert main(["show", str(folder / "one.h5"), "--json", "-"]) == 0
@@ -78,7 +78,6 @@ def test_json_has_the_assessment(folder, capsys):
     assert sum(each["damage"] for each in body["cycles"]) == pytest.approx(body["damage"], rel=1e-6)
 
 
-@pytest.mark.gate
 def test_without_the_section_json_has_none(folder, capsys, tmp_path):
     plain = tmp_path / "plain.toml"
     plain.write_text(CASE.split("[fatigue]")[0] + "[solve]\nnodes = 61\n", encoding="utf-8")
@@ -89,7 +88,6 @@ def test_without_the_section_json_has_none(folder, capsys, tmp_path):
     assert document["fatigue"] is None
 
 
-@pytest.mark.gate
 def test_the_figure_follows_the_section(folder, capsys, tmp_path):
     numbers = tmp_path / "n.csv"
     capsys.readouterr()
@@ -102,7 +100,6 @@ def test_the_figure_follows_the_section(folder, capsys, tmp_path):
     assert max(float(row["damage by smith-watson-topper"]) for row in rows) == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("source", ["case.toml", "one.h5"])
 def test_the_report_has_the_hot_spots(folder, source, capsys, tmp_path):
@@ -113,7 +110,6 @@ def test_the_report_has_the_hot_spots(folder, source, capsys, tmp_path):
     assert "s rule modified by Haibach below the knee at 1e+06 cycles" in text
 
 
-@pytest.mark.gate
 def test_check_explains_the_section(folder, capsys):
     capsys.readouterr()
     assert main(["check", str(folder / "case.toml")]) == 0
@@ -121,7 +117,6 @@ def test_check_explains_the_section(folder, capsys):
     assert words in capsys.readouterr().out
 
 
-@pytest.mark.gate
 def test_stresses_that_do_not_change_end_with_one_sentence(folder, capsys, tmp_path):
     still = tmp_path / "still.toml"
     loads = "[[load]]\nP = [3e6, 3e6]\n"
@@ -133,7 +128,6 @@ def test_stresses_that_do_not_change_end_with_one_sentence(folder, capsys, tmp_p
     assert "fatigue: not known, states: must have a turning point" in printed.out
 
 
-@pytest.mark.gate
 def test_an_unfinished_run_has_no_fatigue(folder, capsys, tmp_path):
     def interrupt(done, total):
         if done > 4.5:

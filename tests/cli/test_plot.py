@@ -14,7 +14,7 @@ from fastpin.cli.main import main
 from fastpin.figures.kinds import KIND_OPTIONS, KINDS
 from tests.support.lives import sample_life
 from tests.support.samples import JOINT
-from tests.support.tiers import gate
+from tests.support.tiers import for_gate, gate
 
 
 @pytest.fixture(scope="module")
@@ -381,6 +381,7 @@ def test_a_result_without_cycles(tmp_path, capsys):
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def blocks(tmp_path_factory):
     """Two blocks of three cycles, with slip sums."""
     path = tmp_path_factory.mktemp("blocks") / "blocks.h5"
@@ -391,7 +392,6 @@ def blocks(tmp_path_factory):
     return path
 
 
-@pytest.mark.gate
 def test_loops_of_chosen_cycles(blocks, tmp_path, capsys):
     numbers = tmp_path / "loops.csv"
     arguments = ["plot", str(blocks), "loops", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]
@@ -413,7 +413,6 @@ def test_loops_of_chosen_cycles(blocks, tmp_path, capsys):
     assert "--cycle: has no effect on hoop; it is for loops" in capsys.readouterr().err
 
 
-@pytest.mark.gate
 def test_ranges_of_states(blocks, tmp_path, capsys):
     assert main(["plot", str(blocks), "stick-slip", "--states", "10-", "-o", str(tmp_path / "a.png")]) == 0
     assert "states: load points 10 to 13" in capsys.readouterr().out
@@ -422,7 +421,6 @@ def test_ranges_of_states(blocks, tmp_path, capsys):
     assert "or load points such as 2,3.5, 1-9 or 10-, not '3-2'" in capsys.readouterr().err
 
 
-@pytest.mark.gate
 def test_cycles_are_counted_from_1_and_their_numbers_have_units(blocks, tmp_path):
     numbers = tmp_path / "cycles.csv"
     assert main(["plot", str(blocks), "cycles", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]) == 0
@@ -433,7 +431,6 @@ def test_cycles_are_counted_from_1_and_their_numbers_have_units(blocks, tmp_path
     assert len(others) == 5
 
 
-@pytest.mark.gate
 def test_a_long_map_of_stick_and_slip_says_what_its_columns_join(blocks, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(figures.stick_slip, "MOST_COLUMNS", 5)
     numbers = tmp_path / "map.csv"
@@ -446,7 +443,6 @@ def test_a_long_map_of_stick_and_slip_says_what_its_columns_join(blocks, tmp_pat
     assert first.startswith("0,")
 
 
-@pytest.mark.gate
 def test_a_map_joins_all_states_of_a_long_history_with_cycles(blocks, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(figures.stick_slip, "MOST_COLUMNS", 5)
     arguments = ["plot", str(blocks), "stick-slip", "-o", str(tmp_path / "a.png")]
@@ -457,7 +453,6 @@ def test_a_map_joins_all_states_of_a_long_history_with_cycles(blocks, tmp_path, 
     assert "the figure shows 7 of 39 states: load points 11, 11.333" in capsys.readouterr().out
 
 
-@pytest.mark.gate
 def test_the_regime_is_printed(blocks, capsys):
     assert main(["show", str(blocks)]) == 0
     assert "partial slip, slip range up to" in capsys.readouterr().out

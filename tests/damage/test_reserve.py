@@ -14,7 +14,7 @@ from fastpin.damage.lives import cycles_on_curve, smith_watson_topper_curve
 from fastpin.errors import InputError
 from fastpin.model import FatigueAssessment, FatigueConstants
 from fastpin.model.doubts import doubts_given
-from tests.support.tiers import gate
+from tests.support.tiers import for_gate, gate
 
 SWT, FS = "smith-watson-topper", "fatemi-socie"
 CONSTANTS = FatigueConstants(
@@ -38,6 +38,7 @@ def single():
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def spectrum():
     """Twenty loads with small and large cycles, in a bush."""
     rng = np.random.default_rng(4)
@@ -77,7 +78,6 @@ def test_a_single_cycle_may_grow_to_its_point_on_the_curve(single, fields, cycle
     assert one.loads == single[int(one.largest) - 1].load
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("criterion", [SWT, FS])
 @pytest.mark.parametrize(
     "fields", [{"life": 2e5}, {"life": 2e5, "small_cycles": "haibach", "knee": 1e7}, {"life": 50.0}]
@@ -99,7 +99,6 @@ def test_at_the_factor_the_largest_damage_of_all_points_is_the_goal(spectrum, cr
             assert (how.life * counted.worst(1.01 * one.factor * history, order)[0]).max() > 1.0
 
 
-@pytest.mark.gate
 def test_without_damage_there_is_still_a_factor(spectrum):
     """Cycles below the knee of the original rule do no damage; they may grow to the knee, and then some."""
     rule = {"small_cycles": "original", "knee": 10.0, "bodies": "seat"}
@@ -113,7 +112,6 @@ def test_without_damage_there_is_still_a_factor(spectrum):
     assert jumped.factor >= endured.factor * (1.0 - 1e-6)
 
 
-@pytest.mark.gate
 def test_a_longer_life_leaves_a_smaller_factor(spectrum):
     factors = [
         spectrum.assessed_reserves(FatigueAssessment(life=life, bodies="seat"))[0].factor
@@ -125,7 +123,6 @@ def test_a_longer_life_leaves_a_smaller_factor(spectrum):
     assert just.factor == pytest.approx(1.0, rel=1e-5)
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("method", ["line", *gate("point", "area")])
 def test_the_place_at_a_distance_is_that_of_the_edge(spectrum, method):
     how = FatigueAssessment(life=1e4, bodies="seat", method=method)
@@ -153,7 +150,6 @@ def test_the_life_is_checked():
     assert FatigueAssessment(life=20).toml() == {"life": 20.0}
 
 
-@pytest.mark.gate
 def test_the_progress_ends_at_all_bodies(spectrum):
     told = []
     spectrum.assessed_reserves(FatigueAssessment(life=1e4), lambda done, total: told.append((done, total)))

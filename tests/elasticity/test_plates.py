@@ -12,7 +12,7 @@ from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.model.lug import Hole, Lug, Part, PartLoad, rectangle
 from tests.support.lugs import disc, make_coarse, make_rough, plate
-from tests.support.tiers import gate
+from tests.support.tiers import for_gate, gate
 
 ORDER = 8
 
@@ -41,6 +41,7 @@ def harmonic(matrix: np.ndarray, n: int, m: int | None = None) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def made():
     load = PartLoad("syy", ("bottom",), normal=1.0), PartLoad("sxy", ("left", "right"), x=0.3, y=1.0)
     return plate_compliance(plate(loads=load), 10)
@@ -88,7 +89,6 @@ def test_the_hole_is_that_of_the_closed_form():
     assert np.allclose(found[:2, :2], 0.5 * np.eye(2))
 
 
-@pytest.mark.gate
 def test_the_rectangle_agrees_with_finite_elements(made):
     whole = made.compliance.matrix + hole_compliance(10, 1.8)
     for place, value in FINITE_ELEMENTS.items():
@@ -97,7 +97,6 @@ def test_the_rectangle_agrees_with_finite_elements(made):
         )  # finite elements converge from below; their last halving changes 1e-5
 
 
-@pytest.mark.gate
 def test_the_matrix_is_symmetric_and_decays(made):
     assert made.asymmetry < 1e-9  # measured: 2e-11
     assert made.error < 1e-7  # measured: 2e-9
@@ -106,7 +105,6 @@ def test_the_matrix_is_symmetric_and_decays(made):
     assert np.all(sizes[4:] < 0.7 * sizes[3:-1])
 
 
-@pytest.mark.gate
 def test_all_tractions_do_positive_work(made):
     whole = made.compliance.matrix + hole_compliance(10, 1.8)
     assert np.linalg.eigvalsh(whole).min() > 0.2 / 11.0  # about 1/2(n + 1) for the last harmonic

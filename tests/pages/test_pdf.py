@@ -21,6 +21,7 @@ from fastpin.pages.pdf import pdf_of
 from fastpin.pages.sections import SECTIONS
 from tests.support.drawing import outline_figures
 from tests.support.samples import sample_result
+from tests.support.tiers import for_gate
 
 HOSTILE = 'A <b> #[x] $y$ @z `w` "q" \\ // */ é'
 """A text with all that is markup somewhere."""
@@ -35,6 +36,7 @@ def read(path: Path) -> tuple[list[str], pypdf.PdfReader]:
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def compiled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[bytes]]:
     """A report, and a small picture of each of its pages with a dot for each mm."""
     path, pictures = tmp_path_factory.mktemp("pdf") / "r.pdf", []
@@ -56,7 +58,6 @@ def report(compiled: tuple[Path, list[bytes]]) -> tuple[list[str], pypdf.PdfRead
     return read(compiled[0])
 
 
-@pytest.mark.gate
 def test_pages_are_numbered_and_have_a_head(report: tuple[list[str], pypdf.PdfReader]) -> None:
     texts, pdf = report
     assert len(texts) > 3
@@ -82,7 +83,6 @@ def test_no_figure_stands_above_the_title(tmp_path: Path) -> None:
     assert caption < title
 
 
-@pytest.mark.gate
 def test_sections_stand_on_the_pages_that_the_contents_and_the_outline_name(report):
     texts, pdf = report
     outline = [entry for entry in pdf.outline if not isinstance(entry, list)]
@@ -94,7 +94,6 @@ def test_sections_stand_on_the_pages_that_the_contents_and_the_outline_name(repo
         assert f"{number}. {title}" in texts[page - 1]
 
 
-@pytest.mark.gate
 def test_figures_stand_where_the_text_says(report: tuple[list[str], pypdf.PdfReader]) -> None:
     texts, _ = report
     said = re.findall(r"Figure (\d+) stands on page (\d+)\.", " ".join(texts))
@@ -103,7 +102,6 @@ def test_figures_stand_where_the_text_says(report: tuple[list[str], pypdf.PdfRea
         assert re.search(rf"Figure {number}\. [A-Z]", texts[int(page) - 1])
 
 
-@pytest.mark.gate
 def test_no_page_but_the_last_is_half_empty(compiled: tuple[Path, list[bytes]]) -> None:
     """On every other page text or a figure reaches into the lowest third."""
     _, pictures = compiled
@@ -114,7 +112,6 @@ def test_no_page_but_the_last_is_half_empty(compiled: tuple[Path, list[bytes]]) 
         assert np.flatnonzero(rows[:276])[-1] > 198  # the foot stands below 278 mm
 
 
-@pytest.mark.gate
 def test_fonts_are_inside(report: tuple[list[str], pypdf.PdfReader]) -> None:
     _, pdf = report
     fonts = {}

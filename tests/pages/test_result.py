@@ -41,7 +41,7 @@ from fastpin.storage.layout import RESIDUALS
 from tests.support.drawing import outline_figures
 from tests.support.html import Page
 from tests.support.samples import JOINT, sample_result
-from tests.support.tiers import gate
+from tests.support.tiers import for_gate, gate
 
 CASE = f"""title = "A <b>bold</b> & \\"quoted\\" title <script>alert(1)</script>"
 {JOINT}
@@ -66,6 +66,7 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def text(stored: Path) -> str:
     """The page of the stored result, with its case file."""
     path = stored.with_name("page.html")
@@ -81,7 +82,6 @@ def only(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     return lambda *sections: monkeypatch.setattr("fastpin.pages.result.SECTIONS", sections)
 
 
-@pytest.mark.gate
 def test_page_is_well_formed_and_needs_nothing_from_outside(text: str) -> None:
     page = Page(text)
     assert len(page.ids) == len(set(page.ids))
@@ -108,7 +108,6 @@ def test_figures_keep_their_colours_and_lose_ids_that_nothing_refers_to(tmp_path
     ]  # fmt: skip
 
 
-@pytest.mark.gate
 def test_page_can_be_read_without_seeing_it(text: str) -> None:
     page = Page(text)
     elements = page.attributes
@@ -122,7 +121,6 @@ def test_page_can_be_read_without_seeing_it(text: str) -> None:
     assert any(tag == "meta" and found.get("name") == "viewport" for tag, found in elements)
 
 
-@pytest.mark.gate
 def test_every_section_stands_in_the_contents(text: str) -> None:
     page = Page(text)
     sections = [found["id"] for tag, found in page.attributes if tag == "section"]
@@ -131,14 +129,12 @@ def test_every_section_stands_in_the_contents(text: str) -> None:
     assert links == ["#content", *(f"#{name}" for name in sections)]
 
 
-@pytest.mark.gate
 def test_text_of_the_user_is_escaped(text: str) -> None:
     page = Page(text)
     assert "b" not in page.tags
     assert page.text.count('A <b>bold</b> & "quoted" title <script>alert(1)</script>') == 2  # title and heading
 
 
-@pytest.mark.gate
 def test_page_names_case_loads_key_figures_checks_and_origin(text: str, stored: Path) -> None:
     words = Page(text).text
     result = fastpin.load(stored)
@@ -152,7 +148,6 @@ def test_page_names_case_loads_key_figures_checks_and_origin(text: str, stored: 
     assert "not met" not in words
 
 
-@pytest.mark.gate
 def test_rows_that_repeat_are_folded(text: str, stored: Path) -> None:
     states, gaps = Source.of_file(stored).rows
     points = [state.step + 1 for state in states]

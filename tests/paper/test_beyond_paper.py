@@ -10,6 +10,7 @@ from fastpin.paper import catalog, memory, sliding_onset, tractions
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification.sliding import solve_sliding
+from tests.support.tiers import for_gate
 
 NODES = 61
 
@@ -19,6 +20,7 @@ def held(load_parameter: float, friction: float) -> Problem:
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def remembered() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(memory, "LOAD_PARAMETERS", (0.05, 0.2, 0.5, 2.0, 8.0))
@@ -26,7 +28,6 @@ def remembered() -> list[Curve]:
         return catalog.figure("memory").compute(NODES)
 
 
-@pytest.mark.gate
 def test_memory_is_largest_in_between_and_grows_with_the_amplitude(remembered):
     half, full, more = (curve["memory_T"] for curve in remembered)
     assert half == pytest.approx([0.019, 0.033, 0.024, 0.008, 0.002], abs=0.0025)
@@ -35,7 +36,6 @@ def test_memory_is_largest_in_between_and_grows_with_the_amplitude(remembered):
     assert more[:3] == pytest.approx([0.083, 0.146, 0.125], abs=0.006)
 
 
-@pytest.mark.gate
 def test_sliding_forgets(remembered):
     more = remembered[-1]
     assert more["memory_T"][3:] == pytest.approx([0.0, 0.0], abs=1e-9)
@@ -43,7 +43,6 @@ def test_sliding_forgets(remembered):
     assert more["first_forward_T"][3:] == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
-@pytest.mark.gate
 def test_states_are_steady_from_the_first_reversal_on_unless_strongly_conforming(remembered):
     for curve in remembered:
         assert curve["first_reverse_T"][2:] == pytest.approx(0.0, abs=1e-9)
@@ -90,7 +89,6 @@ def test_a_conforming_contact_does_not_slide():
     assert math.isnan(sliding_onset.reverse_onset(problem, sliding_onset.LARGEST, NODES))
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("name", ["memory", "sliding-onset"])
 def test_drawn(name, remembered, monkeypatch):
     monkeypatch.setattr(sliding_onset, "LOAD_PARAMETERS", (0.5, 2.0))

@@ -10,6 +10,7 @@ from fastpin.paper import catalog, interference, regimes, remote_stress
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification.interference import release_stress
+from tests.support.tiers import for_gate
 
 NODES, RAYS = 100, 12
 
@@ -35,13 +36,13 @@ def test_without_friction_it_opens_at_pi():
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def loads() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(interference, "FRICTION", (0.0, 0.3, 1.0))
         return catalog.figure("interference").compute(101)
 
 
-@pytest.mark.gate
 def test_slip_comes_before_opening_and_both_come_later_with_more_friction(loads):
     for curve in loads[:2]:
         assert np.all(curve["P_slips"][1:] < curve["P_opens"][1:])
@@ -49,7 +50,6 @@ def test_slip_comes_before_opening_and_both_come_later_with_more_friction(loads)
         assert np.all(np.diff(curve["P_slips"][1:]) > 0.0)
 
 
-@pytest.mark.gate
 def test_tractions_at_the_stages(loads):
     still, slipping, opening, open_ = loads[2:]
     assert still["N"] == pytest.approx(1.0)
@@ -62,7 +62,6 @@ def test_tractions_at_the_stages(loads):
         assert curve["N"][0] == curve["N"][-1]
 
 
-@pytest.mark.gate
 def test_loads_are_drawn(loads):
     figure = catalog.figure("interference").draw(loads)
     figure.draw_without_rendering()
@@ -126,6 +125,7 @@ def test_figure_10_has_one_arc_each():
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def mapped() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(regimes, "RAYS", RAYS)
@@ -133,7 +133,6 @@ def mapped() -> list[Curve]:
         return catalog.figure("regimes").compute(81)
 
 
-@pytest.mark.gate
 def test_regimes_of_all_four_panels(mapped):
     kinds = {(c.parameters["P"], c.parameters["L_p"]): set(c["arcs"].astype(int).tolist()) for c in mapped}
     assert kinds == {
@@ -144,7 +143,6 @@ def test_regimes_of_all_four_panels(mapped):
     }
 
 
-@pytest.mark.gate
 def test_rays_are_added_where_neighbours_differ(mapped):
     for curve in mapped:
         rays = np.unique(curve["ray"])
@@ -152,7 +150,6 @@ def test_rays_are_added_where_neighbours_differ(mapped):
         assert RAYS < rays.size < 2 * RAYS
 
 
-@pytest.mark.gate
 def test_the_map_is_drawn_with_names_in_its_regions(mapped):
     figure = catalog.figure("regimes").draw(mapped)
     figure.draw_without_rendering()

@@ -11,6 +11,7 @@ import pytest
 import fastpin
 from tests.support import layout
 from tests.support.processes import finished, python
+from tests.support.tiers import for_gate
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -88,17 +89,16 @@ BREAKS = {
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def texts():
     return layout.texts_of(ROOT)
 
 
-@pytest.mark.gate
 def test_every_rule_holds(texts):
     assert len(texts) > 150
     assert layout.broken(texts) == []
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("name", BREAKS)
 def test_a_broken_rule_is_noticed(name, texts):
     rule, file, text = BREAKS[name]
@@ -112,8 +112,6 @@ def test_every_rule_is_broken_once():
     assert {rule.__name__ for rule in layout.RULES} - tried == {"exceptions_used"}
 
 
-@pytest.mark.gate
-@pytest.mark.gate
 def test_an_exception_that_is_not_needed_is_noticed(texts, monkeypatch):
     monkeypatch.setitem(layout.UPWARD, "model/grid.py", "no reason")
     monkeypatch.setitem(layout.LONG_FUNCTIONS, "solver/arc.py candidate_grids", "no reason")

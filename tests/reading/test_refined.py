@@ -13,6 +13,7 @@ from fastpin.reading import power_laws, refined
 from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import End, half_line
 from tests.support.half_line import columns, powers
+from tests.support.tiers import for_gate
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 UNLIKE = MaterialPair(Material(3.0, 0.3), Material(1.0, 0.33))
@@ -72,11 +73,11 @@ EDGES = [
 
 
 @pytest.fixture(scope="module", params=[401, 801])
+@for_gate
 def states(request):
     return solve(problem(), FRETTING, nodes=request.param)
 
 
-@pytest.mark.gate
 def test_hoop_stress_at_the_edges(states):
     for step in range(4):
         state = states[step]
@@ -87,7 +88,6 @@ def test_hoop_stress_at_the_edges(states):
                     assert value == pytest.approx(known, abs=3e-4)
 
 
-@pytest.mark.gate
 def test_a_slip_zone_of_half_a_degree(states):
     """The peak lies at the border, not at the edge; both values hold for any number of nodes."""
     state = states[3]
@@ -110,7 +110,6 @@ def test_edges_and_borders_without_a_law_are_unresolved(nodes):
     assert state.refined.unresolved == tuple(place for place in edges + borders if place not in resolved)
 
 
-@pytest.mark.gate
 def test_straight_lines_miss_a_part_of_the_peak(states):
     state = states[1]
     assert state.hoop_stress("plate", straight=True).max() < 0.98 * state.peak_hoop_stress().value

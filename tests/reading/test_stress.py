@@ -11,6 +11,7 @@ from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels.status import OPEN
 from fastpin.reading.stress import tractions_of
 from fastpin.states.quantities import QUANTITIES
+from tests.support.tiers import for_gate
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 UNLIKE = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2), "stress")
@@ -237,6 +238,7 @@ def test_a_very_narrow_contact_keeps_its_force():
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def states():
     """A pin under P, then Q to and fro: like bodies, body force, 1,601 nodes."""
     return solve(problem(), [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}], nodes=1601)
@@ -265,7 +267,6 @@ INSIDE = {
 """(srr, stt, srt) at depths .05, .2, .5 R and angles -150, -90, 0 degrees, good to 1e-5."""
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize(("step", "body"), HOOP)
 def test_hoop_stress_against_stored_values(states, step, body):
     """The stored values take straight lines between the nodes, which are 2e-5 off next to an edge."""
@@ -273,7 +274,6 @@ def test_hoop_stress_against_stored_values(states, step, body):
     assert states[step].hoop_stress(body, ANGLES) == pytest.approx(HOOP[step, body], abs=4e-5)
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize(("step", "body"), INSIDE)
 def test_stress_inside_against_stored_values(states, step, body):
     points = Points.at_depth([0.05, 0.2, 0.5], np.radians([-150, -90, 0]))
@@ -283,7 +283,6 @@ def test_stress_inside_against_stored_values(states, step, body):
         assert components == pytest.approx(np.array(INSIDE[step, body]), abs=tolerance)
 
 
-@pytest.mark.gate
 def test_points_by_depth_radius_and_coordinates_agree(states):
     state = states[1]
     depth, theta = np.array([[0.01], [0.2]]), np.array([-1.4, 0.3, 2.0])
@@ -297,7 +296,6 @@ def test_points_by_depth_radius_and_coordinates_agree(states):
         assert getattr(by_xy, field) == pytest.approx(getattr(by_depth, field), abs=1e-12)
 
 
-@pytest.mark.gate
 def test_invariants_are_the_ones_of_the_tensor(states):
     found = states[1].stress(Points.at_depth(np.geomspace(1e-6, 3.0, 12), np.linspace(-3.0, 3.0, 12)))
     for k in range(12):
@@ -346,7 +344,6 @@ def test_contacts_round_the_circle_and_across_its_end():
     assert (one.status != OPEN)[0]
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize(
     ("points", "body", "message"),
     [
@@ -383,7 +380,6 @@ def test_infinite_and_undetermined_stresses_are_refused():
         solve(rigid, [{"P": 1.0}], nodes=61)[-1].hoop_stress("pin")
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize(
     ("step", "contact", "pressure", "largest", "smallest"),
     [

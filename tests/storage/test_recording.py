@@ -30,7 +30,7 @@ from fastpin.storage.recording import resume, stored_case
 from fastpin.storage.writer import checkpoint_of, coarse_of
 from tests.support.interrupts import StopAt
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
-from tests.support.tiers import some_gate
+from tests.support.tiers import for_gate, some_gate
 
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
 
@@ -329,6 +329,7 @@ def test_links_lead_to_one_run(problem, whole, path, tmp_path):
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def died(problem, tmp_path_factory):
     """The folder of a run that has died after some thirty corners, with checkpoints."""
     folder = tmp_path_factory.mktemp("died")
@@ -348,7 +349,6 @@ def left(died, whole, path):
     return whole
 
 
-@pytest.mark.gate
 def test_a_dead_run_goes_on_from_its_checkpoint(left, path):
     assert checkpoint_of(path).exists()
     steps = []
@@ -358,7 +358,6 @@ def test_a_dead_run_goes_on_from_its_checkpoint(left, path):
     assert not checkpoint_of(path).exists()
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("damage", ["missing", "cut", "other"])
 def test_without_a_good_checkpoint_a_run_goes_on_from_its_beginning(left, path, damage, problem, caplog):
     checkpoint = checkpoint_of(path)
@@ -377,7 +376,6 @@ def test_without_a_good_checkpoint_a_run_goes_on_from_its_beginning(left, path, 
     assert "differ from those in the file" not in caplog.text
 
 
-@pytest.mark.gate
 def test_an_unfinished_run_is_not_overwritten_by_accident(left, path, problem):
     with pytest.raises(InputError, match="unfinished run"):
         follow(problem, RANDOM, path, nodes=61)
@@ -402,7 +400,6 @@ def test_an_unfinished_run_is_not_overwritten_by_accident(left, path, problem):
         follow(problem, RANDOM[:4], "/dev/null", nodes=61)
 
 
-@pytest.mark.gate
 def test_an_unfinished_run_can_be_looked_at_but_not_gone_on_from_its_end(left, path, problem):
     found = store.load(path)
     assert 25 <= len(found) <= 31
@@ -415,7 +412,6 @@ def test_an_unfinished_run_can_be_looked_at_but_not_gone_on_from_its_end(left, p
         store.load(path, after=len(found) + 1)
 
 
-@pytest.mark.gate
 def test_states_that_differ_from_those_in_the_file_are_reported(left, path, caplog):
     checkpoint_of(path).unlink()
     with h5py.File(path, "a") as file:
@@ -621,7 +617,6 @@ def test_bad_input_leaves_no_file(problem, path):
     assert len(list(path.parent.iterdir())) == 1
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("again", ["resume", "replace"])
 def test_a_checkpoint_that_is_a_link_is_neither_read_nor_written(left, path, again, problem):
     """A stranger's folder may hold a link to a file of the user beside a result."""
@@ -634,7 +629,6 @@ def test_a_checkpoint_that_is_a_link_is_neither_read_nor_written(left, path, aga
     assert precious.read_text() == "keep"
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("beside", [checkpoint_of, coarse_of])
 @pytest.mark.parametrize("again", ["resume", "replace"])
 def test_a_directory_beside_a_result_is_refused_before_the_work(left, path, beside, again, problem):

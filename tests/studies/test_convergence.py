@@ -19,6 +19,7 @@ from fastpin.studies import convergence
 from fastpin.studies.convergence import Convergence, QuantitySeries, StudyInterrupted, StudyLostError, converge
 from fastpin.verification import closed_forms
 from tests.support.studies import CORNERS, GRIDS, small_problem, small_study
+from tests.support.tiers import for_gate
 
 BOTTOM = -0.5 * math.pi
 
@@ -29,6 +30,7 @@ def problem(similar: MaterialPair) -> Problem:
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def study(problem: Problem) -> Convergence:
     return small_study(problem)
 
@@ -52,14 +54,12 @@ def test_a_smooth_peak_is_of_second_order(similar: MaterialPair) -> None:
             assert abs(each.values[-1] - true) <= each.estimate.bar
 
 
-@pytest.mark.gate
 def test_what_balance_and_symmetry_make_exact_has_no_order(study: Convergence) -> None:
     for name, corner in (("P", 1), ("Q", 3), ("M", 2), ("rotation", 1), ("dx", 1), ("shear_integral", 1)):
         assert series(study, name, corner).estimate.verdict == "to rounding", name
     assert series(study, "work").estimate.verdict != "to rounding"
 
 
-@pytest.mark.gate
 def test_differences_are_relative_to_the_value_and_for_places_to_the_contact(study: Convergence) -> None:
     peak, place, motion = (series(study, name) for name in ("peak_pressure", "peak_shear_angle", "contact_1_start"))
     width = series(study, "contact_width").values[-1]
@@ -71,7 +71,6 @@ def test_differences_are_relative_to_the_value_and_for_places_to_the_contact(stu
     assert zero.reference == convergence.LEAST_REFERENCE * zero.size > abs(zero.values[-1])
 
 
-@pytest.mark.gate
 def test_all_grids_have_one_arc_and_a_node_under_the_first_force(study: Convergence, problem: Problem) -> None:
     assert study.complete
     assert list(study.loads) == [1, 2, 3]
@@ -83,7 +82,6 @@ def test_all_grids_have_one_arc_and_a_node_under_the_first_force(study: Converge
         assert solve(problem, CORNERS, grid=grid)[-1].dissipation == value
 
 
-@pytest.mark.gate
 def test_increments_tend_to_the_path_on_the_same_grid(study: Convergence, problem: Problem) -> None:
     path, increment = study.studies
     assert (path.method, path.counts, increment.method, increment.counts) == (

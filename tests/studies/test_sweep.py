@@ -28,6 +28,7 @@ from fastpin.studies.sweep import Summary
 from scripts.inline import Inline
 from tests.support.plans import FRICTION, MOMENT
 from tests.support.samples import sample_result
+from tests.support.tiers import for_gate
 
 
 @pytest.fixture(scope="module")
@@ -36,6 +37,7 @@ def plan() -> Plan:
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def calls() -> list[tuple[int, int]]:
     return []
 
@@ -66,7 +68,6 @@ def comparable(directory: Path) -> dict[str, dict[str, Any]]:
     return {row["id"]: {k: v for k, v in row.items() if k not in unlike} for row in sweep.load(directory)}
 
 
-@pytest.mark.gate
 def test_what_is_done_has_the_bits_of_a_serial_solution(plan: Plan, swept: tuple[Path, Summary]) -> None:
     directory, summary = swept
     assert (summary.total, summary.done, summary.waiting, summary.ended) == (6, 4, 0, 6)
@@ -87,7 +88,6 @@ def test_what_is_done_has_the_bits_of_a_serial_solution(plan: Plan, swept: tuple
             assert np.array_equal(expected.shear, state.shear)
 
 
-@pytest.mark.gate
 def test_failures_have_their_reason(plan: Plan, swept: tuple[Path, Summary]) -> None:
     directory, summary = swept
     assert [point.values["contact.friction"] for point, _ in summary.failed] == [0.1, 0.1]
@@ -100,12 +100,10 @@ def test_failures_have_their_reason(plan: Plan, swept: tuple[Path, Summary]) -> 
         assert row["peak_pressure"] is None
 
 
-@pytest.mark.gate
 def test_progress_counts_from_nothing_to_all(swept: tuple[Path, Summary], calls: list[tuple[int, int]]) -> None:
     assert calls == [(k, 6) for k in range(7)]
 
 
-@pytest.mark.gate
 def test_key_figures_are_those_of_the_result(plan: Plan, swept: tuple[Path, Summary]) -> None:
     rows = {row["id"]: row for row in sweep.load(swept[0])}
     run = plan.points[3].id
@@ -157,7 +155,6 @@ def test_runs_that_share_matrices_follow_one_another() -> None:
     assert sorted(work.neighbours(plan, last)) == sorted(last)
 
 
-@pytest.mark.gate
 def test_what_is_finished_is_skipped(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = contents(copy)
     assert set(before) == set(plan.runs)
@@ -167,7 +164,6 @@ def test_what_is_finished_is_skipped(plan: Plan, copy: Path, monkeypatch: pytest
     assert contents(copy) == before
 
 
-@pytest.mark.gate
 def test_only_failures_are_retried(plan: Plan, copy: Path) -> None:
     started = {row["id"]: row["started"] for row in sweep.load(copy)}
     summary = sweep.run(plan, copy, Inline(), retry=True)
@@ -176,7 +172,6 @@ def test_only_failures_are_retried(plan: Plan, copy: Path) -> None:
     assert again == {point.id for point, _ in summary.failed}
 
 
-@pytest.mark.gate
 def test_a_result_that_is_gone_is_computed_again(plan: Plan, copy: Path) -> None:
     before = contents(copy)
     run = plan.points[4].id
@@ -194,7 +189,6 @@ def test_a_result_that_is_gone_is_computed_again(plan: Plan, copy: Path) -> None
     assert len(store.load(path)) > 0
 
 
-@pytest.mark.gate
 def test_a_plan_that_has_grown_runs_what_is_new(plan: Plan, copy: Path) -> None:
     grown = parse_plan(MOMENT.replace("[0.1, 0.4]", "[0.4, 0.5]"))
     assert sweep.status(grown, copy) == Summary(3, 3, [])
@@ -204,7 +198,6 @@ def test_a_plan_that_has_grown_runs_what_is_new(plan: Plan, copy: Path) -> None:
     assert (copy / "plan.toml").read_text() == grown.text
 
 
-@pytest.mark.gate
 def test_another_version_runs_everything_again(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(id_of_json, "__defaults__", ("99",))
     later = parse_plan(MOMENT)
@@ -212,7 +205,6 @@ def test_another_version_runs_everything_again(plan: Plan, copy: Path, monkeypat
     assert sweep.status(later, copy) == Summary(0, 6, [])
 
 
-@pytest.mark.gate
 def test_half_written_results_are_cleared_away(plan: Plan, copy: Path) -> None:
     rest, foreign = copy / "results" / f".{plan.points[0].id}.0123456789abcdef.h5", copy / "results" / ".notes.h5"
     rest.touch()
@@ -221,7 +213,6 @@ def test_half_written_results_are_cleared_away(plan: Plan, copy: Path) -> None:
     assert (rest.exists(), foreign.exists()) == (False, True)
 
 
-@pytest.mark.gate
 def test_rows_of_a_plan_are_its_points(plan: Plan, copy: Path, tmp_path: Path) -> None:
     rows = sweep.rows(plan, copy)
     assert [row["id"] for row in rows] == [point.id for point in plan.points]
@@ -243,7 +234,6 @@ def stems(directory: Path) -> set[str]:
     return {path.stem for path in (directory / "results").iterdir()}
 
 
-@pytest.mark.gate
 def test_results_get_files_when_asked_for(plan: Plan, copy: Path, tmp_path: Path) -> None:
     """Those of finished runs are written from the index; a run that is solved now has a file only."""
     done = {row["id"] for row in sweep.load(copy) if row["status"] == "done"}
@@ -319,7 +309,6 @@ def test_batches_take_as_long_as_a_message_is_worth() -> None:
 # -- executors -------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("executor", [Inline, lambda: ThreadPoolExecutor(2)], ids=["inline", "threads"])
 def test_any_executor_gives_the_same(executor, plan, swept, tmp_path):
     with executor() as working:
@@ -440,7 +429,6 @@ def test_a_plan_of_the_user_s_is_not_overwritten(plan: Plan, tmp_path: Path) -> 
     assert not (tmp_path / INDEX).exists()
 
 
-@pytest.mark.gate
 def test_merging_does_not_overwrite_a_plan_either(copy: Path, tmp_path: Path) -> None:
     (tmp_path / "plan.toml").write_text("mine")
     with pytest.raises(InputError, match=r"holds another plan.toml, but no sweep"):
@@ -466,7 +454,6 @@ def parts(plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     return directories
 
 
-@pytest.mark.gate
 def test_parts_make_the_whole(plan: Plan, parts: list[Path], swept: tuple[Path, Summary], tmp_path: Path) -> None:
     assert sweep.merge(parts[:2], tmp_path) == 4
     assert sweep.merge(parts[1:], tmp_path) == 6
@@ -482,7 +469,6 @@ def test_the_order_of_the_points_does_not_matter_to_parts(plan: Plan) -> None:
         assert set(sweep.shard_of(turned, (part, 3))) == set(sweep.shard_of(plan, (part, 3)))
 
 
-@pytest.mark.gate
 def test_done_wins_over_failed_and_failed_over_waiting(plan: Plan, copy: Path, tmp_path: Path) -> None:
     other = tmp_path / "other"
     shutil.copytree(copy, other)
@@ -494,7 +480,6 @@ def test_done_wins_over_failed_and_failed_over_waiting(plan: Plan, copy: Path, t
         assert comparable(tmp_path / name) == comparable(copy)
 
 
-@pytest.mark.gate
 def test_results_that_disagree_are_refused(plan: Plan, copy: Path, swept: tuple[Path, Summary], tmp_path: Path) -> None:
     run = plan.points[0].id
     with sweep.Index(copy, write=True) as index:
@@ -503,7 +488,6 @@ def test_results_that_disagree_are_refused(plan: Plan, copy: Path, swept: tuple[
         sweep.merge([swept[0], copy], tmp_path / "whole")
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize(
     ("name", "words"), [("plan", "belongs to another plan"), ("version", "was made by another version of fastpin")]
 )
@@ -514,7 +498,6 @@ def test_other_plans_and_versions_are_not_merged(name, words, copy, swept, tmp_p
         sweep.merge([swept[0], copy], tmp_path / "whole")
 
 
-@pytest.mark.gate
 def test_a_merge_and_a_part_that_were_killed_at_their_beginning_do_no_harm(
     swept: tuple[Path, Summary], tmp_path: Path
 ) -> None:
@@ -529,7 +512,6 @@ def test_a_merge_and_a_part_that_were_killed_at_their_beginning_do_no_harm(
     assert (tmp_path / "whole" / "plan.toml").read_text() == (swept[0] / "plan.toml").read_text()
 
 
-@pytest.mark.gate
 def test_merging_needs_sweeps(copy: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no sweep"):
         sweep.merge([tmp_path], tmp_path / "whole")

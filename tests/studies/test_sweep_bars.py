@@ -22,6 +22,7 @@ from fastpin.studies.outcomes import CYCLE_QUANTITIES, bar_of, value_of
 from fastpin.studies.plan import Plan, parse_plan
 from scripts.inline import Inline
 from tests.support.plans import MOMENT
+from tests.support.tiers import for_gate
 
 CASE = """
 [pin]
@@ -79,6 +80,7 @@ def plan(folder) -> Plan:
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def directory(plan: Plan, folder):
     assert not sweep.run(plan, folder / "out", Inline()).failed
     return folder / "out"
@@ -90,7 +92,6 @@ def result(plan: Plan) -> Result:
     return fastpin.solve(case.problem, case.history, **case.options.keywords())
 
 
-@pytest.mark.gate
 def test_rows_have_bars_of_key_figures_and_outcomes(plan: Plan, directory, result: Result) -> None:
     row, last = sweep.rows(plan, directory)[1], result[-1]
     for name in ("peak_pressure", "dx", "dissipation"):
@@ -152,7 +153,6 @@ def test_every_quantity_of_a_cycle_has_a_bar(name: str, result: Result) -> None:
     assert bar_of(outcome, value, result) >= 0.0
 
 
-@pytest.mark.gate
 def test_later_outcomes_have_bars_from_the_stored_results(folder, directory, tmp_path) -> None:
     later, packed = parse_plan(LATER, folder=folder), tmp_path / "out"
     summary = sweep.run(later, packed, Inline())
@@ -162,7 +162,6 @@ def test_later_outcomes_have_bars_from_the_stored_results(folder, directory, tmp
     assert bars[0] == bars[1]
 
 
-@pytest.mark.gate
 def test_parts_keep_their_bars(plan: Plan, directory, tmp_path) -> None:
     parts = [tmp_path / "1", tmp_path / "2"]
     for k, part in enumerate(parts, start=1):
@@ -175,7 +174,6 @@ def test_parts_keep_their_bars(plan: Plan, directory, tmp_path) -> None:
         }
 
 
-@pytest.mark.gate
 def test_tables_and_files_show_bars(plan: Plan, directory, tmp_path) -> None:
     rows = sweep.rows(plan, directory)
     table = text(plan, rows)
@@ -193,7 +191,6 @@ def test_tables_and_files_show_bars(plan: Plan, directory, tmp_path) -> None:
     assert list(lines[0])[:5] == ["id", "contact.friction", "load.2.amplitude.Q", "regime", "regime_bar"]
 
 
-@pytest.mark.gate
 def test_infinite_bars_and_other_classes_have_a_question_mark(plan: Plan, directory) -> None:
     rows = [row | {"stick_bar": math.inf, "regime_bar": 1.0} for row in sweep.rows(plan, directory)]
     table = text(plan, rows)
@@ -201,7 +198,6 @@ def test_infinite_bars_and_other_classes_have_a_question_mark(plan: Plan, direct
     assert table.count("partial slip ?") == 4
 
 
-@pytest.mark.gate
 def test_charts_have_bars_in_their_unit(plan: Plan, directory) -> None:
     rows = sweep.rows(plan, directory)
     found = chart(plan, rows, "peak")
@@ -242,7 +238,6 @@ def test_the_name_of_a_bar_is_no_outcome(folder, plan: Plan) -> None:
     assert np.size(parse_plan(PLAN + 'crow_bar = { quantity = "dx" }\n', folder=folder).points) == 4
 
 
-@pytest.mark.gate
 def test_a_damaged_bar_is_one_sentence(plan: Plan, directory, tmp_path) -> None:
     shutil.copytree(directory, tmp_path / "copy")
     with sqlite3.connect(tmp_path / "copy" / "index.sqlite") as database:

@@ -4,6 +4,8 @@
 * ``--gate`` also runs tests marked ``gate``, with more seeds and examples. The gate of the project has this tier.
 * ``--survey`` also runs tests marked ``survey``: random searches before a release, with most seeds.
 
+Tests that use a fixture of :func:`for_gate` are of the gate without a mark of their own.
+
 A test that loops over :func:`seeds`, or that hypothesis repeats, gets the mark ``seeded``: each tier shows more of it.
 """
 
@@ -11,7 +13,7 @@ import contextlib
 import importlib
 import os
 import random
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import pytest
@@ -72,6 +74,19 @@ def tier_of(item: pytest.Item) -> str:
     return next((tier for tier in reversed(TIERS) if item.get_closest_marker(tier)), "quick")
 
 
+def for_gate(fixture: Callable[..., Any]) -> Callable[..., Any]:
+    """Leave a fixture, and all tests that use it, to the gate. This stands below ``pytest.fixture``."""
+    fixture.tier = "gate"  # type: ignore[attr-defined]
+    return fixture
+
+
+def tiers_of_fixtures(item: pytest.Item) -> Iterator[str]:
+    """The tiers of the fixtures of a test."""
+    for found in item._fixtureinfo.name2fixturedefs.values():
+        if tier := getattr(found[-1].func, "tier", ""):
+            yield tier
+
+
 def is_seeded(item: pytest.Item) -> bool:
     """Whether a test asks for seeds by itself, or hypothesis repeats it."""
     function = getattr(item, "function", None)
@@ -87,6 +102,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if is_seeded(item):
             item.add_marker("seeded")
+        for tier in tiers_of_fixtures(item):
+            item.add_marker(tier)
         (chosen if TIERS.index(tier_of(item)) <= last else others).append(item)
     config.hook.pytest_deselected(items=others)
     if (seed := config.getoption("shuffle")) is not None:

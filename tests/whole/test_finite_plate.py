@@ -7,6 +7,7 @@ from fastpin.bodies import Ring
 from fastpin.elasticity.plates import plate_compliance
 from fastpin.model.lug import Lug
 from tests.support.lugs import disc, make_rough, plate
+from tests.support.tiers import for_gate
 
 
 def rough_compliance(lug, order):
@@ -31,6 +32,7 @@ def test_peaks_agree_with_finite_elements(compliance, friction, peak):
 
 
 @pytest.fixture(scope="module")
+@for_gate
 def uneven():
     """A plate that presses unevenly on a pin with interference."""
     return rough_compliance(plate((-1.6, 3.0), (-1.3, 5.0)), 24)
@@ -42,7 +44,6 @@ def interference(body, friction, **fields):
     return Problem.from_load_parameter(pair, -0.2, friction, plate_body=body, **fields)
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize("fields", [{}, {"rotation": "fixed"}, {"drive": "both"}], ids=str)
 @pytest.mark.parametrize("friction", [0.0, 0.1, 0.5])
 def test_an_interference_fit_in_an_uneven_plate_is_in_equilibrium_without_load(uneven, friction, fields):
@@ -54,14 +55,12 @@ def test_an_interference_fit_in_an_uneven_plate_is_in_equilibrium_without_load(u
     assert (abs(state.resultants["P"]) < 1e-12) == ("drive" not in fields)
 
 
-@pytest.mark.gate
 def test_the_assembly_with_friction_keeps_the_balance_of_energy(uneven):
     """The error falls like the square of the node distance: 8e-6 with 121 nodes, 7e-7 with 401."""
     for state in solve(interference(uneven, 0.3), [{}, {"P": 0.6}, {"Q": 0.2}, {"Q": -0.2}], nodes=401):
         assert state.work == pytest.approx(state.energy + state.dissipation, abs=3e-6)
 
 
-@pytest.mark.gate
 def test_both_methods_follow_an_interference_fit_in_an_uneven_plate(uneven):
     corners = [{}, {"P": 0.6}, {"Q": 0.2}, {"Q": -0.2}]
     path = solve(interference(uneven, 0.3), corners, nodes=121)
