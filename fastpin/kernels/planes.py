@@ -10,7 +10,8 @@ f0 + f1 cos x + f2 sin x. A criterion takes two of them, the swung U and the pus
 Each is the largest product a(x) b(x) of such sums over the times. So all its maxima are smooth, and a bound on second
 derivatives holds for all products. The search halves the intervals that may hold a larger value than the best one so
 far, and ends with Newton's method. The largest value is missed by at most FINE^2/2 of this bound, or where more than
-MOST intervals remain, by half the bound times the square of half an interval.
+MOST intervals remain, by half the bound times the square of half an interval. Of planes with equal values, the one
+with the largest angle is the worst: where only one principal stress is swung, two planes mirror each other.
 """
 
 from __future__ import annotations
@@ -35,6 +36,12 @@ FINE = 1e-5
 
 STEPS = 20
 """Most steps of Newton's method."""
+
+TIE = 1e-9
+"""Relative difference up to which the values of two planes are equal."""
+
+ERROR = 1e-6
+"""Bound on the error of an angle by rounding, rad."""
 
 
 @inner
@@ -111,6 +118,13 @@ def _refined(path, x, value, form):
     return value, x
 
 
+@inner
+def plane_angle(x, error):
+    """The angle x/2 of a plane, known up to an error, in (-pi/2, pi/2]. The error never turns pi/2 into -pi/2."""
+    turned = 0.5 * x - math.pi * math.floor(0.5 * x / math.pi + 0.5)
+    return turned if turned > error - 0.5 * math.pi else min(turned + math.pi, 0.5 * math.pi)
+
+
 @compiled
 def worst_planes(paths, form, out):
     """Find the plane with the largest value of a criterion at each point.
@@ -152,10 +166,12 @@ def worst_planes(paths, form, out):
             for k in range(kept):
                 places[2 * k], places[2 * k + 1] = parents[k] - half, parents[k] + half
         best, place = _refined(path, place, best, form)
-        angle = 0.5 * place
-        if angle <= -0.5 * math.pi:
-            angle += math.pi
-        elif angle > 0.5 * math.pi:
-            angle -= math.pi
+        angle, least = plane_angle(place, ERROR), best - TIE * abs(best)
+        for k in range(count):
+            if values[k] + 0.5 * bound * half * half >= least:
+                value, place = _refined(path, places[k], values[k], form)
+                other = plane_angle(place, ERROR)
+                if value >= least and other > angle + ERROR:
+                    angle = other
         out[i, 0] = best
         out[i, 1] = np.nan if best == 0.0 else angle

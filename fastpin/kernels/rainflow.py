@@ -8,7 +8,7 @@ parameter is that of the forms SWING_TIMES_PUSH and SWING_TIMES_MORE. Its damage
     parameter = exp(life[0]) (2N)^life[2] + exp(life[1]) (2N)^life[3]
 
 for a logarithm of the parameter of at least life[4]. Below it log 2N = life[5] + life[6] (life[4] - log parameter). An
-infinite life[6] does no damage.
+infinite life[6] does no damage. Of planes with equal damage, the one with the largest angle is the worst.
 
 A spectrum is a list of blocks. A block of many passes is followed three times: from the third pass on each pass closes
 the same cycles. A spectrum with such blocks is followed twice, and the second time is counted, for the same reason.
@@ -20,6 +20,7 @@ import math
 
 import numpy as np
 
+from fastpin.kernels.planes import plane_angle
 from fastpin.runtime.jit import compiled, inner
 
 COARSE = 72
@@ -39,6 +40,12 @@ PITCH, ROWS = 0.05, 400
 
 WORTH = 0.5
 """Planes of the scan with less than this part of the largest damage are not refined."""
+
+TIE = 1e-6
+"""Relative difference up to which the damages of two planes are equal: the error of the search."""
+
+ERROR = 1e-4
+"""Bound on the error of an angle, rad."""
 
 
 @inner
@@ -216,6 +223,7 @@ def worst_sums(paths, order, blocks, form, least, life, out):
     u, v = np.empty(paths.shape[1]), np.empty(paths.shape[1])
     stack, cycles = np.empty((6 * order.size + 2, 2), np.int64), np.empty((3 * order.size + 2, 3), np.int64)
     weights, scanned = np.empty(3 * order.size + 2, np.int64), np.empty(COARSE)
+    peaks, places = np.empty(COARSE), np.empty(COARSE)
     table, curve = np.empty((ROWS, 2)), np.empty(8)
     curve[:7], curve[7] = life, _highest(paths, form)
     _fill(table, curve)
@@ -224,24 +232,22 @@ def worst_sums(paths, order, blocks, form, least, life, out):
         path = paths[i]
         for k in range(COARSE):
             scanned[k] = _sum(path, k * step, order, blocks, form, least, curve, table, u, v, stack, cycles, weights)
-        best, place = scanned[0], 0.0
-        for k in range(1, COARSE):
-            if scanned[k] > best:
-                best, place = scanned[k], k * step
-        enough = WORTH * best
+        enough = WORTH * scanned.max()
         for k in range(COARSE):
             beside = max(scanned[k - 1], scanned[(k + 1) % COARSE])
+            peaks[k] = places[k] = 0.0
             if scanned[k] == 0.0 or scanned[k] < enough or scanned[k] < beside:
                 continue
+            peaks[k], places[k] = scanned[k], k * step
             left, right = (k - 1) * step, (k + 1) * step
             one, two = right - GOLDEN * (right - left), left + GOLDEN * (right - left)
             first = _sum(path, one, order, blocks, form, least, curve, table, u, v, stack, cycles, weights)
             second = _sum(path, two, order, blocks, form, least, curve, table, u, v, stack, cycles, weights)
             for _ in range(STEPS):
-                if first > best:
-                    best, place = first, one
-                if second > best:
-                    best, place = second, two
+                if first > peaks[k]:
+                    peaks[k], places[k] = first, one
+                if second > peaks[k]:
+                    peaks[k], places[k] = second, two
                 if first >= second:
                     right, two, second = two, one, first
                     one = right - GOLDEN * (right - left)
@@ -250,12 +256,13 @@ def worst_sums(paths, order, blocks, form, least, life, out):
                     left, one, first = one, two, second
                     two = left + GOLDEN * (right - left)
                     second = _sum(path, two, order, blocks, form, least, curve, table, u, v, stack, cycles, weights)
+        best = peaks.max()
+        angle = plane_angle(places[peaks.argmax()], ERROR)
+        for k in range(COARSE):
+            other = plane_angle(places[k], ERROR)
+            if peaks[k] >= (1.0 - TIE) * best and other > angle + ERROR:
+                angle = other
         out[i, 0] = best
-        angle = 0.5 * place
-        if angle > 0.5 * math.pi:
-            angle -= math.pi
-        elif angle <= -0.5 * math.pi:
-            angle += math.pi
         out[i, 1] = np.nan if best == 0.0 else angle
 
 

@@ -7,7 +7,7 @@ from fastpin.kernels import planes
 from tests.support.kernels import python
 
 KERNELS = ("worst_planes",)
-INNER = ("_product", "_value", "_bounds", "_refined")
+INNER = ("_product", "_value", "_bounds", "_refined", "plane_angle")
 FORMS = (planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE, planes.SWING_AND_PUSH)
 
 
@@ -87,6 +87,31 @@ def test_the_angle_is_a_zero_of_the_derivative():
     planes.worst_planes(path, planes.SWING_TIMES_PUSH, out)
     x = 2.0 * out[0, 1]
     assert -np.sin(x) * (2.0 + np.sin(x)) + (1.0 + np.cos(x)) * np.cos(x) == pytest.approx(0.0, abs=1e-14)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_of_two_planes_that_mirror_each_other_the_one_with_the_largest_angle_is_the_worst(form):
+    """The shear and the normal stress on the planes of a free edge at many directions: U ~ sin x', V ~ 1 + cos x'."""
+    edges = np.linspace(-1.5, 1.5, 40)
+    for mirrored in (1.0, -1.0):
+        c, s = np.cos(2.0 * mirrored * edges), np.sin(2.0 * mirrored * edges)
+        shear, normal = np.stack([0.0 * c, -s, c], axis=-1), np.stack([1.0 + 0.0 * c, c, s], axis=-1)
+        paths = np.concatenate([shear, 0.4 * normal], axis=-1)[:, None] * np.array([1.0, 0.1, -0.6])[:, None]
+        out = np.empty((len(paths), 2))
+        planes.worst_planes(paths, form, out)
+        away = np.remainder(2.0 * out[:, 1] - 2.0 * mirrored * edges, 2.0 * np.pi)
+        first = np.minimum(away, 2.0 * np.pi - away)  # from the edge's normal, either way
+        np.testing.assert_allclose(first, first[0], rtol=1e-6)
+        both = 0.5 * (2.0 * mirrored * edges[:, None] + first[:, None] * [1.0, -1.0])
+        both = 0.5 * np.pi - np.remainder(0.5 * np.pi - both, np.pi)
+        np.testing.assert_allclose(out[:, 1], both.max(axis=1), rtol=0.0, atol=1e-7)
+
+
+@pytest.mark.parametrize("turned", [-1e-12, 0.0, 1e-12])
+def test_rounding_turns_no_plane_at_90_degrees_round(turned):
+    assert python(planes.plane_angle)(np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
+    assert python(planes.plane_angle)(-np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
+    assert python(planes.plane_angle)(1.0 + turned, 1e-6) == pytest.approx(0.5, abs=1e-11)
 
 
 def test_a_swing_without_push_counts_nothing():

@@ -17,6 +17,7 @@ INNER = ("_count", "_parameter", "_root", "_beyond", "_fill", "_damage", "_on_pl
 def python_kernel(name):
     """A kernel as plain Python: its parts are taken from the same module."""
     space = dict(vars(rainflow))
+    space["plane_angle"] = python(planes.plane_angle)
     for each in (*INNER, "worst_sums", "cycles_on_plane"):
         function = python(getattr(rainflow, each))
         space[each] = type(function)(function.__code__, space, each)
@@ -148,6 +149,19 @@ def test_compiled_and_plain_python():
         second = counted(paths[0], 0.4, order, blocks, form, python_kernel("cycles_on_plane"), life)
         np.testing.assert_array_equal(first[0], second[0])
         np.testing.assert_allclose(first[1], second[1], rtol=1e-12)
+
+
+def test_of_two_planes_that_mirror_each_other_the_one_with_the_largest_angle_is_the_worst():
+    """The planes of a free edge at many directions: U ~ sin x', and V ~ 1 + cos x' pushes."""
+    edges, loads = np.linspace(-1.5, 1.5, 40), np.array([1.0, 0.1, -0.6, 0.4])
+    c, s = np.cos(2.0 * edges), np.sin(2.0 * edges)
+    paths = np.stack([0.0 * c, -s, c, 1.0 + 0.0 * c, c, s], axis=-1)[:, None] * loads[:, None]
+    out = np.empty((len(paths), 2))
+    rainflow.worst_sums(paths, *one_block(4), planes.SWING_TIMES_PUSH, 0.0, LIFE, out)
+    away = np.abs(np.remainder(out[:, 1] - edges + 0.5 * np.pi, np.pi) - 0.5 * np.pi)
+    np.testing.assert_allclose(away, away[0], rtol=1e-3)
+    both = 0.5 * np.pi - np.remainder(0.5 * np.pi - edges[:, None] - away[:, None] * [1.0, -1.0], np.pi)
+    np.testing.assert_allclose(out[:, 1], both.max(axis=1), rtol=0.0, atol=1e-4)
 
 
 def test_no_damage_without_tension():
