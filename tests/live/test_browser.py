@@ -40,6 +40,7 @@ from tests.support.live_pages import FREE, LIMIT, contact, served, solved
 from tests.support.lives import fretting
 from tests.support.processes import fastpin as fastpin_command
 from tests.support.processes import started
+from tests.support.tiers import some_survey
 
 BROWSER, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
 if not os.environ.get("FASTPIN_BROWSER"):
@@ -847,7 +848,7 @@ move();
 """Moves the pressed mouse in the page itself: the driver would be too slow."""
 
 
-@pytest.mark.parametrize("nodes", [100, 200, 400])
+@pytest.mark.parametrize("nodes", some_survey([100, 200, 400], 400))
 def test_updates_come_fast_enough_for_a_drag(chrome: webdriver.Chrome, nodes: int) -> None:
     """From the message of the page to its picture, while the mouse moves.
 
