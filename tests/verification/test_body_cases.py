@@ -12,6 +12,10 @@ from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.verification.body_cases import CASES, ring_compliance
 from tests.support.bodies import UNLIKE, joint_problem
+from tests.support.tiers import some_survey
+
+FINE = (1601, 0.0)
+"""The nodes of the table, and the change of the peak pressure with more nodes."""
 
 ROUND = ["tube", "held tube", "tube, body load", "held ring", "tube in a ring", "bush", "tube, bush, ring"]
 """Joints whose bodies and loads are symmetric about the axis."""
@@ -87,16 +91,15 @@ def test_a_compliance_converges_with_its_harmonics():
 
 
 @pytest.mark.gate
+@pytest.mark.parametrize(("nodes", "change"), some_survey([(801, 1e-6), FINE], FINE))
 @pytest.mark.parametrize("name", CASES)
-def test_nodes(name):
-    """From 801 to 1,601 nodes the peak changes by 2e-7 to 1.3e-6, and half-angles by less than 2e-4.
+def test_nodes(name, nodes, change):
+    """With 1,601 nodes the values are those of the table: 5e-7 (peak), 5e-7 (int N), 5e-5 (half-angle, rounded).
 
-    With 1,601 nodes the values are those of the table: 5e-7 (peak), 5e-7 (int N), 5e-5 (half-angle, rounded).
+    From 801 to 1,601 nodes the peak changes by up to 9e-7, and int N by up to 3.5e-6.
     """
     case = CASES[name]
-    coarse, fine = (solve(case.problem, case.history, nodes=nodes)[-1] for nodes in (801, 1601))
-    assert coarse.peak_pressure == pytest.approx(fine.peak_pressure, abs=1.5e-6)
-    assert fine.peak_pressure == pytest.approx(case.peak, abs=6e-7)
-    assert fine.grid.weights @ fine.pressure == pytest.approx(case.total, abs=6e-7)
-    assert 0.5 * np.ptp(fine.contact[0]) == pytest.approx(case.half_angle, abs=6e-5)
-    assert np.ptp(coarse.contact[0]) == pytest.approx(np.ptp(fine.contact[0]), abs=4e-4)
+    found = solve(case.problem, case.history, nodes=nodes)[-1]
+    assert found.peak_pressure == pytest.approx(case.peak, abs=6e-7 + change)
+    assert found.grid.weights @ found.pressure == pytest.approx(case.total, abs=6e-7 + 3.5 * change)
+    assert 0.5 * np.ptp(found.contact[0]) == pytest.approx(case.half_angle, abs=6e-5)
