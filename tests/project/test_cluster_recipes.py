@@ -16,7 +16,7 @@ from fastpin.casefile import parse_case
 from fastpin.cli.main import main
 from fastpin.cli.options import join_words, parser
 from fastpin.solver import Interrupted
-from tests.support.documents import DOCS, blocks
+from tests.support.documents import DOCS, texts
 from tests.support.interrupts import StopAt
 from tests.support.processes import finished
 
@@ -74,15 +74,9 @@ def job(
 
 
 def test_the_page_shows_the_recipes() -> None:
-    shown = [block.text for block in blocks("cluster.md") if block.kind in ("bash", "python")]
-    assert shown == [(RECIPES / name).read_text(encoding="utf-8") for name in (*JOBS, "Snakefile")]
-
-
-@pytest.mark.gate
-@needs_bash
-@pytest.mark.parametrize("name", JOBS)
-def test_bash_reads_the_jobs(name: str) -> None:
-    finished(["bash", "-n", RECIPES / name])
+    assert texts("cluster.md", "bash", "python") == [
+        (RECIPES / name).read_text(encoding="utf-8") for name in (*JOBS, "Snakefile")
+    ]
 
 
 def test_the_command_lines_of_all_recipes_exist() -> None:
@@ -168,7 +162,6 @@ def test_the_parts_of_a_sweep_are_solved_and_joined(tmp_path: Path, monkeypatch:
         done = job(tmp_path, "sweep.sbatch", ["plan.toml", "2"], task, {"fastpin": FASTPIN})
         assert done.returncode == 0, done.stderr
         assert f"1 runs in parts/{task}: 1 done" in done.stdout
-    for block in blocks("cluster.md"):
-        for command in re.findall(r"^fastpin (.*)", block.text, re.MULTILINE) if block.kind == "console" else []:
-            assert main(command.split()) == 0
+    for command in re.findall(r"^fastpin (.*)", "".join(texts("cluster.md", "console")), re.MULTILINE):
+        assert main(command.split()) == 0
     assert len(Path("sweep.csv").read_text().splitlines()) == 2 + 1 + 2
