@@ -7,7 +7,7 @@ import pytest
 
 from fastpin import damage
 from fastpin.damage import criteria
-from fastpin.errors import InputError
+from tests.support.refusals import refused
 
 E, NU = 200e9, 0.3
 G = E / (2.0 * (1.0 + NU))
@@ -239,6 +239,4 @@ BAD = {
 
 @pytest.mark.parametrize("sentence", BAD)
 def test_bad_input(sentence):
-    with pytest.raises(InputError) as caught:
-        BAD[sentence]()
-    assert str(caught.value) == sentence
+    assert str(refused(BAD[sentence])) == sentence

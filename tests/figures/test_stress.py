@@ -12,6 +12,7 @@ from fastpin.damage import fatigue, spectrum_damage
 from fastpin.figures.load_cycle import area_doubt
 from fastpin.model import FatigueConstants
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
+from tests.support.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -102,9 +103,8 @@ def test_profiles_end_at_the_far_rim():
     ring = solve(Problem(pair, 10e-3, 20e-6, 0.3, **bodies), [{"P": 1e6}], nodes=61)
     for body, wall in (("plate", 1.5), ("pin", 0.5)):
         assert depth_curves(ring, body, 0.0, wall)[0]["depth [m]"][-1] == pytest.approx(wall * 10e-3)
-        with pytest.raises(InputError) as refused:
-            depth_curves(ring, body, 0.0, 3.0)
-        assert str(refused.value) == f"depth: must be above 0 and at most {wall} radii, the wall of the {body}, not 3"
+        words = f"depth: must be above 0 and at most {wall} radii, the wall of the {body}, not 3"
+        assert str(refused(depth_curves, ring, body, 0.0, 3.0)) == words
 
 
 @pytest.mark.gate

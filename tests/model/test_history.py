@@ -13,6 +13,7 @@ from fastpin.model.history import LoadHistory, cycle_length, cycles_after, same_
 from fastpin.model.loads import LOADS, complete_load
 from fastpin.model.options import KeepRule
 from fastpin.model.profile_csv import MOST_FAULTS
+from tests.support.refusals import refused
 from tests.support.tiers import seeds
 
 NEVER = np.full(len(LOADS), np.nan)
@@ -147,9 +148,7 @@ def test_harmonic_loads() -> None:
     ],
 )
 def test_bad_harmonic_loads(arguments: tuple, field: str) -> None:
-    with pytest.raises(InputError) as caught:
-        LoadHistory.harmonic(*arguments)
-    assert caught.value.field == field
+    assert refused(LoadHistory.harmonic, *arguments).field == field
 
 
 def test_arrays() -> None:
@@ -163,9 +162,7 @@ def test_arrays() -> None:
         (np.zeros((2, 1)), ["p"], "loads"),
         (np.zeros((0, 1)), ["P"], "history"),
     ):
-        with pytest.raises(InputError) as caught:
-            LoadHistory.from_array(corners, loads)
-        assert caught.value.field == field
+        assert refused(LoadHistory.from_array, corners, loads).field == field
 
 
 # -- CSV -----------------------------------------------------------------------------------------------------
