@@ -8,15 +8,11 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.cracks import Crack, Nasgro, Walker, growth, growth_along_edge, paris
-from fastpin.cracks.growing import Growth
+from fastpin.cracks import Crack, Walker, growth, growth_along_edge, paris
 from fastpin.errors import InputError, InputWarning
-from tests.support.cracks import DIRECTION
+from tests.support.cracks import DIRECTION, NASGRO, M, made
 from tests.support.refusals import refused
 from tests.support.tiers import gate
-
-M = 1e6
-NASGRO = Nasgro(6.35e-10, 2.5, 1.0, 1.0, 0.8 * M, 35.16 * M, 2.2, 0.1, 2.0, 0.3, 38.1e-6)
 
 
 def walker(threshold):
@@ -79,13 +75,6 @@ def test_the_fastest_growth_of_an_edge(cycle):
     assert "fastest <Growth of a crack at" in repr(found)
     stopped = growth_along_edge(cycle("small"), walker(3.0), 1e-5, 1e-2, [math.radians(-24.0), 1.5])
     assert stopped.fastest.arrest == pytest.approx(4e-3, rel=1e-3)
-
-
-def made(small_states, law, K_max, K_min=0.0, first=1e-4, last=1e-2):
-    length = np.geomspace(first, last, 401)
-    top = K_max(length) if callable(K_max) else np.full(401, K_max)
-    at = np.ones(401), {1.0: small_states[0].load}
-    return Growth(small_states[0].problem, Crack(0.0), law, length, top, np.full(401, K_min), 0.0 * length, *at)
 
 
 def test_life_of_a_crack_in_a_tension(small_states):

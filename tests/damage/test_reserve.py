@@ -12,16 +12,12 @@ from fastpin.damage.assessed import _edge_count
 from fastpin.damage.counted import Spectrum
 from fastpin.damage.lives import cycles_on_curve, smith_watson_topper_curve
 from fastpin.errors import InputError
-from fastpin.model import FatigueAssessment, FatigueConstants
+from fastpin.model import FatigueAssessment
 from fastpin.model.doubts import doubts_given
+from tests.support.fatigue import ALUMINIUM as MATERIAL
 from tests.support.tiers import for_gate, gate
 
 SWT, FS = "smith-watson-topper", "fatemi-socie"
-CONSTANTS = FatigueConstants(
-    1100e6, -0.124, 0.22, -0.59, 640e6, -0.124, 0.38, -0.59, yield_strength=379e6, threshold_range=3e6,
-    limit_range=200e6, normal_stress_factor=1.0,
-)  # fmt: skip
-MATERIAL = fastpin.Material(70e9, 0.33, "aluminium", CONSTANTS)
 CURVE = smith_watson_topper_curve(70e9, 1100e6, -0.124, 0.22, -0.59)
 
 

@@ -15,12 +15,8 @@ from fastpin.figures.stick_slip import LOOKS, MOST_COLUMNS, zone_boxes
 from fastpin.figures.style import COLOURS
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.states.cycles import Cycle
+from tests.support.drawing import legend_words, plain
 from tests.support.samples import PAIR, sample_result, with_values
-
-
-def legend_texts(figure):
-    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-
 
 # -- the map of stick and slip ------------------------------------------------------------------------------------
 
@@ -50,7 +46,7 @@ def test_the_map_is_drawn_below_the_loads_that_change(tmp_path):
     assert panel.get_xlim() == (0.5, 3.5)
     assert "load point" in panel.get_xlabel()
     assert "(deg)" in panel.get_ylabel()
-    assert legend_texts(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise", "open"]
+    assert legend_words(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise", "open"]
     assert figure.get_suptitle() == "A map\nP = 2.42 MN/m"
     assert (tmp_path / "map.png").stat().st_size > 10_000
 
@@ -87,14 +83,14 @@ def test_a_triangle_marks_a_narrow_slip_zone():
     panel = figures.plot_stick_slip(result).axes[-1]
     (marks,) = panel.lines
     assert (marks.get_marker(), marks.get_xdata().tolist()) == ("^", [1.0])
-    assert "narrow slip zone" in legend_texts(panel.figure)
+    assert "narrow slip zone" in legend_words(panel.figure)
 
 
 def test_slip_without_friction_has_no_direction():
     result = sample_result(friction=0.0)
     for figure in (figures.plot_stick_slip(result), figures.plot_sketch(result[0])):
-        assert legend_texts(figure)[0] == "slips without friction"
-        assert not [text for text in legend_texts(figure) if "clockwise" in text or "narrow" in text]
+        assert legend_words(figure)[0] == "slips without friction"
+        assert not [text for text in legend_words(figure) if "clockwise" in text or "narrow" in text]
 
 
 @pytest.mark.gate
@@ -157,7 +153,7 @@ def test_the_map_of_a_long_history_is_drawn_with_the_range_of_the_loads(tmp_path
     assert loads.get_legend().get_texts()[0].get_text().startswith("Q, largest 300")
     assert max(loads.lines[0].get_ydata()) == 1.0  # the largest load is drawn
     assert panel.get_xlim()[1] == 700.0
-    texts = legend_texts(figure)  # the first state has statuses only, in both directions
+    texts = legend_words(figure)  # the first state has statuses only, in both directions
     assert [texts[0], *texts[3:]] == ["sticks whenever it touches", "pin slips both ways", "open all the time"]
     assert "700 states; each column joins 4 states" in loads.get_title().replace("\n", " ")
 
@@ -222,7 +218,7 @@ def test_a_polar_view_without_friction_has_one_panel():
 
 
 def words(panel):
-    return [text.get_text().replace("\N{NO-BREAK SPACE}", " ") for text in panel.texts]
+    return [plain(text.get_text()) for text in panel.texts]
 
 
 def arrows(panel):
@@ -248,7 +244,7 @@ def test_a_sketch_of_a_state_shows_its_loads_and_its_contact():
     assert arrows(panel)[1]._posA_posB[1][0] < 0.0
     arcs = [patch for patch in panel.patches if isinstance(patch, Wedge)]
     assert len(arcs) == 3
-    assert legend_texts(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise"]
+    assert legend_words(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise"]
     assert figure.get_suptitle() == "load point 3"
 
 

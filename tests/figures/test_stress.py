@@ -12,6 +12,7 @@ from fastpin.damage import fatigue, spectrum_damage
 from fastpin.figures.load_cycle import area_doubt
 from fastpin.model import FatigueConstants
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
+from tests.support.drawing import legend_words
 from tests.support.refusals import refused
 
 
@@ -132,7 +133,7 @@ def test_fatigue_of_bush_and_seat_share_the_panels():
     parameter, life = figure.axes
     assert [len(curve.get_ydata()) for curve in parameter.lines[:2]] == [one.theta.size for one in found]
     assert len(life.lines) == 1
-    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    words = legend_words(figure)
     assert "bush: the parameter is 0 everywhere: no crack is expected" in words
     assert any(each.startswith("plate at the seat: hot spot at ") for each in words)
     # alone, an axis without a scale
@@ -234,7 +235,7 @@ def test_loops_of_several_cycles_lie_over_one_another(rig):
     figure = figures.plot_loops(cycles, names=["cycle 3", "cycle 6"])
     panel = loop_panel(figure)
     assert [max(drawn.get_xdata()) for drawn in panel.lines] == pytest.approx([5.0, 15.0])
-    entries = [text.get_text() for text in figure.legends[0].get_texts()]
+    entries = legend_words(figure)
     assert entries[0].startswith("cycle 3, corners 5 to 7: area ")
     assert "dissipated on the path" in entries[1]
     with pytest.raises(InputError, match="cycle: must be 1 to 8 cycles, not 9"):

@@ -17,13 +17,10 @@ from fastpin.figures.words import (
     wrapped_parts,
 )
 from fastpin.model.units import Unit
+from tests.support.drawing import plain
 from tests.support.samples import sample_result
 
 PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"], "stress")
-
-
-def plain(text: str) -> str:
-    return text.replace("\N{NO-BREAK SPACE}", " ")
 
 
 @pytest.mark.parametrize(

@@ -212,7 +212,6 @@ def test_the_entries_of_a_ply_give_it_back() -> None:
 def test_named_plies_have_a_source_and_strengths() -> None:
     for name, ply in PLIES.items():
         assert ply.name == name
-        assert ply.strengths is not None
         assert ply.strengths.Yt < ply.strengths.Yc < ply.strengths.Xt
         assert "quoted after" in ply.source
     with pytest.raises(UnknownNameError, match='did you mean "T300/5208"'):

@@ -166,15 +166,6 @@ def test_completion_shows_the_same_before_and_after_a_solve():
     finished(python(code))
 
 
-@pytest.mark.gate
-def test_importing_the_package_loads_nothing_heavy():
-    code = (
-        "import sys, fastpin, fastpin.cli.main\n"
-        "print([name for name in ('numpy', 'numba', 'scipy', 'matplotlib', 'h5py', 'tqdm') if name in sys.modules])\n"
-    )
-    assert finished(python(code)).stdout == "[]\n"
-
-
 # -- the tests -----------------------------------------------------------------------------------------------
 
 

@@ -284,7 +284,6 @@ def test_other_assessments(criterion: str, lengths: str, start: str, capsys: pyt
     assert f"ply of {angle} deg by {words}" in printed
     assert f"load at failure: {factor} times all loads" in printed
     found = re.search(r"; at (-?[\d.]+) deg from the bottom", printed)
-    assert found is not None
     assert round(abs(float(found[1]))) == int(place.removesuffix(" deg"))
 
 
@@ -362,7 +361,6 @@ def test_the_fretting_map_is_drawn_by_one_command(capsys: pytest.CaptureFixture[
     assert [row["race"] for row in rows] == [Race.OPEN, Race.WEAR, Race.OPEN, Race.CRACK]
     assert [row["life"] is None for row in rows] == [True, True, True, False]
     joint = fastpin.read_case("worn-joint.toml")
-    assert joint.wear is not None
     loads = fastpin.LoadHistory([{"P": 6e5}]) + fastpin.LoadHistory([{"Q": -8.5e5}, {"Q": 8.5e5}]).repeated(1)
     worn = fastpin.wear(joint.problem, loads, nodes=41, **joint.wear.given)
     assert rows[1]["volume"] == pytest.approx(worn[-1].volume, rel=0.03)

@@ -25,7 +25,6 @@ def test_map_names_every_folder_with_its_rank_and_no_other() -> None:
     assert {folder: int(rank) for rank, folder in rows} == RANKS
     assert f"| {LEVELS.index(ABOVE_BODIES)} | upper floor of `model/` |" in CONTRIBUTING
     upper = re.search(r"stands on the upper floor: (.*?)\.\s+The lower floor", CONTRIBUTING, re.DOTALL)
-    assert upper is not None
     assert {f"model/{name}" for name in re.findall(r"`(\w+\.py)`", upper[1])} == {*ABOVE_BODIES} - {"model/__init__.py"}
 
 

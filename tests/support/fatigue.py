@@ -1,5 +1,9 @@
 """An aluminium alloy with all constants of fatigue."""
 
+from collections.abc import Sequence
+
+import numpy as np
+
 import fastpin
 from fastpin.model import FatigueConstants
 
@@ -24,3 +28,10 @@ CONSTANTS = FatigueConstants(
 ALUMINIUM = fastpin.Material(70e9, 0.33, "aluminium", CONSTANTS)
 PAIR = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], ALUMINIUM)
 """A titanium pin in a plate of it."""
+
+
+def uniaxial(values: Sequence[float]) -> np.ndarray:
+    """A stress sxx alone, in plane stress, shape (states, 1, 4)."""
+    history = np.zeros((len(values), 1, 4))
+    history[:, 0, 0] = values
+    return history
