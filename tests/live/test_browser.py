@@ -326,9 +326,7 @@ NARROW = FREE.replace("clearance = 1e-5", "clearance = 1e-4").replace("P = 1e6",
 
 
 @pytest.mark.parametrize("load", [{"P": 1e5}, {"P": -1e5}, {"P": 0.0, "Q": -1e5}])
-def test_charts_show_a_narrow_contact_larger_until_the_whole_hole_is_wanted(
-    opened: Opened, load: dict[str, float]
-) -> None:
+def test_charts_show_a_narrow_contact_larger_until_the_whole_hole_is_wanted(opened, load):
     tab = opened(NARROW, 100)
     tab.run("return fastpin.link.ask('reset')")
     tab.run("return fastpin.link.ask('load', {loads: arguments[0], gesture: 1, drag: false})", load)
@@ -545,9 +543,8 @@ def test_lobes_are_chosen_by_words_and_drawn_enlarged(tab: Tab) -> None:
     tab.set("hole_axis slider", "30", "input")
     gap = tab.live.session.problem.gap
     theta = np.radians(np.arange(-180.0, 180.5, 0.5) - 90.0)
-    assert np.allclose(
-        gap.values(theta, 0.01)[0], 8e-6 * np.cos(2.0 * (theta + np.radians(60.0))), rtol=0.0, atol=1e-18
-    )
+    oval = 8e-6 * np.cos(2.0 * (theta + np.radians(60.0)))
+    assert np.allclose(gap.values(theta, 0.01)[0], oval, rtol=0.0, atol=1e-18)
     (times,) = re.findall(r"gaps enlarged (\S+) times", tab.text("scale-note"))
     enlarged = 1.0 + float(times) / 0.01 * gap.values(theta, 0.01)[0]
     assert tab.run(OUTLINE) == pytest.approx(enlarged.tolist(), abs=1e-3)  # the words have two digits

@@ -77,7 +77,7 @@ async def test_only_a_shared_page_is_told_its_address() -> None:
     for host in ("", SHARED):
         server = Server(small, host)
         server.take_port(8000)
-        talk = Wire(server).talk()
+        talk = Wire(server)
         await talk.send("hello", session="")
         assert (await talk.hear())["shared"] == (server.address if host else "")
 
@@ -95,7 +95,7 @@ def test_no_file_of_the_page_names_another_address() -> None:
 
 @in_a_loop
 async def test_a_load_is_answered_by_its_picture() -> None:
-    talk = Wire(Server(small)).talk()
+    talk = Wire(Server(small))
     _, first = await talk.hello()
     answer = await talk.load(1e5, drag=True)
     assert (len(first["add"]), answer["keep"], len(answer["add"])) == (1, 1, 1)
@@ -108,15 +108,14 @@ BAD = ["", "{", "[]", "null", '"load"', '{"kind": "load", "id": 1}', '{"kind": "
 
 @in_a_loop
 async def test_bad_messages_are_answered_and_survived() -> None:
-    wire = Wire(Server(small))
-    talk = wire.talk()
+    talk = Wire(Server(small))
     assert "the first message must be hello" in (await talk.tell("undo"))["sentence"]
     await talk.hello()
     for text in BAD:
         await talk.say(text)
         answer = await talk.hear()
         assert (answer["kind"], bool(answer["sentence"])) == ("refused", True)
-    await wire.say("\xff\x00", WSMsgType.BINARY)
+    await talk.say("\xff\x00", WSMsgType.BINARY)
     assert (await talk.hear())["sentence"] == "message: must be text"
     assert (await talk.load(1e5))["kind"] == "pictures"
 
@@ -133,14 +132,13 @@ async def test_messages_beyond_the_rate_get_no_answer_and_disturb_no_other_page(
     now = 0.0
 
     server = Server(small, clock=lambda: now)
-    other, wire = Wire(server).talk(), Wire(server)
-    talk = wire.talk()
+    other, talk = Wire(server), Wire(server)
     await other.hello()
     await talk.hello()
     for k in range(2 * MOST_A_SECOND):
         load = {"kind": "load", "id": k, "loads": {"Q": 100.0 * k}, "gesture": 1, "drag": True}
-        await wire.say(json.dumps(load), kind)
-    await wire.read()
+        await talk.say(json.dumps(load), kind)
+    await talk.read()
     assert (await other.load(1e5))["kind"] == "pictures"
     now = 1.0
     answers = Counter[str]()
@@ -162,13 +160,11 @@ async def test_the_mailbox_has_an_end() -> None:
 
 
 @in_a_loop
-async def test_an_unexpected_error_is_answered_and_survived(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+async def test_an_unexpected_error_is_answered_and_survived(monkeypatch, caplog):
     def broken(*_: object) -> None:
         raise ZeroDivisionError
 
-    talk = Wire(Server(small)).talk()
+    talk = Wire(Server(small))
     await talk.hello()
     monkeypatch.setattr(LiveContact, "_obey_undo", broken)
     assert "failed unexpectedly (ZeroDivisionError)" in (await talk.tell("undo"))["sentence"]
@@ -185,7 +181,7 @@ async def test_a_contact_that_cannot_be_made_says_so_and_may_be_tried_again(capl
             raise errors.pop()
         return small()
 
-    talk = Wire(Server(make)).talk()
+    talk = Wire(Server(make))
     assert "failed unexpectedly (MemoryError)" in (await talk.tell("hello", session=""))["sentence"]
     await talk.hello()
     assert "a message failed" in caplog.text
@@ -197,14 +193,13 @@ async def test_a_contact_that_cannot_be_made_says_so_and_may_be_tried_again(capl
 @in_a_loop
 async def test_a_page_that_comes_back_finds_its_contact() -> None:
     server = Server(small)
-    wire = Wire(server)
-    talk = wire.talk()
+    talk = Wire(server)
     name, _ = await talk.hello()
     await talk.load(2e5)
-    other, _ = await Wire(server).talk().hello(name)  # a copy of the tab: a contact of its own
+    other, _ = await Wire(server).hello(name)  # a copy of the tab: a contact of its own
     assert other != name
-    await wire.go()
-    found, pictures = await Wire(server).talk().hello(name)
+    await talk.go()
+    found, pictures = await Wire(server).hello(name)
     assert (found, pictures["add"][-1]["load"]["Q"]) == (name, 2e5)
 
 
@@ -213,34 +208,32 @@ async def test_too_many_visitors_are_refused_and_the_others_go_on() -> None:
     few = Limits(connections=5, sessions=3)
 
     server = Server(lambda: contact(nodes=21, limits=few), limits=few)
-    wires = [Wire(server) for _ in range(3)]
-    talks = [wire.talk() for wire in wires]
+    talks = [Wire(server) for _ in range(3)]
     for talk in talks:
         await talk.hello()
-    late = Wire(server).talk()
+    late = Wire(server)
     assert "3 pages are open" in (await late.tell("hello", session=""))["sentence"]
-    waiting, beyond = Wire(server).talk(), Wire(server)
-    assert "5 pages are open" in (await beyond.talk().answer(None))["sentence"]
+    waiting, beyond = Wire(server), Wire(server)
+    assert "5 pages are open" in (await beyond.answer(None))["sentence"]
     assert beyond.code == WSCloseCode.TRY_AGAIN_LATER
     assert "3 pages are open" in (await waiting.tell("hello", session=""))["sentence"]
     for talk in talks:
         assert (await talk.load(1e5))["kind"] == "pictures"
-    await wires[0].go()  # its contact makes room
+    await talks[0].go()  # its contact makes room
     await late.hello()
     assert "3 pages are open" in (await waiting.tell("hello", session=""))["sentence"]
 
 
 @in_a_loop
 async def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    wire = Wire(Server(small))
-    talk = wire.talk()
+    talk = Wire(Server(small))
     await talk.hello()
     steps = HeldSteps(monkeypatch)
     await talk.send("load", loads={"Q": 0.0}, gesture=1, drag=True)
     await steps.begun()
     for k in range(1, 100):
         last = await talk.send("load", loads={"Q": 1e3 * k}, gesture=1, drag=True)
-    await wire.read()
+    await talk.read()
     steps.let_go(2)
     kinds = Counter[str]()
     while (found := await talk.hear())["id"] != last:
@@ -250,11 +243,8 @@ async def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @in_a_loop
-async def test_a_long_history_is_stopped_by_its_page_and_leaves_the_contact_where_it_was(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    wire = Wire(Server(small))
-    talk = wire.talk()
+async def test_a_long_history_is_stopped_by_its_page_and_leaves_the_contact_where_it_was(monkeypatch):
+    talk = Wire(Server(small))
     await talk.send("stop")  # before hello: nothing happens
     await with_history(talk)
     steps = HeldSteps(monkeypatch)
@@ -263,7 +253,7 @@ async def test_a_long_history_is_stopped_by_its_page_and_leaves_the_contact_wher
     steps.let_go()
     await steps.begun()
     await talk.send("stop")
-    await wire.read()
+    await talk.read()
     steps.let_go(9)
     sentence = "history: was stopped on the way; the contact is where it was"
     assert (await talk.answer(number))["sentence"] == sentence
@@ -278,8 +268,7 @@ async def test_a_long_history_is_stopped_by_its_page_and_leaves_the_contact_wher
 async def test_a_long_history_of_one_visitor_lets_the_others_pass(monkeypatch: pytest.MonkeyPatch) -> None:
     server = Server(small, clock=step_by_step())
 
-    one, wire = Wire(server).talk(), Wire(server)
-    other = wire.talk()
+    one, other = Wire(server), Wire(server)
     name = await with_history(one)
     await other.hello()
     steps = HeldSteps(monkeypatch)
@@ -287,7 +276,7 @@ async def test_a_long_history_of_one_visitor_lets_the_others_pass(monkeypatch: p
     first = await steps.begun()
     saving = asyncio.create_task(server.saved(name, "case.toml"))  # waits for the whole history
     passing = await other.send("load", loads={"Q": 1e3}, gesture=1, drag=False)
-    await wire.read()
+    await other.read()
     steps.let_go()
     assert await steps.begun() is not first
     steps.let_go(6)
@@ -299,21 +288,18 @@ async def test_a_long_history_of_one_visitor_lets_the_others_pass(monkeypatch: p
 
 
 @in_a_loop
-async def test_a_page_that_goes_in_a_long_history_finds_its_contact_where_it_was(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+async def test_a_page_that_goes_in_a_long_history_finds_its_contact_where_it_was(monkeypatch):
     server = Server(small, clock=step_by_step())
-    wire = Wire(server)
-    talk = wire.talk()
+    talk = Wire(server)
     name = await with_history(talk)
     steps = HeldSteps(monkeypatch)
     await follow(talk)
     await steps.begun()
     steps.let_go()
     await steps.begun()
-    await wire.go()
+    await talk.go()
     steps.let_go()
-    found, pictures = await Wire(server).talk().hello(name)
+    found, pictures = await Wire(server).hello(name)
     assert found == name
     assert (pictures["case"]["friction"], pictures["add"][-1]["load"]["Q"]) == (0.4, 5e3)
     assert len(steps.taken) == 2

@@ -130,7 +130,7 @@ class Talk:
         return welcome["session"], await self.answer(welcome["id"])
 
 
-class Wire:
+class Wire(Talk):
     """A websocket without a network: a server reads it and sends to it, a page says something to it and hears it."""
 
     opened: ClassVar[list["Wire"]] = []
@@ -141,6 +141,7 @@ class Wire:
         self._said: asyncio.Queue[WSMessage | None] = asyncio.Queue()
         self.heard: asyncio.Queue[str] = asyncio.Queue()
         self.code = 0
+        super().__init__(self.say, self.heard.get)
         self._served = asyncio.create_task(server.serve_page(self))  # type: ignore[arg-type]
 
     async def __aiter__(self) -> AsyncIterator[WSMessage]:
@@ -165,9 +166,6 @@ class Wire:
         """Go away, and wait until the server has noticed."""
         self._said.put_nowait(None)
         await self._served
-
-    def talk(self) -> Talk:
-        return Talk(self.say, self.heard.get)
 
 
 def in_a_loop(test: Callable[..., Awaitable[None]]) -> Callable[..., None]:
