@@ -56,8 +56,6 @@ Q = [0.1, -0.1]
 nodes = 31
 """
 
-needs_bash = pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
-
 
 def job(
     tmp_path: Path, name: str, arguments: Sequence[str], task: int, programs: dict[str, str], **variables: str
@@ -92,7 +90,6 @@ def test_the_command_lines_of_all_recipes_exist() -> None:
 
 
 @pytest.mark.gate
-@needs_bash
 @pytest.mark.parametrize(("code", "requeued"), [(0, False), (1, False), (130, True)])
 @pytest.mark.parametrize("name", JOBS)
 def test_a_task_that_was_stopped_goes_back_into_the_queue(tmp_path: Path, name: str, code: int, requeued: bool) -> None:
@@ -114,7 +111,6 @@ def test_a_task_that_was_stopped_goes_back_into_the_queue(tmp_path: Path, name: 
 
 
 @pytest.mark.gate
-@needs_bash
 def test_a_case_whose_file_is_empty_is_begun_again(tmp_path: Path) -> None:
     (tmp_path / "cases.txt").write_text("a.toml\n")
     (tmp_path / "a.running.h5").touch()
@@ -125,7 +121,6 @@ def test_a_case_whose_file_is_empty_is_begun_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
-@needs_bash
 def test_an_unfinished_case_is_resumed_and_a_finished_one_skipped(tmp_path: Path) -> None:
     case = parse_case(CASE)
     with pytest.raises(Interrupted):
@@ -153,7 +148,6 @@ def test_snakemake_plans_all_parts_and_cases(tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
-@needs_bash
 def test_the_parts_of_a_sweep_are_solved_and_joined(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Slow: each task starts two processes."""
     monkeypatch.chdir(tmp_path)

@@ -13,7 +13,7 @@ from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES, WEAR_QUANTITIES
 from fastpin.studies.plan import parse_plan
 from fastpin.studies.run_end import KEY_FIGURES
 from scripts.inline import Inline
-from tests.support.documents import page_text, texts
+from tests.support.documents import page_text, statements, texts
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted((ROOT / "docs").glob("*.md"))
@@ -35,6 +35,8 @@ def test_named_tests_and_scripts_exist() -> None:
     assert [(path.name, name) for path, name in found(r"`(test_\w+)`") if name not in tests] == []
     files = found(r"`((?:tests|scripts|fastpin)/[\w/]+(?:\.py)?)`")
     files |= found(r"((?:tests|scripts|fastpin|bench)/[\w/]+\.py)", (*DOCUMENTS, *RECORDS))
+    modules = found(r"python -m ((?:scripts|bench)\.\w+)", (*DOCUMENTS, *RECORDS, ROOT / "CONTRIBUTING.md"))
+    files |= {(path, f"{name.replace('.', '/')}.py") for path, name in modules}
     assert [(path.name, name) for path, name in files if not (ROOT / name).exists()] == []
 
 
@@ -60,11 +62,8 @@ def exists(name: str) -> bool:
 
 
 def test_every_statement_of_the_paper_has_a_number_a_verdict_and_a_test() -> None:
-    text = page_text("paper.md")
-    text = text[text.index("## Statements") : text.index("## Figures")]
-    rows = [line.replace("\\|", "").split("|")[1:-1] for line in text.splitlines() if re.match(r"\| \d+ \|", line)]
-    assert len(rows) == 60
-    for number, row in enumerate(rows, start=1):
+    assert len(statements()) == 60
+    for number, row in enumerate(statements(), start=1):
         assert len(row) == 6
         assert int(row[0]) == number
         assert "`test_" in row[5]

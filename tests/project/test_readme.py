@@ -4,18 +4,16 @@ import re
 import tomllib
 from pathlib import Path
 
-import pytest
-
+from tests.support.documents import page_text, printed_by, texts
 from tests.support.layout import ABOVE_BODIES, LEVELS, RANKS
 
 ROOT = Path(__file__).resolve().parents[2]
-README, CONTRIBUTING = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "CONTRIBUTING.md"))
+CONTRIBUTING = page_text(ROOT / "CONTRIBUTING.md")
 
 
-def test_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    exec(compile(code, "README.md", "exec"), {})
-    assert len(capsys.readouterr().out.splitlines()) == 3
+def test_example_runs() -> None:
+    (code,) = texts(ROOT / "README.md", "python")
+    assert len(printed_by(code, "README.md", {}).splitlines()) == 3
 
 
 def test_map_names_every_folder_with_its_rank_and_no_other() -> None:

@@ -41,6 +41,12 @@ def page_text(page: str | Path) -> str:
     return (DOCS / page).read_text(encoding="utf-8")
 
 
+def statements() -> list[list[str]]:
+    """The cells of the table of the paper's statements, in docs/paper.md."""
+    table = page_text("paper.md").partition("## Statements")[2].partition("## Figures")[0]
+    return [row.replace("\\|", "").split("|")[1:-1] for row in re.findall(r"^\| \d+ \|.*$", table, re.MULTILINE)]
+
+
 def texts(page: str | Path, *kinds: str) -> list[str]:
     """The texts of the blocks of a page in some languages."""
     return [block.text for block in blocks(page) if block.kind in kinds]
