@@ -116,9 +116,7 @@ def test_a_residual_compression_stops_a_crack(small_states):
 
 
 REFUSED = {
-    "states: must be the stops of a cycle, at least two, not 1": lambda s: growth(
-        s[:1], Crack(0.0), NASGRO, 1e-4, 1e-3
-    ),
+    "states: must be the stops of a cycle, at least two, not 1": lambda s: growth(s[:1], Crack(0), NASGRO, 1e-4, 1e-3),
     "crack: must be a Crack, not 1": lambda s: growth(s, 1, NASGRO, 1e-4, 1e-3),
     "law: must be a law of growth, such as fastpin.cracks.Walker, not 3": lambda s: growth(s, Crack(0), 3, 1e-4, 1e-3),
     "first: must be positive, not 0": lambda s: growth(s, Crack(0.0), NASGRO, 0.0, 1e-3),

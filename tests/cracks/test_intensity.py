@@ -102,13 +102,9 @@ def test_a_residual_stress_is_added(small_states):
         stress_intensity(small_states, crack, lengths, residual_stress=3.0)
 
 
-@pytest.fixture
-def held_ring():
-    return fastpin.solve(problem_of(LIKE, 20e-6, 0.3, plate_body=bodies.Ring(20e-3, "held")), [{"P": 1e6}], nodes=61)
-
-
-def test_doubts(held_ring, small_states):
-    crack = Crack(-0.5)
+def test_doubts(small_states):
+    crack, ring = Crack(-0.5), bodies.Ring(20e-3, "held")
+    held_ring = fastpin.solve(problem_of(LIKE, 20e-6, 0.3, plate_body=ring), [{"P": 1e6}], nodes=61)
     with pytest.warns(InputWarning, match=r"lengths: reaches 0\.20 of the wall; K there does not know that the rim"):
         found = stress_intensity(held_ring, crack, [2e-3])
     assert [doubt.field for doubt in found.doubts if "wall" in str(doubt)] == ["lengths"]

@@ -140,9 +140,8 @@ def test_damage_sum_is_that_of_its_cycles(fretting):
     cycles = fretting.cycles[1:]
     theta, total = damage.damage_sum(fretting, cycles, "smith-watson-topper", repeats=100)
     points = fastpin.Points.at_depth(0.0, theta)
-    lives = [
-        damage.fatigue(damage.cycle_states(fretting, one), "smith-watson-topper", points=points).life for one in cycles
-    ]
+    stops = [damage.cycle_states(fretting, one) for one in cycles]
+    lives = [damage.fatigue(each, "smith-watson-topper", points=points).life for each in stops]
     np.testing.assert_allclose(total, sum(100.0 / life for life in lives), rtol=1e-14)
     once = damage.damage_sum(fretting, cycles, "smith-watson-topper")[1]
     np.testing.assert_allclose(total, 100.0 * once, rtol=1e-14)
@@ -150,13 +149,8 @@ def test_damage_sum_is_that_of_its_cycles(fretting):
 
 
 def test_all_states_without_cycles():
-    problem = fastpin.Problem(
-        fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["SAE 1020"]),
-        0.01,
-        1e-5,
-        0.3,
-        pin_load="body",
-    )
+    pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["SAE 1020"])
+    problem = fastpin.Problem(pair, 0.01, 1e-5, 0.3, pin_load="body")
     result = fastpin.solve(problem, [{"P": 1e6}, {"P": 5e5}, {"P": 1e6}], nodes=51)
     assert not result.cycles
     found, same = result.fatigue("smith-watson-topper"), damage.fatigue(result.states, "smith-watson-topper")

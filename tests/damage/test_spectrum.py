@@ -90,9 +90,8 @@ def test_blocks_of_points_and_points_deep_in_the_pin(monkeypatch):
     points = fastpin.Points.at_depth(np.array([[0.0], [9e-3]]), np.linspace(-3.0, 1.0, 5))
     whole = damage.stress_history(states, points, "plate", True)
     deep = damage.stress_history(states, points, "pin", True)
-    np.testing.assert_array_equal(
-        deep[7, :, 0], states[7].stress(points, "pin", True).sxx.ravel()
-    )  # read state by state
+    read = states[7].stress(points, "pin", True)  # state by state
+    np.testing.assert_array_equal(deep[7, :, 0], read.sxx.ravel())
     monkeypatch.setattr("fastpin.damage.histories.ROOM", 3 * (8 * 31 + 4 * 45))
     blocks = list(history_blocks(states, points, "plate", True))
     assert [block.stop - block.start for block, _ in blocks] == [3, 3, 3, 1]
@@ -283,9 +282,8 @@ def test_bodies_are_ranked_with_their_own_constants():
         np.testing.assert_array_equal(one.damage, alone.damage)
     wall = fastpin.Points.at_depth(np.array([[1e-3], [4e-3]]), np.linspace(-1.0, 0.0, 3))
     both = damage.spectrum_damage(states, points=wall, straight=True)
-    beyond = damage.spectrum_damage(
-        states, body="seat", points=fastpin.Points.at_depth(1.5e-3, wall.theta[1]), straight=True
-    )
+    points = fastpin.Points.at_depth(1.5e-3, wall.theta[1])
+    beyond = damage.spectrum_damage(states, body="seat", points=points, straight=True)
     np.testing.assert_allclose(both.damage[1], beyond.damage, rtol=1e-9)
 
 
