@@ -118,16 +118,11 @@ def long_result(corners=700, largest=650, friction=0.4):
     return states, closed, outer
 
 
-def with_block(states, cycles):
-    result = sample_result([{"P": 1e6}], nodes=21)
-    result.states, result.cycles = states, cycles
-    return result
-
-
 def test_a_long_history_has_a_column_for_some_cycles_each_and_hides_no_extreme():
     states, closed, outer = long_result()
     cycles = tuple(Cycle(k, 2, k // 2, 0.0, 0.0, 0.0, 0.0, True) for k in range(2, 700, 2))
-    drawn = figures.states.drawn_states(with_block(states, cycles), "all", MOST_COLUMNS, whole=True)
+    result = dataclasses.replace(sample_result([{"P": 1e6}], nodes=21), states=states, cycles=cycles)
+    drawn = figures.states.drawn_states(result, "all", MOST_COLUMNS, whole=True)
     assert len(drawn) == 700
     columns, words = figures.stick_slip.long_columns(drawn)
     assert words == "each column joins 2 cycles, or states outside of cycles"
@@ -183,28 +178,22 @@ def test_columns_of_cycles_and_of_single_states():
 
 
 def first_curve(panel):
-    (line,) = (line for line in panel.lines if line.get_color() == COLOURS[0])
-    return line.get_xdata(), line.get_ydata()
+    lines = (line for line in panel.lines if line.get_color() == COLOURS[0])
+    return max(lines, key=lambda line: len(line.get_xdata())).get_data()
 
 
 def test_polar_curves_stand_over_the_circle():
     result = sample_result()
     pressure, shear = figures.plot_polar(result).axes
     state = result[0]
-    line = max(
-        (line for line in pressure.lines if line.get_color() == "#0072B2"), key=lambda line: len(line.get_xdata())
-    )
-    x, y = line.get_xdata(), line.get_ydata()
+    x, y = first_curve(pressure)
     height = np.hypot(x, y) - 1.0
     top = int(np.argmax(height))
     assert math.atan2(y[top], x[top]) == pytest.approx(state.peak_pressure_angle, abs=0.02)
     assert height[[0, -1]] == pytest.approx([0.0, 0.0], abs=1e-9)
     assert math.atan2(y[0], x[0]) == pytest.approx(state.contact[0][0], abs=1e-9)
-    turned = max(
-        (line for line in shear.lines if line.get_color() == "#0072B2"), key=lambda line: len(line.get_xdata())
-    )
-    inside = np.hypot(turned.get_xdata(), turned.get_ydata()) < 1.0 - 1e-6
-    assert np.all(turned.get_xdata()[inside] < 0.0)  # T is negative left of the bottom
+    x, y = first_curve(shear)
+    assert np.all(x[np.hypot(x, y) < 1.0 - 1e-6] < 0.0)  # T is negative left of the bottom
     assert pressure.get_xlabel() == "pressure N (MPa)"
     assert pressure.get_aspect() == shear.get_aspect() == 1.0
     assert {"0°", "90°", "−90°"} <= {text.get_text() for text in pressure.texts}

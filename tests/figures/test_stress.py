@@ -13,6 +13,7 @@ from fastpin.figures.load_cycle import area_doubt
 from fastpin.model import FatigueConstants
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
 from tests.support.drawing import legend_words
+from tests.support.fatigue import ALUMINIUM
 from tests.support.refusals import refused
 
 
@@ -22,12 +23,6 @@ def result():
     problem = Problem(pair, hole_radius=2.4e-3, clearance=10e-6, friction=0.4, pin_load="body")
     cycle = LoadHistory([{"Q": 1e5, "sxx": 60e6}, {"Q": -1e5, "sxx": 6e6}])
     return solve(problem, LoadHistory([{"P": 6e5}]) + cycle.repeated(2), nodes=121, between=1, slip_sums=True)
-
-
-@pytest.fixture(scope="module")
-def rigid():
-    pair = MaterialPair(Material.rigid(), Material(1.0, 0.3))
-    return solve(Problem.from_load_parameter(pair, 0.1, 0.3), [{"P": 1.0}], nodes=61)
 
 
 @pytest.fixture
@@ -79,7 +74,9 @@ def test_solid_lines_of_an_svg_have_no_dashes_of_no_length(result, tmp_path):
     assert "stroke-dasharray: ;" not in (tmp_path / "hoop.svg").read_text(encoding="utf-8")
 
 
-def test_a_rigid_body_is_left_out(rigid):
+def test_a_rigid_body_is_left_out():
+    pair = MaterialPair(Material.rigid(), Material(1.0, 0.3))
+    rigid = solve(Problem.from_load_parameter(pair, 0.1, 0.3), [{"P": 1.0}], nodes=61)
     figure = figures.plot_hoop_stress(rigid)
     assert [panel.get_ylabel() for panel in figure.axes] == ["hoop stress of the plate (F/R)"]
     assert len(field_curves(rigid[-1], fineness=10)) == 1
@@ -121,10 +118,7 @@ def test_the_edge_of_the_hole_may_be_that_of_a_bush():
 
 
 def test_fatigue_of_bush_and_seat_share_the_panels():
-    constants = FatigueConstants(
-        fatigue_strength=1317e6, strength_exponent=-0.126, fatigue_ductility=0.19, ductility_exponent=-0.52
-    )
-    pair = MaterialPair(MATERIALS["steel"], Material(71e9, 0.33, fatigue=constants))
+    pair = MaterialPair(MATERIALS["steel"], ALUMINIUM)
     bush = Bushing(Material(103e9, 0.34), 12.5e-3, 40e-6)
     joint = solve(Problem(pair, 10e-3, 60e-6, 0.3, plate_body=bush), [{"P": 1e6}, {"P": 5e5}], nodes=61)
     found = [fatigue(joint, "smith-watson-topper", body) for body in ("plate", "seat")]

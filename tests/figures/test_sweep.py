@@ -52,9 +52,8 @@ def test_a_map_shows_every_value_and_hatches_failures(plan: Plan, rows: list[dic
     figure = plot_sweep(chart(plan, rows, "peak_pressure"))
     maps, bar = figure.axes[:2], figure.axes[-1]
     mesh = maps[0].collections[0]
-    assert np.ma.filled(mesh.get_array(), np.nan).ravel() == pytest.approx(
-        [20, 40, np.nan, 41, np.nan, 42], nan_ok=True
-    )
+    shown = np.ma.filled(mesh.get_array(), np.nan).ravel()
+    assert shown == pytest.approx([20, 40, np.nan, 41, np.nan, 42], nan_ok=True)
     assert [patch.get_hatch() for patch in maps[0].patches] == ["////", None]
     assert maps[0].patches[0].get_xy() == pytest.approx((0.1, 10**0.5))
     assert not list(maps[1].patches)

@@ -104,9 +104,8 @@ def test_error_bars_leave_the_states_as_they_are(problem: Problem) -> None:
 
 def test_error_bars_hold_against_the_closed_form(similar: MaterialPair) -> None:
     for parameter in (0.05, 0.3, 1.0):
-        state = solve(Problem.from_load_parameter(similar, parameter, 0.0), [{"P": 1.0}], nodes=101, error_bars=True)[
-            -1
-        ]
+        smooth = Problem.from_load_parameter(similar, parameter, 0.0)
+        state = solve(smooth, [{"P": 1.0}], nodes=101, error_bars=True)[-1]
         half = closed_forms.persson_half_angle(parameter)
         error = abs(state.peak_pressure - closed_forms.persson_pressure(0.0, half))
         assert error <= state.error_bars["peak_pressure"] < 1e-2 * state.peak_pressure

@@ -87,9 +87,8 @@ def test_bars_are_largest_at_edges_and_zero_away_from_the_contact(states: list[S
     ((start, stop),) = state.contact
     spacing = float(np.diff(state.theta)[0])
     assert bars.of_curves(start)[0] > 10.0 * bars.of_curves(0.5 * (start + stop))[0]
-    assert (
-        bars.of_curves(np.array([start - 8.0 * spacing, stop + 8.0 * spacing, math.pi / 2.0]))[0].tolist() == [0.0] * 3
-    )
+    away = [start - 8.0 * spacing, stop + 8.0 * spacing, math.pi / 2.0]
+    assert not bars.of_curves(away)[0].any()
     moved = bars["contact_1_start"]  # the curve with its edge moved by its bar lies in the band
     curve = tractions_at(traction_patches(state), np.degrees([start, start + moved]) + 90.0)[0]
     assert bars.of_curves(start)[0] >= curve[1] > curve[0] >= 0.0
