@@ -5,21 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.cracks import Crack, Growth, Nasgro, Walker, growth, paris, spectrum_growth
+from fastpin.cracks import Crack, Nasgro, Walker, growth, paris, spectrum_growth
 from fastpin.cracks.margins import crack_margins
 from fastpin.states.margins import smallest_margin
+from tests.support.cracks import M, made
 from tests.support.tiers import gate
-
-M = 1e6
-"""Pa sqrt(m) in MPa sqrt(m)."""
-
-
-def made(small_states, law, K_max, K_min=0.0):
-    """A crack from 0.1 to 10 mm with this largest K_I at its 401 lengths."""
-    length = np.geomspace(1e-4, 1e-2, 401)
-    top, zeros = np.broadcast_to(K_max(length), 401), np.zeros(401)
-    at = np.full(401, 2.0), {2.0: small_states[1].load}
-    return Growth(small_states[0].problem, Crack(0.3), law, length, top, np.full(401, K_min), zeros, *at)
 
 
 def rows_of(found):

@@ -9,7 +9,6 @@ import fastpin
 from fastpin.cracks import (
     Crack,
     CrackFate,
-    Nasgro,
     Walker,
     growth,
     growth_along_edge,
@@ -20,11 +19,9 @@ from fastpin.cracks import (
 from fastpin.errors import InputError
 from fastpin.model import CrackGrowth
 from fastpin.report import crack_growth as words_of
-from tests.support.cracks import LIKE, problem_of
+from tests.support.cracks import LIKE, NASGRO, M, problem_of
 
-M = 1e6
 LAW = Walker(1e-10, 3.0, 0.5, 1.0 * M, intrinsic_length=50e-6)
-NASGRO = Nasgro(6.35e-10, 2.5, 1.0, 1.0, 0.8 * M, 35.16 * M, 2.2, 0.1, 2.0, 0.3, 38.1e-6)
 BESIDE = Crack(math.radians(-24.0))
 
 

@@ -11,14 +11,11 @@ import fastpin
 from fastpin import damage
 from fastpin.bodies import Bushing
 from fastpin.errors import InputError, InputWarning
-from fastpin.model import FatigueAssessment, FatigueConstants
+from fastpin.model import FatigueAssessment
+from tests.support.fatigue import ALUMINIUM as MATERIAL
+from tests.support.fatigue import PAIR
 
 SWT, FS = "smith-watson-topper", "fatemi-socie"
-CONSTANTS = FatigueConstants(
-    1100e6, -0.124, 0.22, -0.59, 640e6, -0.124, 0.38, -0.59, yield_strength=379e6, threshold_range=3e6,
-    limit_range=200e6, normal_stress_factor=1.0,
-)  # fmt: skip
-MATERIAL = fastpin.Material(70e9, 0.33, "aluminium", CONSTANTS)
 
 
 @pytest.fixture(scope="module")
@@ -109,8 +106,7 @@ def test_progress_goes_on_to_the_end(result):
 
 
 def test_a_stored_result_knows_its_assessment(tmp_path):
-    pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], MATERIAL)
-    problem = fastpin.Problem(pair, 10e-3, 40e-6, 0.4)
+    problem = fastpin.Problem(PAIR, 10e-3, 40e-6, 0.4)
     how = FatigueAssessment([SWT, FS], "plate", angles=[10.0, 95.5], small_cycles="original", knee=2e6, straight=True)
     fastpin.record(problem, [{"P": 1e6}, {"Q": 1e5}], tmp_path / "one.h5", fatigue=how, nodes=31)
     fastpin.record(problem, [{"P": 1e6}, {"Q": 1e5}], tmp_path / "two.h5", nodes=31)
@@ -161,7 +157,7 @@ def test_straight_lines_on_a_coarse_grid_are_told(monkeypatch):
     """The worst cycle is read again with power laws, where straight lines are taken unasked."""
     rng = np.random.default_rng(1)
     loads = [{"P": p, "Q": q} for p, q in zip(rng.uniform(2e6, 6e6, 20), rng.uniform(-1e6, 1e6, 20), strict=True)]
-    problem = fastpin.Problem(fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], MATERIAL), 10e-3, 40e-6, 0.4)
+    problem = fastpin.Problem(PAIR, 10e-3, 40e-6, 0.4)
     coarse, fine = (fastpin.solve(problem, loads, nodes=nodes) for nodes in (31, 201))
     monkeypatch.setattr("fastpin.damage.assessed.MOST_REFINED", 5)
     with pytest.warns(InputWarning, match=r"straight: with refined tractions the worst cycle .* 1\.3 times the damage"):

@@ -9,14 +9,9 @@ from scipy.integrate import dblquad, quad
 import fastpin
 from fastpin import damage
 from fastpin.damage import distance
-from fastpin.errors import InputError
+from tests.support.refusals import refused
 
 ANGLES = np.array([-2.2, -0.85, 0.3])
-
-
-@pytest.fixture(scope="module")
-def cycle(fretting):
-    return damage.cycle_states(fretting, fretting.cycles[-1])
 
 
 def test_the_length_by_hand():
@@ -102,27 +97,26 @@ def test_the_hot_spot_is_the_place_unless_given(fretting, cycle):
     assert found.hot_spot.life > fretting.fatigue("smith-watson-topper").hot_spot.life
 
 
-def test_bad_input(cycle):
-    bad = {
-        "method: must be": lambda: damage.fatigue_at_distance(cycle, "crossland", "volume"),
-        'fatigue: method "line" needs threshold_range, limit_range of the pin\'s material': (
-            lambda: damage.fatigue_at_distance(cycle, "smith-watson-topper", "line", "pin")
-        ),
-        "length: must be positive, not 0": (
-            lambda: damage.fatigue_at_distance(cycle, "crossland", theta=0.0, length=0.0)
-        ),
-        "depth: must be at most the radius of 0.01 in the pin": (
-            lambda: damage.fatigue_at_distance(cycle, "smith-watson-topper", "line", "pin", theta=0.0, length=1.0)
-        ),
-        "theta: must be a finite number, not nan": lambda: damage.fatigue_at_distance(
-            cycle, "crossland", theta=math.nan
-        ),
-        "threshold_range: must be positive, not -1": lambda: damage.critical_distance(-1.0, 1.0),
-        "limit_range: must be positive, not 0": lambda: damage.critical_distance(1.0, 0.0),
-        "states: must be the stops of a cycle": lambda: damage.fatigue_at_distance([], "crossland", theta=0.0),
-        "body: must be": lambda: damage.fatigue_at_distance(cycle, "crossland", body="hub", theta=0.0),
-    }
-    for sentence, call in bad.items():
-        with pytest.raises(InputError) as caught:
-            call()
-        assert str(caught.value).startswith(sentence)
+BAD = {
+    "method: must be": {"method": "volume"},
+    'fatigue: method "line" needs threshold_range, limit_range of the pin\'s material': {
+        "method": "line",
+        "body": "pin",
+    },
+    "length: must be positive, not 0": {"length": 0.0},
+    "depth: must be at most the radius of 0.01 in the pin": {"method": "line", "body": "pin", "length": 1.0},
+    "theta: must be a finite number, not nan": {"theta": math.nan},
+    "states: must be the stops of a cycle": {"states": []},
+    "body: must be": {"body": "hub"},
+}
+
+
+@pytest.mark.parametrize("sentence", BAD)
+def test_bad_input(cycle, sentence):
+    given = {"states": cycle, "criterion": "smith-watson-topper", "theta": 0.0, **BAD[sentence]}
+    assert str(refused(damage.fatigue_at_distance, **given)).startswith(sentence)
+
+
+def test_bad_ranges_of_a_critical_distance():
+    assert str(refused(damage.critical_distance, -1.0, 1.0)) == "threshold_range: must be positive, not -1"
+    assert str(refused(damage.critical_distance, 1.0, 0.0)) == "limit_range: must be positive, not 0"

@@ -12,13 +12,9 @@ from fastpin import damage
 from fastpin.damage.hot_spots import edge_angles
 from fastpin.errors import InputError
 from fastpin.model import FatigueConstants
+from tests.support.refusals import refused
 
 DEGREE = math.pi / 180.0
-
-
-@pytest.fixture(scope="module")
-def cycle(fretting):
-    return damage.cycle_states(fretting, fretting.cycles[-1])
 
 
 def test_the_states_of_a_cycle(fretting):
@@ -144,9 +140,8 @@ def test_damage_sum_is_that_of_its_cycles(fretting):
     cycles = fretting.cycles[1:]
     theta, total = damage.damage_sum(fretting, cycles, "smith-watson-topper", repeats=100)
     points = fastpin.Points.at_depth(0.0, theta)
-    lives = [
-        damage.fatigue(damage.cycle_states(fretting, one), "smith-watson-topper", points=points).life for one in cycles
-    ]
+    stops = [damage.cycle_states(fretting, one) for one in cycles]
+    lives = [damage.fatigue(each, "smith-watson-topper", points=points).life for each in stops]
     np.testing.assert_allclose(total, sum(100.0 / life for life in lives), rtol=1e-14)
     once = damage.damage_sum(fretting, cycles, "smith-watson-topper")[1]
     np.testing.assert_allclose(total, 100.0 * once, rtol=1e-14)
@@ -154,13 +149,8 @@ def test_damage_sum_is_that_of_its_cycles(fretting):
 
 
 def test_all_states_without_cycles():
-    problem = fastpin.Problem(
-        fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["SAE 1020"]),
-        0.01,
-        1e-5,
-        0.3,
-        pin_load="body",
-    )
+    pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["SAE 1020"])
+    problem = fastpin.Problem(pair, 0.01, 1e-5, 0.3, pin_load="body")
     result = fastpin.solve(problem, [{"P": 1e6}, {"P": 5e5}, {"P": 1e6}], nodes=51)
     assert not result.cycles
     found, same = result.fatigue("smith-watson-topper"), damage.fatigue(result.states, "smith-watson-topper")
@@ -193,39 +183,34 @@ def test_bad_input(fretting, cycle):
     rigid = fastpin.MaterialPair(fastpin.Material.rigid(), fastpin.MATERIALS["steel"])
     other = dataclasses.replace(cycle[0], problem=dataclasses.replace(cycle[0].problem, pair=rigid))
     points = fastpin.Points.at_depth(0.0, 0.0)
-    bad = {
-        "states: must be the stops of a cycle, at least two, not 1": lambda: damage.fatigue(cycle[:1], "crossland"),
-        "states: must be a sequence of fastpin.State, not 3": lambda: damage.fatigue([3, 4], "crossland"),
-        "states: must be a sequence of fastpin.State, not true": lambda: damage.fatigue(True, "crossland"),
-        "states: must be states of one problem": lambda: damage.fatigue([cycle[0], other], "crossland"),
-        "criterion: must be": lambda: damage.fatigue(cycle, "swt"),
-        "body: must be": lambda: damage.fatigue(cycle, "crossland", "hole"),
-        "points: must be fastpin.Points": lambda: damage.fatigue(cycle, "crossland", points=[0.0]),
-        "depth: can't be given together with points": (
-            lambda: damage.fatigue(cycle, "crossland", points=points, depth=1e-3)
-        ),
-        "depth: must be at least 0": lambda: damage.fatigue(cycle, "crossland", depth=-1.0),
-        "fatigue: crossland needs bending_limit, torsion_limit of the pin's material": (
-            lambda: damage.fatigue(cycle, "crossland", "pin")
-        ),
-        "fatigue: fatemi-socie needs normal_stress_factor of the plate's material": (
-            lambda: damage.fatigue(cycle, "fatemi-socie", constants=FatigueConstants(yield_strength=1.0))
-        ),
-        "constants: must be": lambda: damage.fatigue(cycle, "crossland", constants={}),
-        "body: the pin is rigid: its stress is not determined": (  # first: a rigid body has no stress at any depth
-            lambda: damage.fatigue([other] * 2, "crossland", "pin", depth=1e3)
-        ),
-        "cycles: must be at least one": lambda: damage.damage_sum(fretting, [], "crossland"),
-        "cycle: must be": lambda: damage.cycle_states(fretting, 3),
-        "criterion: the plate's material has no constants for a life by crossland": (
-            lambda: damage.damage_sum(fretting, fretting.cycles, "crossland")
-        ),
-        "repeats: must be a whole number of at least 1, not 0": (
-            lambda: damage.damage_sum(fretting, fretting.cycles, "smith-watson-topper", repeats=0)
-        ),
+    fatigue = {
+        "states: must be the stops of a cycle, at least two, not 1": {"states": cycle[:1]},
+        "states: must be a sequence of fastpin.State, not 3": {"states": [3, 4]},
+        "states: must be a sequence of fastpin.State, not true": {"states": True},
+        "states: must be states of one problem": {"states": [cycle[0], other]},
+        "criterion: must be": {"criterion": "swt"},
+        "body: must be": {"body": "hole"},
+        "points: must be fastpin.Points": {"points": [0.0]},
+        "depth: can't be given together with points": {"points": points, "depth": 1e-3},
+        "depth: must be at least 0": {"depth": -1.0},
+        "fatigue: crossland needs bending_limit, torsion_limit of the pin's material": {"body": "pin"},
+        "fatigue: fatemi-socie needs normal_stress_factor of the plate's material": {
+            "criterion": "fatemi-socie",
+            "constants": FatigueConstants(yield_strength=1.0),
+        },
+        "constants: must be": {"constants": {}},
+        # first: a rigid body has no stress at any depth
+        "body: the pin is rigid: its stress is not determined": {"states": [other] * 2, "body": "pin", "depth": 1e3},
     }
-    for sentence, call in bad.items():
-        with pytest.raises(InputError) as caught:
-            call()
-        assert str(caught.value).startswith(sentence)
-        assert "\n" not in str(caught.value)
+    for sentence, given in fatigue.items():
+        error = refused(damage.fatigue, **{"states": cycle, "criterion": "crossland", **given})
+        assert str(error).startswith(sentence)
+    sums = {
+        "cycles: must be at least one": ([], "crossland"),
+        "criterion: the plate's material has no constants for a life by crossland": (fretting.cycles, "crossland"),
+    }
+    for sentence, arguments in sums.items():
+        assert str(refused(damage.damage_sum, fretting, *arguments)).startswith(sentence)
+    error = refused(damage.damage_sum, fretting, fretting.cycles, "smith-watson-topper", repeats=0)
+    assert str(error) == "repeats: must be a whole number of at least 1, not 0"
+    assert str(refused(damage.cycle_states, fretting, 3)).startswith("cycle: must be")

@@ -12,16 +12,12 @@ from fastpin.damage.assessed import _edge_count
 from fastpin.damage.counted import Spectrum
 from fastpin.damage.lives import cycles_on_curve, smith_watson_topper_curve
 from fastpin.errors import InputError
-from fastpin.model import FatigueAssessment, FatigueConstants
+from fastpin.model import FatigueAssessment
 from fastpin.model.doubts import doubts_given
+from tests.support.fatigue import ALUMINIUM as MATERIAL
 from tests.support.tiers import for_gate, gate
 
 SWT, FS = "smith-watson-topper", "fatemi-socie"
-CONSTANTS = FatigueConstants(
-    1100e6, -0.124, 0.22, -0.59, 640e6, -0.124, 0.38, -0.59, yield_strength=379e6, threshold_range=3e6,
-    limit_range=200e6, normal_stress_factor=1.0,
-)  # fmt: skip
-MATERIAL = fastpin.Material(70e9, 0.33, "aluminium", CONSTANTS)
 CURVE = smith_watson_topper_curve(70e9, 1100e6, -0.124, 0.22, -0.59)
 
 
@@ -29,12 +25,6 @@ def solved(history, **fields):
     problem = fastpin.Problem(fastpin.MaterialPair(MATERIAL, MATERIAL), 10e-3, 40e-6, 0.4, **fields)
     with doubts_given():
         return fastpin.solve(problem, history, nodes=61)
-
-
-@pytest.fixture(scope="module")
-def single():
-    """A single cycle: P, and P with Q."""
-    return solved([{"P": 4e6}, {"Q": 1e6}, {"Q": 0.0}])
 
 
 @pytest.fixture(scope="module")
@@ -65,9 +55,9 @@ def parameter_at(cycles):
         ({}, 1.0),
     ],
 )
-def test_a_single_cycle_may_grow_to_its_point_on_the_curve(single, fields, cycles):
+def test_a_single_cycle_may_grow_to_its_point_on_the_curve(fields, cycles):
     """The parameter grows with the square of the stress, so the factor is a root of a ratio of parameters."""
-    two = [single[0], single[1]]
+    two = list(solved([{"P": 4e6}, {"Q": 1e6}]))
     hot = damage.fatigue(two, SWT).hot_spot
     (one,) = damage.assessed_reserves(two, FatigueAssessment(bodies="plate", **fields))
     assert one.factor == pytest.approx(math.sqrt(parameter_at(cycles) / hot.parameter), rel=1e-5)
@@ -75,7 +65,7 @@ def test_a_single_cycle_may_grow_to_its_point_on_the_curve(single, fields, cycle
         assert one.theta == hot.theta
         assert math.sin(one.plane - hot.plane) == pytest.approx(0.0, abs=2e-3)
     assert {one.start, one.stop} == {1.0, 2.0}
-    assert one.loads == single[int(one.largest) - 1].load
+    assert one.loads == two[int(one.largest) - 1].load
 
 
 @pytest.mark.parametrize("criterion", [SWT, FS])

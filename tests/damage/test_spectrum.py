@@ -15,11 +15,13 @@ from fastpin.damage.histories import different_states, history_blocks
 from fastpin.damage.lives import smith_watson_topper_life
 from fastpin.errors import InputError
 from fastpin.model import FatigueConstants
+from tests.support.fatigue import ALUMINIUM as MATERIAL
+from tests.support.fatigue import PAIR, uniaxial
+from tests.support.refusals import refused
 from tests.support.tiers import seeds
 
 SWT, FS = "smith-watson-topper", "fatemi-socie"
 LIFE = {"fatigue_strength": 1100e6, "strength_exponent": -0.124, "fatigue_ductility": 0.22, "ductility_exponent": -0.59}
-MATERIAL = fastpin.Material(70e9, 0.33, "aluminium", FatigueConstants(**LIFE))
 
 
 def random_loads(corners, seed=1, **steady):
@@ -29,15 +31,7 @@ def random_loads(corners, seed=1, **steady):
 
 
 def problem_of(**bodies):
-    pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], MATERIAL)
-    return fastpin.Problem(pair, 10e-3, 40e-6, 0.4, **bodies)
-
-
-def uniaxial(values):
-    """A stress sxx alone, in plane stress, shape (states, 1, 4)."""
-    history = np.zeros((len(values), 1, 4))
-    history[:, 0, 0] = values
-    return history
+    return fastpin.Problem(PAIR, 10e-3, 40e-6, 0.4, **bodies)
 
 
 def sum_of(values, order=None):
@@ -96,9 +90,8 @@ def test_blocks_of_points_and_points_deep_in_the_pin(monkeypatch):
     points = fastpin.Points.at_depth(np.array([[0.0], [9e-3]]), np.linspace(-3.0, 1.0, 5))
     whole = damage.stress_history(states, points, "plate", True)
     deep = damage.stress_history(states, points, "pin", True)
-    np.testing.assert_array_equal(
-        deep[7, :, 0], states[7].stress(points, "pin", True).sxx.ravel()
-    )  # read state by state
+    read = states[7].stress(points, "pin", True)  # state by state
+    np.testing.assert_array_equal(deep[7, :, 0], read.sxx.ravel())
     monkeypatch.setattr("fastpin.damage.histories.ROOM", 3 * (8 * 31 + 4 * 45))
     blocks = list(history_blocks(states, points, "plate", True))
     assert [block.stop - block.start for block, _ in blocks] == [3, 3, 3, 1]
@@ -114,35 +107,24 @@ def test_blocks_of_points_and_points_deep_in_the_pin(monkeypatch):
 # -- cases worked by hand --------------------------------------------------------------------------------------------
 
 
-def test_one_level():
-    found, plane = sum_of([0.0, 300e6])
-    assert found == pytest.approx(by_hand(0.0, 300e6), rel=1e-9)
+LEVELS = {
+    "one": ([0.0, 300e6], [0, 1], [(1, 0.0, 300e6)]),
+    "two": ([0.0, 200e6, -100e6, 300e6], [0, 1] * 40 + [2, 3] * 3, [(40, 0.0, 200e6), (3, -100e6, 300e6)]),
+    "one in another": (
+        [0.0, 100e6, 250e6, 200e6],
+        [0, *[2, 1] * 10, *[2, 3] * 100, 2],
+        [(1, 0.0, 250e6), (10, 100e6, 250e6), (100, 200e6, 250e6)],
+    ),
+}
+"""Stresses, their order, and the cycles that they make: how many, lowest and highest stress."""
+
+
+@pytest.mark.parametrize("name", LEVELS)
+def test_levels_worked_by_hand(name):
+    values, order, cycles = LEVELS[name]
+    found, plane = sum_of(values, order)
+    assert found == pytest.approx(sum(times * by_hand(low, high) for times, low, high in cycles), rel=1e-9)
     assert plane == pytest.approx(0.0, abs=1e-4)
-
-
-def test_two_levels():
-    """40 cycles from 0 to 200 MPa, and 3 from -100 to 300 MPa."""
-    values = [0.0, 200e6, -100e6, 300e6]
-    found, _ = sum_of(values, [0, 1] * 40 + [2, 3] * 3)
-    assert found == pytest.approx(40 * by_hand(0.0, 200e6) + 3 * by_hand(-100e6, 300e6), rel=1e-9)
-
-
-def test_three_levels():
-    """100 cycles of 50 MPa on top of 10 cycles of 150 MPa, within one cycle from zero."""
-    values = [0.0, 100e6, 250e6, 200e6]
-    order = [0, *[2, 1] * 10, *[2, 3] * 100, 2]
-    found, _ = sum_of(values, order)
-    expected = by_hand(0.0, 250e6) + 10 * by_hand(100e6, 250e6) + 100 * by_hand(200e6, 250e6)
-    assert found == pytest.approx(expected, rel=1e-9)
-
-
-def test_twice_the_stress_gives_the_life_of_the_curve():
-    values = np.random.default_rng(4).uniform(-1e8, 2e8, 60)
-    flat = dataclasses.replace(MATERIAL.fatigue, fatigue_ductility=1e-30)  # one power alone
-    counted = CountedMaterial.of(SWT, MATERIAL, flat, "plate")
-    one, two = (float(counted.worst(uniaxial(k * values), Spectrum.of(np.arange(60)))[0][0]) for k in (1.0, 2.0))
-    assert one / two == pytest.approx(4.0 ** (1.0 / (2.0 * LIFE["strength_exponent"])), rel=1e-9)
-    assert sum_of([0.0, 2e8])[0] == pytest.approx(by_hand(0.0, 2e8), rel=1e-9)
 
 
 def test_fatemi_socie_under_pure_shear():
@@ -183,20 +165,16 @@ def test_laws_of_random_histories():
         assert sum_of(np.column_stack([values, between]).ravel())[0] == pytest.approx(found, rel=1e-12)
 
 
-def test_parts_add_up_where_cycles_do_not_cross():
-    """Two spectra that begin and end at the same highest peak: no cycle has a reversal in both."""
-    for seed in seeds(20):
-        rng = np.random.default_rng(seed)
-        one, two = (np.append(4e8, rng.uniform(-3e8, 3.9e8, 25)) for _ in range(2))
-        both = sum_of(np.concatenate([one, two]))[0]
-        assert both == pytest.approx(sum_of(one)[0] + sum_of(two)[0], rel=1e-9)
+def on_plane(history, plane):
+    """Normal stress and normal strain of a plane."""
+    sxx, syy, szz, sxy = history.T
+    normal = sxx * math.cos(plane) ** 2 + syy * math.sin(plane) ** 2 + sxy * math.sin(2.0 * plane)
+    return normal, (1.33 * normal - 0.33 * (sxx + syy + szz)) / 70e9
 
 
 def searched(history, plane):
     """The damage of one plane from the ranges and means of its strain, where all stresses grow with one load."""
-    sxx, syy, szz, sxy = history.T
-    normal = sxx * math.cos(plane) ** 2 + syy * math.sin(plane) ** 2 + sxy * math.sin(2.0 * plane)
-    strain = (1.33 * normal - 0.33 * (sxx + syy + szz)) / 70e9
+    normal, strain = on_plane(history, plane)
     k = int(np.argmax(np.abs(strain)))
     ratio, counts = normal[k] / strain[k], damage.rainflow(strain)
     tops = np.maximum(ratio * (counts.mean + 0.5 * counts.range), ratio * (counts.mean - 0.5 * counts.range))
@@ -227,9 +205,7 @@ def test_a_plane_of_turning_stresses_is_counted_as_by_pylife():
         scanned = [counted.cycles(history, spectrum, x)[1][:, 2].sum() for x in np.radians(np.arange(0.0, 180.0, 2.5))]
         assert found >= max(scanned) * (1.0 - 1e-12)
         assert found == pytest.approx(counted.cycles(history, spectrum, plane)[1][:, 2].sum(), rel=1e-12)
-        sxx, syy, szz, sxy = history[:, 0].T
-        normal = sxx * math.cos(plane) ** 2 + syy * math.sin(plane) ** 2 + sxy * math.sin(2.0 * plane)
-        strain = (1.33 * normal - 0.33 * (sxx + syy + szz)) / 70e9
+        _, strain = on_plane(history[:, 0], plane)
         places, _ = counted.cycles(history, spectrum, plane)
         ranges = np.abs(strain[places[:, 0]] - strain[places[:, 1]])
         np.testing.assert_allclose(np.sort(ranges), np.sort(damage.rainflow(strain).range), rtol=1e-9, atol=1e-12)
@@ -306,9 +282,8 @@ def test_bodies_are_ranked_with_their_own_constants():
         np.testing.assert_array_equal(one.damage, alone.damage)
     wall = fastpin.Points.at_depth(np.array([[1e-3], [4e-3]]), np.linspace(-1.0, 0.0, 3))
     both = damage.spectrum_damage(states, points=wall, straight=True)
-    beyond = damage.spectrum_damage(
-        states, body="seat", points=fastpin.Points.at_depth(1.5e-3, wall.theta[1]), straight=True
-    )
+    points = fastpin.Points.at_depth(1.5e-3, wall.theta[1])
+    beyond = damage.spectrum_damage(states, body="seat", points=points, straight=True)
     np.testing.assert_allclose(both.damage[1], beyond.damage, rtol=1e-9)
 
 
@@ -327,22 +302,17 @@ def test_bad_input(fretting):
     steel = fastpin.MATERIALS["steel"]
     bare = fastpin.Problem(fastpin.MaterialPair(steel, steel), 10e-3, 4e-5, 0.4)
     states = list(fastpin.solve(bare, random_loads(3), nodes=61))
-    missing = "fatigue_strength, strength_exponent, fatigue_ductility, ductility_exponent"
-    bad = {
-        f"fatigue: smith-watson-topper needs {missing} of the plate's material": lambda: damage.spectrum_damage(states),
-        f"fatigue: smith-watson-topper needs {missing} of the plate's material ": lambda: damage.damage_ranking(states),
-        "states: must be the stops of a cycle, at least two, not 1": lambda: damage.spectrum_damage(fretting[:1]),
-        "states: must have a turning point: their stresses do not change": lambda: damage.spectrum_damage(
-            [fretting[0]] * 3
-        ),
-        "depth: can't be given together with points": lambda: damage.spectrum_damage(
-            fretting, depth=0.0, points=fastpin.Points.at_depth(0.0, 0.0)
-        ),
-    }
-    for sentence, call in bad.items():
-        with pytest.raises(InputError) as caught:
-            call()
-        assert str(caught.value) == sentence.strip()
+    names = "fatigue_strength, strength_exponent, fatigue_ductility, ductility_exponent"
+    missing = f"fatigue: smith-watson-topper needs {names} of the plate's material"
+    assert str(refused(damage.spectrum_damage, states)) == str(refused(damage.damage_ranking, states)) == missing
+    points = fastpin.Points.at_depth(0.0, 0.0)
+    error = refused(damage.spectrum_damage, fretting, depth=0.0, points=points)
+    assert str(error) == "depth: can't be given together with points"
+    for stops, sentence in (
+        (fretting[:1], "states: must be the stops of a cycle, at least two, not 1"),
+        ([fretting[0]] * 3, "states: must have a turning point: their stresses do not change"),
+    ):
+        assert str(refused(damage.spectrum_damage, stops)) == sentence
     with pytest.raises(InputError, match=r"^criterion: findley has no life; use "):
         damage.spectrum_damage(fretting, "findley")
     with pytest.raises(InputError, match=r"^states: must hold all corners of the history; 6 were not kept$"):

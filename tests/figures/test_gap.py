@@ -16,6 +16,8 @@ from fastpin.figures.sketch import GAP, LARGEST_GAP
 from fastpin.figures.words import caption
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, Profile
+from tests.support.case_texts import PRESSED
+from tests.support.drawing import legend_words, plain
 from tests.support.samples import PAIR
 
 ROUND = Problem(PAIR, 0.01, 2e-5, 0.4, "body")
@@ -44,7 +46,7 @@ def test_only_what_varies_is_drawn() -> None:
     (panel,) = plot_gap(replace(ROUND, friction=FRICTION)).axes
     assert panel.get_ylabel() == "friction coefficient"
     figure = plot_gap(replace(ROUND, gap=InitialGap(HOLE)))
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["hole"]
+    assert legend_words(figure) == ["hole"]
     with pytest.raises(InputError, match=r"^gap: there is no initial gap, and the friction is the same all round$"):
         plot_gap(ROUND)
     with pytest.raises(InputError, match=r"^joint: must be a Problem, Case or Result, not 3$"):
@@ -52,7 +54,7 @@ def test_only_what_varies_is_drawn() -> None:
 
 
 def test_captions_hold_the_profiles() -> None:
-    text = caption(LOBED).replace("\N{NO-BREAK SPACE}", " ")
+    text = plain(caption(LOBED))
     assert "friction coefficient 0.1 to 0.4 along the rim: 0.4 and -0.3 more from -28.65 to 57.3 deg" in text
     assert "initial gap of the hole: oval of 4 µm, largest at 90 deg and 5 lobes of 1 µm, one at" in text
     assert "initial gap of the pin: crown of −2 µm at 0 deg, half width 28.65 deg" in text
@@ -66,8 +68,7 @@ def test_captions_hold_the_profiles() -> None:
 @pytest.mark.gate
 def test_a_case_file_has_the_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
-    text = '[pin]\nmaterial = "steel"\n[plate]\nmaterial = "steel"\n[contact]\nhole_radius = 0.01\nclearance = 1e-5\n'
-    text += "friction = 0.3\n[gap]\nhole = { ellipse = 2e-6, axis = 0 }\n[[load]]\nP = 1e6\n"
+    text = f"{PRESSED}[gap]\nhole = {{ ellipse = 2e-6, axis = 0 }}\n"
     Path("case.toml").write_text(text)
     assert main(["plot", "case.toml", "gap", "--csv", "gap.csv"]) == 0
     rows = list(csv.DictReader(Path("gap.csv").read_text().splitlines()))

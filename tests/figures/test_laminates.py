@@ -103,17 +103,13 @@ def test_a_map_of_the_used_strength(tmp_path: Path) -> None:
     radius, angle, used = curve.columns.values()
     for place in (0, 700, used.size - 1):
         point = Points.at_radius(radius[place], math.radians(angle[place] - 90.0))
-        ratio = first_ply_failure(PLATE, whole(state, point)).ratio
+        stress = state.stress(point)
+        ratio = first_ply_failure(PLATE, np.stack([stress.sxx, stress.syy, stress.sxy], axis=-1)).ratio
         assert used[place] == pytest.approx(1.0 / ratio, rel=1e-9)
     figure = plot_stress_field(state, tmp_path / "map.png", component="utilization")
     assert figure.axes[-1].get_ylabel() == "used strength of the first ply (Hashin)"
     with pytest.raises(InputError, match="plate: must be a laminate"):
         field_curves(solve_once(ISOTROPIC, HISTORY, nodes=41)[-1], "utilization")
-
-
-def whole(state, point):
-    stress = state.stress(point)
-    return np.stack([stress.sxx, stress.syy, stress.sxy], axis=-1)
 
 
 def test_strength_as_an_assessment_says() -> None:

@@ -5,6 +5,7 @@ import pytest
 from fastpin.errors import InputError
 from fastpin.figures.lug import ARROWS, HOLD_WORDS, plot_lug
 from fastpin.model.lug import Hole, PartLoad
+from tests.support.drawing import legend_words
 from tests.support.lugs import plate
 
 LUG = plate(
@@ -23,11 +24,8 @@ def test_parts_holes_supports_and_loads_are_drawn():
     arrows = [text for text in panel.texts if text.get_text() == ""]
     assert len(arrows) == ARROWS
     assert all(arrow.xy[1] < arrow.xyann[1] < -2.5e3 for arrow in arrows)  # tension, in millimetres
-    labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-    assert [label for label in labels if label.strip()] == [
-        "free",
-        *(HOLD_WORDS[hold] for hold in ("both", "x", "normal")),
-    ]
+    holds = [HOLD_WORDS[hold] for hold in ("both", "x", "normal")]
+    assert [label for label in legend_words(figure) if label.strip()] == ["free", *holds]
     assert figure.get_suptitle() == "A plate"
 
 

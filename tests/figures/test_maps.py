@@ -15,12 +15,8 @@ from fastpin.figures.stick_slip import LOOKS, MOST_COLUMNS, zone_boxes
 from fastpin.figures.style import COLOURS
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.states.cycles import Cycle
+from tests.support.drawing import legend_words, plain
 from tests.support.samples import PAIR, sample_result, with_values
-
-
-def legend_texts(figure):
-    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-
 
 # -- the map of stick and slip ------------------------------------------------------------------------------------
 
@@ -50,7 +46,7 @@ def test_the_map_is_drawn_below_the_loads_that_change(tmp_path):
     assert panel.get_xlim() == (0.5, 3.5)
     assert "load point" in panel.get_xlabel()
     assert "(deg)" in panel.get_ylabel()
-    assert legend_texts(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise", "open"]
+    assert legend_words(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise", "open"]
     assert figure.get_suptitle() == "A map\nP = 2.42 MN/m"
     assert (tmp_path / "map.png").stat().st_size > 10_000
 
@@ -87,14 +83,14 @@ def test_a_triangle_marks_a_narrow_slip_zone():
     panel = figures.plot_stick_slip(result).axes[-1]
     (marks,) = panel.lines
     assert (marks.get_marker(), marks.get_xdata().tolist()) == ("^", [1.0])
-    assert "narrow slip zone" in legend_texts(panel.figure)
+    assert "narrow slip zone" in legend_words(panel.figure)
 
 
 def test_slip_without_friction_has_no_direction():
     result = sample_result(friction=0.0)
     for figure in (figures.plot_stick_slip(result), figures.plot_sketch(result[0])):
-        assert legend_texts(figure)[0] == "slips without friction"
-        assert not [text for text in legend_texts(figure) if "clockwise" in text or "narrow" in text]
+        assert legend_words(figure)[0] == "slips without friction"
+        assert not [text for text in legend_words(figure) if "clockwise" in text or "narrow" in text]
 
 
 @pytest.mark.gate
@@ -122,16 +118,11 @@ def long_result(corners=700, largest=650, friction=0.4):
     return states, closed, outer
 
 
-def with_block(states, cycles):
-    result = sample_result([{"P": 1e6}], nodes=21)
-    result.states, result.cycles = states, cycles
-    return result
-
-
 def test_a_long_history_has_a_column_for_some_cycles_each_and_hides_no_extreme():
     states, closed, outer = long_result()
     cycles = tuple(Cycle(k, 2, k // 2, 0.0, 0.0, 0.0, 0.0, True) for k in range(2, 700, 2))
-    drawn = figures.states.drawn_states(with_block(states, cycles), "all", MOST_COLUMNS, whole=True)
+    result = dataclasses.replace(sample_result([{"P": 1e6}], nodes=21), states=states, cycles=cycles)
+    drawn = figures.states.drawn_states(result, "all", MOST_COLUMNS, whole=True)
     assert len(drawn) == 700
     columns, words = figures.stick_slip.long_columns(drawn)
     assert words == "each column joins 2 cycles, or states outside of cycles"
@@ -157,7 +148,7 @@ def test_the_map_of_a_long_history_is_drawn_with_the_range_of_the_loads(tmp_path
     assert loads.get_legend().get_texts()[0].get_text().startswith("Q, largest 300")
     assert max(loads.lines[0].get_ydata()) == 1.0  # the largest load is drawn
     assert panel.get_xlim()[1] == 700.0
-    texts = legend_texts(figure)  # the first state has statuses only, in both directions
+    texts = legend_words(figure)  # the first state has statuses only, in both directions
     assert [texts[0], *texts[3:]] == ["sticks whenever it touches", "pin slips both ways", "open all the time"]
     assert "700 states; each column joins 4 states" in loads.get_title().replace("\n", " ")
 
@@ -187,28 +178,22 @@ def test_columns_of_cycles_and_of_single_states():
 
 
 def first_curve(panel):
-    (line,) = (line for line in panel.lines if line.get_color() == COLOURS[0])
-    return line.get_xdata(), line.get_ydata()
+    lines = (line for line in panel.lines if line.get_color() == COLOURS[0])
+    return max(lines, key=lambda line: len(line.get_xdata())).get_data()
 
 
 def test_polar_curves_stand_over_the_circle():
     result = sample_result()
     pressure, shear = figures.plot_polar(result).axes
     state = result[0]
-    line = max(
-        (line for line in pressure.lines if line.get_color() == "#0072B2"), key=lambda line: len(line.get_xdata())
-    )
-    x, y = line.get_xdata(), line.get_ydata()
+    x, y = first_curve(pressure)
     height = np.hypot(x, y) - 1.0
     top = int(np.argmax(height))
     assert math.atan2(y[top], x[top]) == pytest.approx(state.peak_pressure_angle, abs=0.02)
     assert height[[0, -1]] == pytest.approx([0.0, 0.0], abs=1e-9)
     assert math.atan2(y[0], x[0]) == pytest.approx(state.contact[0][0], abs=1e-9)
-    turned = max(
-        (line for line in shear.lines if line.get_color() == "#0072B2"), key=lambda line: len(line.get_xdata())
-    )
-    inside = np.hypot(turned.get_xdata(), turned.get_ydata()) < 1.0 - 1e-6
-    assert np.all(turned.get_xdata()[inside] < 0.0)  # T is negative left of the bottom
+    x, y = first_curve(shear)
+    assert np.all(x[np.hypot(x, y) < 1.0 - 1e-6] < 0.0)  # T is negative left of the bottom
     assert pressure.get_xlabel() == "pressure N (MPa)"
     assert pressure.get_aspect() == shear.get_aspect() == 1.0
     assert {"0°", "90°", "−90°"} <= {text.get_text() for text in pressure.texts}
@@ -222,7 +207,7 @@ def test_a_polar_view_without_friction_has_one_panel():
 
 
 def words(panel):
-    return [text.get_text().replace("\N{NO-BREAK SPACE}", " ") for text in panel.texts]
+    return [plain(text.get_text()) for text in panel.texts]
 
 
 def arrows(panel):
@@ -248,7 +233,7 @@ def test_a_sketch_of_a_state_shows_its_loads_and_its_contact():
     assert arrows(panel)[1]._posA_posB[1][0] < 0.0
     arcs = [patch for patch in panel.patches if isinstance(patch, Wedge)]
     assert len(arcs) == 3
-    assert legend_texts(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise"]
+    assert legend_words(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise"]
     assert figure.get_suptitle() == "load point 3"
 
 

@@ -12,6 +12,9 @@ from fastpin.damage import fatigue, spectrum_damage
 from fastpin.figures.load_cycle import area_doubt
 from fastpin.model import FatigueConstants
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
+from tests.support.drawing import legend_words
+from tests.support.fatigue import ALUMINIUM
+from tests.support.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -20,12 +23,6 @@ def result():
     problem = Problem(pair, hole_radius=2.4e-3, clearance=10e-6, friction=0.4, pin_load="body")
     cycle = LoadHistory([{"Q": 1e5, "sxx": 60e6}, {"Q": -1e5, "sxx": 6e6}])
     return solve(problem, LoadHistory([{"P": 6e5}]) + cycle.repeated(2), nodes=121, between=1, slip_sums=True)
-
-
-@pytest.fixture(scope="module")
-def rigid():
-    pair = MaterialPair(Material.rigid(), Material(1.0, 0.3))
-    return solve(Problem.from_load_parameter(pair, 0.1, 0.3), [{"P": 1.0}], nodes=61)
 
 
 @pytest.fixture
@@ -77,7 +74,9 @@ def test_solid_lines_of_an_svg_have_no_dashes_of_no_length(result, tmp_path):
     assert "stroke-dasharray: ;" not in (tmp_path / "hoop.svg").read_text(encoding="utf-8")
 
 
-def test_a_rigid_body_is_left_out(rigid):
+def test_a_rigid_body_is_left_out():
+    pair = MaterialPair(Material.rigid(), Material(1.0, 0.3))
+    rigid = solve(Problem.from_load_parameter(pair, 0.1, 0.3), [{"P": 1.0}], nodes=61)
     figure = figures.plot_hoop_stress(rigid)
     assert [panel.get_ylabel() for panel in figure.axes] == ["hoop stress of the plate (F/R)"]
     assert len(field_curves(rigid[-1], fineness=10)) == 1
@@ -102,9 +101,8 @@ def test_profiles_end_at_the_far_rim():
     ring = solve(Problem(pair, 10e-3, 20e-6, 0.3, **bodies), [{"P": 1e6}], nodes=61)
     for body, wall in (("plate", 1.5), ("pin", 0.5)):
         assert depth_curves(ring, body, 0.0, wall)[0]["depth [m]"][-1] == pytest.approx(wall * 10e-3)
-        with pytest.raises(InputError) as refused:
-            depth_curves(ring, body, 0.0, 3.0)
-        assert str(refused.value) == f"depth: must be above 0 and at most {wall} radii, the wall of the {body}, not 3"
+        words = f"depth: must be above 0 and at most {wall} radii, the wall of the {body}, not 3"
+        assert str(refused(depth_curves, ring, body, 0.0, 3.0)) == words
 
 
 @pytest.mark.gate
@@ -120,10 +118,7 @@ def test_the_edge_of_the_hole_may_be_that_of_a_bush():
 
 
 def test_fatigue_of_bush_and_seat_share_the_panels():
-    constants = FatigueConstants(
-        fatigue_strength=1317e6, strength_exponent=-0.126, fatigue_ductility=0.19, ductility_exponent=-0.52
-    )
-    pair = MaterialPair(MATERIALS["steel"], Material(71e9, 0.33, fatigue=constants))
+    pair = MaterialPair(MATERIALS["steel"], ALUMINIUM)
     bush = Bushing(Material(103e9, 0.34), 12.5e-3, 40e-6)
     joint = solve(Problem(pair, 10e-3, 60e-6, 0.3, plate_body=bush), [{"P": 1e6}, {"P": 5e5}], nodes=61)
     found = [fatigue(joint, "smith-watson-topper", body) for body in ("plate", "seat")]
@@ -132,7 +127,7 @@ def test_fatigue_of_bush_and_seat_share_the_panels():
     parameter, life = figure.axes
     assert [len(curve.get_ydata()) for curve in parameter.lines[:2]] == [one.theta.size for one in found]
     assert len(life.lines) == 1
-    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    words = legend_words(figure)
     assert "bush: the parameter is 0 everywhere: no crack is expected" in words
     assert any(each.startswith("plate at the seat: hot spot at ") for each in words)
     # alone, an axis without a scale
@@ -234,7 +229,7 @@ def test_loops_of_several_cycles_lie_over_one_another(rig):
     figure = figures.plot_loops(cycles, names=["cycle 3", "cycle 6"])
     panel = loop_panel(figure)
     assert [max(drawn.get_xdata()) for drawn in panel.lines] == pytest.approx([5.0, 15.0])
-    entries = [text.get_text() for text in figure.legends[0].get_texts()]
+    entries = legend_words(figure)
     assert entries[0].startswith("cycle 3, corners 5 to 7: area ")
     assert "dissipated on the path" in entries[1]
     with pytest.raises(InputError, match="cycle: must be 1 to 8 cycles, not 9"):

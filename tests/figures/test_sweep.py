@@ -20,6 +20,7 @@ from fastpin.figures.sweep import cell_edges, plot_sweep, sweeps_of
 from fastpin.report.sweep import Axis, Chart, chart
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, parse_plan
+from tests.support.drawing import legend_words
 from tests.support.plans import MAP, made_up_rows
 
 
@@ -51,16 +52,15 @@ def test_a_map_shows_every_value_and_hatches_failures(plan: Plan, rows: list[dic
     figure = plot_sweep(chart(plan, rows, "peak_pressure"))
     maps, bar = figure.axes[:2], figure.axes[-1]
     mesh = maps[0].collections[0]
-    assert np.ma.filled(mesh.get_array(), np.nan).ravel() == pytest.approx(
-        [20, 40, np.nan, 41, np.nan, 42], nan_ok=True
-    )
+    shown = np.ma.filled(mesh.get_array(), np.nan).ravel()
+    assert shown == pytest.approx([20, 40, np.nan, 41, np.nan, 42], nan_ok=True)
     assert [patch.get_hatch() for patch in maps[0].patches] == ["////", None]
     assert maps[0].patches[0].get_xy() == pytest.approx((0.1, 10**0.5))
     assert not list(maps[1].patches)
     assert maps[0].get_yscale() == "log"
     assert bar.get_ylabel() == "peak pressure (MPa)"
     assert mesh.get_clim() == (20.0, 42.0)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["failed run", "no value"]
+    assert legend_words(figure) == ["failed run", "no value"]
 
 
 def test_curves_have_gaps_and_crosses_where_runs_failed(plan: Plan, rows: list[dict[str, Any]]) -> None:
@@ -71,7 +71,7 @@ def test_curves_have_gaps_and_crosses_where_runs_failed(plan: Plan, rows: list[d
     assert crosses.get_xdata() == pytest.approx([10.0])
     assert panel.get_xscale() == "log"
     assert panel.get_xlabel() == "clearance (µm)"
-    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    names = legend_words(figure)
     assert names[0] == "material of the pin = steel, friction coefficient = 0.2"
     assert names[-1] == "failed run"
 
@@ -181,7 +181,7 @@ def test_no_more_curves_than_can_be_told_apart() -> None:
     looks = {(one.get_color(), str(one._dash_pattern), one.get_marker()) for one in drawn}
     assert len(looks) == len(drawn) == len({one.get_marker() for one in drawn})
     assert figure.legends[0].get_title().get_text() == "8 of 12 curves"
-    names = {text.get_text() for text in figure.legends[0].get_texts()}
+    names = set(legend_words(figure))
     assert {"force P in load 1 = 0 N", "force P in load 1 = 11 N"} <= names
 
 
@@ -209,7 +209,7 @@ def test_a_map_of_classes_has_names_and_one_line_between_two_classes() -> None:
     assert len(sides) == 5
     assert ((0.5, 2.5), (1.5, 2.5)) in sides  # between 0 and 2, one line, and no line of a third class
     assert not panel.texts  # no labels of contours
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["none", "a part", "all"]
+    assert legend_words(figure) == ["none", "a part", "all"]
 
 
 def test_classes_differ_in_grey_or_by_their_hatches() -> None:
@@ -220,7 +220,7 @@ def test_classes_differ_in_grey_or_by_their_hatches() -> None:
 
 def test_absent_classes_are_not_in_the_legend_but_failures_are() -> None:
     figure = plot_sweep(class_chart([[0, np.nan], [1, np.nan]], [[False, True], [False, False]]))
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["none", "a part", "failed run", "no value"]
+    assert legend_words(figure) == ["none", "a part", "failed run", "no value"]
     (borders,) = (shape for shape in figure.axes[0].collections if isinstance(shape, LineCollection))
     assert len(borders.get_segments()) == 1  # no line towards a cell without a value
 
@@ -270,9 +270,7 @@ def test_a_map_marks_cells_whose_bar_hides_the_differences(smooth: Chart) -> Non
     assert dots(unsure) == [(smooth.x.values[1], smooth.y.values[1])]
     marked[1, 1] = 0.99 * max(steps)
     assert dots(plot_sweep(replace(smooth, bars=[marked]))) == []
-    assert [text.get_text() for text in unsure.legends[0].get_texts()][
-        -1
-    ] == "error bar above the differences to all sides"
+    assert legend_words(unsure)[-1] == "error bar above the differences to all sides"
     assert "largest error bar" in unsure.get_suptitle()
     assert "largest error bar" not in (plot_sweep(smooth).get_suptitle() or "")
 

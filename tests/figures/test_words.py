@@ -17,13 +17,10 @@ from fastpin.figures.words import (
     wrapped_parts,
 )
 from fastpin.model.units import Unit
+from tests.support.drawing import plain
 from tests.support.samples import sample_result
 
 PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"], "stress")
-
-
-def plain(text: str) -> str:
-    return text.replace("\N{NO-BREAK SPACE}", " ")
 
 
 @pytest.mark.parametrize(
@@ -108,6 +105,5 @@ def test_forces_of_a_thick_plate_are_in_newtons():
 def test_lines_of_a_caption_end_after_commas():
     rows = wrapped_parts("pin: steel; plate: E = 69 GPa, ν = 0.33; friction coefficient 0.4, hole radius 10 mm", 1.9)
     assert rows == ["pin: steel; plate: E = 69 GPa,", "ν = 0.33; friction coefficient 0.4,", "hole radius 10 mm"]
-    assert wrapped_parts("a very long part that has no comma in it at all", 1.0) == wrapped(
-        "a very long part that has no comma in it at all", 1.0
-    )
+    words = "a very long part that has no comma in it at all"
+    assert wrapped_parts(words, 1.0) == wrapped(words, 1.0)

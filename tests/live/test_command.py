@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 
 import pytest
 
 from fastpin.cli import live as live_command
 from fastpin.cli.main import main
 from fastpin.live import server as server_module
-from fastpin.live.contact import LiveContact
-from fastpin.live.protocol import ALONE, CLASS, Limits
+from fastpin.live.protocol import ALONE, CLASS
 
 SHARED = "127.0.0.3"
 
@@ -29,18 +27,14 @@ SHARED = "127.0.0.3"
         (["nothing.toml"], "nothing.toml: there is no such file"),
     ],
 )
-def test_wrong_arguments(
-    arguments: list[str], sentence: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_arguments(arguments, sentence, monkeypatch, capsys):
     monkeypatch.setattr(server_module, "_such_as", str)  # it asks a socket
     assert main(["live", "--no-browser", *arguments]) == 2
     assert sentence in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("package", ["aiohttp", "segno"])
-def test_without_its_packages_the_command_says_how_to_install_them(
-    package: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_without_its_packages_the_command_says_how_to_install_them(package, monkeypatch, capsys):
     monkeypatch.delitem(sys.modules, server_module.__name__)
     monkeypatch.delattr(live_command.live, "serve", raising=False)  # it is kept there once it was found
     monkeypatch.setitem(sys.modules, package, None)
@@ -49,14 +43,10 @@ def test_without_its_packages_the_command_says_how_to_install_them(
     assert capsys.readouterr() == ("", sentence)
 
 
-def test_the_command_prints_the_address_and_who_can_reach_it(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_prints_the_address_and_who_can_reach_it(monkeypatch, capsys):
     asked: list[object] = []
 
-    def serve(
-        make: Callable[[], LiveContact], port: int, ready: Callable[[str], None], host: str, limits: Limits
-    ) -> None:
+    def serve(make, port, ready, host, limits):
         asked[:] = make().session.grid.size, port, host, limits
         ready(f"http://{host or '127.0.0.1'}:1/token/")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -97,25 +99,15 @@ def test_what_is_not_modelled_and_what_is_in_doubt_is_told(result: WearResult, r
     assert recording["life"]["remark"] == "debris is not modelled"
     assert recording["case"]["doubts"] == []
     problem = fastpin.Problem(result.problem.pair, 0.01, 5e-5, 0.4, rotation="fixed")
-    history = fastpin.LoadHistory([{"P": 1e6}]) + fastpin.LoadHistory([{"rotation": -0.1}, {"rotation": 0.1}]).repeated(
-        1
-    )
-    turned = fastpin.wear(problem, history, pin=1e-15, nodes=21, tolerance=0.0)
+    turns = fastpin.LoadHistory([{"rotation": -0.1}, {"rotation": 0.1}]).repeated(1)
+    turned = fastpin.wear(problem, fastpin.LoadHistory([{"P": 1e6}]) + turns, pin=1e-15, nodes=21, tolerance=0.0)
     (doubt,) = recorded(record_life(turned))["case"]["doubts"]
     assert "the pin slips by" in doubt
     assert [str(each) for each in turned.doubts] == [doubt]
 
 
-def begun_with(result: WearResult, cycles: int) -> WearResult:
-    """A life that ended with its first cycles."""
-    return WearResult(
-        **{name: getattr(result, name) for name in ("problem", "history", "law", "tolerance", "coefficients", "grid")},
-        cycles=result.cycles[:cycles], complete=False, statistics={},
-    )  # fmt: skip
-
-
 def test_a_life_that_ended_at_its_beginning_has_one_cycle_and_no_damage(result: WearResult) -> None:
-    begun = begun_with(result, 1)
+    begun = replace(result, cycles=result.cycles[:1], complete=False)
     found = recorded(record_life(begun, sentence="interrupted"))
     assert found["sentence"] == "interrupted"
     assert [each["cycle"] for each in found["life"]["cycles"]] == [0]
@@ -126,4 +118,4 @@ def test_what_is_no_life_with_cycles_is_refused(result: WearResult) -> None:
     with pytest.raises(fastpin.InputError, match=r"result: must be a fastpin\.solver\.WearResult"):
         record_life([])  # type: ignore[arg-type]
     with pytest.raises(fastpin.InputError, match="result: there is no stored cycle to record"):
-        record_life(begun_with(result, 0))
+        record_life(replace(result, cycles=(), complete=False))

@@ -33,7 +33,6 @@ def test_a_drag_has_the_states_of_solve_with_the_bush(page: Page) -> None:
     assert len(result) == len(page.pictures) == 4
     for picture, state in zip(page.pictures, result, strict=True):
         seat, shown = state.seat, picture["seat"]
-        assert seat is not None
         assert (shown["rotation"], shown["dissipation"]) == (seat.rotation, seat.dissipation)
         assert shown["peak_slip"] == seat.peak_slip
         assert len(shown["stick"]) == len(seat.stick)
@@ -51,12 +50,8 @@ def test_undo_and_redo_lead_back_to_the_same_seat(page: Page) -> None:
     page.tell("redo")
     assert page.pictures[-1] == before
     page.tell("load", loads={"P": FORCE, "Q": 0.5 * FORCE}, gesture=2)
-    last = page.live.session.state
-    assert last is not None
-    assert last.seat is not None
-    again = solved(page.live)[-1].seat
-    assert again is not None
-    assert np.array_equal(again.slip, last.seat.slip)
+    last, again = page.live.session.state, solved(page.live)[-1]
+    assert np.array_equal(again.seat.slip, last.seat.slip)
 
 
 @pytest.mark.gate

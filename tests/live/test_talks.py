@@ -17,12 +17,10 @@ from fastpin.live.contact import LiveContact
 from fastpin.live.page import page_files
 from fastpin.live.protocol import MOST_A_SECOND, MOST_BYTES, MOST_WAITING, Limits, Message
 from fastpin.live.server import TURN, Mailbox, Server
-from tests.support.live_pages import HeldSteps, Talk, Wire, contact, talked
+from tests.support.live_pages import HeldSteps, Talk, Wire, contact, in_a_loop
 
 SHARED = "127.0.0.3"
 TOKENLESS = "The address lacks the token: take the address that fastpin live has printed."
-
-Opened = Callable[[], Wire]
 
 
 def small() -> LiveContact:
@@ -74,17 +72,14 @@ def test_a_request_needs_the_address_the_page_and_the_token(host: str, port: int
         assert server.objection(other, [], server.token) == "This server answers to its own address only."
 
 
-def test_only_a_shared_page_is_told_its_address() -> None:
+@in_a_loop
+async def test_only_a_shared_page_is_told_its_address() -> None:
     for host in ("", SHARED):
         server = Server(small, host)
         server.take_port(8000)
-
-        async def work(opened: Opened, server: Server = server, host: str = host) -> None:
-            talk = opened().talk()
-            await talk.send("hello", session="")
-            assert (await talk.hear())["shared"] == (server.address if host else "")
-
-        talked(server, work)
+        talk = Wire(server)
+        await talk.send("hello", session="")
+        assert (await talk.hear())["shared"] == (server.address if host else "")
 
 
 def test_no_file_of_the_page_names_another_address() -> None:
@@ -98,36 +93,31 @@ def test_no_file_of_the_page_names_another_address() -> None:
 # -- messages ----------------------------------------------------------------------------------------------------------
 
 
-def test_a_load_is_answered_by_its_picture() -> None:
-    async def work(opened: Opened) -> None:
-        talk = opened().talk()
-        _, first = await talk.hello()
-        answer = await talk.load(1e5, drag=True)
-        assert (len(first["add"]), answer["keep"], len(answer["add"])) == (1, 1, 1)
-        assert answer["add"][0]["load"]["Q"] == 1e5
-
-    talked(Server(small), work)
+@in_a_loop
+async def test_a_load_is_answered_by_its_picture() -> None:
+    talk = Wire(Server(small))
+    _, first = await talk.hello()
+    answer = await talk.load(1e5, drag=True)
+    assert (len(first["add"]), answer["keep"], len(answer["add"])) == (1, 1, 1)
+    assert answer["add"][0]["load"]["Q"] == 1e5
 
 
 BAD = ["", "{", "[]", "null", '"load"', '{"kind": "load", "id": 1}', '{"kind": "hello", "id": 1, "session": 5}', "\x00",
        '{"kind": "load", "id": 1, "loads": {"__class__": 1}, "gesture": 1, "drag": true}', "[" * 5_000]  # fmt: skip
 
 
-def test_bad_messages_are_answered_and_survived() -> None:
-    async def work(opened: Opened) -> None:
-        wire = opened()
-        talk = wire.talk()
-        assert "the first message must be hello" in (await talk.tell("undo"))["sentence"]
-        await talk.hello()
-        for text in BAD:
-            await talk.say(text)
-            answer = await talk.hear()
-            assert (answer["kind"], bool(answer["sentence"])) == ("refused", True)
-        await wire.say("\xff\x00", WSMsgType.BINARY)
-        assert (await talk.hear())["sentence"] == "message: must be text"
-        assert (await talk.load(1e5))["kind"] == "pictures"
-
-    talked(Server(small), work)
+@in_a_loop
+async def test_bad_messages_are_answered_and_survived() -> None:
+    talk = Wire(Server(small))
+    assert "the first message must be hello" in (await talk.tell("undo"))["sentence"]
+    await talk.hello()
+    for text in BAD:
+        await talk.say(text)
+        answer = await talk.hear()
+        assert (answer["kind"], bool(answer["sentence"])) == ("refused", True)
+    await talk.say("\xff\x00", WSMsgType.BINARY)
+    assert (await talk.hear())["sentence"] == "message: must be text"
+    assert (await talk.load(1e5))["kind"] == "pictures"
 
 
 def test_the_longest_message_of_a_page_is_far_below_the_limit() -> None:
@@ -137,61 +127,53 @@ def test_the_longest_message_of_a_page_is_far_below_the_limit() -> None:
 
 
 @pytest.mark.parametrize("kind", [WSMsgType.TEXT, WSMsgType.BINARY])
-def test_messages_beyond_the_rate_get_no_answer_and_disturb_no_other_page(kind: WSMsgType) -> None:
+@in_a_loop
+async def test_messages_beyond_the_rate_get_no_answer_and_disturb_no_other_page(kind: WSMsgType) -> None:
     now = 0.0
 
-    async def work(opened: Opened) -> None:
-        nonlocal now
-        other, wire = opened().talk(), opened()
-        talk = wire.talk()
-        await other.hello()
-        await talk.hello()
-        for k in range(2 * MOST_A_SECOND):
-            load = {"kind": "load", "id": k, "loads": {"Q": 100.0 * k}, "gesture": 1, "drag": True}
-            await wire.say(json.dumps(load), kind)
-        await wire.read()
-        assert (await other.load(1e5))["kind"] == "pictures"
-        now = 1.0
-        answers = Counter[str]()
-        await talk.say('{"kind": "undo", "id": 1000}')
-        while (found := await talk.hear())["id"] != 1000:
-            answers[found["kind"]] += 1
-        assert answers.total() == MOST_A_SECOND - 1  # the hello counts, too
-        assert answers["skipped" if kind == WSMsgType.TEXT else "refused"] > MOST_A_SECOND - 10
-
-    talked(Server(small, clock=lambda: now), work)
+    server = Server(small, clock=lambda: now)
+    other, talk = Wire(server), Wire(server)
+    await other.hello()
+    await talk.hello()
+    for k in range(2 * MOST_A_SECOND):
+        load = {"kind": "load", "id": k, "loads": {"Q": 100.0 * k}, "gesture": 1, "drag": True}
+        await talk.say(json.dumps(load), kind)
+    await talk.read()
+    assert (await other.load(1e5))["kind"] == "pictures"
+    now = 1.0
+    answers = Counter[str]()
+    await talk.say('{"kind": "undo", "id": 1000}')
+    while (found := await talk.hear())["id"] != 1000:
+        answers[found["kind"]] += 1
+    assert answers.total() == MOST_A_SECOND - 1  # the hello counts, too
+    assert answers["skipped" if kind == WSMsgType.TEXT else "refused"] > MOST_A_SECOND - 10
 
 
-def test_the_mailbox_has_an_end() -> None:
-    async def fill() -> None:
-        mailbox = Mailbox()
-        for k in range(MOST_WAITING):
-            assert mailbox.put(Message("undo", k)) is None
-        with pytest.raises(InputError, match="more than 64 messages wait"):
-            mailbox.put(Message("undo", 99))
-        assert (await mailbox.get()).id == 0
-
-    asyncio.run(fill())
+@in_a_loop
+async def test_the_mailbox_has_an_end() -> None:
+    mailbox = Mailbox()
+    for k in range(MOST_WAITING):
+        assert mailbox.put(Message("undo", k)) is None
+    with pytest.raises(InputError, match="more than 64 messages wait"):
+        mailbox.put(Message("undo", 99))
+    assert (await mailbox.get()).id == 0
 
 
-def test_an_unexpected_error_is_answered_and_survived(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+@in_a_loop
+async def test_an_unexpected_error_is_answered_and_survived(monkeypatch, caplog):
     def broken(*_: object) -> None:
         raise ZeroDivisionError
 
-    async def work(opened: Opened) -> None:
-        talk = opened().talk()
-        await talk.hello()
-        monkeypatch.setattr(LiveContact, "_obey_undo", broken)
-        assert "failed unexpectedly (ZeroDivisionError)" in (await talk.tell("undo"))["sentence"]
-        assert (await talk.load(1e5))["kind"] == "pictures"
-
-    talked(Server(small), work)
+    talk = Wire(Server(small))
+    await talk.hello()
+    monkeypatch.setattr(LiveContact, "_obey_undo", broken)
+    assert "failed unexpectedly (ZeroDivisionError)" in (await talk.tell("undo"))["sentence"]
+    assert (await talk.load(1e5))["kind"] == "pictures"
     assert "a message failed" in caplog.text
 
 
-def test_a_contact_that_cannot_be_made_says_so_and_may_be_tried_again(caplog: pytest.LogCaptureFixture) -> None:
+@in_a_loop
+async def test_a_contact_that_cannot_be_made_says_so_and_may_be_tried_again(caplog: pytest.LogCaptureFixture) -> None:
     errors: list[BaseException] = [MemoryError()]
 
     def make() -> LiveContact:
@@ -199,145 +181,125 @@ def test_a_contact_that_cannot_be_made_says_so_and_may_be_tried_again(caplog: py
             raise errors.pop()
         return small()
 
-    async def work(opened: Opened) -> None:
-        talk = opened().talk()
-        assert "failed unexpectedly (MemoryError)" in (await talk.tell("hello", session=""))["sentence"]
-        await talk.hello()
-
-    talked(Server(make), work)
+    talk = Wire(Server(make))
+    assert "failed unexpectedly (MemoryError)" in (await talk.tell("hello", session=""))["sentence"]
+    await talk.hello()
     assert "a message failed" in caplog.text
 
 
 # -- visitors and turns ------------------------------------------------------------------------------------------------
 
 
-def test_a_page_that_comes_back_finds_its_contact() -> None:
-    async def work(opened: Opened) -> None:
-        wire = opened()
-        talk = wire.talk()
-        name, _ = await talk.hello()
-        await talk.load(2e5)
-        other, _ = await opened().talk().hello(name)  # a copy of the tab: a contact of its own
-        assert other != name
-        await wire.go()
-        found, pictures = await opened().talk().hello(name)
-        assert (found, pictures["add"][-1]["load"]["Q"]) == (name, 2e5)
-
-    talked(Server(small), work)
+@in_a_loop
+async def test_a_page_that_comes_back_finds_its_contact() -> None:
+    server = Server(small)
+    talk = Wire(server)
+    name, _ = await talk.hello()
+    await talk.load(2e5)
+    other, _ = await Wire(server).hello(name)  # a copy of the tab: a contact of its own
+    assert other != name
+    await talk.go()
+    found, pictures = await Wire(server).hello(name)
+    assert (found, pictures["add"][-1]["load"]["Q"]) == (name, 2e5)
 
 
-def test_too_many_visitors_are_refused_and_the_others_go_on() -> None:
+@in_a_loop
+async def test_too_many_visitors_are_refused_and_the_others_go_on() -> None:
     few = Limits(connections=5, sessions=3)
 
-    async def work(opened: Opened) -> None:
-        wires = [opened() for _ in range(3)]
-        talks = [wire.talk() for wire in wires]
-        for talk in talks:
-            await talk.hello()
-        late = opened().talk()
-        assert "3 pages are open" in (await late.tell("hello", session=""))["sentence"]
-        waiting, beyond = opened().talk(), opened()
-        assert "5 pages are open" in (await beyond.talk().answer(None))["sentence"]
-        assert beyond.code == WSCloseCode.TRY_AGAIN_LATER
-        assert "3 pages are open" in (await waiting.tell("hello", session=""))["sentence"]
-        for talk in talks:
-            assert (await talk.load(1e5))["kind"] == "pictures"
-        await wires[0].go()  # its contact makes room
-        await late.hello()
-        assert "3 pages are open" in (await waiting.tell("hello", session=""))["sentence"]
-
-    talked(Server(lambda: contact(nodes=21, limits=few), limits=few), work)
-
-
-def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def work(opened: Opened) -> None:
-        wire = opened()
-        talk = wire.talk()
+    server = Server(lambda: contact(nodes=21, limits=few), limits=few)
+    talks = [Wire(server) for _ in range(3)]
+    for talk in talks:
         await talk.hello()
-        steps = HeldSteps(monkeypatch)
-        await talk.send("load", loads={"Q": 0.0}, gesture=1, drag=True)
-        await steps.begun()
-        for k in range(1, 100):
-            last = await talk.send("load", loads={"Q": 1e3 * k}, gesture=1, drag=True)
-        await wire.read()
-        steps.let_go(2)
-        kinds = Counter[str]()
-        while (found := await talk.hear())["id"] != last:
-            kinds[found["kind"]] += 1
-        assert kinds == {"skipped": 98, "pictures": 1}
-        assert found["add"][-1]["load"]["Q"] == 99e3
-
-    talked(Server(small), work)
+    late = Wire(server)
+    assert "3 pages are open" in (await late.tell("hello", session=""))["sentence"]
+    waiting, beyond = Wire(server), Wire(server)
+    assert "5 pages are open" in (await beyond.answer(None))["sentence"]
+    assert beyond.code == WSCloseCode.TRY_AGAIN_LATER
+    assert "3 pages are open" in (await waiting.tell("hello", session=""))["sentence"]
+    for talk in talks:
+        assert (await talk.load(1e5))["kind"] == "pictures"
+    await talks[0].go()  # its contact makes room
+    await late.hello()
+    assert "3 pages are open" in (await waiting.tell("hello", session=""))["sentence"]
 
 
-def test_a_long_history_is_stopped_by_its_page_and_leaves_the_contact_where_it_was(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    async def work(opened: Opened) -> None:
-        wire = opened()
-        talk = wire.talk()
-        await talk.send("stop")  # before hello: nothing happens
-        await with_history(talk)
-        steps = HeldSteps(monkeypatch)
-        number = await follow(talk)
-        await steps.begun()
-        steps.let_go()
-        await steps.begun()
-        await talk.send("stop")
-        await wire.read()
-        steps.let_go(9)
-        sentence = "history: was stopped on the way; the contact is where it was"
-        assert (await talk.answer(number))["sentence"] == sentence
-        assert len(steps.taken) == 2
-        assert (await talk.load(0.0))["keep"] == 6
-        again = await talk.answer(await follow(talk))  # nothing is left of the first try
-        assert (again["keep"], len(again["add"]), again["case"]["friction"]) == (0, 7, 0.3)
+@in_a_loop
+async def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    talk = Wire(Server(small))
+    await talk.hello()
+    steps = HeldSteps(monkeypatch)
+    await talk.send("load", loads={"Q": 0.0}, gesture=1, drag=True)
+    await steps.begun()
+    for k in range(1, 100):
+        last = await talk.send("load", loads={"Q": 1e3 * k}, gesture=1, drag=True)
+    await talk.read()
+    steps.let_go(2)
+    kinds = Counter[str]()
+    while (found := await talk.hear())["id"] != last:
+        kinds[found["kind"]] += 1
+    assert kinds == {"skipped": 98, "pictures": 1}
+    assert found["add"][-1]["load"]["Q"] == 99e3
 
-    talked(Server(small), work)
+
+@in_a_loop
+async def test_a_long_history_is_stopped_by_its_page_and_leaves_the_contact_where_it_was(monkeypatch):
+    talk = Wire(Server(small))
+    await talk.send("stop")  # before hello: nothing happens
+    await with_history(talk)
+    steps = HeldSteps(monkeypatch)
+    number = await follow(talk)
+    await steps.begun()
+    steps.let_go()
+    await steps.begun()
+    await talk.send("stop")
+    await talk.read()
+    steps.let_go(9)
+    sentence = "history: was stopped on the way; the contact is where it was"
+    assert (await talk.answer(number))["sentence"] == sentence
+    assert len(steps.taken) == 2
+    assert (await talk.load(0.0))["keep"] == 6
+    again = await talk.answer(await follow(talk))  # nothing is left of the first try
+    assert (again["keep"], len(again["add"]), again["case"]["friction"]) == (0, 7, 0.3)
 
 
 @pytest.mark.gate
-def test_a_long_history_of_one_visitor_lets_the_others_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+@in_a_loop
+async def test_a_long_history_of_one_visitor_lets_the_others_pass(monkeypatch: pytest.MonkeyPatch) -> None:
     server = Server(small, clock=step_by_step())
 
-    async def work(opened: Opened) -> None:
-        one, wire = opened().talk(), opened()
-        other = wire.talk()
-        name = await with_history(one)
-        await other.hello()
-        steps = HeldSteps(monkeypatch)
-        number = await follow(one)
-        first = await steps.begun()
-        saving = asyncio.create_task(server.saved(name, "case.toml"))  # waits for the whole history
-        passing = await other.send("load", loads={"Q": 1e3}, gesture=1, drag=False)
-        await wire.read()
-        steps.let_go()
-        assert await steps.begun() is not first
-        steps.let_go(6)
-        assert (await other.answer(passing))["kind"] == "pictures"
-        assert (await one.answer(number))["kind"] == "pictures"
-        case = casefile.parse_case(await saving or "")
-        assert (case.problem.friction, case.history.values()[-1, 1]) == (0.3, 5e3)
-        assert len(steps.taken) == 7
-
-    talked(server, work)
+    one, other = Wire(server), Wire(server)
+    name = await with_history(one)
+    await other.hello()
+    steps = HeldSteps(monkeypatch)
+    number = await follow(one)
+    first = await steps.begun()
+    saving = asyncio.create_task(server.saved(name, "case.toml"))  # waits for the whole history
+    passing = await other.send("load", loads={"Q": 1e3}, gesture=1, drag=False)
+    await other.read()
+    steps.let_go()
+    assert await steps.begun() is not first
+    steps.let_go(6)
+    assert (await other.answer(passing))["kind"] == "pictures"
+    assert (await one.answer(number))["kind"] == "pictures"
+    case = casefile.parse_case(await saving or "")
+    assert (case.problem.friction, case.history.values()[-1, 1]) == (0.3, 5e3)
+    assert len(steps.taken) == 7
 
 
-def test_a_page_that_goes_in_a_long_history_finds_its_contact_where_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def work(opened: Opened) -> None:
-        wire = opened()
-        talk = wire.talk()
-        name = await with_history(talk)
-        steps = HeldSteps(monkeypatch)
-        await follow(talk)
-        await steps.begun()
-        steps.let_go()
-        await steps.begun()
-        await wire.go()
-        steps.let_go()
-        found, pictures = await opened().talk().hello(name)
-        assert found == name
-        assert (pictures["case"]["friction"], pictures["add"][-1]["load"]["Q"]) == (0.4, 5e3)
-        assert len(steps.taken) == 2
-
-    talked(Server(small, clock=step_by_step()), work)
+@in_a_loop
+async def test_a_page_that_goes_in_a_long_history_finds_its_contact_where_it_was(monkeypatch):
+    server = Server(small, clock=step_by_step())
+    talk = Wire(server)
+    name = await with_history(talk)
+    steps = HeldSteps(monkeypatch)
+    await follow(talk)
+    await steps.begun()
+    steps.let_go()
+    await steps.begun()
+    await talk.go()
+    steps.let_go()
+    found, pictures = await Wire(server).hello(name)
+    assert found == name
+    assert (pictures["case"]["friction"], pictures["add"][-1]["load"]["Q"]) == (0.4, 5e3)
+    assert len(steps.taken) == 2

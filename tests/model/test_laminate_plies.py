@@ -13,6 +13,7 @@ from fastpin.errors import InputError, UnknownNameError
 from fastpin.model import PLIES, Laminate, Ply, PlyStrengths
 from fastpin.model.laminate import ALONG_LOAD
 from fastpin.model.ply import PLY_KEYS, ply_from
+from tests.support.refusals import refused
 from tests.support.tiers import seeds
 
 PLY = Ply(135e9, 9e9, 5e9, 0.3, 0.125e-3)
@@ -56,19 +57,10 @@ def test_plus_and_minus_45_degrees_are_an_isotropic_contact() -> None:
 @pytest.mark.parametrize("layup", ["[0/45/-45/90]s", "[0/60/-60]s", "[90/-45/0/45]2s", "[0/36/72/-72/-36]s"])
 def test_a_quasi_isotropic_stack_is_isotropic(layup: str) -> None:
     E1, E2, G12, nu12 = Laminate.from_layup(layup, PLY).moduli
-    u1, _, _, u4 = invariants(PLY)
+    (u1, u4, _), *_ = mean_stiffness([(PLY, 22.5 * k) for k in range(16)])  # plies in all directions
     E = (u1 - u4) * (u1 + u4) / u1
     assert (E1, E2, nu12) == pytest.approx((E, E, u4 / u1))
     assert pytest.approx(0.5 * (u1 - u4)) == G12
-
-
-def invariants(ply: Ply) -> tuple[float, float, float, float]:
-    """U1 to U4 of a ply, Pa, from the mean stiffness over angles: direct integration over a turn."""
-    angles = np.arange(16) * 360.0 / 16.0
-    first = np.array([mean_stiffness([(ply, angle)])[0, 0] for angle in angles])
-    coupled = np.array([mean_stiffness([(ply, angle)])[0, 1] for angle in angles])
-    by = [2.0 * np.mean(first * np.cos(count * np.radians(angles))) for count in (2, 4)]
-    return float(first.mean()), float(by[0]), float(by[1]), float(coupled.mean())
 
 
 def test_compliances_invert_the_mean_stiffness() -> None:
@@ -178,9 +170,7 @@ def test_laminates_keep_their_plies() -> None:
     ],
 )
 def test_a_wrong_ply_gets_one_sentence(given: dict[str, Any], words: str) -> None:
-    with pytest.raises(InputError) as caught:
-        dataclasses.replace(PLY, **given)
-    assert str(caught.value).startswith(words)
+    assert str(refused(dataclasses.replace, PLY, **given)).startswith(words)
 
 
 @pytest.mark.parametrize(
@@ -195,9 +185,7 @@ def test_a_wrong_ply_gets_one_sentence(given: dict[str, Any], words: str) -> Non
     ],
 )
 def test_wrong_pairs_get_one_sentence(plies: Any, words: str) -> None:
-    with pytest.raises(InputError) as caught:
-        Laminate.from_plies(plies)
-    assert str(caught.value).startswith(words)
+    assert str(refused(Laminate.from_plies, plies)).startswith(words)
 
 
 def test_the_entries_of_a_ply_give_it_back() -> None:
@@ -215,7 +203,6 @@ def test_the_entries_of_a_ply_give_it_back() -> None:
 def test_named_plies_have_a_source_and_strengths() -> None:
     for name, ply in PLIES.items():
         assert ply.name == name
-        assert ply.strengths is not None
         assert ply.strengths.Yt < ply.strengths.Yc < ply.strengths.Xt
         assert "quoted after" in ply.source
     with pytest.raises(UnknownNameError, match='did you mean "T300/5208"'):

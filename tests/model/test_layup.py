@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from fastpin.errors import InputError
 from fastpin.model.layup import LONGEST, MOST_PLIES, checked_angles, layup_text, parsed_layup
+from tests.support.refusals import refused
 
 
 @pytest.mark.parametrize(
@@ -67,10 +68,9 @@ def test_a_layup_is_read(text: str, angles: list[float]) -> None:
     ],
 )
 def test_a_wrong_layup_gets_a_sentence_with_its_place(text: str, words: str) -> None:
-    with pytest.raises(InputError) as caught:
-        parsed_layup("layup", text)
-    assert str(caught.value).startswith(f"layup: {words}")
-    assert len(str(caught.value)) < 200
+    error = refused(parsed_layup, "layup", text)
+    assert str(error).startswith(f"layup: {words}")
+    assert len(str(error)) < 200
 
 
 @pytest.mark.parametrize(
@@ -122,6 +122,4 @@ def test_any_text_ends_in_angles_or_one_sentence(text: str) -> None:
     ],
 )
 def test_wrong_angles_get_one_sentence(layup: Any, words: str) -> None:
-    with pytest.raises(InputError) as caught:
-        checked_angles("layup", layup)
-    assert str(caught.value).startswith(f"layup: {words}")
+    assert str(refused(checked_angles, "layup", layup)).startswith(f"layup: {words}")

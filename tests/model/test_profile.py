@@ -9,6 +9,7 @@ import fastpin
 from fastpin.errors import InputError
 from fastpin.model.profile import Profile
 from fastpin.model.wear import Wear
+from tests.support.refusals import refused
 
 THETA = np.linspace(-np.pi, np.pi, 41)
 
@@ -29,9 +30,8 @@ def test_a_function_of_one_angle_is_named_with_its_failure() -> None:
 
 
 def test_the_name_of_a_file_is_no_profile_but_says_how_to_read_one() -> None:
-    with pytest.raises(InputError) as raised:
-        fastpin.model.InitialGap(pin="roundness.csv")  # type: ignore[arg-type]
-    assert str(raised.value) == 'gap.pin: is the name of a file: Profile.from_csv("roundness.csv") reads it'
+    words = 'gap.pin: is the name of a file: Profile.from_csv("roundness.csv") reads it'
+    assert str(refused(fastpin.model.InitialGap, pin="roundness.csv")) == words
 
 
 @pytest.mark.parametrize(
@@ -47,9 +47,7 @@ def test_the_name_of_a_file_is_no_profile_but_says_how_to_read_one() -> None:
     ],
 )
 def test_arguments_of_methods_are_checked(call, field: str) -> None:
-    with pytest.raises(InputError) as raised:
-        call()
-    assert raised.value.field == field
+    assert refused(call).field == field
 
 
 def test_values_are_those_of_lists_and_of_whole_numbers() -> None:

@@ -11,6 +11,7 @@ from fastpin.model.doubts import wear_doubts
 from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import Zone
 from fastpin.model.wear import Wear
+from tests.support.refusals import refused
 
 THETA = np.linspace(-3.0, 0.0, 7)
 
@@ -56,9 +57,7 @@ WRONG = {
 
 @pytest.mark.parametrize("message", WRONG)
 def test_wrong_wear_is_refused_in_one_sentence(message):
-    with pytest.raises(InputError) as caught:
-        Wear(**WRONG[message])
-    assert str(caught.value).startswith(message)
+    assert str(refused(Wear, **WRONG[message])).startswith(message)
 
 
 def test_coefficients_of_zero_are_refused():

@@ -69,12 +69,8 @@ def test_loads_are_drawn(loads):
     assert [len(lines) for lines in drawn] == [3, 3, 4, 4]
     above, below = ({one.get_color() for one in lines} for lines in (drawn[0] + drawn[1], drawn[2] + drawn[3]))
     assert not above & below
-    assert [panel.get_ylabel().split("  ")[0] for panel in figure.axes] == [
-        "load",
-        "load",
-        "pressure",
-        "shear traction",
-    ]
+    labels = [panel.get_ylabel().split("  ")[0] for panel in figure.axes]
+    assert labels == ["load", "load", "pressure", "shear traction"]
     assert [panel.get_title() for panel in figure.axes[:2]] == ["force at the centre of the pin", "body force"]
 
 

@@ -38,12 +38,9 @@ def test_shear_depends_on_friction_at_small_load_parameter():
     low, high = monotonic("Ti/Al", 0.01, 0.1), monotonic("Ti/Al", 0.01, 0.7)
     assert largest(high) / largest(low) == pytest.approx(4.40, abs=0.05)
     assert half_stick(low) < 1.5
-    assert [half_stick(monotonic("Ti/Al", 0.01, mu)) for mu in (0.2, 0.4, 0.7)] == pytest.approx(
-        [4.3, 20.0, 40.0], abs=1
-    )
-    assert [half_stick(monotonic("Ti/Al", 0.1, mu)) for mu in (0.2, 0.4, 0.7)] == pytest.approx(
-        [6.8, 24.9, 46.5], abs=1
-    )
+    for load_parameter, expected in ((0.01, [4.3, 20.0, 40.0]), (0.1, [6.8, 24.9, 46.5])):
+        found = [half_stick(monotonic("Ti/Al", load_parameter, mu)) for mu in (0.2, 0.4, 0.7)]
+        assert found == pytest.approx(expected, abs=1)
 
 
 @EVERY_PAIR
@@ -240,9 +237,8 @@ def test_like_pair_has_the_smaller_contact_only_at_higher_load_parameter():
     it is larger at every usual mu, by more than a degree at 0.01."""
 
     def excess(load_parameter, mu):
-        return half_contact(monotonic("Ti/Ti", load_parameter, mu)) - half_contact(
-            monotonic("Ti/Al", load_parameter, mu)
-        )
+        like, unlike = (half_contact(monotonic(pair, load_parameter, mu)) for pair in ("Ti/Ti", "Ti/Al"))
+        return like - unlike
 
     assert [excess(0.01, mu) for mu in (0.0, 0.1, 0.4, 0.7)] == pytest.approx([1.488, 1.405, 1.087, 0.690], abs=0.003)
     assert excess(0.1, 0.1) == pytest.approx(0.247, abs=0.003)
@@ -375,16 +371,8 @@ def test_neat_fit_limit(friction):
 # --- 5.2: remote stress ----------------------------------------------------------------------------------------------
 
 
-SIGNS = [
-    (0.25, -0.25),
-    (-0.25, 0.25),
-    (0.25, 0.25),
-    (-0.25, -0.25),
-    (0.25, 0.0),
-    (-0.25, 0.0),
-    (0.0, 0.25),
-    (0.0, -0.25),
-]
+ALONG_BOTH_AXES = [(0.25, -0.25), (-0.25, 0.25), (0.25, 0.25), (-0.25, -0.25)]
+SIGNS = [*ALONG_BOTH_AXES, (0.25, 0.0), (-0.25, 0.0), (0.0, 0.25), (0.0, -0.25)]
 
 
 @pytest.mark.parametrize("order", ["together", "force first", *gate("stress first")])
@@ -414,7 +402,7 @@ def test_remote_stress_flips_the_shear():
         return right[np.argmax(np.abs(right))]
 
     assert side(stressed(0.0, 0.0)) == pytest.approx(0.182, abs=0.003)
-    found = [side(stressed(*signs)) for signs in SIGNS[:4]]
+    found = [side(stressed(*signs)) for signs in ALONG_BOTH_AXES]
     assert found == pytest.approx([0.620, -0.390, 0.426, -0.340], abs=0.01)
 
 

@@ -1,37 +1,17 @@
 """The report of the benchmarks, on made-up times."""
 
-import importlib.util
 import json
 import math
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
+from bench import compare, report
+
 BENCH = Path(__file__).resolve().parents[2] / "bench"
 SIZES = (101, 401, 801, 1601)
-
-
-def module(name: str) -> ModuleType:
-    """A script of bench, which is not a package."""
-    spec = importlib.util.spec_from_file_location(f"bench_{name}", BENCH / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    loaded = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(loaded)
-    return loaded
-
-
-@pytest.fixture(scope="module")
-def report() -> ModuleType:
-    return module("report")
-
-
-@pytest.fixture(scope="module")
-def compare() -> ModuleType:
-    return module("compare")
 
 
 def entry(group: str, seconds: float, extra: dict[str, Any] | None = None, **parameters: Any) -> dict[str, Any]:
@@ -74,7 +54,7 @@ def cells(table: str, nodes: int) -> dict[str, str]:
     return dict(zip(lines[0], row, strict=True))
 
 
-def test_ratios_are_of_times_of_the_same_size(report: ModuleType, stored: dict[str, Any]) -> None:
+def test_ratios_are_of_times_of_the_same_size(stored: dict[str, Any]) -> None:
     row = cells(report.ratios_table(stored), 401)
     assert float(row["cycle / solve, 1 thread"]) == pytest.approx(1e3 * 401**-0.5, rel=5e-3)
     assert float(row["2 threads"]) == pytest.approx(2e3 * 401**-0.5, rel=5e-3)
@@ -82,14 +62,14 @@ def test_ratios_are_of_times_of_the_same_size(report: ModuleType, stored: dict[s
     assert cells(report.times_table(stored), 401)["memory, MB"] == "200"
 
 
-def test_share_of_the_rate_counts_every_exchanged_column_once(report: ModuleType, stored: dict[str, Any]) -> None:
+def test_share_of_the_rate_counts_every_exchanged_column_once(stored: dict[str, Any]) -> None:
     achieved = 401 * (4 * 401) ** 2 / (1e-6 * 401**2.5)
     possible = 2.0 / 3.0 * 8.0 / 1e-9
     row = cells(report.ratios_table(stored), 401)
     assert float(row["share of LU rate, %"]) == pytest.approx(100.0 * achieved / possible, rel=5e-3)
 
 
-def test_limits(report: ModuleType, stored: dict[str, Any]) -> None:
+def test_limits(stored: dict[str, Any]) -> None:
     row = cells(report.limits_table(stored), 1601)
     assert float(row["LU, 1, GFlop/s"]) == pytest.approx(16.0 / 3.0, rel=5e-3)
     assert float(row["LU, 2, GFlop/s"]) == pytest.approx(32.0 / 3.0, rel=5e-3)
@@ -97,12 +77,12 @@ def test_limits(report: ModuleType, stored: dict[str, Any]) -> None:
     assert float(row["copy, touched, GB/s"]) == pytest.approx(32.0)
 
 
-def test_a_cycle_of_the_history_is_a_part_of_it(report: ModuleType, stored: dict[str, Any]) -> None:
+def test_a_cycle_of_the_history_is_a_part_of_it(stored: dict[str, Any]) -> None:
     row = cells(report.others_table(stored), 801)
     assert float(row["variable cycle, s"]) == pytest.approx(1e-6 * 801**2.5, rel=5e-3)
 
 
-def test_slopes(report: ModuleType, stored: dict[str, Any]) -> None:
+def test_slopes(stored: dict[str, Any]) -> None:
     table = report.slopes_table(stored)
     assert "| cycle | 2.50 |" in table
     assert "| fill | 2.00 |" in table
@@ -110,13 +90,13 @@ def test_slopes(report: ModuleType, stored: dict[str, Any]) -> None:
     assert "| events of a cycle | 1.00 |" in table
 
 
-def test_slope_of_large_sizes_only(report: ModuleType) -> None:
+def test_slope_of_large_sizes_only() -> None:
     assert report.slope({10: 5.0, 401: 1.0, 802: 8.0}) == pytest.approx(3.0)
     assert report.slope({10: 1.0, 20: 4.0, 401: 1604.01}) == pytest.approx(2.0, abs=1e-2)
     assert math.isnan(report.slope({401: 1.0}))
 
 
-def test_two_threads_without_two_processors_are_left_out(report: ModuleType, stored: dict[str, Any]) -> None:
+def test_two_threads_without_two_processors_are_left_out(stored: dict[str, Any]) -> None:
     assert report.disturbed(stored, "LAPACK solve", 2) == []
     for one in stored["benchmarks"]:
         if one["group"] == "LAPACK solve" and one["params"]["nodes"] in (101, 801):
@@ -127,14 +107,14 @@ def test_two_threads_without_two_processors_are_left_out(report: ModuleType, sto
     assert cells(report.ratios_table(stored), 801)["cycle / solve, 1 thread"] != ""
 
 
-def test_missing_benchmarks_leave_cells_empty(report: ModuleType, stored: dict[str, Any]) -> None:
+def test_missing_benchmarks_leave_cells_empty(stored: dict[str, Any]) -> None:
     stored["benchmarks"] = [one for one in stored["benchmarks"] if one["group"] == "cycle"]
     row = cells(report.times_table(stored), 101)
     assert float(row["cycle, s"]) > 0.0
     assert row["first load, s"] == row["memory, MB"] == ""
 
 
-def test_marked_blocks_are_replaced_and_nothing_else(report: ModuleType, stored: dict[str, Any]) -> None:
+def test_marked_blocks_are_replaced_and_nothing_else(stored: dict[str, Any]) -> None:
     text = (
         "a\n<!-- benchmark: machine -->\nold\n<!-- /benchmark -->\nb\n<!-- benchmark: slopes -->\n<!-- /benchmark -->\n"
     )
@@ -148,12 +128,12 @@ def test_marked_blocks_are_replaced_and_nothing_else(report: ModuleType, stored:
 
 
 @pytest.mark.parametrize("value", [None, 0.0, 0.00123456, 12.3456, 98765.4])
-def test_numbers(report: ModuleType, value: float | None) -> None:
+def test_numbers(value: float | None) -> None:
     expected = {None: "", 0.0: "0", 0.00123456: "0.00123", 12.3456: "12.3", 98765.4: "98765"}
     assert report.number(value) == expected[value]
 
 
-def test_newest_result(report, tmp_path, monkeypatch, stored):
+def test_newest_result(tmp_path, monkeypatch, stored):
     monkeypatch.setattr(report, "RESULTS", tmp_path)
     with pytest.raises(SystemExit, match="no results"):
         report.newest()
@@ -163,7 +143,7 @@ def test_newest_result(report, tmp_path, monkeypatch, stored):
 
 
 @pytest.mark.gate
-def test_figure(report: ModuleType, tmp_path: Path, stored: dict[str, Any]) -> None:
+def test_figure(tmp_path: Path, stored: dict[str, Any]) -> None:
     report.save_figure(stored, tmp_path / "performance.png")
     assert (tmp_path / "performance.png").read_bytes().startswith(b"\x89PNG")
 
@@ -176,7 +156,7 @@ def test_stored_results_name_no_machine() -> None:
         assert path.stat().st_size < 500_000
 
 
-def test_variable_cycles_are_fixed_and_all_different(compare: ModuleType) -> None:
+def test_variable_cycles_are_fixed_and_all_different() -> None:
     cases = compare.cases
     corners = cases.variable_cycles(1000).values()[:, 1]
     assert corners.size == 2000
@@ -187,17 +167,17 @@ def test_variable_cycles_are_fixed_and_all_different(compare: ModuleType) -> Non
     assert np.array_equal(cases.variable_cycles(4).values()[:, 1], corners[:8])
 
 
-def test_sufficient_number_holds_from_there_on(compare: ModuleType) -> None:
+def test_sufficient_number_holds_from_there_on() -> None:
     assert compare.sufficient((1, 2, 3, 4), (0.1, 9.0, 0.2, 0.1), 0.5) == 3
     assert compare.sufficient((1, 2), (0.1, 0.9), 0.5) is None
 
 
-def test_errors_are_relative_to_the_pressure(compare: ModuleType) -> None:
+def test_errors_are_relative_to_the_pressure() -> None:
     exact = np.array([[0.5, 0.2, 0.0, 0.3], [0.4, 0.2, 0.0, 0.3]])
     found = exact + np.array([[0.0, 0.04, 0.0, 0.0], [-0.004, 0.0, 0.0, 0.2]])
     assert compare.errors(found, exact, 2.0) == pytest.approx([0.01, 0.1, 0.0, 0.1])
 
 
-def test_what_the_reference_may_be_off_by(compare: ModuleType) -> None:
+def test_what_the_reference_may_be_off_by() -> None:
     mesh = np.array([[0.1, 0.4], [0.1, 0.1]])
     assert compare.reference_errors((100, 200), mesh, 400) == pytest.approx([0.05, 0.1])

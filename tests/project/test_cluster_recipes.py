@@ -16,7 +16,7 @@ from fastpin.casefile import parse_case
 from fastpin.cli.main import main
 from fastpin.cli.options import join_words, parser
 from fastpin.solver import Interrupted
-from tests.support.documents import DOCS, blocks
+from tests.support.documents import DOCS, texts
 from tests.support.interrupts import StopAt
 from tests.support.processes import finished
 
@@ -56,8 +56,6 @@ Q = [0.1, -0.1]
 nodes = 31
 """
 
-needs_bash = pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
-
 
 def job(
     tmp_path: Path, name: str, arguments: Sequence[str], task: int, programs: dict[str, str], **variables: str
@@ -74,15 +72,9 @@ def job(
 
 
 def test_the_page_shows_the_recipes() -> None:
-    shown = [block.text for block in blocks("cluster.md") if block.kind in ("bash", "python")]
-    assert shown == [(RECIPES / name).read_text(encoding="utf-8") for name in (*JOBS, "Snakefile")]
-
-
-@pytest.mark.gate
-@needs_bash
-@pytest.mark.parametrize("name", JOBS)
-def test_bash_reads_the_jobs(name: str) -> None:
-    finished(["bash", "-n", RECIPES / name])
+    assert texts("cluster.md", "bash", "python") == [
+        (RECIPES / name).read_text(encoding="utf-8") for name in (*JOBS, "Snakefile")
+    ]
 
 
 def test_the_command_lines_of_all_recipes_exist() -> None:
@@ -98,7 +90,6 @@ def test_the_command_lines_of_all_recipes_exist() -> None:
 
 
 @pytest.mark.gate
-@needs_bash
 @pytest.mark.parametrize(("code", "requeued"), [(0, False), (1, False), (130, True)])
 @pytest.mark.parametrize("name", JOBS)
 def test_a_task_that_was_stopped_goes_back_into_the_queue(tmp_path: Path, name: str, code: int, requeued: bool) -> None:
@@ -120,7 +111,6 @@ def test_a_task_that_was_stopped_goes_back_into_the_queue(tmp_path: Path, name: 
 
 
 @pytest.mark.gate
-@needs_bash
 def test_a_case_whose_file_is_empty_is_begun_again(tmp_path: Path) -> None:
     (tmp_path / "cases.txt").write_text("a.toml\n")
     (tmp_path / "a.running.h5").touch()
@@ -131,7 +121,6 @@ def test_a_case_whose_file_is_empty_is_begun_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
-@needs_bash
 def test_an_unfinished_case_is_resumed_and_a_finished_one_skipped(tmp_path: Path) -> None:
     case = parse_case(CASE)
     with pytest.raises(Interrupted):
@@ -159,7 +148,6 @@ def test_snakemake_plans_all_parts_and_cases(tmp_path: Path) -> None:
 
 
 @pytest.mark.gate
-@needs_bash
 def test_the_parts_of_a_sweep_are_solved_and_joined(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Slow: each task starts two processes."""
     monkeypatch.chdir(tmp_path)
@@ -168,7 +156,6 @@ def test_the_parts_of_a_sweep_are_solved_and_joined(tmp_path: Path, monkeypatch:
         done = job(tmp_path, "sweep.sbatch", ["plan.toml", "2"], task, {"fastpin": FASTPIN})
         assert done.returncode == 0, done.stderr
         assert f"1 runs in parts/{task}: 1 done" in done.stdout
-    for block in blocks("cluster.md"):
-        for command in re.findall(r"^fastpin (.*)", block.text, re.MULTILINE) if block.kind == "console" else []:
-            assert main(command.split()) == 0
+    for command in re.findall(r"^fastpin (.*)", "".join(texts("cluster.md", "console")), re.MULTILINE):
+        assert main(command.split()) == 0
     assert len(Path("sweep.csv").read_text().splitlines()) == 2 + 1 + 2

@@ -33,6 +33,7 @@ from fastpin.elasticity import plate_compliance
 from fastpin.studies import parse_plan, sweep
 from fastpin.studies.tolerances import KEYS as TOLERANCE_KEYS
 from scripts.inline import Inline
+from tests.support.documents import texts
 from tests.support.processes import finished
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -42,21 +43,21 @@ CHECKED = ("python", "toml", "console", "sh", "bash", "sql", "text", "math")
 
 ELSEWHERE = {
     "README.md": "test_readme.py",
-    "fatigue.md": "test_docs.py",
-    "cracks.md": "test_docs.py",
-    "figures.md": "test_docs.py",
-    "sessions.md": "test_docs.py",
-    "riveted-joint.md": "test_docs.py",
-    "tutorial.md": "test_teaching_pages.py",
     "cluster.md": "test_cluster_recipes.py",
-    "coming-from.md": "test_teaching_pages.py",
-    "interference.md": "test_teaching_pages.py",
-    "reading-results.md": "test_teaching_pages.py",
-    "superposition.md": "test_teaching_pages.py",
-    "bush.md": "test_bush_page.py",
-    "carbon-laminate.md": "test_carbon_page.py",
-    "wear.md": "test_wear_page.py",
-    "tolerances.md": "test_tolerances_page.py",
+    "bush.md": "test_pages.py",
+    "carbon-laminate.md": "test_pages.py",
+    "coming-from.md": "test_pages.py",
+    "cracks.md": "test_pages.py",
+    "fatigue.md": "test_pages.py",
+    "figures.md": "test_pages.py",
+    "interference.md": "test_pages.py",
+    "reading-results.md": "test_pages.py",
+    "riveted-joint.md": "test_pages.py",
+    "sessions.md": "test_pages.py",
+    "superposition.md": "test_pages.py",
+    "tolerances.md": "test_pages.py",
+    "tutorial.md": "test_pages.py",
+    "wear.md": "test_pages.py",
 }
 """Pages whose blocks of Python run in another test of this folder, as some of them may come later."""
 
@@ -73,22 +74,16 @@ PROGRAMS = ("pip", "source", "ssh", "sbatch", "squeue", "snakemake", "module", "
 """Programs of others, in commands that can't be checked here."""
 
 
-def blocks(page: Path, *languages: str) -> list[str]:
-    """The code blocks of a page in some languages."""
-    found = re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
-    return [text for language, text in found if language in languages]
-
-
 def with_blocks(*languages: str) -> list[Any]:
     """The pages that have blocks in some languages, as parameters."""
-    pages = [page for page in PAGES if blocks(page, *languages)]
+    pages = [page for page in PAGES if texts(page, *languages)]
     assert pages, languages
     return [pytest.param(page, id=page.name) for page in pages]
 
 
 def here() -> list[Any]:
     """The pages whose Python runs in this file, as parameters."""
-    pages = [page for page in PAGES if blocks(page, "python") and page.name not in ELSEWHERE]
+    pages = [page for page in PAGES if texts(page, "python") and page.name not in ELSEWHERE]
     return [pytest.param(page, id=page.name, marks=LONG.get(page.name, ())) for page in pages]
 
 
@@ -97,7 +92,7 @@ def small_sweep(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a plan, its case, its function of wear and its finished sweep."""
     folder = tmp_path_factory.mktemp("sweep")
     (folder / "case.toml").write_text(EXAMPLE, encoding="utf-8")
-    (folder / "wear.py").write_text(blocks(ROOT / "docs" / "sweeps.md", "python")[0], encoding="utf-8")
+    (folder / "wear.py").write_text(texts(ROOT / "docs" / "sweeps.md", "python")[0], encoding="utf-8")
     text = (
         'case = "case.toml"\n[grid]\ncontact.friction = [0.3, 0.4]\npin.material = ["steel"]\nsolve.nodes = [61]\n'
         'load.2.Q = [[7e5, -7e5]]\n[outcomes]\nworn = { function = "wear.py:wear" }\n'
@@ -145,9 +140,9 @@ def test_python_runs(page: Path, names: dict[str, Any]) -> None:
     if page.name == "compliance.md":
         Path("lug.json").write_text(plate_compliance(parse_lug(LUG_EXAMPLE).lug).compliance.to_text(), encoding="utf-8")
     if page.name == "sweeps.md":
-        run_as_script(blocks(page, "python"))
+        run_as_script(texts(page, "python"))
         return
-    for code in blocks(page, "python"):
+    for code in texts(page, "python"):
         exec(compile(code, page.name, "exec"), names)
     plt.close("all")
 
@@ -165,7 +160,7 @@ def run_as_script(codes: list[str]) -> None:
 def test_pages_that_run_elsewhere_are_named_there() -> None:
     tests = {path.name: path.read_text(encoding="utf-8") for path in Path(__file__).parent.glob("test_*.py")}
     for page in PAGES:
-        if page.name in ELSEWHERE and blocks(page, "python"):
+        if page.name in ELSEWHERE and texts(page, "python"):
             text = tests[ELSEWHERE[page.name]]
             assert page.name in text or page.stem in text or page.stem.upper() in text, page.name
 
@@ -185,7 +180,7 @@ def has_known_keys(table: Mapping[str, Any], sections: Mapping[str, Any]) -> boo
 def test_toml_has_known_keys(page: Path) -> None:
     case = {**KEYS, **dict.fromkeys(ROOT_KEYS)}
     plan, tolerances = dict.fromkeys(PLAN_KEYS), dict.fromkeys(TOLERANCE_KEYS)
-    for text in blocks(page, "toml"):
+    for text in texts(page, "toml"):
         table = tomllib.loads(text)
         materials = dict.fromkeys(table, FILE_KEYS)
         assert any(has_known_keys(table, sections) for sections in (case, plan, tolerances, LUG_KEYS, materials)), text
@@ -202,7 +197,7 @@ def test_unknown_keys_are_noticed() -> None:
 
 @pytest.mark.parametrize("page", with_blocks("console"))
 def test_commands_exist(page: Path) -> None:
-    for text in blocks(page, "console"):
+    for text in texts(page, "console"):
         for line in filter(None, map(str.strip, text.replace("\\\n", " ").splitlines())):
             check_command(line.removeprefix("$ "))
 
@@ -210,7 +205,7 @@ def test_commands_exist(page: Path) -> None:
 @pytest.mark.gate
 @pytest.mark.parametrize("page", with_blocks("sh", "bash"))
 def test_shell_scripts_can_be_read(page: Path) -> None:
-    for text in blocks(page, "sh", "bash"):
+    for text in texts(page, "sh", "bash"):
         finished(["bash", "-n"], said=text)
 
 
@@ -234,7 +229,7 @@ def check_command(line: str) -> None:
 
 
 def test_queries_run(small_sweep: Path) -> None:
-    (text,) = blocks(ROOT / "docs" / "sweeps.md", "sql")
+    (text,) = texts(ROOT / "docs" / "sweeps.md", "sql")
     text = text.replace("'wear'", "'worn'")
     with sqlite3.connect(small_sweep / "plan" / "index.sqlite") as index:
         rows = [index.execute(query).fetchall() for query in text.split(";") if query.strip()]

@@ -21,13 +21,3 @@ def test_a_record_has_the_five_headings_on_one_page(record: Path) -> None:
     text = record.read_text(encoding="utf-8")
     assert re.findall(r"^## (.*)$", text, re.MULTILINE) == HEADINGS
     assert 150 <= len(text.split()) <= 350
-
-
-@pytest.mark.parametrize("record", [*RECORDS, FOLDER / "index.md"], ids=lambda path: path.stem)
-def test_links_and_named_files_exist(record: Path) -> None:
-    text = record.read_text(encoding="utf-8")
-    root = FOLDER.parents[1]
-    for target in re.findall(r"\]\(([^):#]+)", text):
-        assert (record.parent / target).exists(), target
-    for name in re.findall(r"((?:tests|scripts|fastpin|bench)/[\w/]+\.py)", text):
-        assert (root / name).exists(), name

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from fastpin.version import __version__
+from tests.support.documents import statements
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "joss"
 _, FRONT, BODY = (FOLDER / "paper.md").read_text(encoding="utf-8").split("---\n", 2)
@@ -82,9 +83,7 @@ def test_figures_exist() -> None:
 
 
 def test_the_verdicts_on_the_paper_are_counted_as_in_its_table() -> None:
-    text = (FOLDER.parent / "paper.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| \d+ \|.*$", text[text.index("## Statements") : text.index("## Figures")], re.MULTILINE)
-    verdicts = [row.replace("\\|", "").split("|")[5].strip() for row in rows]
+    verdicts = [row[4].strip() for row in statements()]
     confirmed, refused = (sum(entry.startswith(word) for entry in verdicts) for word in ("confirmed", "**not"))
     in_part = len(verdicts) - confirmed - refused
     assert f"checks {len(verdicts)} statements" in BODY

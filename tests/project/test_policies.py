@@ -12,11 +12,9 @@ from fastpin.bodies import compliance
 from fastpin.cli import terminal
 from fastpin.storage import layout
 from fastpin.studies import index
+from tests.support.documents import page_text
 
-ROOT = Path(__file__).resolve().parents[2]
-POLICIES, REPRODUCIBILITY = (
-    (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") for name in ("policies", "reproducibility")
-)
+POLICIES, REPRODUCIBILITY = map(page_text, ("policies.md", "reproducibility.md"))
 
 
 def test_the_versions_of_formats_are_those_of_the_code() -> None:
@@ -31,32 +29,22 @@ def test_the_versions_of_formats_are_those_of_the_code() -> None:
 
 
 def test_the_exit_codes_are_those_of_the_command_line() -> None:
-    codes = (terminal.EXIT_FAILED, terminal.EXIT_INPUT, terminal.EXIT_INTERRUPTED)
-    failed, refused, interrupted = codes
-    text = " ".join(POLICIES.split())
-    assert (
-        f"{failed} is a run or a check that failed. {refused} is input that can't be used. {interrupted} follows"
-        in text
-    )
+    failed, refused, interrupted = terminal.EXIT_FAILED, terminal.EXIT_INPUT, terminal.EXIT_INTERRUPTED
+    words = f"{failed} is a run or a check that failed. {refused} is input that can't be used. {interrupted} follows"
+    assert words in " ".join(POLICIES.split())
 
 
 def test_the_attributes_of_a_result_are_listed(titanium_in_aluminium, tmp_path: Path) -> None:
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, friction=0.4)
     save(solve(problem, [{"P": 1.0}], nodes=41), tmp_path / "result.h5", error="ended early")
     table = REPRODUCIBILITY[REPRODUCIBILITY.index("## What a file tells") : REPRODUCIBILITY.index("## Seeds")]
-    listed = {
-        name for row in re.findall(r"^\| (`[^|]*) \|", table, re.MULTILINE) for name in re.findall(r"`(\w+)`", row)
-    }
+    cells = re.findall(r"^\| (`[^|]*) \|", table, re.MULTILINE)
+    listed = set(re.findall(r"`(\w+)`", " ".join(cells)))
     with h5py.File(tmp_path / "result.h5") as file:
         assert set(file.attrs) == listed
 
 
-def test_named_programs_exist() -> None:
-    files = set(re.findall(r"((?:bench|tests)/[\w/]+\.py)", REPRODUCIBILITY))
-    files |= {
-        f"{name.replace('.', '/')}.py" for name in re.findall(r"python -m ((?:scripts|bench)\.\w+)", REPRODUCIBILITY)
-    }
-    assert {name for name in files if not (ROOT / name).exists()} == set()
+def test_named_tables_exist() -> None:
     tables = re.findall(r"python -m bench\.accuracy ([a-z_ ]+)", REPRODUCIBILITY)
     assert {name for names in tables for name in names.split()} <= accuracy.TABLES.keys()
 

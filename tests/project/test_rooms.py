@@ -78,18 +78,12 @@ def _long(state):
 }
 
 
-@pytest.fixture(scope="module")
-def package():
-    """The package, read and parsed. Collecting garbage among its trees would take half of the time."""
-    found = Package(ROOT)
-    gc.disable()
-    assert found.nodes
-    gc.enable()
-    return found
-
-
 @pytest.mark.gate
-def test_no_number_grows(package):
+def test_no_number_grows():
+    package = Package(ROOT)
+    gc.disable()  # collecting garbage among its trees would take half of the time
+    assert package.nodes
+    gc.enable()
     assert {name: number for name, most in MOST.items() if (number := number_of(NUMBERS[name](package))) > most} == {}
 
 

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from scripts import corpus
 from tests.support.processes import finished, started
+
+pytestmark = pytest.mark.gate
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -73,7 +74,6 @@ def log(project: Path) -> list[str]:
     return lines
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize(
     "name",
     [
@@ -92,7 +92,6 @@ def test_scripts_can_be_run_and_parsed(name: str) -> None:
     finished(["bash", "-n", ROOT / "scripts" / "environment.sh"])
 
 
-@pytest.mark.gate
 def test_environment_is_made_once_and_again_when_the_dependencies_change(project: Path) -> None:
     first = run(project, "run", "case.toml", "--nodes", "9")
     assert first.returncode == 0, first.stderr
@@ -106,7 +105,6 @@ def test_environment_is_made_once_and_again_when_the_dependencies_change(project
     assert log(project)[:-1] == [f"pip {project}", *compiled]
 
 
-@pytest.mark.gate
 def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> None:
     run(project, "run", "x")
     log(project)
@@ -118,7 +116,6 @@ def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> N
     assert log(project) == ["/> -P -m fastpin run x"]
 
 
-@pytest.mark.gate
 def test_the_site_needs_its_own_tools(project: Path) -> None:
     (project / "docs" / "examples").mkdir(parents=True)
     assert run(project, "docs", "--fresh", "-E").stdout == f"site: {project}/out/docs/index.html\n"
@@ -128,7 +125,6 @@ def test_the_site_needs_its_own_tools(project: Path) -> None:
     assert not (project / "docs" / "examples").exists()
 
 
-@pytest.mark.gate
 def test_the_environment_of_the_site_can_be_made_alone(project: Path) -> None:
     done = run(project, "docs", "--prepare")
     assert (done.returncode, done.stdout) == (0, "")
@@ -137,7 +133,6 @@ def test_the_environment_of_the_site_can_be_made_alone(project: Path) -> None:
     assert log(project) == []
 
 
-@pytest.mark.gate
 def test_without_arguments_the_built_in_case_with_its_figure(project: Path) -> None:
     done = run(project, "run")
     assert log(project)[-1].endswith(f"--plot {project}/out/tractions.png --json {project}/out/summary.json")
@@ -145,20 +140,17 @@ def test_without_arguments_the_built_in_case_with_its_figure(project: Path) -> N
     assert "out/tractions.png" in done.stdout
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize(("script", "arguments"), [("run", ()), ("run", ("x",)), ("test", ()), ("docs", ())])
 def test_exit_codes_come_through(script: str, arguments: tuple[str, ...], project: Path) -> None:
     assert run(project, script, *arguments, FAIL="7").returncode == 7
 
 
-@pytest.mark.gate
 def test_called_through_a_link(project: Path) -> None:
     link = project.parents[1] / "fp"
     link.symlink_to(project / "scripts" / "run")
     finished([link, "x"], env=environment(project))
 
 
-@pytest.mark.gate
 def test_two_at_once_install_once(project: Path) -> None:
     command, slow = [project / "scripts" / "run", "x"], environment(project, INSTALLS="0.2")
     with started(command, env=slow) as one, started(command, env=slow) as other:
@@ -166,7 +158,6 @@ def test_two_at_once_install_once(project: Path) -> None:
     assert sorted(line.split()[0] for line in log(project)).count("pip") == 1
 
 
-@pytest.mark.gate
 @pytest.mark.parametrize(
     "failing", ["", "ruff check", "--prepare", "test --gate -m", "-n 0", "check-package", "--fresh"]
 )
@@ -189,7 +180,6 @@ def test_the_gate_passes_if_all_of_its_commands_do(failing: str, project: Path) 
     assert ("all checks passed" in done.stdout) == (not failing)
 
 
-@pytest.mark.gate
 def test_too_old_a_python_is_refused_in_one_sentence(project: Path) -> None:
     (project.parents[1] / "too-old").touch()
     done = run(project, "run")
@@ -202,7 +192,6 @@ def test_too_old_a_python_is_refused_in_one_sentence(project: Path) -> None:
     assert log(project) == []
 
 
-@pytest.mark.gate
 def test_missing_venv_package(project: Path) -> None:
     (project.parents[1] / "has-ensurepip").unlink()
     done = run(project, "run", "x")
@@ -215,7 +204,6 @@ def test_missing_venv_package(project: Path) -> None:
         assert log(project) == []
 
 
-@pytest.mark.gate
 def test_a_failed_installation_shows_why_and_is_tried_again(project: Path) -> None:
     (project.parents[1] / "offline").touch()
     done = run(project, "run", "x")
@@ -227,7 +215,6 @@ def test_a_failed_installation_shows_why_and_is_tried_again(project: Path) -> No
     assert log(project)[0] == f"pip {project}"
 
 
-@pytest.mark.gate
 def test_the_oldest_versions_are_the_lower_bounds() -> None:
     done = finished([ROOT / "scripts" / "oldest-versions", "--list"], env={**os.environ, "PYTHON": sys.executable})
     listed = dict(line.split("==") for line in done.stdout.splitlines())
@@ -241,7 +228,6 @@ def test_the_oldest_versions_are_the_lower_bounds() -> None:
         assert listed[name].endswith(".*") == (len(version) == 2)
 
 
-@pytest.mark.gate
 def test_the_environment_of_the_oldest_versions_is_made_once(project: Path) -> None:
     first = run(project, "oldest-versions", "tests/model")
     assert first.returncode == 0, first.stderr
@@ -254,7 +240,6 @@ def test_the_environment_of_the_oldest_versions_is_made_once(project: Path) -> N
     assert "venv" not in log(project)
 
 
-@pytest.mark.gate
 def test_other_machines_skip_what_does_not_run_and_count_the_rest(project: Path) -> None:
     """Here OpenBLAS knows Prescott, by the name Katmai, and Haswell; the kernels of SkylakeX end in a signal."""
     chosen = "--types", "Prescott,Zen,SkylakeX,Haswell", "--pythons", "3.11,3.12,3.99"
@@ -271,28 +256,7 @@ def test_other_machines_skip_what_does_not_run_and_count_the_rest(project: Path)
     assert all(line.endswith("tests/model -x") for line in tests)
 
 
-@pytest.mark.gate
 def test_other_machines_fail_where_a_run_fails(project: Path) -> None:
     done = run(project, "other-machines", "--types", "Prescott", FAIL="3")
     assert (done.returncode, len(log(project))) == (1, 5)
     assert done.stdout.splitlines()[-1].split()[:3] == ["Prescott", "10", "3"]
-
-
-def test_the_corpus_lists_texts_that_differ(tmp_path, capsys):
-    for name, text in (("old", "a\nb\n"), ("new", "a\nc\n")):
-        (tmp_path / name / "texts").mkdir(parents=True)
-        (tmp_path / name / "texts" / "run.txt").write_text(text)
-        (tmp_path / name / "texts" / "same.txt").write_text("same")
-    (tmp_path / "new" / "texts" / "more.txt").write_text("more")
-    assert corpus.compare(tmp_path / "old", tmp_path / "new") == 1
-    printed = capsys.readouterr().out
-    assert "== more.txt: only in" in printed
-    assert "== run.txt\n" in printed
-    assert "\n-b\n+c\n" in printed
-    assert "same.txt" not in printed
-    assert printed.endswith("1 of 3 texts differ\n")
-
-
-def test_the_corpus_leaves_times_out(tmp_path):
-    (tmp_path / "a.csv").write_text("# a sweep\nid,seconds,P\n1,0.25,3.0\n")
-    assert corpus.without_times(tmp_path / "a.csv") == "# a sweep\nid,P\n1,3.0"

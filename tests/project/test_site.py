@@ -101,6 +101,11 @@ def test_every_key_of_a_case_file_is_explained(extension: ModuleType) -> None:
             assert re.search(rf"^\| `{key}` \| \S", part, re.MULTILINE), (section, key)
 
 
+def assert_explained(text: str, *names: str) -> None:
+    """Each of the names has a row with words in the last cell."""
+    assert [name for name in names if not re.search(rf"^\| `{name}` \| .* \| .+ \|$", text, re.MULTILINE)] == []
+
+
 @pytest.mark.gate
 def test_the_file_format_of_the_reference_has_every_array(extension, monkeypatch):
     """The sample has few states: the extremes of many are stored."""
@@ -108,18 +113,13 @@ def test_the_file_format_of_the_reference_has_every_array(extension, monkeypatch
         monkeypatch.setattr(module, "LEAST_STORED", 6)
     text = extension.PARTS["file_layout"]()
     assert "\n## /extremes\n" in text
-    for name in (*layout.FIELD_KINDS, *layout.CYCLE_FIELDS):
-        row = re.search(rf"^\| `{name}` \| .* \| (.*) \|$", text, re.MULTILINE)
-        assert row, name
-        assert row[1], name
+    assert_explained(text, *layout.FIELD_KINDS, *layout.CYCLE_FIELDS)
 
 
 def test_the_file_format_of_a_life_of_wear_has_every_member(extension: ModuleType) -> None:
     text = extension.PARTS["wear_layout"]()
-    for name in (*wear_files.DEPTHS, *wear_files.NUMBERS, "coefficients", "chosen", "jump", "depth", "restart/"):
-        row = re.search(rf"^\| `{name}` \| .* \| (.*) \|$", text, re.MULTILINE)
-        assert row, name
-        assert row[1], name
+    more = "coefficients", "chosen", "jump", "depth", "restart/"
+    assert_explained(text, *wear_files.DEPTHS, *wear_files.NUMBERS, *more)
     assert "| `plate_depth` | number | (cycle, node) | m |" in text
 
 

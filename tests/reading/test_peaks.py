@@ -15,18 +15,22 @@ from fastpin.solver.solving import solve
 GRID = Grid.arc(-1.0, 1.0, 81)
 X = np.arange(-40.0, 41.0)
 ALL = np.ones(81, dtype=bool)
-LIKE = Coupling.of_isotropic(ALL * 1.0, 0.0)
 
 
 def nodal(values: np.ndarray) -> float:
     return float(np.abs(values).max())
 
 
-def read(shear: np.ndarray, pressure: np.ndarray, sticking: np.ndarray = ALL, ends=(-1.0, 1.0), tilt=0.0) -> float:
-    """The peak with mu = 1."""
+def contact_of(pressure: np.ndarray, shear: np.ndarray, sticking: np.ndarray, tilt: float = 0.0) -> ShearNodes:
+    """A contact with mu = 1, without old borders."""
     no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
     coupling = Coupling.of_isotropic(ALL * 1.0, math.tan(math.pi * tilt))
-    contact = ShearNodes(GRID, pressure, shear, sticking, no_marks, no_places, ALL * 1.0, coupling)
+    return ShearNodes(GRID, pressure, shear, sticking, no_marks, no_places, ALL * 1.0, coupling)
+
+
+def read(shear: np.ndarray, pressure: np.ndarray, sticking: np.ndarray = ALL, ends=(-1.0, 1.0), tilt=0.0) -> float:
+    """The peak with mu = 1."""
+    contact = contact_of(pressure, shear, sticking, tilt)
     return abs(peaks.shear_peak(contact, [ends] if sticking.any() else [])[0])
 
 
@@ -88,8 +92,7 @@ def test_beside_an_edge_the_shear_is_that_of_the_only_slipping_node() -> None:
     pressure = np.sqrt(1.0 - (X / 40.0) ** 2)
     sticking = np.abs(X) < 39.0
     for unit in (1.0, 1e-9, 1e9):
-        no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
-        contact = ShearNodes(GRID, unit * pressure, unit * pressure, sticking, no_marks, no_places, ALL * 1.0, LIKE)
+        contact = contact_of(unit * pressure, unit * pressure, sticking)
         (patch,) = contact._patches
         integral = contact._turned_until(patch, 0, 20, 1, 1, np.array([-0.5]))
         assert integral / unit == pytest.approx([float(pressure[1] * GRID.weights[1])], rel=1e-12)
@@ -98,8 +101,7 @@ def test_beside_an_edge_the_shear_is_that_of_the_only_slipping_node() -> None:
 def test_the_sign_beside_a_stick_zone_is_the_one_of_the_next_node() -> None:
     shear, run = np.zeros(81), np.arange(10, 20)
     shear[[8, 9, 20, 21]] = -1.0, 1.0, -1.0, 1.0
-    no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
-    contact = ShearNodes(GRID, np.ones(81), shear, np.isin(np.arange(81), run), no_marks, no_places, ALL * 1.0, LIKE)
+    contact = contact_of(np.ones(81), shear, np.isin(np.arange(81), run))
     assert (contact._end_sign(run, 1), contact._end_sign(run, -1)) == (1, -1)
 
 

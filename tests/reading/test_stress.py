@@ -46,6 +46,13 @@ def cartesian(components, theta):
     return (radial + 1j * shear) * np.exp(1j * theta)
 
 
+def stresses(body, case, tractions, theta, depth, remote=(0.0, 0.0, 0.0)):
+    """Radial, hoop and shear stress in a body. The remote stress acts on the plate."""
+    if body == "plate":
+        return plate_stress(case, tractions, np.array(remote), theta, depth)
+    return pin_stress(case, tractions, theta, depth)
+
+
 # --- closed forms ---------------------------------------------------------------------------------------------
 
 
@@ -110,11 +117,7 @@ def test_hertz_below_the_surface(half, body):
     pressure = np.sqrt(np.maximum(1.0 - (angle / half) ** 2, 0.0))
     tractions = Tractions((np.column_stack([BOTTOM + angle, pressure, 0.0 * angle]),))
     depth = half * np.linspace(0.6, 0.95, 3501)
-    theta = np.full(depth.size, BOTTOM)
-    if body == "plate":
-        components = plate_stress(problem(), tractions, np.zeros(3), theta, depth)
-    else:
-        components = pin_stress(problem(), tractions, theta, depth)
+    components = stresses(body, problem(), tractions, np.full(depth.size, BOTTOM), depth)
     shear = np.hypot(0.5 * (components[0] - components[1]), components[2])
     largest, place = known[body, half]
     assert shear.max() == pytest.approx(largest, abs=1.5e-5)
@@ -144,10 +147,7 @@ def test_stresses_on_the_edge_are_the_tractions(body, pin_load):
     theta = np.r_[nodes, np.linspace(0.2, 2.0, 9)]
     for depth, tolerance in ((0.0, 1e-12), (1e-12, 1e-8)):
         depths = np.full(theta.size, depth)
-        if body == "plate":
-            radial, _, along = plate_stress(case, tractions, np.array([0.3, -0.2, 0.1]), theta, depths)
-        else:
-            radial, _, along = pin_stress(case, tractions, theta, depths)
+        radial, _, along = stresses(body, case, tractions, theta, depths, remote=(0.3, -0.2, 0.1))
         assert radial == pytest.approx(-np.r_[pressure, np.zeros(9)], abs=tolerance)
         assert along == pytest.approx(np.r_[shear, np.zeros(9)], abs=tolerance)
 
@@ -177,10 +177,7 @@ def test_equilibrium_and_compatibility_at_points(body):
     h, middle = 1e-3, {"plate": 1.7, "pin": 0.75, "centre of the pin": 0.2}[body]
     x, y = np.meshgrid(middle * np.cos(0.7) + h * np.arange(-2, 3), middle * np.sin(0.7) + h * np.arange(-2, 3))
     radius, theta = np.hypot(x, y).ravel(), np.arctan2(y, x).ravel()
-    if body == "plate":
-        radial, hoop, shear = plate_stress(case, tractions, np.array([0.2, 0.5, 0.3]), theta, radius - 1.0)
-    else:
-        radial, hoop, shear = pin_stress(case, tractions, theta, 1.0 - radius)
+    radial, hoop, shear = stresses(body, case, tractions, theta, np.abs(radius - 1.0), remote=(0.2, 0.5, 0.3))
     mean, half = 0.5 * (radial + hoop), 0.5 * (radial - hoop)
     sxx = (mean + half * np.cos(2 * theta) - shear * np.sin(2 * theta)).reshape(5, 5)
     syy = (mean - half * np.cos(2 * theta) + shear * np.sin(2 * theta)).reshape(5, 5)
@@ -226,11 +223,9 @@ def test_a_very_narrow_contact_keeps_its_force():
     tractions = Tractions((np.column_stack([BOTTOM + angle, hat, 0.0 * angle]),))
     wide = np.array([[BOTTOM - 1e-3, 0.0, 0.0], [BOTTOM, 1e3, 0.0], [BOTTOM + 1e-3, 0.0, 0.0]])
     theta, depth = np.linspace(-3.0, 3.0, 7), np.full(7, 0.5)
-    for compute in (
-        lambda *a: plate_stress(problem(), a[0], np.zeros(3), *a[1:]),
-        lambda *a: pin_stress(problem(), *a),
-    ):
-        assert compute(tractions, theta, depth) == pytest.approx(compute(Tractions((wide,)), theta, depth), abs=1e-5)
+    for body in ("plate", "pin"):
+        narrow, other = (stresses(body, problem(), each, theta, depth) for each in (tractions, Tractions((wide,))))
+        assert narrow == pytest.approx(other, abs=1e-5)
     assert tractions.coefficients(1)[0][1] == pytest.approx(np.exp(-1j * BOTTOM) / (2.0 * np.pi), rel=1e-10)
 
 

@@ -15,28 +15,13 @@ from fastpin.model import FatigueConstants
 from fastpin.report.states import hoop_line
 from fastpin.report.stress import field_curves
 from fastpin.verification.comparisons import strain_slip_difference, stress_resultant
+from tests.support.refusals import refused
 
 UNLIKE = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2), "stress")
 STRAIN = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2))
 BRONZE = Material(1.5, 0.34)
 BUSH = Bushing(BRONZE, 1.25, interference=0.3)
 ARC = (-3.4, 0.26)
-BODIES = {
-    "tube": {"pin_body": Tube(0.5)},
-    "held tube": {"pin_body": Tube(0.8, "held")},
-    "tube, body": {"pin_body": Tube(0.6, "body")},
-    "held ring": {"plate_body": Ring(2.0)},
-    "half ring": {"plate_body": Ring(2.0, "half")},
-    "ring, body": {"plate_body": Ring(1.5, "body")},
-    "reaction": {"plate_body": Plate((0.5, 3.0))},
-    "bush": {"plate_body": BUSH},
-    "bush in a ring": {"plate_body": replace(BUSH, inside=Ring(2.2, "half"))},
-    "both": {"pin_body": Tube(0.5, "shear"), "plate_body": replace(BUSH, inside=Plate((0.5, 3.0)))},
-}
-
-
-def problem(name, load_parameter=0.6, pair=UNLIKE, **options):
-    return Problem.from_load_parameter(pair, load_parameter, 0.3, **BODIES[name], **options)
 
 
 def compliance(nu=0.2):
@@ -48,6 +33,25 @@ def compliance(nu=0.2):
     return Compliance(nu, "stress", 1.0, matrix, {"sxx": rng.normal(size=harmonic.size) * 0.3**harmonic})
 
 
+BODIES = {
+    "tube": {"pin_body": Tube(0.5)},
+    "held tube": {"pin_body": Tube(0.8, "held")},
+    "tube, body": {"pin_body": Tube(0.6, "body")},
+    "held ring": {"plate_body": Ring(2.0)},
+    "half ring": {"plate_body": Ring(2.0, "half")},
+    "ring, body": {"plate_body": Ring(1.5, "body")},
+    "reaction": {"plate_body": Plate((0.5, 3.0))},
+    "bush": {"plate_body": BUSH},
+    "compliance": {"plate_body": compliance()},
+    "bush in a ring": {"plate_body": replace(BUSH, inside=Ring(2.2, "half"))},
+    "both": {"pin_body": Tube(0.5, "shear"), "plate_body": replace(BUSH, inside=Plate((0.5, 3.0)))},
+}
+
+
+def problem(name, load_parameter=0.6, pair=UNLIKE, **options):
+    return Problem.from_load_parameter(pair, load_parameter, 0.3, **BODIES[name], **options)
+
+
 # --- strains, resultants ---------------------------------------------------------------------------------------
 
 
@@ -56,15 +60,8 @@ def test_hoop_strains_are_those_of_gap_and_slip(name):
     """With 201 nodes the differences are 4e-5 to 2.3e-4 of the largest slip, as for a solid pin in a plate."""
     case = problem(name)
     history = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}, {"Q": 0.1}]
-    if name != "held ring":
-        history[3] |= {"sxx": 0.05, "sxy": 0.02}
+    history[3] |= {"held ring": {}, "compliance": {"sxx": 0.05}}.get(name, {"sxx": 0.05, "sxy": 0.02})
     for state in solve(case, history, nodes=201, arc=ARC):
-        assert strain_slip_difference(state) < 4e-4
-
-
-def test_hoop_strains_of_a_compliance_are_those_of_gap_and_slip():
-    case = Problem.from_load_parameter(UNLIKE, 0.6, 0.3, plate_body=compliance())
-    for state in solve(case, [{"P": 1.0}, {"Q": 0.2}, {"Q": 0.1, "sxx": 0.05}], nodes=201, arc=ARC):
         assert strain_slip_difference(state) < 4e-4
 
 
@@ -134,32 +131,23 @@ def test_report_names_the_press_fit():
 
 def refusal(case, points, body="plate"):
     state = solve(case, [{"P": 1.0}], nodes=101, arc=ARC)[-1]
-    with pytest.raises(InputError) as caught:
-        state.stress(points, body)
-    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
-    return str(caught.value)
+    return str(refused(state.stress, points, body))
 
 
 def test_points_outside_are_refused():
     tube, ring, bush = problem("tube"), problem("half ring"), problem("bush in a ring")
-    assert (
-        refusal(tube, Points.at_radius(0.49, 0.0), "pin")
-        == "radius: must be at least the bore radius of 0.5 in the pin"
-    )
+    words = "radius: must be at least the bore radius of 0.5 in the pin"
+    assert refusal(tube, Points.at_radius(0.49, 0.0), "pin") == words
     assert refusal(tube, Points.at_depth(0.51, 0.0), "pin") == "depth: must be at most the wall of 0.5 in the pin"
     assert refusal(ring, Points.at_xy(0.0, 2.1)) == "radius: must be at most the outer radius of 2 in the plate"
     assert refusal(ring, Points.at_depth(1.1, 0.0)) == "depth: must be at most the wall of 1 in the plate"
-    assert (
-        refusal(bush, Points.at_radius([1.1, 2.3], 0.0))
-        == "radius: must be at most the outer radius of 2.2 in the plate"
-    )
-    solid = problem("half ring")
-    assert refusal(solid, Points.at_depth(1.1, 0.0), "pin") == "depth: must be at most the radius of 1 in the pin"
+    words = "radius: must be at most the outer radius of 2.2 in the plate"
+    assert refusal(bush, Points.at_radius([1.1, 2.3], 0.0)) == words
+    assert refusal(ring, Points.at_depth(1.1, 0.0), "pin") == "depth: must be at most the radius of 1 in the pin"
     words = "points: the reaction acts at one of the points: the stress there is infinite"
     assert refusal(problem("reaction"), Points.at_xy([0.5, 2.0], [3.0, 2.0])) == words
-    case = Problem.from_load_parameter(UNLIKE, 0.6, 0.3, plate_body=compliance())
     words = "points: a compliance gives the stress on the edge of the hole only"
-    assert refusal(case, Points.at_depth([0.0, 0.1], 0.0)) == words
+    assert refusal(problem("compliance"), Points.at_depth([0.0, 0.1], 0.0)) == words
     rigid = Problem.from_load_parameter(
         MaterialPair(Material(2.1, 0.3), Material.rigid()), 0.6, 0.3, plate_body=Bushing(BRONZE, 1.25)
     )
@@ -186,8 +174,7 @@ def test_maps_end_at_the_rims():
     state = solve(problem("ring, body"), [{"P": 1.0}], nodes=101, arc=ARC)[-1]
     radius = field_curves(state, body="plate", fineness=5)[0].columns["radius [R]"]
     assert (radius.min(), radius.max()) == pytest.approx((1.0, 1.5))
-    case = Problem.from_load_parameter(UNLIKE, 0.6, 0.3, plate_body=compliance())
-    state = solve(case, [{"P": 1.0}], nodes=101, arc=ARC)[-1]
+    state = solve(problem("compliance"), [{"P": 1.0}], nodes=101, arc=ARC)[-1]
     assert [curve.parameters["body"] for curve in field_curves(state, fineness=5)] == ["pin"]
 
 
@@ -206,13 +193,11 @@ def test_fatigue_takes_the_constants_of_the_bush():
     found = fatigue(states, "crossland")
     assert found.limit is not None
     assert fatigue(states, "crossland", points=Points.at_radius(0.0125, 0.0)).parameter.shape == ()
-    with pytest.raises(InputError) as caught:
-        fatigue(states, "crossland", points=Points.at_radius([0.012, 0.013], 0.0))
-    assert str(caught.value) == "fatigue: crossland needs bending_limit, torsion_limit of the plate's material"
+    error = refused(fatigue, states, "crossland", points=Points.at_radius([0.012, 0.013], 0.0))
+    assert str(error) == "fatigue: crossland needs bending_limit, torsion_limit of the plate's material"
     bare = solve(Problem(pair, 0.01, 3e-5, 0.3, plate_body=BRONZE_BUSH), history, nodes=101, arc=ARC)
     with pytest.raises(InputError, match="crossland needs bending_limit, torsion_limit of the bush's material"):
         fatigue(bare, "crossland")
-    with pytest.raises(InputError) as caught:
-        fatigue_at_distance(states, "crossland", "line", theta=-1.0, length=0.002)
-    assert str(caught.value) == "length: 0.002 reaches beyond the bush: a mean over two materials has no meaning"
+    error = refused(fatigue_at_distance, states, "crossland", "line", theta=-1.0, length=0.002)
+    assert str(error) == "length: 0.002 reaches beyond the bush: a mean over two materials has no meaning"
     assert fatigue_at_distance(states, "crossland", "line", theta=-1.0, length=0.001).parameter > 0.0

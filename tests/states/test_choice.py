@@ -14,6 +14,7 @@ from fastpin.states.choice import (
     states_between,
 )
 from fastpin.states.cycles import Cycle, innermost_cycles
+from tests.support.refusals import refused
 from tests.support.samples import sample_result
 
 POINTS = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0])
@@ -68,9 +69,7 @@ KINDS = "states: must be last, cycle, all or load points such as 2,3.5, 1-9 or 1
     ],
 )
 def test_faults(chosen, message):
-    with pytest.raises(InputError) as fault:
-        chosen_places(POINTS, CYCLES, chosen)
-    assert str(fault.value).startswith(message)
+    assert str(refused(chosen_places, POINTS, CYCLES, chosen)).startswith(message)
 
 
 def test_there_must_be_states_and_cycles():
@@ -111,9 +110,7 @@ def test_cycles_are_chosen_by_their_number(chosen, places):
     ],
 )
 def test_faults_of_chosen_cycles(chosen, message):
-    with pytest.raises(InputError) as fault:
-        chosen_cycles(CYCLES, chosen)
-    assert str(fault.value) == message
+    assert str(refused(chosen_cycles, CYCLES, chosen)) == message
     with pytest.raises(InputError, match="no cycle of the history has ended"):
         chosen_cycles((), chosen)
 

@@ -1,7 +1,6 @@
 """Error bars of the tractions, at the nodes and of the curves."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,8 +11,7 @@ from fastpin.model.materials import MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.states.curves import traction_patches, tractions_at
-from fastpin.states.state import ErrorBars, State
-from fastpin.storage.store import load, save
+from fastpin.states.state import State
 from fastpin.verification import closed_forms
 
 BOTTOM = -0.5 * math.pi
@@ -30,11 +28,6 @@ def states(held: Problem) -> list[State]:
     return list(solve(held, CORNERS, nodes=101, error_bars=True))
 
 
-def bars_of(state: State) -> ErrorBars:
-    assert state.error_bars is not None
-    return state.error_bars
-
-
 def persson(theta: np.ndarray, half: float) -> np.ndarray:
     phi = np.clip(theta - BOTTOM, -half, half)
     return np.where(np.abs(theta - BOTTOM) < half, closed_forms.persson_pressure(phi, half), 0.0)
@@ -44,7 +37,7 @@ def persson(theta: np.ndarray, half: float) -> np.ndarray:
 def test_bars_hold_against_the_closed_form(similar: MaterialPair, parameter: float) -> None:
     problem = Problem.from_load_parameter(similar, parameter, 0.0)
     state = solve(problem, [{"P": 1.0}], nodes=101, error_bars=True)[-1]
-    bars, half = bars_of(state), float(closed_forms.persson_half_angle(parameter))
+    bars, half = state.error_bars, float(closed_forms.persson_half_angle(parameter))
     error = np.abs(state.pressure - persson(state.theta, half))
     assert np.all(error <= bars.pressure + 1e-15)
     assert not bars.shear.any()
@@ -63,12 +56,12 @@ def test_bars_hold_against_a_finer_grid(held: Problem, states: list[State]) -> N
     finer = solve(held, CORNERS, grid=Grid.arc(float(grid.theta[0]), float(grid.theta[-1]), 8 * (grid.size - 1) + 1))
     for state, true in zip(states, finer, strict=True):
         for name in ("pressure", "shear"):
-            held_at = np.abs(getattr(state, name) - getattr(true, name)[::8]) <= getattr(bars_of(state), name)
+            held_at = np.abs(getattr(state, name) - getattr(true, name)[::8]) <= getattr(state.error_bars, name)
             assert np.mean(held_at) > 0.97
 
 
 def test_bars_are_read_only_and_have_the_shape_of_what_was_asked(states: list[State]) -> None:
-    bars = bars_of(states[-1])
+    bars = states[-1].error_bars
     for array in (bars.pressure, bars.shear):
         assert array.shape == states[-1].theta.shape
         assert np.all(array >= 0.0)
@@ -81,7 +74,7 @@ def test_bars_are_read_only_and_have_the_shape_of_what_was_asked(states: list[St
 
 
 def test_bars_at_nodes_reach_from_the_nodes_to_the_curve(states: list[State]) -> None:
-    state, bars = states[-1], bars_of(states[-1])
+    state, bars = states[-1], states[-1].error_bars
     curve = tractions_at(traction_patches(state), np.degrees(state.theta) + 90.0)
     for row, (name, of_curve) in enumerate(zip(("pressure", "shear"), bars.of_curves(state.theta), strict=True)):
         away = np.abs(getattr(state, name) - curve[row])
@@ -90,13 +83,12 @@ def test_bars_at_nodes_reach_from_the_nodes_to_the_curve(states: list[State]) ->
 
 
 def test_bars_are_largest_at_edges_and_zero_away_from_the_contact(states: list[State]) -> None:
-    state, bars = states[0], bars_of(states[0])
+    state, bars = states[0], states[0].error_bars
     ((start, stop),) = state.contact
     spacing = float(np.diff(state.theta)[0])
     assert bars.of_curves(start)[0] > 10.0 * bars.of_curves(0.5 * (start + stop))[0]
-    assert (
-        bars.of_curves(np.array([start - 8.0 * spacing, stop + 8.0 * spacing, math.pi / 2.0]))[0].tolist() == [0.0] * 3
-    )
+    away = [start - 8.0 * spacing, stop + 8.0 * spacing, math.pi / 2.0]
+    assert not bars.of_curves(away)[0].any()
     moved = bars["contact_1_start"]  # the curve with its edge moved by its bar lies in the band
     curve = tractions_at(traction_patches(state), np.degrees([start, start + moved]) + 90.0)[0]
     assert bars.of_curves(start)[0] >= curve[1] > curve[0] >= 0.0
@@ -104,26 +96,9 @@ def test_bars_are_largest_at_edges_and_zero_away_from_the_contact(states: list[S
 
 def test_bars_do_not_depend_on_the_seam_of_a_circle(held: Problem) -> None:
     bars = [
-        bars_of(solve(held, CORNERS[:1], grid=Grid.circle(240, BOTTOM + turn), error_bars=True)[-1])
+        solve(held, CORNERS[:1], grid=Grid.circle(240, BOTTOM + turn), error_bars=True)[-1].error_bars
         for turn in (0.0, math.pi)
     ]
     theta = np.linspace(-1.5 * math.pi, 1.5 * math.pi, 301)
     for one, other in zip(bars[0].of_curves(theta), bars[1].of_curves(theta), strict=True):
         assert np.allclose(one, other, rtol=0.0, atol=1e-4)
-
-
-@pytest.mark.gate
-def test_files_keep_the_bars(held: Problem, tmp_path: Path) -> None:
-    result = solve(held, CORNERS, nodes=101, error_bars=True)
-    save(result, tmp_path / "a.h5")
-    for state, again in zip(result, load(tmp_path / "a.h5"), strict=True):
-        # The sums of some BLAS kernels depend on the place of an array in memory.
-        assert bars_of(again).shear == pytest.approx(bars_of(state).shear, rel=1e-9, abs=1e-12)
-
-
-def test_a_state_without_contact_has_bars_of_zero(similar: MaterialPair) -> None:
-    problem = Problem.from_load_parameter(similar, 0.5, 0.5)
-    state = solve(problem, [{"P": 1.0}, {"P": 0.0}], nodes=101, error_bars=True)[-1]
-    assert not state.in_contact
-    assert not bars_of(state).pressure.any()
-    assert not bars_of(state).shear.any()

@@ -11,6 +11,7 @@ import io
 import re
 import shlex
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,11 +29,48 @@ class Block(NamedTuple):
     file: str | None
 
 
-def blocks(page: str) -> Iterator[Block]:
+def blocks(page: str | Path) -> Iterator[Block]:
     """Yield the fenced blocks of a page of docs/, such as "tutorial.md"."""
-    text = (DOCS / page).read_text(encoding="utf-8")
-    for found in re.finditer(r"(?:`([\w.-]+)`:\n\n)?^```(\w+)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
+    pattern = r"(?:`([\w.-]+)`:\n\n)?^```(\w+)\n(.*?)^```$"
+    for found in re.finditer(pattern, page_text(page), re.DOTALL | re.MULTILINE):
         yield Block(found[2], found[3], found[1])
+
+
+def page_text(page: str | Path) -> str:
+    """The text of a page of docs/, or of the page at an absolute path."""
+    return (DOCS / page).read_text(encoding="utf-8")
+
+
+def statements() -> list[list[str]]:
+    """The cells of the table of the paper's statements, in docs/paper.md."""
+    table = page_text("paper.md").partition("## Statements")[2].partition("## Figures")[0]
+    return [row.replace("\\|", "").split("|")[1:-1] for row in re.findall(r"^\| \d+ \|.*$", table, re.MULTILINE)]
+
+
+def texts(page: str | Path, *kinds: str) -> list[str]:
+    """The texts of the blocks of a page in some languages."""
+    return [block.text for block in blocks(page) if block.kind in kinds]
+
+
+def printing(page: str) -> list[tuple[str, str]]:
+    """The Python blocks of a page, each with the text block right below it, or with ""."""
+    found = [*blocks(page), Block("", "", None)]
+    return [(one.text, below.text * (below.kind == "text")) for one, below in pairwise(found) if one.kind == "python"]
+
+
+def run_python(page: str) -> dict[str, Any]:
+    """Run the Python blocks of a page alone; each prints the text block right below it. Return their names."""
+    names: dict[str, Any] = {"__name__": "__main__"}
+    for code, text in printing(page):
+        assert printed_by(code, page, names) == text
+    return names
+
+
+def printed_by(code: str, page: str, names: dict[str, Any]) -> str:
+    """Run a Python block of a page with these names, and return its output."""
+    with contextlib.redirect_stdout(io.StringIO()) as stream:
+        exec(compile(code, page, "exec"), names)
+    return stream.getvalue()
 
 
 def run_page(page: str, changed: Callable[[str], str] = str) -> dict[str, Any]:
@@ -56,9 +94,7 @@ def run_page(page: str, changed: Callable[[str], str] = str) -> dict[str, Any]:
         elif block.kind == "text":
             assert_shown(block.text, printed)
         elif block.kind == "python":
-            with contextlib.redirect_stdout(io.StringIO()) as stream:
-                exec(compile(block.text, page, "exec"), names)
-            output = stream.getvalue()
+            output = printed_by(block.text, page, names)
         elif block.kind == "console":
             for command in re.findall(r"^fastpin ([^#\n]*)", block.text, re.MULTILINE):
                 parser().parse_args(join_words(shlex.split(command.partition(" > ")[0])))

@@ -42,6 +42,16 @@ def outline_figures(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(style.Drawing, "savefig", save)
 
 
+def legend_words(figure: Figure) -> list[str]:
+    """The words of the legends of a figure, in order."""
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+def plain(text: str) -> str:
+    """A text of a figure on one line, with plain spaces."""
+    return text.replace("\n", " ").replace("\N{NO-BREAK SPACE}", " ")
+
+
 def digest_of(figure: Figure) -> str:
     """A digest of all that a figure shows. Equal figures have equal digests."""
     found = hashlib.sha256()

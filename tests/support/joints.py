@@ -64,10 +64,7 @@ def numbers(result: Result) -> dict[str, float]:
     """The numbers of the last state."""
     state, slid = result[-1], 0.0
     seat = state.seat
-    assert seat is not None
     for each in result.states:
-        assert each.seat is not None
-        assert each.seat.slip_distance is not None
         slid = slid + each.seat.slip_distance
     weights, around = state.grid.weights, seat.grid.weights
     return {

@@ -101,9 +101,6 @@ UPWARD = {
 LOCAL_IMPORTS = {"cli/progress.py": "tqdm takes 60 ms, and a refused option needs no progress bar"}
 """Files that import other packages inside functions, and why."""
 
-LONG_FUNCTIONS: dict[str, str] = {}
-"""Functions of more lines, and why."""
-
 MANY_PARAMETERS: dict[str, str] = {
     "model/problem.py Problem.from_load_parameter": "the fields of a problem",
     "damage/spectrum.py spectrum_damage": "the choices of a count are spelt out for help and completion",
@@ -410,16 +407,14 @@ def small(tree: Tree) -> Iterator[str]:
         if source.lines > MOST_LINES:
             yield f"{file} has {source.lines} lines"
     for name, function in tree.functions():
-        if name not in LONG_FUNCTIONS and _folder(name) != "kernels" and _code_lines(function) > MOST_FUNCTION_LINES:
+        if _folder(name) != "kernels" and _code_lines(function) > MOST_FUNCTION_LINES:
             yield f"{name} has {_code_lines(function)} lines"
         arguments = [*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs]
         given = [argument.arg for argument in arguments if argument.arg not in ("self", "cls")]
         if name not in MANY_PARAMETERS and _folder(name) != "kernels" and len(given) > MOST_PARAMETERS:
             yield f"{name} has {len(given)} parameters"
     known = {name for name, _ in tree.functions()}
-    yield from (
-        f"{name} is excepted, but not there" for name in (*LONG_FUNCTIONS, *MANY_PARAMETERS) if name not in known
-    )
+    yield from (f"{name} is excepted, but not there" for name in MANY_PARAMETERS if name not in known)
 
 
 def _code_lines(function: ast.FunctionDef) -> int:
@@ -436,9 +431,6 @@ def exceptions_used(tree: Tree) -> Iterator[str]:
     for file in (*UPWARD, *LOCAL_IMPORTS):
         if not any(one.file == file and one.inside for one in tree.imports):
             yield f"{file} is excepted, but imports nothing inside a function"
-    for name, function in tree.functions():
-        if name in LONG_FUNCTIONS and _code_lines(function) <= MOST_FUNCTION_LINES:
-            yield f"{name} is excepted, but short"
 
 
 def sentences_in_folders(tree: Tree) -> Iterator[str]:

@@ -1,16 +1,17 @@
 """The live page for tests: messages, a server in a thread, and the pictures as a page would keep them.
 
-A talk of a page and a server needs no network: :func:`talked` runs both in one loop, with a :class:`Wire` as websocket.
+A talk of a page and a server needs no network: :func:`in_a_loop` runs both, with a :class:`Wire` as websocket.
 """
 
 import asyncio
 import base64
 import contextlib
+import functools
 import json
 import re
 import threading
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -129,13 +130,18 @@ class Talk:
         return welcome["session"], await self.answer(welcome["id"])
 
 
-class Wire:
+class Wire(Talk):
     """A websocket without a network: a server reads it and sends to it, a page says something to it and hears it."""
 
+    opened: ClassVar[list["Wire"]] = []
+    """The wires of the running test."""
+
     def __init__(self, server: Server) -> None:
+        Wire.opened.append(self)
         self._said: asyncio.Queue[WSMessage | None] = asyncio.Queue()
         self.heard: asyncio.Queue[str] = asyncio.Queue()
         self.code = 0
+        super().__init__(self.say, self.heard.get)
         self._served = asyncio.create_task(server.serve_page(self))  # type: ignore[arg-type]
 
     async def __aiter__(self) -> AsyncIterator[WSMessage]:
@@ -161,25 +167,22 @@ class Wire:
         self._said.put_nowait(None)
         await self._served
 
-    def talk(self) -> Talk:
-        return Talk(self.say, self.heard.get)
 
+def in_a_loop(test: Callable[..., Awaitable[None]]) -> Callable[..., None]:
+    """Let a test be a coroutine, in one loop with its servers. At its end all its pages go away."""
 
-def talked(server: Server, work: Callable[[Callable[[], Wire]], Awaitable[None]]) -> None:
-    """Run a server and the work of its pages in one loop. The work gets a function that opens a page."""
-    wires: list[Wire] = []
-
-    def opened() -> Wire:
-        wires.append(Wire(server))
-        return wires[-1]
-
-    async def run() -> None:
+    async def run(**given: Any) -> None:
         async with asyncio.timeout(LIMIT):
-            await work(opened)
-            for wire in wires:
-                await wire.go()
+            await test(**given)
+            while Wire.opened:
+                await Wire.opened.pop(0).go()
 
-    asyncio.run(run())
+    @functools.wraps(test)
+    def whole(**given: Any) -> None:
+        Wire.opened.clear()
+        asyncio.run(run(**given))
+
+    return whole
 
 
 class HeldSteps:

@@ -63,6 +63,5 @@ nodes = 41
 def fretting(cycles: int = 3000, at: tuple[int, ...] = (3, 10, 100, 1000), nodes: int = 41) -> WearResult:
     """Follow the life."""
     case = casefile.parse_case(FRETTING)
-    assert case.wear is not None
     law = {"pin": case.wear.pin, "plate": case.wear.plate, "tolerance": case.wear.tolerance}
     return fastpin.wear(case.problem, case.history, cycles=cycles, at=at, nodes=nodes, **law)

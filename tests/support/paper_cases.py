@@ -132,17 +132,13 @@ def overlap(one, two):
     return max(min(b, d) - max(a, c), 0.0) / (b - a)
 
 
-def mirrored(values):
-    return values[::-1]
-
-
 def difference(one, two, field="shear", mirror=False):
     """Integral of |difference| over that of |two|; with `mirror`, of `one` and the mirror image of `two`."""
     a, b, weights = getattr(one, field), getattr(two, field), two.grid.weights
     if one.grid is not two.grid and one.theta is not two.theta:
         a = np.interp(two.theta, one.theta, a, 0.0, 0.0)
     if mirror:
-        b = mirrored(b) if field == "pressure" else -mirrored(b)
+        b = b[::-1] if field == "pressure" else -b[::-1]
     return float(weights @ np.abs(a - b) / (weights @ np.abs(b)))
 
 

@@ -66,11 +66,6 @@ def made_up_rows(plan: Plan) -> list[dict[str, Any]]:
         row |= {"id": point.id, "status": "done", "reason": None, "dimensionless": 0}
         rows.append(row | {"peak_pressure": 1e6 * number, "contact_start": -number, "states": 3, "seconds": 0.1})
     rows[1] |= {"status": "failed", "reason": "lost, at last", "peak_pressure": None}
-    rows[2] = {
-        "id": rows[2]["id"],
-        "status": "waiting",
-        "reason": None,
-        **dict.fromkeys(plan.fields),
-        **plan.points[2].values,
-    }
+    given = dict.fromkeys(plan.fields) | plan.points[2].values
+    rows[2] = {"id": rows[2]["id"], "status": "waiting", "reason": None, **given}
     return rows
