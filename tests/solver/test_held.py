@@ -25,6 +25,7 @@ from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns
 from tests.support.kernels import python, run_as_python
+from tests.support.programs import assert_same_bits
 from tests.support.tiers import gate, some_gate
 from tests.survey.histories import generate
 
@@ -232,10 +233,8 @@ def test_known_tables_leave_the_bits_of_a_history(titanium_in_aluminium, monkeyp
     again = solve(problem, HISTORY, grid=first.grid)  # the system of the first run, with all its tables
     monkeypatch.setattr(held, "MOST_NUMBERS", 0)  # one table at a time
     last = solve(problem, HISTORY, grid=Grid(first.grid.theta.copy()))
-    for one, two, three in zip(first, again, last, strict=True):
-        for name in ("pressure", "shear", "gap", "slip", "status"):
-            assert np.array_equal(getattr(one, name), getattr(two, name))
-            assert np.array_equal(getattr(one, name), getattr(three, name))
+    assert_same_bits(first, again)
+    assert_same_bits(first, last)
 
 
 def test_threads_share_the_tables_of_a_system(titanium_in_aluminium):
