@@ -269,16 +269,6 @@ def test_a_tableau_that_has_drifted_is_built_anew(titanium_in_aluminium, monkeyp
     assert np.abs(found.pressure - expected.pressure).max() < 1e-6
 
 
-def test_the_operator_is_symmetric(titanium_in_aluminium):
-    """Weighted by the hats, without the terms that depend on resultants only; half hats at the ends aside."""
-    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
-    system = System.build(problem, Grid.arc(BOTTOM - 1.0, BOTTOM + 1.0, 61), 1.0)
-    weights = np.r_[system.weights, system.weights]
-    product = weights[:, None] * system.operator
-    inner = np.delete(np.delete(product, [0, 60, 61, 121], axis=0), [0, 60, 61, 121], axis=1)
-    assert np.abs(inner - inner.T).max() < 1e-12 * np.abs(product).max()
-
-
 # --- the whole event loop -----------------------------------------------------------------------------------
 
 

@@ -1,7 +1,6 @@
 """Compiled fits of the solutions of a half line: compiled, as plain Python, and against NumPy."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,11 +9,7 @@ from fastpin.kernels import half_line
 from fastpin.reading.half_line import End, Tries, Try
 from fastpin.reading.half_line import half_line as line_of
 from tests.support.half_line import NaiveFit, columns, powers, shift
-from tests.support.kernels import python
-
-KERNELS = ("exponential", "solve", "match", "evaluate", "end_places", "value_errors", "least_squares")
-INNER = ("_product", "_unknowns", "_known_solution", "_fill", "_factor", "_invert", "_rotate", "_pseudo_invert",
-         "_solve", "_match", "_end_row", "_row", "_match_all", "_norm_of")  # fmt: skip
+from tests.support.kernels import in_python
 
 LIKE, PRESSURE, RESERVE = line_of(0.5), line_of(0.46), line_of(0.53, 0.2)
 FITS = {
@@ -29,18 +24,9 @@ FITS = {
 }  # fmt: skip
 
 
-def plain_python():
-    """The kernels as plain Python: their parts are taken from the same module."""
-    space = dict(vars(half_line))
-    for name in (*INNER, *KERNELS):
-        function = python(getattr(half_line, name))
-        space[name] = type(function)(function.__code__, space, name)
-    return SimpleNamespace(**{name: space[name] for name in KERNELS})
-
-
 @pytest.fixture(params=["compiled", "plain Python"], scope="module")
 def kernels(request):
-    return half_line if request.param == "compiled" else plain_python()
+    return half_line if request.param == "compiled" else in_python(half_line)
 
 
 def values_of(name: str) -> np.ndarray:

@@ -9,7 +9,7 @@ import pytest
 
 from fastpin.kernels import harmonics
 from tests.support import walls
-from tests.support.potentials import Potentials
+from tests.support.potentials import Potentials, first_harmonic
 
 KINDS = ["free", "held"]
 KOLOSOV = [1.0, 1.8, 3.0]
@@ -167,22 +167,12 @@ LOADS = ["uniform", "normal", "shear", "held", "body"]
 
 def first_fields(first, radius, theta):
     """Traction and 2G u of the first harmonic on a circle, from potentials, for t_1 = 1 and for conj t_-1 = 1."""
-    z, turn = radius * np.exp(1j * theta), np.exp(-1j * theta)
-    for A, D, L, b in zip(first.A, first.D, first.L, first.b, strict=True):
-        k = first.kolosov
-        one = Potentials(
-            k,
-            lambda x, A=A, L=L: A * x**2 - L * np.log(x),
-            lambda x, A=A, L=L: 2.0 * A * x - L / x,
-            lambda x, A=A, L=L: 2.0 * A + L / x**2,
-            lambda x, D=D, L=L, k=k: D / x**2 + k * L * np.log(x),
-            lambda x, D=D, L=L, k=k: -2.0 * D / x**3 + k * L / x,
-            b,
-        )  # fmt: skip
-        count = theta.size
+    z, turn, count = radius * np.exp(1j * theta), np.exp(-1j * theta), theta.size
+    sizes = 1.0 + np.abs([first.A, first.D, first.L, first.b]).max(axis=0)
+    for one, size in zip(first_harmonic(first), sizes, strict=True):
         t = np.fft.fft(one.traction(z, np.exp(1j * theta)) * turn) / count
         u = np.fft.fft(one.displacement(z) * turn) / count
-        assert np.abs(np.delete(t, [1, count - 1])).max() < 1e-13 * (1.0 + max(abs(A), abs(D), abs(L), abs(b)))
+        assert np.abs(np.delete(t, [1, count - 1])).max() < 1e-13 * size
         yield t[1], t[-1], u[1], u[-1]
 
 

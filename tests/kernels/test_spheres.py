@@ -6,17 +6,8 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import spheres
-from tests.support.kernels import python
+from tests.support.kernels import in_python
 from tests.support.tiers import gate
-
-
-def python_kernel():
-    """The kernel as plain Python: its parts are taken from the same module."""
-    space = dict(vars(spheres))
-    for name in ("_centre", "_distance", "_smallest", "enclosing_spheres"):
-        function = python(getattr(spheres, name))
-        space[name] = type(function)(function.__code__, space, name)
-    return space["enclosing_spheres"]
 
 
 def all_subsets(points):
@@ -50,7 +41,7 @@ def test_the_sphere_is_the_smallest_of_all_subsets(dimension):
 def test_compiled_and_plain_python_agree(dimension):
     paths = np.random.default_rng(3).normal(size=(5, 30, dimension))
     plain = np.empty((5, dimension + 1))
-    python_kernel()(paths, plain)
+    in_python(spheres).enclosing_spheres(paths, plain)
     centres, radii = solved(paths)
     np.testing.assert_allclose(radii, plain[:, -1], rtol=1e-13)
     np.testing.assert_allclose(centres, plain[:, :-1], rtol=1e-12, atol=1e-13)

@@ -20,6 +20,13 @@ BOTTOM = -0.5 * np.pi
 RIGID_PIN = MaterialPair(Material.rigid(), Material(70e9, 0.33))
 
 
+def drawn(size):
+    """The first column, the second and the cross one of a random matrix that can be inverted."""
+    rng, away = np.random.default_rng(size), np.arange(size)
+    first, second = (rng.normal(size=size) * 0.8**away + 4.0 * size * (away == 0) for _ in range(2))
+    return first, second, np.where(away == 0, 0.0, rng.normal(size=size))
+
+
 def dense(first, second, cross):
     upper = scipy.linalg.toeplitz(cross, -cross)
     return np.block([[scipy.linalg.toeplitz(first), upper], [-upper, scipy.linalg.toeplitz(second)]])
@@ -35,13 +42,9 @@ def inverse(request, monkeypatch):
 
 @pytest.mark.parametrize("size", [1, 2, 3, 30])
 def test_it_is_the_inverse(inverse, size):
-    rng = np.random.default_rng(size)
-    away = np.arange(size)
-    first, second = (rng.normal(size=size) * 0.8**away + 4.0 * size * (away == 0) for _ in range(2))
-    cross = np.where(away == 0, 0.0, rng.normal(size=size))
-    matrix = dense(first, second, cross)
+    matrix = dense(*drawn(size))
     assert np.array_equal(matrix, matrix.T)
-    assert inverse(first, second, cross) == pytest.approx(np.linalg.inv(matrix), rel=1e-11, abs=1e-14)
+    assert inverse(*drawn(size)) == pytest.approx(np.linalg.inv(matrix), rel=1e-11, abs=1e-14)
 
 
 def test_a_singular_leading_block_is_not_hidden():
@@ -85,15 +88,12 @@ def stuck(size, low, high):
 def test_what_it_does_to_the_nodes_beside(monkeypatch, version, low, size, nodes):
     if version == "python":
         monkeypatch.setattr(toeplitz, "_fill", python(toeplitz._fill))
-    rng = np.random.default_rng(nodes)
-    away = np.arange(nodes)
-    first, second = (rng.normal(size=nodes) * 0.8**away + 4.0 * nodes * (away == 0) for _ in range(2))
-    cross = np.where(away == 0, 0.0, rng.normal(size=nodes))
-    matrix = dense(first, second, cross)
+    columns = drawn(nodes)
+    matrix = dense(*columns)
     rows = np.r_[low : low + size, nodes + low : nodes + low + size]
     others = np.setdiff1d(np.arange(2 * nodes), rows)
     core = np.linalg.inv(matrix[np.ix_(rows, rows)])
-    beside = toeplitz.NeighbourResponses(np.array([first, second, cross]), core, low)
+    beside = toeplitz.NeighbourResponses(np.array(columns), core, low)
     responses = core @ matrix[np.ix_(rows, others)]
     assert beside.responses() == pytest.approx(responses, rel=1e-10, abs=1e-13)
     complement = matrix[np.ix_(others, others)] - matrix[np.ix_(others, rows)] @ responses
