@@ -64,6 +64,13 @@ def configuration_after(system: System, corners: list[Corner]) -> Configuration:
     return run.now
 
 
+def last_path() -> DriftPath:
+    """The path of the last step of T1, on 31 nodes."""
+    system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
+    start, end = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
+    return DriftPath(system, start, end.load, system.under(end.load).friction)
+
+
 # Nodes, peak pressure, rotation and int T of two cases, from another program.
 REFERENCE = [(61, 0.50786, 0.02135, -0.10402), (121, 0.50783, 0.02138, -0.10390), (241, 0.50780, 0.02136, -0.10385)]
 
@@ -132,14 +139,6 @@ def test_constant_friction_gives_the_states_of_the_usual_path(after: Corner) -> 
     assert np.array_equal(found.status, usual.status)
     assert found.dissipation == pytest.approx(usual.dissipation, rel=1e-12)
     assert found.work == pytest.approx(usual.work, rel=1e-12)
-
-
-def test_in_a_half_plane_a_lower_friction_has_the_state_of_that_friction_from_the_start() -> None:
-    half = 1.4 / math.sqrt(200.0 * math.pi)
-    arc = (-0.5 * math.pi - half, -0.5 * math.pi + half)
-    high, low = (Problem.from_load_parameter(LIKE, 200.0, mu, "centre", "fixed") for mu in (0.6, 0.3))
-    lowered = solve(high, [*FIRST, {"friction_change": -0.5}], nodes=61, arc=arc)
-    assert difference(lowered[-1], solve(low, FIRST, nodes=61, arc=arc)[-1]) < 1e-12
 
 
 def test_growing_friction_changes_nothing_and_all_nodes_stick() -> None:
@@ -252,9 +251,7 @@ def test_json_has_a_change_only_where_there_is_one(whole: Result) -> None:
 
 
 def test_the_rates_of_a_moment_are_its_derivatives() -> None:
-    system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
-    start, end = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
-    path = DriftPath(system, start, end.load, system.under(end.load).friction)
+    path = last_path()
     path.follow(0.4)
     before, here, after = (Moment(path, 0.4 + part, path.now.status, path.now.slip) for part in (-1e-4, 0.0, 1e-4))
     for values, rates in (("solution", "rates"), ("rates", "bends")):
@@ -308,12 +305,10 @@ def test_energies_between_far_events_are_exact() -> None:
 
 @pytest.mark.gate
 def test_a_stretch_is_halved_until_cubics_describe_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
-    start, end = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
     counts = []
     for most in (1e-3, 1e-9):
         monkeypatch.setattr("fastpin.solver.drift.MOST_BEND", most)
-        path = DriftPath(system, start, end.load, system.under(end.load).friction)
+        path = last_path()
         path.follow(1.0)
         counts.append(path.rebuilds)
     assert counts[0] < 0.9 * counts[1]
@@ -333,9 +328,7 @@ def test_two_zeros_between_two_moments_are_noticed() -> None:
 
 
 def test_statuses_that_come_back_end_the_path_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    system = System.build(T1, Grid.arc(*ARC, 31), 1.0)
-    start, end = (configuration_after(system, corners) for corners in (FIRST, [*FIRST, LAST]))
-    path = DriftPath(system, start, end.load, system.under(end.load).friction)
+    path = last_path()
     path.follow(0.4)
     moments = cycle([SimpleNamespace(status=np.full(31, status, dtype=np.int8)) for status in (SLIP_POSITIVE, STICK)])
     ends = np.ones((4, 31), dtype=bool)

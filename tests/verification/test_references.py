@@ -32,24 +32,6 @@ def test_persson(similar, load_parameter, pin_load):
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("load_parameter", [0.01, 0.5, 2.0])
-def test_persson_contact_angle_with_many_nodes(similar, load_parameter):
-    state = solve(Problem.from_load_parameter(similar, load_parameter, 0.0), [{"P": 1.0}], nodes=1600)[-1]
-    assert 0.5 * np.ptp(state.contact[0]) == pytest.approx(closed_forms.persson_half_angle(load_parameter), abs=1e-4)
-
-
-@pytest.mark.parametrize("alpha", [-0.2, 0.5])
-@pytest.mark.parametrize("load_parameter", [0.05, 0.5])
-def test_dissimilar_frictionless_without_coupling(alpha, load_parameter):
-    """alpha* = 0: the pressure is Persson's as a function of the contact angle (Ciavarella and Decuzzi)."""
-    pair = MaterialPair.from_dundurs(alpha, 0.0, nu_pin=0.3)
-    state = solve(Problem.from_load_parameter(pair, load_parameter, 0.0), [{"P": 1.0}], nodes=400)[-1]
-    exact = closed_forms.persson_half_angle(load_parameter, -alpha)
-    assert state.peak_pressure == pytest.approx(closed_forms.persson_pressure(0.0, exact), rel=1e-5)
-    assert 0.5 * np.ptp(state.contact[0]) == pytest.approx(exact, abs=1e-3)
-
-
-@pytest.mark.gate
 def test_order_of_edge_and_peak_pressure(similar):
     """Edges read between nodes: no stair steps, and better than first order. Peaks: second order."""
     rng = np.random.default_rng(3)
@@ -142,18 +124,14 @@ def against(name):
     return model, states, model.differences(states), peaks
 
 
-def test_finite_elements_without_friction():
-    _, _, (difference,), (peak,) = against("frictionless")
-    assert difference.normal < 5e-4
-    assert difference.shear == 0.0
-    assert peak < 2e-5
-
-
-def test_finite_elements_monotonic():
-    _, _, (difference,), (peak,) = against("monotonic")
-    assert difference.normal < 1.5e-4
-    assert difference.shear < 1.1e-3
-    assert peak < 5e-5
+@pytest.mark.parametrize(
+    ("name", "normal", "shear", "peak"), [("frictionless", 5e-4, 0.0, 2e-5), ("monotonic", 1.5e-4, 1.1e-3, 5e-5)]
+)
+def test_finite_elements_of_a_first_load(name, normal, shear, peak):
+    _, _, (difference,), (found,) = against(name)
+    assert difference.normal < normal
+    assert difference.shear <= shear
+    assert found < peak
 
 
 def test_finite_elements_fretting():

@@ -59,15 +59,6 @@ def test_without_friction_and_alpha_star_it_is_ciavarella_and_decuzzi(load_param
     assert found.peak_pressure == pytest.approx(closed_forms.persson_pressure(0.0, half), rel=1e-10)
 
 
-@PAIRS
-def test_without_friction_it_is_the_path_solver_for_any_pair(pair):
-    problem, force = in_si(pair, 0.05, 0.0)
-    found = solve_sliding(problem, {"P": force})
-    state = solve(problem, [{"P": force}], nodes=301)[-1]
-    assert state.peak_pressure == pytest.approx(found.peak_pressure, rel=1e-5)
-    assert state.contact[0] == pytest.approx(found.contact, abs=0.1 * (state.theta[1] - state.theta[0]))
-
-
 STRESS = {"sxx": 0.12, "syy": -0.05}
 
 
