@@ -12,16 +12,10 @@ from fastpin.elasticity import tractions as module
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
 from fastpin.kernels import cauchy
 from fastpin.runtime import threads
-from tests.support.kernels import python, run_as_python
+from tests.support.kernels import python
 from tests.support.tiers import gate
 
-
-@pytest.fixture(params=["compiled", "python"])
-def way(request, monkeypatch):
-    """Run the kernels compiled, or as plain Python."""
-    if request.param == "python":
-        run_as_python(cauchy, monkeypatch)
-    return request.param
+KERNELS = cauchy
 
 
 def patch(rng, start, stop, n):

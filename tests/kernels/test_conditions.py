@@ -6,17 +6,11 @@ import pytest
 from fastpin.kernels import conditions
 from fastpin.kernels.arrays import ContactValues, Equations
 from fastpin.kernels.status import OPEN, STICK
-from tests.support.kernels import run_as_python
 from tests.support.tiers import seeds
 
+KERNELS = conditions
 NODES = 12
-
-
-@pytest.fixture(params=["compiled", "python"], autouse=True)
-def _way(request, monkeypatch):
-    """The kernels are compiled, or plain Python."""
-    if request.param == "python":
-        run_as_python(conditions, monkeypatch)
+pytestmark = pytest.mark.usefixtures("way")
 
 
 class Drawn:

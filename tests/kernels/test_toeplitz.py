@@ -13,9 +13,9 @@ from fastpin.model.problem import Problem
 from fastpin.solver import path, unknowns
 from fastpin.solver.solving import solve
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
-from tests.support.kernels import python
 from tests.support.tiers import gate
 
+KERNELS = toeplitz
 BOTTOM = -0.5 * np.pi
 RIGID_PIN = MaterialPair(Material.rigid(), Material(70e9, 0.33))
 
@@ -32,19 +32,11 @@ def dense(first, second, cross):
     return np.block([[scipy.linalg.toeplitz(first), upper], [-upper, scipy.linalg.toeplitz(second)]])
 
 
-@pytest.fixture(params=["compiled", "python"])
-def inverse(request, monkeypatch):
-    if request.param == "python":
-        for name in ("_predictor", "_fill", "_invert"):
-            monkeypatch.setattr(toeplitz, name, python(getattr(toeplitz, name)))
-    return toeplitz.inverse
-
-
 @pytest.mark.parametrize("size", [1, 2, 3, 30])
-def test_it_is_the_inverse(inverse, size):
+def test_it_is_the_inverse(way, size):
     matrix = dense(*drawn(size))
     assert np.array_equal(matrix, matrix.T)
-    assert inverse(*drawn(size)) == pytest.approx(np.linalg.inv(matrix), rel=1e-11, abs=1e-14)
+    assert toeplitz.inverse(*drawn(size)) == pytest.approx(np.linalg.inv(matrix), rel=1e-11, abs=1e-14)
 
 
 def test_a_singular_leading_block_is_not_hidden():
@@ -53,10 +45,8 @@ def test_a_singular_leading_block_is_not_hidden():
     assert not np.all(np.isfinite(found))
 
 
-@pytest.mark.parametrize("version", ["compiled", "python"])
-def test_a_column_of_a_laminate(version):
+def test_a_column_of_a_laminate(way):
     """Against the definition, k factor turn_i turn_j (N + iT) = gap - i slip."""
-    add = toeplitz.add_turned_column if version == "compiled" else python(toeplitz.add_turned_column)
     rng, n = np.random.default_rng(1), 7
     by_distance, turn, factor = rng.normal(size=n), np.exp(1j * rng.normal(size=n)), 0.3 - 0.7j
     away = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
@@ -65,7 +55,7 @@ def test_a_column_of_a_laminate(version):
     rows, before = rng.permutation(2 * n)[:9], rng.normal(size=9)
     for column in range(2 * n):
         out = before.copy()
-        add(by_distance, turn, factor, rows, column, out)
+        toeplitz.add_turned_column(by_distance, turn, factor, rows, column, out)
         assert out == pytest.approx(before + whole[rows, column], abs=1e-15)
 
 
@@ -81,13 +71,10 @@ def stuck(size, low, high):
     return status
 
 
-@pytest.mark.parametrize("version", ["compiled", "python"])
 @pytest.mark.parametrize(
     ("low", "size", "nodes"), [(4, 9, 20), (0, 7, 15), (6, 3, 9), (5, 30, 61), (1, 2, 4), (3, 8, 12), (2, 1, 4)]
 )
-def test_what_it_does_to_the_nodes_beside(monkeypatch, version, low, size, nodes):
-    if version == "python":
-        monkeypatch.setattr(toeplitz, "_fill", python(toeplitz._fill))
+def test_what_it_does_to_the_nodes_beside(way, low, size, nodes):
     columns = drawn(nodes)
     matrix = dense(*columns)
     rows = np.r_[low : low + size, nodes + low : nodes + low + size]
