@@ -109,12 +109,17 @@ def two_ends(distance):
     return ends, 1.0 + 2.0 * columns(ends[0], 17) @ [1.0, 0.1] + 1e-5 * np.random.default_rng(5).normal(size=17)
 
 
+def fitted(kernels, ends, values):
+    """Scatter, coefficients and spread of a fit of two ends and a constant."""
+    packed = Tries([Try(0, 17, 0, ends)])
+    coefficients, spread = np.empty(5), np.empty((5, 5))
+    return kernels.solve(values, 0, packed.ends, packed.tables, coefficients, spread), coefficients, spread
+
+
 def test_columns_that_depend_on_each_other_get_the_least_coefficients(kernels):
     """Two ends at the same place."""
     ends, values = two_ends(0.0)
-    packed = Tries([Try(0, 17, 0, ends)])
-    coefficients, spread = np.empty(5), np.empty((5, 5))
-    scatter = kernels.solve(values, 0, packed.ends, packed.tables, coefficients, spread)
+    scatter, coefficients, spread = fitted(kernels, ends, values)
     expected = NaiveFit(values, ends, 0)
     assert coefficients == pytest.approx(expected.coefficients, abs=1e-10)
     assert scatter == pytest.approx(expected.scatter, rel=1e-8)
@@ -137,9 +142,7 @@ def test_the_fit_is_right_where_its_coefficients_are_not(kernels):
     has some ten roundings, as its factorization has. The coefficients are large and cancel in the row.
     """
     ends, values = two_ends(1e-12)
-    packed = Tries([Try(0, 17, 0, ends)])
-    coefficients, spread = np.empty(5), np.empty((5, 5))
-    scatter = kernels.solve(values, 0, packed.ends, packed.tables, coefficients, spread)
+    scatter, coefficients, _ = fitted(kernels, ends, values)
     free, line = ends[0]._replace(place=None), LIKE
     solutions = columns(free, 17) @ np.linalg.solve(line.matching[:3, :3], shift(0.2, 3))
     design, row = np.column_stack([np.ones(17), solutions]), np.append(1.0, powers(line, np.array([2.5]), 3))

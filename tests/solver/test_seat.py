@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin import Grid, LoadHistory, MaterialPair, Problem, Session, load, record, resume, solve
+from fastpin import Grid, LoadHistory, MaterialPair, Points, Problem, Session, load, record, resume, solve
 from fastpin.bodies import Bushing, Disk, Ring, Tube
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
@@ -274,14 +274,8 @@ def test_conditions_hold_in_a_lug_of_any_outline_and_an_oval_bore():
     states = solve(oval, [{"P": 1.0}, {"Q": 0.3}, {"P": 0.0, "Q": 0.0}, {"P": 0.5}], nodes=48).states
     assert states[1].seat.peak_hoop_stress().value > 0.0
     with pytest.raises(InputError, match="edge of the hole only"):
-        states[1].stress(_points(0.5))
+        states[1].stress(Points.at_depth(0.5, [0.0]))
     _check([replace(state, problem=replace(oval, gap=InitialGap())) for state in states], but="gap")
-
-
-def _points(depth):
-    from fastpin import Points
-
-    return Points.at_depth(depth, [0.0])
 
 
 def _check(states, but=""):

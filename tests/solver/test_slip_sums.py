@@ -18,17 +18,13 @@ from tests.support.slip_cases import CASES, LIKE, UNLIKE, WAYS, assert_contains,
 from tests.support.tiers import seeds, some_gate
 
 
-def energies(result: Result) -> np.ndarray:
-    """The integral of the friction energy over the hole, of each state."""
-    radius = result.problem.hole_radius
-    return np.array([radius * float(result.grid.weights @ state.friction_energy) for state in result])
-
-
 def assert_balance(result: Result) -> None:
     """The friction energy of all nodes is the growth of the dissipation; no node slips without contact."""
+    weights = result.problem.hole_radius * result.grid.weights
+    energies = np.array([weights @ state.friction_energy for state in result])
     dissipation = np.array([state.dissipation for state in result])
     scale = max(float(np.abs(dissipation).max()), 1e-300)
-    assert np.abs(energies(result) - np.diff(dissipation, prepend=0.0)).max() <= 1e-12 * scale
+    assert np.abs(energies - np.diff(dissipation, prepend=0.0)).max() <= 1e-12 * scale
     for before, after in itertools.pairwise(result):
         stuck = (before.status == 0) & (after.slip_distance == 0.0) & (after.status == 0)
         assert np.abs(after.slip - before.slip)[stuck].max(initial=0.0) <= 1e-12 * np.abs(after.slip).max()
