@@ -144,10 +144,6 @@ def test_the_command_line_says_the_same(case, tmp_path, capsys):
     assert capsys.readouterr().err == f"fastpin: --{name}: {reason}\n"
 
 
-def test_fifty_values_go_all_four_ways():
-    assert len(OPTIONS) >= 50
-
-
 def test_an_option_without_effect_is_refused_everywhere(tmp_path, capsys):
     reason = 'has no effect with method "path"; leave it out, or choose "increment"'
     with pytest.raises(InputError) as refused:

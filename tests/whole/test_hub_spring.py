@@ -180,18 +180,10 @@ def test_case_file_tables_and_files(tmp_path):
     assert np.array_equal(rest[-1].shear, result[-1].shear)
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        (CASE.replace("hub_stiffness = 2e5\n", ""), "needs the stiffness of the spring"),
-        (CASE.replace("hub_stiffness = 2e5", "hub_stiffness = -2"), "must be positive"),
-        (CASE.replace('rotation = "spring"', 'rotation = "fixed"'), 'only a pin with rotation = "spring"'),
-    ],
-)
-def test_faults_of_case_files(text, words):
-    with pytest.raises(CaseFileError, match=words) as caught:
-        parse_case(text)
-    assert len(str(caught.value).splitlines()) == 1
+def test_a_case_file_without_the_stiffness():
+    with pytest.raises(CaseFileError, match="needs the stiffness of the spring") as caught:
+        parse_case(CASE.replace("hub_stiffness = 2e5\n", ""))
+    assert len(caught.value.problems) == 1
 
 
 def test_a_plan_varies_the_stiffness(tmp_path):
