@@ -92,6 +92,19 @@ def test_blocks_of_harmonics(monkeypatch):
     assert fourier.product(*arguments, tractions) == pytest.approx(product, abs=1e-14)
 
 
+def test_more_harmonics_than_a_block():
+    """600 harmonics of a thin wall take three blocks."""
+    n = np.arange(601.0)
+    coefficients = np.array([0.99**n, 0.98**n, 0.97**n])
+    grid = Grid.arc(-2.0, -1.0, 7)
+    columns = fourier.hat_columns(grid.theta, grid.theta, *half_hats(grid), coefficients)
+    phi = np.subtract.outer(grid.theta, grid.theta)
+    moments = fourier.hat_moments(n, *half_hats(grid))
+    for k, part in enumerate((np.real, np.real, np.imag)):
+        expected = part(np.einsum("n,ijn,jn->ij", coefficients[k], np.exp(1j * np.multiply.outer(phi, n)), moments))
+        assert columns[k] == pytest.approx(expected, abs=1e-12)
+
+
 @pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS)
 def test_product_is_the_columns_times_tractions(grid):
     """Gap = c_0 N + c_2 T, slip = -c_2 N + c_1 T. Measured: 2.5e-15."""
