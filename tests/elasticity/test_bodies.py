@@ -18,7 +18,7 @@ from fastpin.model.problem import Problem
 from fastpin.verification.body_cases import ring_compliance
 from tests.support import walls
 from tests.support.bodies import JOINTS, UNLIKE, joint_problem
-from tests.support.potentials import Potentials, plate
+from tests.support.potentials import first_harmonic, plate
 from tests.support.tiers import gate
 
 GRIDS = {
@@ -302,27 +302,12 @@ def test_a_moment_turns_a_bush_in_a_ring():
     assert slip - solid == pytest.approx(np.full(grid.size, turned), abs=3e-15)
 
 
-def first_field(first):
-    """The potentials of a first harmonic, with t_1 = conj t_-1 = 1 on the contact rim in turn."""
-    for A, D, L, b in zip(first.A, first.D, first.L, first.b, strict=True):
-        k = first.kolosov
-        yield Potentials(
-            k,
-            lambda z, A=A, L=L: A * z**2 - L * np.log(z),
-            lambda z, A=A, L=L: 2.0 * A * z - L / z,
-            lambda z, A=A, L=L: 2.0 * A + L / z**2,
-            lambda z, D=D, L=L, k=k: D / z**2 + k * L * np.log(z),
-            lambda z, D=D, L=L, k=k: -2.0 * D / z**3 + k * L / z,
-            b,
-        )  # fmt: skip
-
-
 CIRCLE = np.exp(2j * math.pi * (np.arange(64) + 0.5) / 64)
 
 
 def moved(first, radius):
     """2G times the mean displacement of the circle `radius` over the contact rim, for t_1 = 1 and conj t_-1 = 1."""
-    fields = list(first_field(first))
+    fields = first_harmonic(first)
     return np.array(
         [np.mean(field.displacement(radius * CIRCLE) - field.displacement(CIRCLE)).real for field in fields]
     )

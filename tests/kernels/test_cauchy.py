@@ -4,7 +4,6 @@ import itertools
 import math
 import threading
 
-import mpmath
 import numpy as np
 import pytest
 from scipy.special import spence
@@ -13,16 +12,10 @@ from fastpin.elasticity import tractions as module
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
 from fastpin.kernels import cauchy
 from fastpin.runtime import threads
-from tests.support.kernels import python, run_as_python
+from tests.support.kernels import python
 from tests.support.tiers import gate
 
-
-@pytest.fixture(params=["compiled", "python"])
-def way(request, monkeypatch):
-    """Run the kernels compiled, or as plain Python."""
-    if request.param == "python":
-        run_as_python(cauchy, monkeypatch)
-    return request.param
+KERNELS = cauchy
 
 
 def patch(rng, start, stop, n):
@@ -99,49 +92,6 @@ def test_integrals_against_quadrature(way, name, outside):
     found = cauchy_integrals(tractions, theta, away, outside)
     for angle, distance, integrals in zip(theta, away, found, strict=True):
         assert integrals == pytest.approx(quadrature(tractions, angle, distance, outside), abs=rounding(tractions))
-
-
-@pytest.mark.gate
-@pytest.mark.parametrize("outside", [True, False])
-def test_integrals_against_quadrature_with_25_digits(outside):
-    """Of random tractions at uneven nodes, 0.002 to 0.5 from the edge."""
-    tractions = Tractions((patch(np.random.default_rng(11), -3.0, -0.4, 12),))
-    away, theta = np.array([0.002, 0.03, 0.5]), np.array([-1.3, -2.2, 0.4])
-    found = cauchy_integrals(tractions, theta, away, outside)
-    with mpmath.workdps(25):
-        for angle, distance, integrals in zip(theta, away, found, strict=True):
-            zeta = mpmath.exp((distance if outside else -distance) + 1j * mpmath.mpf(angle))
-            expected = [0, 0, 0]
-            for left, right in itertools.pairwise(
-                [[mpmath.mpf(value) for value in row] for row in tractions.patches[0]]
-            ):
-                for k, part in enumerate(_parts(left, right, zeta)):
-                    breaks = [left[0], angle, right[0]] if left[0] < angle < right[0] else [left[0], right[0]]
-                    expected[k] += mpmath.quad(part, breaks, maxdegree=9) / (2 * mpmath.pi)
-            assert integrals == pytest.approx(np.array(expected, dtype=complex), abs=6.5e-14)
-
-
-def _parts(left, right, zeta):
-    """Integrands of C[p], C[T] and Z on a linear piece."""
-
-    def values(xi):
-        share = (xi - left[0]) / (right[0] - left[0])
-        pressure, shear = (left[k] + share * (right[k] - left[k]) for k in (1, 2))
-        return pressure - 1j * shear, shear, mpmath.expj(xi)
-
-    def whole(xi):
-        both, _, t = values(xi)
-        return both * t / (t - zeta)
-
-    def of_shear(xi):
-        _, shear, t = values(xi)
-        return shear * t / (t - zeta)
-
-    def slope(xi):
-        both, _, t = values(xi)
-        return both * t * zeta / (t - zeta) ** 2
-
-    return whole, of_shear, slope
 
 
 @pytest.mark.parametrize("name", [name for name in samples() if name != "nothing"])

@@ -7,14 +7,13 @@ import pytest
 
 from fastpin.kernels import complementarity
 from fastpin.kernels.complementarity import RAY, SOLVED, UNFINISHED
-from tests.support.kernels import run_as_python
+
+KERNELS = complementarity
 
 
-@pytest.fixture(params=["compiled", "python"])
-def lemke(request, monkeypatch):
-    """Return the code and z of a problem, by compiled code or by plain Python."""
-    if request.param == "python":
-        run_as_python(complementarity, monkeypatch)
+@pytest.fixture
+def lemke(way):
+    """Return the code and z of a problem."""
     kernel = complementarity.lemke
 
     def solve(matrix, vector, most_pivots=1000, cover=None):

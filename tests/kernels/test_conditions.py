@@ -6,19 +6,11 @@ import pytest
 from fastpin.kernels import conditions
 from fastpin.kernels.arrays import ContactValues, Equations
 from fastpin.kernels.status import OPEN, STICK
-from tests.support.kernels import run_as_python
 from tests.support.tiers import seeds
 
+KERNELS = conditions
 NODES = 12
-
-
-@pytest.fixture(params=["compiled", "python"])
-def kernels(request, monkeypatch):
-    """The kernels by name, compiled or as plain Python."""
-    names = ("residuals", "drift", "imbalance", "correct", "put_on_bounds", "beyond_bounds", "wanted_status")
-    if request.param == "python":
-        run_as_python(conditions, monkeypatch)
-    return {name: getattr(conditions, name) for name in names}
+pytestmark = pytest.mark.usefixtures("way")
 
 
 class Drawn:
@@ -58,19 +50,16 @@ class Drawn:
     def sizes(self):
         return np.abs(self.equations.equilibrium) @ np.abs(self.tractions)
 
+    def residuals(self):
+        return conditions.residuals(
+            self.equations, self.values, self.elastic, self.loaded, self.forces, self.rest_gap, self.concentric_gap
+        )
 
-def test_residuals(kernels):
+
+def test_residuals():
     for seed in seeds(6):
         drawn = Drawn(seed)
-        found = kernels["residuals"](
-            drawn.equations,
-            drawn.values,
-            drawn.elastic,
-            drawn.loaded,
-            drawn.forces,
-            drawn.rest_gap,
-            drawn.concentric_gap,
-        )
+        found = drawn.residuals()
         (gap, slip), (pressure, shear) = np.split(drawn.true, 2), drawn.values[:2]
         size = np.abs(shear)
         sliding = np.abs(shear + drawn.status * drawn.friction * pressure)
@@ -86,12 +75,10 @@ def test_residuals(kernels):
         assert found == pytest.approx(expected, rel=1e-12)
 
 
-def test_residuals_without_contact_are_in_parts_of_the_gap(kernels):
+def test_residuals_without_contact_are_in_parts_of_the_gap():
     drawn = Drawn(1)
     drawn.status[:] = OPEN
-    found = kernels["residuals"](
-        drawn.equations, drawn.values, drawn.elastic, drawn.loaded, drawn.forces, drawn.rest_gap, drawn.concentric_gap
-    )
+    found = drawn.residuals()
     length = max(np.abs(drawn.elastic).max(), np.abs(drawn.values.motion).max(), drawn.concentric_gap.max())
     assert found[0] == pytest.approx(max(-drawn.true[:NODES].min(), 0.0) / length, rel=1e-12)
     assert found[1] == 0.0
@@ -99,20 +86,18 @@ def test_residuals_without_contact_are_in_parts_of_the_gap(kernels):
 
 @pytest.mark.parametrize("name", ["pressure", "shear", "slip", "motion"])
 @pytest.mark.parametrize("place", [0, -1])
-def test_nan_is_no_small_residual(kernels, name, place):
+def test_nan_is_no_small_residual(name, place):
     drawn = Drawn(2)
     drawn.status[[0, -1]] = STICK
     getattr(drawn.values, name)[place] = np.nan
-    found = kernels["residuals"](
-        drawn.equations, drawn.values, drawn.elastic, drawn.loaded, drawn.forces, drawn.rest_gap, drawn.concentric_gap
-    )
+    found = drawn.residuals()
     assert np.isnan(np.max(found))
 
 
-def test_imbalance_and_drift(kernels):
+def test_imbalance_and_drift():
     for seed in seeds(6):
         drawn, true, missing = Drawn(seed), np.full(2 * NODES, np.nan), np.full(2 * NODES + 3, np.nan)
-        error = kernels["imbalance"](
+        error = conditions.imbalance(
             drawn.equations, drawn.values, drawn.elastic, drawn.loaded, drawn.forces, drawn.rest_gap, true, missing
         )
         assert true == pytest.approx(drawn.true, rel=1e-13)
@@ -123,16 +108,16 @@ def test_imbalance_and_drift(kernels):
         assert error == pytest.approx(max(largest, np.abs(drawn.lacking).max() / drawn.sizes.max()), rel=1e-12)
         moved = np.abs(true - np.r_[drawn.values.gap, drawn.values.slip]).max()
         length = max(np.abs(drawn.elastic).max(), np.abs(drawn.values.motion).max(), 1e-4 * 7e5)
-        got = kernels["drift"](drawn.elastic, true, drawn.values.gap, drawn.values.slip, drawn.values.motion, 7e5)
+        got = conditions.drift(drawn.elastic, true, drawn.values.gap, drawn.values.slip, drawn.values.motion, 7e5)
         assert got == pytest.approx(moved / length, rel=1e-13)
 
 
-def test_a_correction(kernels):
+def test_a_correction():
     for seed in seeds(6):
         drawn, rng = Drawn(seed), np.random.default_rng(seed + 100)
         tie, change = rng.choice([-1, 1], NODES).astype(np.int8), rng.normal(size=2 * NODES + 3)
         pressure, shear, motion = drawn.values.pressure.copy(), drawn.values.shear.copy(), drawn.values.motion.copy()
-        kernels["correct"](drawn.friction, tie, change, drawn.values)
+        conditions.correct(drawn.friction, tie, change, drawn.values)
         moved = pressure + change[:NODES]
         sticking = shear + change[NODES:-3] - tie * drawn.friction * change[:NODES]
         slipping = -drawn.friction * drawn.status * moved
@@ -142,14 +127,14 @@ def test_a_correction(kernels):
         assert drawn.values.motion == pytest.approx(motion + change[-3:])
 
 
-def test_values_on_their_bounds(kernels):
+def test_values_on_their_bounds():
     for seed in seeds(6):
         drawn, rng = Drawn(seed), np.random.default_rng(seed + 200)
         solution, slip = drawn.values, rng.normal(size=NODES)
         solution.pressure[:3] = [1e-14, -0.3, 0.0]
         solution.gap[3:6] = [1e-14, -0.3, 0.0]
         settled = ContactValues(*(np.full(NODES, np.nan) for _ in range(3)), slip.copy(), drawn.status, np.zeros(3))
-        kernels["put_on_bounds"](drawn.friction, solution, settled)
+        conditions.put_on_bounds(drawn.friction, solution, settled)
         pressed = drawn.closed & (solution.pressure > 1e-12 * np.abs(solution.pressure).max())
         pressure = np.where(pressed, solution.pressure, 0.0)
         bound = drawn.friction * pressure
@@ -160,17 +145,17 @@ def test_values_on_their_bounds(kernels):
         assert settled.shear == pytest.approx(shear, abs=1e-11)
         assert np.array_equal(settled.gap, np.where(gaping, solution.gap, 0.0))
         assert np.array_equal(settled.slip, np.where(drawn.stick, slip, solution.slip))
-        traction, gap = kernels["beyond_bounds"](solution, settled)
+        traction, gap = conditions.beyond_bounds(solution, settled)
         cut = np.abs(settled.shear - solution.shear)[drawn.stick].max()
         assert traction == max(np.abs(settled.pressure - solution.pressure).max(), cut)
         assert gap == np.abs(settled.gap - solution.gap)[~drawn.closed].max()
 
 
-def test_wanted_statuses(kernels):
+def test_wanted_statuses():
     for seed in seeds(12):
         drawn, rng = Drawn(seed), np.random.default_rng(seed + 300)
         solution, start_slip, wanted = drawn.values, rng.normal(size=NODES), np.empty(NODES, dtype=np.int8)
-        kernels["wanted_status"](drawn.friction, solution, start_slip, drawn.rest_gap, 1e-11, wanted)
+        conditions.wanted_status(drawn.friction, solution, start_slip, drawn.rest_gap, 1e-11, wanted)
         slid = solution.slip - start_slip
         expected = drawn.status.copy()
         closing = ~drawn.closed & (solution.gap < 0.0)
@@ -183,7 +168,7 @@ def test_wanted_statuses(kernels):
         assert np.array_equal(wanted, expected)
 
 
-def test_statuses_stay_within_the_tolerance(kernels):
+def test_statuses_stay_within_the_tolerance():
     drawn, wanted = Drawn(3), np.empty(NODES, dtype=np.int8)
-    kernels["wanted_status"](drawn.friction, drawn.values, np.zeros(NODES), drawn.rest_gap, 1e9, wanted)
+    conditions.wanted_status(drawn.friction, drawn.values, np.zeros(NODES), drawn.rest_gap, 1e9, wanted)
     assert np.array_equal(wanted, drawn.status)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from fastpin.bodies import Ring
 from fastpin.elasticity.interfaces import JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels import equations
@@ -15,24 +14,16 @@ from fastpin.model.problem import Problem
 from fastpin.solver import configuration
 from fastpin.solver.configuration import Solution, solve_statuses, solve_unknowns
 from fastpin.solver.unknowns import DenseUnknowns
+from tests.support.bodies import HOLDS
 from tests.support.joints import joint
-from tests.support.kernels import run_as_python
 
+KERNELS = equations
 BOTTOM = -0.5 * np.pi
-CASES = {
-    "plain": {},
-    "driven": {"drive": "ux"},
-    "spring": {"rotation": "spring", "hub_stiffness": 2.0},
-    "fixed": {"rotation": "fixed"},
-    "frictionless": {"friction": 0.0},
-    "ring": {"plate_body": Ring(2.0, "normal")},
-}
+CASES = {**HOLDS, "frictionless": {"friction": 0.0}}
 
 
-@pytest.fixture(params=["compiled", "python"])
-def solve(request, monkeypatch):
-    if request.param == "python":
-        run_as_python(equations, monkeypatch)
+@pytest.fixture
+def solve(way):
     return equations.solve_few
 
 

@@ -27,23 +27,20 @@ from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
 from tests.support import processes
-from tests.support.kernels import python, run_as_python
+from tests.support.kernels import python
 from tests.support.tiers import gate
 
+KERNELS = exchange
 BOTTOM = -0.5 * np.pi
-
 
 CODES = "REACHED", "STALE", "REBUILD", "ALL_AT_ONCE", "NO_SUPPORT", "CYCLING", "ARC_END", "ENDLESS"
 SLOTS = "UPDATES", "QUEUED", "NEXT", "ROUND", "EVENTS", "EXCHANGES", "NEEDED_COLUMN", "SETTLED"
 
 
-@pytest.fixture(params=["compiled", "python"])
-def kernel(request, monkeypatch):
+@pytest.fixture
+def kernel(way):
     """Kernels by name, compiled or as plain Python with all that they call."""
-    if request.param == "compiled":
-        return compiled_kernel
-    run_as_python(exchange, monkeypatch)
-    return lambda name: getattr(exchange, name)
+    return compiled_kernel if way == "compiled" else lambda name: getattr(exchange, name)
 
 
 @functools.cache
@@ -269,16 +266,6 @@ def test_a_tableau_that_has_drifted_is_built_anew(titanium_in_aluminium, monkeyp
     assert np.abs(found.pressure - expected.pressure).max() < 1e-6
 
 
-def test_the_operator_is_symmetric(titanium_in_aluminium):
-    """Weighted by the hats, without the terms that depend on resultants only; half hats at the ends aside."""
-    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
-    system = System.build(problem, Grid.arc(BOTTOM - 1.0, BOTTOM + 1.0, 61), 1.0)
-    weights = np.r_[system.weights, system.weights]
-    product = weights[:, None] * system.operator
-    inner = np.delete(np.delete(product, [0, 60, 61, 121], axis=0), [0, 60, 61, 121], axis=1)
-    assert np.abs(inner - inner.T).max() < 1e-12 * np.abs(product).max()
-
-
 # --- the whole event loop -----------------------------------------------------------------------------------
 
 
@@ -414,6 +401,14 @@ def test_friction_that_varies_along_the_rim(system, monkeypatch, kind, road):
     assert np.count_nonzero(now.closed & ~known) == np.count_nonzero(now.closed[~known])
 
 
+def pushed_to_and_fro(system):
+    """The configuration after P, and Q to both sides."""
+    now, _ = first_contact(system, unloaded_configuration(system), loads(), loads(P=1.0))
+    for target in (loads(P=1.0), loads(P=1.0, Q=0.2), loads(P=1.0, Q=-0.2)):
+        now = PathStep(system, now, target).follow(1.0)
+    return now
+
+
 @pytest.mark.parametrize("road", ["held", "columns", "sticking"])
 def test_the_arrays_have_the_number_of_motions(system, monkeypatch, road):
     """A fourth motion, which follows the load Q along x, is a displacement of the load."""
@@ -430,9 +425,7 @@ def test_the_arrays_have_the_number_of_motions(system, monkeypatch, road):
     )  # fmt: skip
     ends = []
     for alike in (replace(system, loads=moved), fourth):
-        now, _ = first_contact(alike, unloaded_configuration(alike), loads(), loads(P=1.0))
-        for target in (loads(P=1.0), loads(P=1.0, Q=0.2), loads(P=1.0, Q=-0.2)):
-            now = PathStep(alike, now, target).follow(1.0)
+        now = pushed_to_and_fro(alike)
         assert worst_residual(alike, now) < 1e-12
         ends.append(now)
     three, four = ends
@@ -447,9 +440,7 @@ def test_little_friction_tends_to_none(system):
     ends = []
     for small in (0.0, 1e-9, 1e-8):
         rough = replace(system, friction=np.where(VARIED["bare half"] > 0.0, 0.4, small))
-        now, _ = first_contact(rough, unloaded_configuration(rough), loads(), loads(P=1.0))
-        for target in (loads(P=1.0), loads(P=1.0, Q=0.2), loads(P=1.0, Q=-0.2)):
-            now = PathStep(rough, now, target).follow(1.0)
+        now = pushed_to_and_fro(rough)
         ends.append(np.r_[now.pressure, now.shear])
     one, two = (np.abs(end - ends[0]).max() for end in ends[1:])
     assert 0.0 < one < 1e-8

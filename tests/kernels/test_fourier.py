@@ -64,14 +64,6 @@ def test_half_hats(length):
         assert other == np.conj(one)
 
 
-def test_series_and_quotient_meet():
-    """On both sides of the switch the two forms differ by rounding."""
-    order, length = np.array([1.0]), fourier.SERIES_BELOW
-    below = fourier.hat_moments(order, np.zeros(1), np.array([np.nextafter(length, 0.0)]))
-    above = fourier.hat_moments(order, np.zeros(1), np.array([length]))
-    assert below == pytest.approx(above, abs=1e-15)
-
-
 def test_one_array_for_both_sides_is_a_whole_hat():
     """On uniform nodes a hat is h sinc^2(n h/2)."""
     order, h = np.arange(1.0, 60.0), np.full(3, 0.11)

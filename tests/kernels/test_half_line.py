@@ -1,7 +1,6 @@
 """Compiled fits of the solutions of a half line: compiled, as plain Python, and against NumPy."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,11 +9,7 @@ from fastpin.kernels import half_line
 from fastpin.reading.half_line import End, Tries, Try
 from fastpin.reading.half_line import half_line as line_of
 from tests.support.half_line import NaiveFit, columns, powers, shift
-from tests.support.kernels import python
-
-KERNELS = ("exponential", "solve", "match", "evaluate", "end_places", "value_errors", "least_squares")
-INNER = ("_product", "_unknowns", "_known_solution", "_fill", "_factor", "_invert", "_rotate", "_pseudo_invert",
-         "_solve", "_match", "_end_row", "_row", "_match_all", "_norm_of")  # fmt: skip
+from tests.support.kernels import in_python
 
 LIKE, PRESSURE, RESERVE = line_of(0.5), line_of(0.46), line_of(0.53, 0.2)
 FITS = {
@@ -29,18 +24,9 @@ FITS = {
 }  # fmt: skip
 
 
-def plain_python():
-    """The kernels as plain Python: their parts are taken from the same module."""
-    space = dict(vars(half_line))
-    for name in (*INNER, *KERNELS):
-        function = python(getattr(half_line, name))
-        space[name] = type(function)(function.__code__, space, name)
-    return SimpleNamespace(**{name: space[name] for name in KERNELS})
-
-
 @pytest.fixture(params=["compiled", "plain Python"], scope="module")
 def kernels(request):
-    return half_line if request.param == "compiled" else plain_python()
+    return half_line if request.param == "compiled" else in_python(half_line)
 
 
 def values_of(name: str) -> np.ndarray:
@@ -123,12 +109,17 @@ def two_ends(distance):
     return ends, 1.0 + 2.0 * columns(ends[0], 17) @ [1.0, 0.1] + 1e-5 * np.random.default_rng(5).normal(size=17)
 
 
+def fitted(kernels, ends, values):
+    """Scatter, coefficients and spread of a fit of two ends and a constant."""
+    packed = Tries([Try(0, 17, 0, ends)])
+    coefficients, spread = np.empty(5), np.empty((5, 5))
+    return kernels.solve(values, 0, packed.ends, packed.tables, coefficients, spread), coefficients, spread
+
+
 def test_columns_that_depend_on_each_other_get_the_least_coefficients(kernels):
     """Two ends at the same place."""
     ends, values = two_ends(0.0)
-    packed = Tries([Try(0, 17, 0, ends)])
-    coefficients, spread = np.empty(5), np.empty((5, 5))
-    scatter = kernels.solve(values, 0, packed.ends, packed.tables, coefficients, spread)
+    scatter, coefficients, spread = fitted(kernels, ends, values)
     expected = NaiveFit(values, ends, 0)
     assert coefficients == pytest.approx(expected.coefficients, abs=1e-10)
     assert scatter == pytest.approx(expected.scatter, rel=1e-8)
@@ -151,9 +142,7 @@ def test_the_fit_is_right_where_its_coefficients_are_not(kernels):
     has some ten roundings, as its factorization has. The coefficients are large and cancel in the row.
     """
     ends, values = two_ends(1e-12)
-    packed = Tries([Try(0, 17, 0, ends)])
-    coefficients, spread = np.empty(5), np.empty((5, 5))
-    scatter = kernels.solve(values, 0, packed.ends, packed.tables, coefficients, spread)
+    scatter, coefficients, _ = fitted(kernels, ends, values)
     free, line = ends[0]._replace(place=None), LIKE
     solutions = columns(free, 17) @ np.linalg.solve(line.matching[:3, :3], shift(0.2, 3))
     design, row = np.column_stack([np.ones(17), solutions]), np.append(1.0, powers(line, np.array([2.5]), 3))

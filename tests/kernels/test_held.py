@@ -7,15 +7,10 @@ from fastpin.kernels import held
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.tableau import expected_ties, has_turned
-from tests.support.kernels import python
 from tests.support.tiers import gate, seeds
 
+KERNELS = held
 NODES = 14
-
-
-@pytest.fixture(params=["compiled", "python"])
-def begin(request):
-    return held.begin if request.param == "compiled" else python(held.begin)
 
 
 def drawn_contact(rng, rough):
@@ -30,7 +25,7 @@ def drawn_contact(rng, rough):
 
 
 @pytest.mark.parametrize("rough", gate(True, False))
-def test_the_start_of_a_step(begin, rough):
+def test_the_start_of_a_step(way, rough):
     for seed in seeds(8):
         rng = np.random.default_rng(seed)
         contact, size = drawn_contact(rng, rough), 2 * NODES + 3
@@ -57,7 +52,7 @@ def test_the_start_of_a_step(begin, rough):
             matrix=table, order=order, fresh=empty, left=np.zeros((size, 0), order="F"), source=empty, slot=empty,
             delta=np.zeros(0), rates=np.full(size, np.nan), chunk=1, **numbers,
         )  # fmt: skip
-        assert begin(table, stack, contact, friction, displaced, forces, tableau) == turned
+        assert held.begin(table, stack, contact, friction, displaced, forces, tableau) == turned
         assert tableau.rates == pytest.approx(rates, rel=1e-12, abs=1e-13)
         assert np.array_equal(contact.tie, ties)
         assert np.array_equal(tableau.tied, tied)

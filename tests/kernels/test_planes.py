@@ -4,20 +4,9 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import planes
-from tests.support.kernels import python
+from tests.support.kernels import in_python
 
-KERNELS = ("worst_planes",)
-INNER = ("_product", "_value", "_bounds", "_refined", "plane_angle")
 FORMS = (planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE, planes.SWING_AND_PUSH)
-
-
-def python_kernel():
-    """The kernel as plain Python: its parts are taken from the same module."""
-    space = dict(vars(planes))
-    for name in (*INNER, *KERNELS):
-        function = python(getattr(planes, name))
-        space[name] = type(function)(function.__code__, space, name)
-    return space["worst_planes"]
 
 
 def on_plane(path, x, form):
@@ -75,7 +64,7 @@ def test_compiled_and_plain_python_agree(form):
     paths = random_paths(2, 3, 12)
     out, plain = np.empty((len(paths), 2)), np.empty((len(paths), 2))
     planes.worst_planes(paths, form, out)
-    python_kernel()(paths, form, plain)
+    in_python(planes).worst_planes(paths, form, plain)
     np.testing.assert_allclose(out[:, 0], plain[:, 0], rtol=1e-13)
     np.testing.assert_allclose(out[:, 1], plain[:, 1], rtol=1e-7)
 
@@ -109,9 +98,9 @@ def test_of_two_planes_that_mirror_each_other_the_one_with_the_largest_angle_is_
 
 @pytest.mark.parametrize("turned", [-1e-12, 0.0, 1e-12])
 def test_rounding_turns_no_plane_at_90_degrees_round(turned):
-    assert python(planes.plane_angle)(np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
-    assert python(planes.plane_angle)(-np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
-    assert python(planes.plane_angle)(1.0 + turned, 1e-6) == pytest.approx(0.5, abs=1e-11)
+    assert in_python(planes).plane_angle(np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
+    assert in_python(planes).plane_angle(-np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
+    assert in_python(planes).plane_angle(1.0 + turned, 1e-6) == pytest.approx(0.5, abs=1e-11)
 
 
 def test_a_swing_without_push_counts_nothing():

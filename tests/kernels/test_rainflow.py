@@ -7,21 +7,10 @@ import pytest
 
 from fastpin import damage
 from fastpin.kernels import planes, rainflow
-from tests.support.kernels import python
+from tests.support.kernels import in_python
 from tests.support.tiers import seeds
 
 LIFE = np.array([np.log(2e3), np.log(5e5), -0.25, -0.7, -np.inf, 0.0, 0.0])
-INNER = ("_count", "_parameter", "_root", "_beyond", "_fill", "_damage", "_on_plane", "_sum", "_highest")
-
-
-def python_kernel(name):
-    """A kernel as plain Python: its parts are taken from the same module."""
-    space = dict(vars(rainflow))
-    space["plane_angle"] = python(planes.plane_angle)
-    for each in (*INNER, "worst_sums", "cycles_on_plane"):
-        function = python(getattr(rainflow, each))
-        space[each] = type(function)(function.__code__, space, each)
-    return space[name]
 
 
 def one_block(states):
@@ -139,14 +128,15 @@ def test_compiled_and_plain_python():
     paths, order = rng.normal(size=(3, 9, 6)), rng.integers(0, 9, 14)
     blocks = np.array([[0, 5, 1], [5, 9, 6], [9, 14, 2]])
     knees = [LIFE, np.r_[LIFE[:4], 0.3, 40.0, 6.0], np.r_[LIFE[:4], 0.3, 40.0, np.inf]]
+    plain = in_python(rainflow)
     for form, life in itertools.product((planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE), knees):
         one, two = np.empty((3, 2)), np.empty((3, 2))
         rainflow.worst_sums(paths, order, blocks, form, 0.0, life, one)
-        python_kernel("worst_sums")(paths, order, blocks, form, 0.0, life, two)
+        plain.worst_sums(paths, order, blocks, form, 0.0, life, two)
         np.testing.assert_allclose(one[:, 0], two[:, 0], rtol=1e-12)
         np.testing.assert_allclose(one[:, 1], two[:, 1], rtol=0.0, atol=1e-3)
         first = counted(paths[0], 0.4, order, blocks, form, life=life)
-        second = counted(paths[0], 0.4, order, blocks, form, python_kernel("cycles_on_plane"), life)
+        second = counted(paths[0], 0.4, order, blocks, form, plain.cycles_on_plane, life)
         np.testing.assert_array_equal(first[0], second[0])
         np.testing.assert_allclose(first[1], second[1], rtol=1e-12)
 

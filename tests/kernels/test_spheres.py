@@ -6,17 +6,8 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import spheres
-from tests.support.kernels import python
+from tests.support.kernels import in_python
 from tests.support.tiers import gate
-
-
-def python_kernel():
-    """The kernel as plain Python: its parts are taken from the same module."""
-    space = dict(vars(spheres))
-    for name in ("_centre", "_distance", "_smallest", "enclosing_spheres"):
-        function = python(getattr(spheres, name))
-        space[name] = type(function)(function.__code__, space, name)
-    return space["enclosing_spheres"]
 
 
 def all_subsets(points):
@@ -50,7 +41,7 @@ def test_the_sphere_is_the_smallest_of_all_subsets(dimension):
 def test_compiled_and_plain_python_agree(dimension):
     paths = np.random.default_rng(3).normal(size=(5, 30, dimension))
     plain = np.empty((5, dimension + 1))
-    python_kernel()(paths, plain)
+    in_python(spheres).enclosing_spheres(paths, plain)
     centres, radii = solved(paths)
     np.testing.assert_allclose(radii, plain[:, -1], rtol=1e-13)
     np.testing.assert_allclose(centres, plain[:, :-1], rtol=1e-12, atol=1e-13)
@@ -78,9 +69,3 @@ def test_many_points_near_a_sphere():
     radii = solved(directions)[1]
     assert np.all(radii <= 1.0 + 1e-12)
     assert np.all(radii > 0.99)
-
-
-def test_half_the_longest_chord_is_too_small():
-    """An equilateral triangle of side 1: half the chord is 0.5, the sphere has the radius 1/sqrt 3."""
-    triangle = np.array([[[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]]])
-    assert solved(triangle)[1][0] == pytest.approx(1.0 / np.sqrt(3.0), rel=1e-15)

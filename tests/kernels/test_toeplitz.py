@@ -13,11 +13,18 @@ from fastpin.model.problem import Problem
 from fastpin.solver import path, unknowns
 from fastpin.solver.solving import solve
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
-from tests.support.kernels import python
 from tests.support.tiers import gate
 
+KERNELS = toeplitz
 BOTTOM = -0.5 * np.pi
 RIGID_PIN = MaterialPair(Material.rigid(), Material(70e9, 0.33))
+
+
+def drawn(size):
+    """The first column, the second and the cross one of a random matrix that can be inverted."""
+    rng, away = np.random.default_rng(size), np.arange(size)
+    first, second = (rng.normal(size=size) * 0.8**away + 4.0 * size * (away == 0) for _ in range(2))
+    return first, second, np.where(away == 0, 0.0, rng.normal(size=size))
 
 
 def dense(first, second, cross):
@@ -25,23 +32,11 @@ def dense(first, second, cross):
     return np.block([[scipy.linalg.toeplitz(first), upper], [-upper, scipy.linalg.toeplitz(second)]])
 
 
-@pytest.fixture(params=["compiled", "python"])
-def inverse(request, monkeypatch):
-    if request.param == "python":
-        for name in ("_predictor", "_fill", "_invert"):
-            monkeypatch.setattr(toeplitz, name, python(getattr(toeplitz, name)))
-    return toeplitz.inverse
-
-
 @pytest.mark.parametrize("size", [1, 2, 3, 30])
-def test_it_is_the_inverse(inverse, size):
-    rng = np.random.default_rng(size)
-    away = np.arange(size)
-    first, second = (rng.normal(size=size) * 0.8**away + 4.0 * size * (away == 0) for _ in range(2))
-    cross = np.where(away == 0, 0.0, rng.normal(size=size))
-    matrix = dense(first, second, cross)
+def test_it_is_the_inverse(way, size):
+    matrix = dense(*drawn(size))
     assert np.array_equal(matrix, matrix.T)
-    assert inverse(first, second, cross) == pytest.approx(np.linalg.inv(matrix), rel=1e-11, abs=1e-14)
+    assert toeplitz.inverse(*drawn(size)) == pytest.approx(np.linalg.inv(matrix), rel=1e-11, abs=1e-14)
 
 
 def test_a_singular_leading_block_is_not_hidden():
@@ -50,10 +45,8 @@ def test_a_singular_leading_block_is_not_hidden():
     assert not np.all(np.isfinite(found))
 
 
-@pytest.mark.parametrize("version", ["compiled", "python"])
-def test_a_column_of_a_laminate(version):
+def test_a_column_of_a_laminate(way):
     """Against the definition, k factor turn_i turn_j (N + iT) = gap - i slip."""
-    add = toeplitz.add_turned_column if version == "compiled" else python(toeplitz.add_turned_column)
     rng, n = np.random.default_rng(1), 7
     by_distance, turn, factor = rng.normal(size=n), np.exp(1j * rng.normal(size=n)), 0.3 - 0.7j
     away = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
@@ -62,7 +55,7 @@ def test_a_column_of_a_laminate(version):
     rows, before = rng.permutation(2 * n)[:9], rng.normal(size=9)
     for column in range(2 * n):
         out = before.copy()
-        add(by_distance, turn, factor, rows, column, out)
+        toeplitz.add_turned_column(by_distance, turn, factor, rows, column, out)
         assert out == pytest.approx(before + whole[rows, column], abs=1e-15)
 
 
@@ -78,22 +71,16 @@ def stuck(size, low, high):
     return status
 
 
-@pytest.mark.parametrize("version", ["compiled", "python"])
 @pytest.mark.parametrize(
     ("low", "size", "nodes"), [(4, 9, 20), (0, 7, 15), (6, 3, 9), (5, 30, 61), (1, 2, 4), (3, 8, 12), (2, 1, 4)]
 )
-def test_what_it_does_to_the_nodes_beside(monkeypatch, version, low, size, nodes):
-    if version == "python":
-        monkeypatch.setattr(toeplitz, "_fill", python(toeplitz._fill))
-    rng = np.random.default_rng(nodes)
-    away = np.arange(nodes)
-    first, second = (rng.normal(size=nodes) * 0.8**away + 4.0 * nodes * (away == 0) for _ in range(2))
-    cross = np.where(away == 0, 0.0, rng.normal(size=nodes))
-    matrix = dense(first, second, cross)
+def test_what_it_does_to_the_nodes_beside(way, low, size, nodes):
+    columns = drawn(nodes)
+    matrix = dense(*columns)
     rows = np.r_[low : low + size, nodes + low : nodes + low + size]
     others = np.setdiff1d(np.arange(2 * nodes), rows)
     core = np.linalg.inv(matrix[np.ix_(rows, rows)])
-    beside = toeplitz.NeighbourResponses(np.array([first, second, cross]), core, low)
+    beside = toeplitz.NeighbourResponses(np.array(columns), core, low)
     responses = core @ matrix[np.ix_(rows, others)]
     assert beside.responses() == pytest.approx(responses, rel=1e-10, abs=1e-13)
     complement = matrix[np.ix_(others, others)] - matrix[np.ix_(others, rows)] @ responses

@@ -6,7 +6,6 @@ import ast
 import importlib
 import inspect
 import os
-import shutil
 import sys
 from collections import namedtuple
 from pathlib import Path
@@ -16,6 +15,7 @@ import pytest
 
 from fastpin.kernels import exchange, influence
 from fastpin.runtime import compiler, jit, machine, source
+from tests.support import small_kernels
 from tests.support.processes import finished, python
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
@@ -41,13 +41,7 @@ keeps = pytest.mark.skipif(not machine.CAN_LOAD, reason="results of Numba are st
 @pytest.fixture
 def installed(tmp_path: Path) -> Path:
     """A directory with copies of the files that compile, and a small kernel."""
-    for part in ("kernels", "runtime", ""):
-        folder = tmp_path / "site" / "fastpin" / part
-        folder.mkdir(parents=True, exist_ok=True)
-        for file in (PACKAGE / part).glob("*.py*"):
-            shutil.copy(file, folder)
-    (tmp_path / "site" / "fastpin" / "kernels" / "small.py").write_text(KERNEL)
-    return tmp_path / "site"
+    return small_kernels.install(tmp_path / "site", KERNEL)
 
 
 def cache(installed: Path) -> Path:

@@ -98,7 +98,6 @@ def test_code_is_stored_for_versions_that_have_no_file(directory: Path, monkeypa
 
 
 @pytest.mark.gate
-@pytest.mark.gate
 def test_code_that_can_not_be_stored_is_compiled_each_time(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("_object_code", "_pack"):
         monkeypatch.setattr(compiler, name, refuse)

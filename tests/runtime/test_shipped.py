@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 
-from fastpin.runtime import jit, machine, source, stored
+from fastpin.runtime import jit, machine, stored
 from scripts import platform_wheel
+from tests.support import small_kernels
 from tests.support.processes import finished
 
 pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored")
 
-ROOT = Path(__file__).resolve().parents[2]
 SIN = """
 import math
 from fastpin.runtime.jit import compiled
@@ -38,18 +38,7 @@ print(hashlib.sha256(out.tobytes()).hexdigest(), "numba" in sys.modules)
 @pytest.fixture
 def site(tmp_path: Path) -> Path:
     """A folder with the files of the package that compile, and one small kernel."""
-    for name in ("__init__.py", "__init__.pyi", "errors.py", "moved.py", "version.py", "kernels/__init__.py"):
-        copy(tmp_path, name)
-    for name in (*source.SHARED, *(f"runtime/{path.name}" for path in (ROOT / "fastpin/runtime").glob("*.py"))):
-        copy(tmp_path, name)
-    (tmp_path / "fastpin/kernels/small.py").write_text(SIN)
-    return tmp_path
-
-
-def copy(site: Path, name: str) -> None:
-    file = site / "fastpin" / name
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_bytes((ROOT / "fastpin" / name).read_bytes())
+    return small_kernels.install(tmp_path, SIN)
 
 
 def run(site: Path, cache: Path, **more: str) -> list[str]:

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin.bodies import Ring
 from fastpin.elasticity.system import System
 from fastpin.kernels import conditions, exchange
 from fastpin.kernels import held as held_kernels
@@ -24,7 +23,9 @@ from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns
+from tests.support.bodies import HOLDS
 from tests.support.kernels import python, run_as_python
+from tests.support.programs import assert_same_bits
 from tests.support.tiers import gate, some_gate
 from tests.survey.histories import generate
 
@@ -34,17 +35,10 @@ GRIDS = {
     "circle": Grid.circle(61),
     "graded": Grid.graded([(BOTTOM, 0.5), (0.4, 1.0)], 61),
 }
-CASES = {
-    "plain": {},
-    "driven": {"drive": "ux"},
-    "spring": {"rotation": "spring", "hub_stiffness": 2.0},
-    "fixed": {"rotation": "fixed"},
-    "ring": {"plate_body": Ring(2.0, "normal")},
-}
 
 
 def system_of(pair, case="plain", grid="arc"):
-    options = {"rotation": "free", **CASES[case]}
+    options = {"rotation": "free", **HOLDS[case]}
     return System.build(Problem.from_load_parameter(pair, 0.1, 0.4, "centre", **options), GRIDS[grid], 1.0)
 
 
@@ -92,7 +86,7 @@ CONTACTS = [zones((15, 45)), zones((10, 20), (30, 50)), zones((28, 32))]
 
 
 @pytest.mark.parametrize("grid", some_gate(GRIDS, "arc"))
-@pytest.mark.parametrize("case", some_gate(CASES, "plain", "driven"))
+@pytest.mark.parametrize("case", some_gate(HOLDS, "plain", "driven"))
 def test_a_held_contact_begins_with_the_tableau_of_a_factorisation(titanium_in_aluminium, case, grid):
     system = system_of(titanium_in_aluminium, case, grid)
     memory = TableauMemory(system)
@@ -232,10 +226,8 @@ def test_known_tables_leave_the_bits_of_a_history(titanium_in_aluminium, monkeyp
     again = solve(problem, HISTORY, grid=first.grid)  # the system of the first run, with all its tables
     monkeypatch.setattr(held, "MOST_NUMBERS", 0)  # one table at a time
     last = solve(problem, HISTORY, grid=Grid(first.grid.theta.copy()))
-    for one, two, three in zip(first, again, last, strict=True):
-        for name in ("pressure", "shear", "gap", "slip", "status"):
-            assert np.array_equal(getattr(one, name), getattr(two, name))
-            assert np.array_equal(getattr(one, name), getattr(three, name))
+    assert_same_bits(first, again)
+    assert_same_bits(first, last)
 
 
 def test_threads_share_the_tables_of_a_system(titanium_in_aluminium):

@@ -7,7 +7,6 @@ from fastpin.elasticity.system import System
 from fastpin.model.grid import Grid
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.solver import neighbours
 from fastpin.solver.neighbours import Neighbours, TurnedNeighbours
 from tests.support.laminates import RIGID, STEEL, TURNED
 
@@ -34,11 +33,3 @@ def test_inverse_and_responses_are_those_of_the_whole_matrix(plate, pin, grid, l
     assert found.responses()[:, whole] == pytest.approx(responses[:, whole], abs=1e-13 * np.abs(responses).max())
     one, other = found.complement()[np.ix_(whole, whole)], complement[np.ix_(whole, whole)]
     assert one == pytest.approx(other, abs=1e-13 * np.abs(complement).max())
-
-
-def test_vectors_along_the_rim_turn_forth_and_back():
-    rng = np.random.default_rng(1)
-    matrix, rows, columns = rng.normal(size=(6, 8)), np.exp(1j * np.arange(3.0)), np.exp(2j * np.arange(4.0))
-    there = neighbours._along_rim(matrix, rows, columns)
-    assert neighbours._along_rim(there, rows.conj(), columns.conj()) == pytest.approx(matrix, abs=1e-14)
-    assert np.abs(there - matrix).max() > 0.1

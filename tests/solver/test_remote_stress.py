@@ -18,12 +18,9 @@ from fastpin.model.problem import Problem
 from fastpin.solver.configuration import solve_statuses
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
-from fastpin.verification.integral_equations import residuals
+from fastpin.verification.comparisons import residuals_away
 
 BOTTOM = -0.5 * math.pi
-METHODS = pytest.mark.parametrize(
-    "solver", [{"method": "path"}, {"method": "increment", "increments": 20}], ids=["path", "increment"]
-)
 ORDERS = [
     [{"P": 1.0}, {"sxx": 0.12, "syy": -0.08}],
     [{"sxx": 0.12}, {"P": 0.5, "syy": -0.08}, {"P": 1.0}],
@@ -46,25 +43,6 @@ def test_with_friction_the_order_matters(titanium_in_aluminium):
     ends = [solve(problem, corners, grid=grid)[-1] for corners in ORDERS]
     shears = [np.abs(state.shear - ends[0].shear).max() / ends[0].peak_pressure for state in ends[1:]]
     assert min(shears) > 0.02
-
-
-@METHODS
-@pytest.mark.parametrize("rotation", ["free", "fixed"])
-def test_all_loads_turned_by_a_quarter(titanium_in_aluminium, solver, rotation):
-    """P takes the place of Q and sxx that of syy: the same tractions a quarter further, at every corner."""
-    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.4, 0.4, "centre", rotation)
-    history = [{"P": 1.0}, {"sxx": 0.1}, {"Q": 0.15, "syy": -0.1}, {"sxx": -0.1, "Q": -0.1}, {"P": 0.6, "syy": 0.05}]
-    turned = []
-    for corner in history:
-        names = {"P": ("Q", 1.0), "Q": ("P", -1.0), "sxx": ("syy", 1.0), "syy": ("sxx", 1.0)}
-        turned.append({names[name][0]: names[name][1] * value for name, value in corner.items()})
-    options = {"nodes": 101, **solver}
-    below = solve(problem, history, arc=(BOTTOM - 1.5, BOTTOM + 1.5), **options)
-    beside = solve(problem, turned, arc=(-1.5, 1.5), **options)
-    for one, two in zip(below, beside, strict=True):
-        assert np.abs(one.pressure - two.pressure).max() < 1e-9
-        assert np.abs(one.shear - two.shear).max() < 1e-9
-        assert one.rotation == pytest.approx(two.rotation, abs=1e-9)
 
 
 def test_a_symmetric_cycle_of_stress_keeps_the_contact_symmetric(titanium_in_aluminium):
@@ -100,17 +78,9 @@ def test_the_singular_equations_hold_in_any_order(titanium_in_aluminium):
         worst = []
         for nodes in (101, 401):
             state = solve(problem, order, grid=Grid.arc(BOTTOM - 1.3, BOTTOM + 1.3, nodes))[-1]
-            load = state.load
-            first, second = residuals(
-                problem, 1.0, state.grid, state.pressure, state.shear, state.slip, state.rotation,
-                sxx=load["sxx"], syy=load["syy"],
-            )  # fmt: skip
-            start, stop = state.contact[0]
-            inside = (state.theta > start + 0.1) & (state.theta < stop - 0.1)
-            worst.append((np.sqrt(np.mean(first[inside] ** 2)), np.sqrt(np.mean(second[inside] ** 2))))
-        assert worst[1][1] < 0.3 * worst[0][1]
-        assert worst[1][1] < 3e-5
-        assert worst[1][0] < 5e-3  # the slip has kinks where borders have been
+            worst.append(residuals_away(state, 0.1))
+        assert worst[1][1] < min(3e-6, 0.1 * worst[0][1])
+        assert worst[1][0] < 5e-5
 
 
 def test_reciprocity_of_stress_and_pin_loads():

@@ -58,13 +58,10 @@ def test_notebooks_get_a_table_and_a_picture(result):
 
 
 @pytest.mark.gate
-def test_a_result_draws_and_stores_itself(result, tmp_path):
+def test_a_result_draws_itself(result, tmp_path):
     figure = result.plot(tmp_path / "a.png", title="Here")
     assert (tmp_path / "a.png").stat().st_size > 10_000
     assert "Here" in figure.get_suptitle()
-    result.save(tmp_path / "a.h5")
-    stored = fastpin.load(tmp_path / "a.h5")
-    assert np.array_equal(stored[-1].pressure, result[-1].pressure)
 
 
 def test_chosen_states_are_drawn(result):
@@ -128,19 +125,11 @@ def test_another_solver_is_one_class(result, monkeypatch):
 
     class Handing:
         def __init__(self, inner: Stepper) -> None:
-            self.inner, self.calls = inner, []
+            self.inner, self.calls = inner, set()
 
-        def begin_piece(self) -> None:
-            self.calls.append("begin")
-            self.inner.begin_piece()
-
-        def advance(self, position, piece, stop, report) -> None:
-            self.calls.append("advance")
-            self.inner.advance(position, piece, stop, report)
-
-        def leave(self, position) -> None:
-            self.calls.append("leave")
-            self.inner.leave(position)
+        def __getattr__(self, name):
+            self.calls.add(name)
+            return getattr(self.inner, name)
 
     made: list[Handing] = []
     exact = run_module._stepper
@@ -153,7 +142,7 @@ def test_another_solver_is_one_class(result, monkeypatch):
     other = fastpin.solve(result.problem, result.history, nodes=101)
     assert all(np.array_equal(a.pressure, b.pressure) for a, b in zip(other, result, strict=True))
     assert isinstance(made[-1], Handing)
-    assert {"begin", "advance", "leave"} == set(made[-1].calls)
+    assert made[-1].calls == {"begin_piece", "advance", "leave"}
 
 
 @pytest.mark.gate
@@ -167,10 +156,3 @@ def test_a_result_without_states_is_exported(similar):
     frame = empty.to_dataframe()
     assert len(frame) == 0
     assert "peak_pressure" in frame.columns
-
-
-def test_arrays_of_a_copy_can_not_be_written_to(result):
-    other = pickle.loads(pickle.dumps(result))
-    for array in (other[0].pressure, other[0].status, other[0].theta, other.grid.theta):
-        with pytest.raises(ValueError, match="read-only"):
-            array[0] = 1

@@ -43,6 +43,7 @@ def test_the_lost_load_does_not_depend_on_corners_and_stops(frictionless, method
             error = lost(frictionless, corners, between=between, **method)
             end = corners[-1]["P"]
             assert error.step == len(corners) - 1
+            assert sum(state.fraction == 1.0 for state in error.result) == error.step
             assert error.load["P"] == pytest.approx(whole.load["P"], abs=2.0 * end * tolerance)
             assert error.fraction == pytest.approx((error.load["P"] - begin) / (end - begin), abs=1e-12)
             assert f"at {100.0 * error.fraction:.4g} %" in str(error)

@@ -27,6 +27,16 @@ JOINTS = {
 """Materials and bodies of some joints, in units of the hole radius, by name."""
 
 
+HOLDS = {
+    "plain": {},
+    "driven": {"drive": "ux"},
+    "spring": {"rotation": "spring", "hub_stiffness": 2.0},
+    "fixed": {"rotation": "fixed"},
+    "ring": {"plate_body": Ring(2.0, "normal")},
+}
+"""Fields of problems whose matrices differ, by name."""
+
+
 def joint_problem(name: str, load_parameter: float, friction: float, **options: object) -> Problem:
     """The dimensionless problem of one of the :data:`JOINTS`, or "ring, compliance": a ring by its compliance."""
     if name == "ring, compliance":

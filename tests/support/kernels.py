@@ -1,7 +1,7 @@
 """Kernels as plain Python."""
 
 from collections.abc import Callable
-from types import ModuleType
+from types import FunctionType, ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
@@ -10,6 +10,15 @@ import pytest
 def python(kernel: Callable[..., Any]) -> Callable[..., Any]:
     """A kernel as plain Python. NUMBA_DISABLE_JIT=1 leaves no other form."""
     return getattr(kernel, "py_func", kernel)
+
+
+def in_python(module: ModuleType) -> SimpleNamespace:
+    """The kernels of a module as plain Python, which call one another."""
+    space = dict(vars(module))
+    for name, kernel in vars(module).items():
+        if hasattr(kernel, "py_func"):
+            space[name] = FunctionType(kernel.py_func.__code__, space, name)
+    return SimpleNamespace(**space)
 
 
 def run_as_python(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:

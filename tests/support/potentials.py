@@ -127,6 +127,21 @@ def plate(kappa, force, a=RADIUS):
     return Potentials(k, Omega, Omega_1, Omega_2, omega, omega_1)
 
 
+def first_harmonic(first):
+    """The potentials of a first harmonic, for t_1 = 1 and for conj t_-1 = 1 on the contact rim."""
+    k = first.kolosov
+    for A, D, L, b in zip(first.A, first.D, first.L, first.b, strict=True):
+        yield Potentials(
+            k,
+            lambda z, A=A, L=L: A * z**2 - L * np.log(z),
+            lambda z, A=A, L=L: 2.0 * A * z - L / z,
+            lambda z, A=A, L=L: 2.0 * A + L / z**2,
+            lambda z, D=D, L=L: D / z**2 + k * L * np.log(z),
+            lambda z, D=D, L=L: -2.0 * D / z**3 + k * L / z,
+            b,
+        )
+
+
 def functions(theta):
     """C, S, L, A of Eqs. (5), (7), (8) for xi = 0."""
     C, S = np.cos(theta), np.sin(theta)

@@ -1,13 +1,18 @@
 """Problems and histories for tests of slip sums, by name: all kinds of loads, snaps, unloading, the whole circle."""
 
 import functools
+from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
+from fastpin.kernels.status import OPEN
 from fastpin.model.grid import Grid
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
+from fastpin.states.state import State
 from tests.support.snap_cases import GRIPPED, TURNED
 from tests.survey.histories import random_case
 
@@ -53,8 +58,24 @@ def solved(name: str, between: int = 0, method: str = "path") -> Result:
     return solve(problem, history, slip_sums=True, between=between, **options)
 
 
+WAYS = [(name, method) for name in CASES for method in METHODS if method == "path" or "snap" not in name]
+"""Cases and methods; increments end at a snap."""
+
+
 @functools.cache
 def random_states(seed: int) -> Result:
     """A random history with slip sums, and with states inside its steps, solved once."""
     problem, history = random_case(seed)
     return solve(problem, history, nodes=81, slip_sums=True, between=2)
+
+
+def assert_contains(states: Sequence[State]) -> None:
+    """The extremes of each state contain its slip, and the slip at the kept corner before."""
+    corner: list[State] = []
+    for state in states:
+        for one in (*corner, state):
+            closed = one.status != OPEN
+            assert np.all(state.slip_lowest[closed] <= one.slip[closed])
+            assert np.all(one.slip[closed] <= state.slip_highest[closed])
+        assert np.array_equal(np.isnan(state.slip_lowest), np.isnan(state.slip_highest))
+        corner = [state] if state.fraction == 1.0 else corner

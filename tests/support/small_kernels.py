@@ -2,6 +2,7 @@
 
 import math
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -42,6 +43,17 @@ print(small.doubled(0.5), small.wave(0.5), "numba" in sys.modules)
 def site(folder: Path) -> Path:
     """Write the kernels into a folder, and return it."""
     (folder / "small.py").write_text(TEXT)
+    return folder
+
+
+def install(folder: Path, kernels: str) -> Path:
+    """Copy the files of the package that compile into a folder, with these kernels in `kernels/small.py`."""
+    for part in ("", "kernels", "runtime"):
+        copies = folder / "fastpin" / part
+        copies.mkdir(parents=True, exist_ok=True)
+        for file in (ROOT / "fastpin" / part).glob("*.py*"):
+            shutil.copy(file, copies)
+    (folder / "fastpin" / "kernels" / "small.py").write_text(kernels)
     return folder
 
 

@@ -18,6 +18,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import interference
+from fastpin.verification.body_cases import BRONZE
 from fastpin.verification.comparisons import all_round_difference, event_load
 
 LIKE = MaterialPair(Material(70e9, 0.3), Material(70e9, 0.3))
@@ -33,11 +34,16 @@ BODIES: dict[str, tuple[MaterialPair, dict[str, Any]]] = {
     "plane stress": (STRESSED, {}),
     "tube": (LIKE, {"pin_body": Tube(0.5)}),
     "held tube": (UNLIKE, {"pin_body": Tube(0.4, "held")}),
+    "tube, body load": (LIKE, {"pin_body": Tube(0.6, "body")}),
     "ring": (UNLIKE, {"plate_body": Ring(2.0, "normal")}),
     "held ring, body load": (UNLIKE, {"plate_body": Ring(2.0, "held"), "pin_load": "body"}),
     "tube in ring": (STRESSED, {"pin_body": Tube(0.6, "shear"), "plate_body": Ring(3.0, "uniform")}),
-    "bush": (STRESSED, {"plate_body": Bushing(Material(110e9, 0.34), 1.25)}),
-    "bush in ring": (LIKE, {"plate_body": Bushing(Material(110e9, 0.34), 1.25, inside=Ring(2.5, "held"))}),
+    "bush": (STRESSED, {"plate_body": Bushing(BRONZE, 1.25)}),
+    "bush in ring": (LIKE, {"plate_body": Bushing(BRONZE, 1.25, inside=Ring(2.5, "held"))}),
+    "tube, bush, ring": (
+        UNLIKE,
+        {"pin_body": Tube(0.5, "shear"), "plate_body": Bushing(BRONZE, 1.3, inside=Ring(2.0, "normal"))},
+    ),
 }
 """Materials, and further fields of the problem, of bodies that carry the force symmetrically."""
 
@@ -57,6 +63,21 @@ def solved(problem: Problem, load: dict[str, float], nodes: int = NODES) -> Stat
     return solve(problem, [load], nodes=nodes)[-1]
 
 
+def opens(state: State) -> bool:
+    return bool(np.any(state.status == OPEN))
+
+
+def slips(state: State) -> bool:
+    return bool(np.any(state.status != STICK))
+
+
+def assert_second_order(states: list[State]) -> None:
+    """The differences from the closed form, with NODES nodes and with twice as many."""
+    errors = [all_round_difference(state) for state in states]
+    assert errors[1] < 2e-5
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
+
+
 # -- the solver against the closed forms ---------------------------------------------------------------------
 
 
@@ -74,11 +95,8 @@ def test_without_friction_a_force_adds_a_cosine_until_the_top_opens(name):
     problem = fit(name, 0.0)
     opening = interference.frictionless_opening_load(problem)
     load = {"P": 0.7 * opening, "Q": -0.6 * opening}  # 0.92 of the opening load, at an angle
-    errors = [all_round_difference(solved(problem, load, nodes)) for nodes in (NODES, 2 * NODES)]
-    assert errors[1] < 2e-5
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
-    bounds = 0.9 * opening, 1.1 * opening
-    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status == OPEN)), NODES)
+    assert_second_order([solved(problem, load, nodes) for nodes in (NODES, 2 * NODES)])
+    found = event_load(problem, "P", (0.9 * opening, 1.1 * opening), opens, NODES)
     assert found == pytest.approx(opening, rel=1e-4)
 
 
@@ -89,9 +107,7 @@ def test_a_stuck_contact_under_a_force(name):
     load = {"P": 0.8 * size, "Q": 0.6 * size}
     states = [solved(problem, load, nodes) for nodes in (NODES, 2 * NODES)]
     assert all(np.all(state.status == STICK) for state in states)
-    errors = [all_round_difference(state) for state in states]
-    assert errors[1] < 2e-5
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
+    assert_second_order(states)
 
 
 @every_body
@@ -99,8 +115,7 @@ def test_a_stuck_contact_under_a_force(name):
 def test_the_first_place_slips_where_the_closed_form_says(name, friction):
     problem = fit(name, friction)
     exact, ratio = interference.first_slip_load(problem), interference.stuck_ratio(problem)
-    bounds = 0.9 * exact, 1.1 * exact
-    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status != STICK)), NODES)
+    found = event_load(problem, "P", (0.9 * exact, 1.1 * exact), slips, NODES)
     assert found == pytest.approx(exact, rel=1e-4)
     state = solved(problem, {"P": 1.0001 * found}, NODES)
     place = friction * (1.0 + ratio) / math.hypot(1.0 - ratio, friction * (1.0 + ratio))
@@ -112,8 +127,7 @@ def test_a_contact_with_much_friction_opens_like_a_bonded_one(name):
     """With mu = 10 slip still takes up to 4.5e-3 off the load (tube in ring); the grid adds up to 8e-5."""
     problem = fit(name, 10.0)
     exact = interference.bonded_opening_load(problem)
-    bounds = 0.9 * exact, 1.1 * exact
-    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status == OPEN)), NODES)
+    found = event_load(problem, "P", (0.9 * exact, 1.1 * exact), opens, NODES)
     assert 0.995 * exact < found < 1.0001 * exact
 
 
@@ -138,9 +152,7 @@ def test_remote_stress(name, friction):
     load = {"sxx": 0.1 * pressure, "syy": -0.05 * pressure, "sxy": 0.04 * pressure, "P": 0.1 * pressure}
     states = [solved(problem, load, nodes) for nodes in (NODES, 2 * NODES)]
     assert friction == 0.0 or all(np.all(state.status == STICK) for state in states)
-    errors = [all_round_difference(state) for state in states]
-    assert errors[1] < 2e-5
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
+    assert_second_order(states)
 
 
 @every_solid
@@ -159,14 +171,14 @@ def test_opening_over_the_uniform_pressure_does_not_depend_on_the_interference(c
         problem = Problem.from_load_parameter(LIKE, clearance, friction)
         pressure = interference.uniform_pressure(problem)
         bounds = 3.0 * pressure, 3.7 * pressure
-        found[friction] = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status == OPEN)), NODES)
+        found[friction] = event_load(problem, "P", bounds, opens, NODES)
         found[friction] /= pressure
     assert found == pytest.approx({0.1: 3.413035, 0.5: 3.639759}, abs=3e-6)
 
 
 def test_the_event_comes_after_the_bounds():
     problem = fit("like", 0.0)
-    assert math.isnan(event_load(problem, "P", (0.1, 0.2), lambda state: bool(np.any(state.status == OPEN)), 50))
+    assert math.isnan(event_load(problem, "P", (0.1, 0.2), opens, 50))
 
 
 # -- the closed forms against other formulas -----------------------------------------------------------------

@@ -16,11 +16,6 @@ BOTTOM = -0.5 * math.pi
 CYCLE = [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}, {"Q": -0.275}]
 
 
-def half_angle(state):
-    start, stop = state.contact[0]
-    return 0.5 * (stop - start)
-
-
 # --- frictionless: closed forms -----------------------------------------------------------------------------
 
 
@@ -30,28 +25,10 @@ def test_persson(similar, load_parameter, pin_load):
     state = solve(Problem.from_load_parameter(similar, load_parameter, 0.0, pin_load), [{"P": 1.0}], nodes=400)[-1]
     exact = closed_forms.persson_half_angle(load_parameter)
     assert state.peak_pressure == pytest.approx(closed_forms.persson_pressure(0.0, exact), rel=1e-5)
-    assert half_angle(state) == pytest.approx(exact, abs=1e-3)
+    assert 0.5 * np.ptp(state.contact[0]) == pytest.approx(exact, abs=1e-3)
     inside = np.abs(state.theta - BOTTOM) < 0.9 * exact
     expected = closed_forms.persson_pressure(state.theta[inside] - BOTTOM, exact)
     assert np.abs(state.pressure[inside] - expected).max() < 1e-3 * expected.max()
-
-
-@pytest.mark.gate
-@pytest.mark.parametrize("load_parameter", [0.01, 0.5, 2.0])
-def test_persson_contact_angle_with_many_nodes(similar, load_parameter):
-    state = solve(Problem.from_load_parameter(similar, load_parameter, 0.0), [{"P": 1.0}], nodes=1600)[-1]
-    assert half_angle(state) == pytest.approx(closed_forms.persson_half_angle(load_parameter), abs=1e-4)
-
-
-@pytest.mark.parametrize("alpha", [-0.2, 0.5])
-@pytest.mark.parametrize("load_parameter", [0.05, 0.5])
-def test_dissimilar_frictionless_without_coupling(alpha, load_parameter):
-    """alpha* = 0: the pressure is Persson's as a function of the contact angle (Ciavarella and Decuzzi)."""
-    pair = MaterialPair.from_dundurs(alpha, 0.0, nu_pin=0.3)
-    state = solve(Problem.from_load_parameter(pair, load_parameter, 0.0), [{"P": 1.0}], nodes=400)[-1]
-    exact = closed_forms.persson_half_angle(load_parameter, -alpha)
-    assert state.peak_pressure == pytest.approx(closed_forms.persson_pressure(0.0, exact), rel=1e-5)
-    assert half_angle(state) == pytest.approx(exact, abs=1e-3)
 
 
 @pytest.mark.gate
@@ -86,8 +63,8 @@ def test_monotonic_reference_values(similar, titanium_in_aluminium):
         assert state.peak_pressure == pytest.approx(peak, abs=2e-5)
         assert abs(state.peak_shear) == pytest.approx(0.2011, abs=1e-4)
         if stick is not None:
-            assert half_angle(state) == pytest.approx(1.136, abs=2e-3)
-            assert 0.5 * (state.stick[0][1] - state.stick[0][0]) == pytest.approx(stick, abs=1e-3)
+            assert 0.5 * np.ptp(state.contact[0]) == pytest.approx(1.136, abs=2e-3)
+            assert 0.5 * np.ptp(state.stick[0]) == pytest.approx(stick, abs=1e-3)
 
 
 @pytest.mark.gate
@@ -147,18 +124,14 @@ def against(name):
     return model, states, model.differences(states), peaks
 
 
-def test_finite_elements_without_friction():
-    _, _, (difference,), (peak,) = against("frictionless")
-    assert difference.normal < 5e-4
-    assert difference.shear == 0.0
-    assert peak < 2e-5
-
-
-def test_finite_elements_monotonic():
-    _, _, (difference,), (peak,) = against("monotonic")
-    assert difference.normal < 1.5e-4
-    assert difference.shear < 1.1e-3
-    assert peak < 5e-5
+@pytest.mark.parametrize(
+    ("name", "normal", "shear", "peak"), [("frictionless", 5e-4, 0.0, 2e-5), ("monotonic", 1.5e-4, 1.1e-3, 5e-5)]
+)
+def test_finite_elements_of_a_first_load(name, normal, shear, peak):
+    _, _, (difference,), (found,) = against(name)
+    assert difference.normal < normal
+    assert difference.shear <= shear
+    assert found < peak
 
 
 def test_finite_elements_fretting():
@@ -191,12 +164,3 @@ def test_rigid_bodies_are_the_limit_of_stiff_ones(rigid):
         peaks.append(state.peak_pressure)
     assert abs(peaks[1] - peaks[2]) < 0.05 * abs(peaks[0] - peaks[2])
     assert peaks[1] == pytest.approx(peaks[2], rel=1e-4)
-
-
-def test_rigid_pin_does_not_feel_where_it_is_loaded():
-    pair = MaterialPair(Material.rigid(), Material(70e9, 0.3))
-    centre, body = (
-        solve(Problem.from_load_parameter(pair, 0.1, 0.4, load), CYCLE[:3], nodes=101)[-1]
-        for load in ("centre", "body")
-    )
-    assert np.array_equal(centre.shear, body.shear)

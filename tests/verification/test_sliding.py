@@ -59,15 +59,6 @@ def test_without_friction_and_alpha_star_it_is_ciavarella_and_decuzzi(load_param
     assert found.peak_pressure == pytest.approx(closed_forms.persson_pressure(0.0, half), rel=1e-10)
 
 
-@PAIRS
-def test_without_friction_it_is_the_path_solver_for_any_pair(pair):
-    problem, force = in_si(pair, 0.05, 0.0)
-    found = solve_sliding(problem, {"P": force})
-    state = solve(problem, [{"P": force}], nodes=301)[-1]
-    assert state.peak_pressure == pytest.approx(found.peak_pressure, rel=1e-5)
-    assert state.contact[0] == pytest.approx(found.contact, abs=0.1 * (state.theta[1] - state.theta[0]))
-
-
 STRESS = {"sxx": 0.12, "syy": -0.05}
 
 
@@ -157,16 +148,6 @@ def test_mirror_image(pair):
     assert two.pressure(-math.pi - x) == pytest.approx(one.pressure(x), abs=1e-10)
     assert two.shear(-math.pi - x) == pytest.approx(-one.shear(x), abs=1e-10)
     assert two.moment == pytest.approx(-one.moment, rel=1e-12)
-
-
-@pytest.mark.gate
-def test_turned_round_with_load_and_stress():
-    """Everything turned by 90 degrees: P takes the place of Q, syy that of sxx, sxy changes sign."""
-    problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.2, 0.5)
-    one = solve_sliding(problem, {"P": 1.0, "Q": 0.3, "sxx": 0.1, "syy": -0.05, "sxy": 0.04}, 1)
-    two = solve_sliding(problem, {"P": -0.3, "Q": 1.0, "sxx": -0.05, "syy": 0.1, "sxy": -0.04}, 1)
-    assert np.array(two.contact) - 0.5 * math.pi == pytest.approx(one.contact, abs=1e-12)
-    assert two.peak_pressure == pytest.approx(one.peak_pressure, rel=1e-12)
 
 
 def errors_in_terms(pair: MaterialPair, counts: tuple[int, ...], exact: int) -> tuple[list[float], list[float]]:

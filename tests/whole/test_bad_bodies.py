@@ -32,85 +32,50 @@ def problem(contact: dict[str, Any] | None = None, **bodies: Any) -> Problem:
     return Problem(PAIR, **CONTACT, **(contact or {}), **bodies)
 
 
+def bushed(**given: Any) -> Problem:
+    return problem(plate_body=Bushing(BRONZE, 0.0125, **given))
+
+
 def loaded(body: Any, **load: float) -> None:
     check_loads(problem(plate_body=body), LoadHistory([load]))
 
 
-CASES: list[tuple[str, str, dict[str, dict[str, Any]], Any]] = [
-    ("pin_body", "bore_radius", {"pin_body": {"bore_radius": 0.02}}, lambda: problem(pin_body=Tube(0.02))),
-    ("pin_body", "bore_radius", {"pin_body": {"bore_radius": 0.00995}}, lambda: problem(pin_body=Tube(0.00995))),
-    ("pin_body", "bore_radius", {"pin_body": {"bore_radius": -0.1}}, lambda: Tube(-0.1)),
-    ("pin_body", "load", {"pin_body": {"bore_radius": 5e-3, "load": "centre"}}, lambda: Tube(5e-3, "centre")),
-    ("plate_body", "outer_radius", {"plate_body": {"outer_radius": 5e-3}}, lambda: problem(plate_body=Ring(5e-3))),
-    (
-        "plate_body",
-        "outer_radius",
-        {"plate_body": {"outer_radius": 0.01005}},
-        lambda: problem(plate_body=Ring(0.01005)),
-    ),
-    ("plate_body", "support", {"plate_body": {"outer_radius": 0.02, "support": "soft"}}, lambda: Ring(0.02, "soft")),
-    ("plate_body", "reaction", {"plate_body": {"reaction": [0, 0.01]}}, lambda: problem(plate_body=Plate((0, 0.01)))),
-    (
-        "plate_body",
-        "interference",
-        {"plate_body": {**BUSH, "interference": -1e-6}},
-        lambda: Bushing(BRONZE, 0.02, -1e-6),
-    ),
-    (
-        "plate_body",
-        "interference",
-        {"plate_body": {**BUSH, "interference": 0.5}},
-        lambda: problem(plate_body=Bushing(BRONZE, 0.0125, 0.5)),
-    ),
-    ("plate_body", "friction", {"plate_body": {**BUSH, "friction": -1}}, lambda: Bushing(BRONZE, 0.02, friction=-1)),
-    (
-        "plate_body",
-        "rigid",
-        {"plate_body": {"rigid": True, "outer_radius": 0.02}},
-        lambda: Bushing(Material.rigid(), 0.02),
-    ),
-    (
-        "plate_body",
-        "ring_outer_radius",
-        {"plate_body": {**BUSH, "ring_outer_radius": 0.012}},
-        lambda: problem(plate_body=Bushing(BRONZE, 0.0125, inside=Ring(0.012))),
-    ),
-    (
-        "contact",
-        "pin_load",
-        {"contact": {"pin_load": "body"}, "pin_body": {"bore_radius": 5e-3}},
-        lambda: problem({"pin_load": "body"}, pin_body=Tube(5e-3)),
-    ),
-    (
-        "contact",
-        "hub_radius",
-        {"contact": {"rotation": "fixed", "hub_radius": 4e-3}, "pin_body": {"bore_radius": 5e-3}},
-        lambda: problem({"rotation": "fixed", "hub_radius": 4e-3}, pin_body=Tube(5e-3)),
-    ),
-    (
-        "contact",
-        "gauge_radius",
-        {"contact": {"drive": "ux", "gauge_radius": 0.03}, "plate_body": {"outer_radius": 0.02}},
-        lambda: problem({"drive": "ux", "gauge_radius": 0.03}, plate_body=Ring(0.02)),
-    ),
-    (
-        "load.1",
-        "sxx",
-        {"load.1": {"sxx": 1e6}, "plate_body": {"outer_radius": 0.02}},
-        lambda: loaded(Ring(0.02), sxx=1e6),
-    ),
-    ("load.1", "syy", {"load.1": {"syy": 1e6}, "plate_body": {"file": "good.json"}}, lambda: loaded(plate(), syy=1e6)),
+Values = dict[str, Any]
+
+ALONE: list[tuple[str, str, Values, Any]] = [
+    ("pin_body", "bore_radius", {"bore_radius": 0.02}, lambda: problem(pin_body=Tube(0.02))),
+    ("pin_body", "bore_radius", {"bore_radius": 0.00995}, lambda: problem(pin_body=Tube(0.00995))),
+    ("pin_body", "bore_radius", {"bore_radius": -0.1}, lambda: Tube(-0.1)),
+    ("pin_body", "load", {"bore_radius": 5e-3, "load": "centre"}, lambda: Tube(5e-3, "centre")),
+    ("plate_body", "outer_radius", {"outer_radius": 5e-3}, lambda: problem(plate_body=Ring(5e-3))),
+    ("plate_body", "outer_radius", {"outer_radius": 0.01005}, lambda: problem(plate_body=Ring(0.01005))),
+    ("plate_body", "support", {"outer_radius": 0.02, "support": "soft"}, lambda: Ring(0.02, "soft")),
+    ("plate_body", "reaction", {"reaction": [0, 0.01]}, lambda: problem(plate_body=Plate((0, 0.01)))),
+    ("plate_body", "interference", {**BUSH, "interference": -1e-6}, lambda: Bushing(BRONZE, 0.02, -1e-6)),
+    ("plate_body", "interference", {**BUSH, "interference": 0.5}, lambda: bushed(interference=0.5)),
+    ("plate_body", "friction", {**BUSH, "friction": -1}, lambda: Bushing(BRONZE, 0.02, friction=-1)),
+    ("plate_body", "rigid", {"rigid": True, "outer_radius": 0.02}, lambda: Bushing(Material.rigid(), 0.02)),
+    ("plate_body", "ring_outer_radius", {**BUSH, "ring_outer_radius": 0.012}, lambda: bushed(inside=Ring(0.012))),
     *(
-        (
-            "plate_body",
-            "file",
-            {"plate_body": {"file": f"{name}.json"}},
-            lambda name=name: problem(plate_body=WRONG[name]),
-        )
+        ("plate_body", "file", {"file": f"{name}.json"}, lambda name=name: problem(plate_body=WRONG[name]))
         for name in ("nu", "plane", "hole")
     ),
 ]
-"""Section and key at fault, the values in files, and the same in Python."""
+"""Section and key at fault, the values of the section in files, and the same in Python."""
+
+HOLLOW: dict[str, Values] = {"pin_body": {"bore_radius": 5e-3}}
+RING: dict[str, Values] = {"plate_body": {"outer_radius": 0.02}}
+FILE: dict[str, Values] = {"plate_body": {"file": "good.json"}}
+HELD, DRIVEN = {"rotation": "fixed", "hub_radius": 4e-3}, {"drive": "ux", "gauge_radius": 0.03}
+
+TOGETHER: list[tuple[str, str, Values, Any, dict[str, Values]]] = [
+    ("contact", "pin_load", {"pin_load": "body"}, lambda: problem({"pin_load": "body"}, pin_body=Tube(5e-3)), HOLLOW),
+    ("contact", "hub_radius", HELD, lambda: problem(HELD, pin_body=Tube(5e-3)), HOLLOW),
+    ("contact", "gauge_radius", DRIVEN, lambda: problem(DRIVEN, plate_body=Ring(0.02)), RING),
+    ("load.1", "sxx", {"sxx": 1e6}, lambda: loaded(Ring(0.02), sxx=1e6), RING),
+    ("load.1", "syy", {"syy": 1e6}, lambda: loaded(plate(), syy=1e6), FILE),
+]
+"""The same, and the values of another section, which does not fit."""
 
 WRONG = {"nu": plate(nu=0.3), "plane": plate(plane="stress"), "hole": plate(hole_radius=0.02)}
 """Compliances of another plate, by the names of their files."""
@@ -141,9 +106,10 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]}.{case[1]}")
+@pytest.mark.parametrize("case", [*((*each, {}) for each in ALONE), *TOGETHER], ids=lambda case: f"{case[0]}.{case[1]}")
 def test_a_wrong_body_gets_the_same_sentence_everywhere(case, folder, capsys):
-    section, key, values, in_python = case
+    section, key, own, in_python, others = case
+    values = {section: own, **others}
     with pytest.raises(InputError) as raised:
         in_python()
     reason = raised.value.reason

@@ -2,6 +2,7 @@
 
 import os
 import time
+from functools import partial
 
 import pytest
 
@@ -27,11 +28,8 @@ def test_a_raw_error_a_slow_call_and_a_crash_are_findings(monkeypatch):
     kinds = ("raw", "slow", "asleep", "crash", "fine")
     target = calls.Target("fastpin.call", None, call, (calls.Parameter("kind", "str", False, True),))
     monkeypatch.setattr(calls, "public_targets", lambda: {target.name: target})
-    monkeypatch.setitem(calls.odd_values.VALUES, "raw", lambda: "raw")
-    monkeypatch.setitem(calls.odd_values.VALUES, "slow", lambda: "slow")
-    monkeypatch.setitem(calls.odd_values.VALUES, "asleep", lambda: "asleep")
-    monkeypatch.setitem(calls.odd_values.VALUES, "crash", lambda: "crash")
-    monkeypatch.setitem(calls.odd_values.VALUES, "fine", lambda: "fine")
+    for kind in kinds:
+        monkeypatch.setitem(calls.odd_values.VALUES, kind, partial(str, kind))
     todo = [calls.Attempt(target.name, (("kind", kind),)) for kind in kinds]
     made = list(calls.examine(lambda *_: todo))
     assert [ending.kind for _, ending in made] == ["raw", "slow", "slow", "raw", "accepted"]

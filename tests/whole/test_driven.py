@@ -26,7 +26,7 @@ from fastpin.studies.plan import parse_plan
 from fastpin.verification.comparisons import residuals_away
 from fastpin.verification.sliding import solve_sliding
 from tests.support.once import solve_once
-from tests.support.programs import assert_same
+from tests.support.programs import assert_same, difference
 from tests.support.samples import JOINT
 
 KINDS = [("centre", "free"), ("centre", "fixed"), ("body", "free")]
@@ -50,17 +50,6 @@ def driven_corners(problem, states, lift=0.0, names=("sxx", "syy", "sxy")):
     return corners
 
 
-def difference(one, two, *names):
-    """Largest difference of tractions (and other fields) between two results on one grid, over the peak pressure."""
-    peak = max(state.peak_pressure for state in one)
-    assert len(one) == len(two)
-    return max(
-        float(np.abs(getattr(first, name) - getattr(second, name)).max()) / peak
-        for first, second in zip(one, two, strict=True)
-        for name in ("pressure", "shear", *names)
-    )
-
-
 def imbalance(states):
     """Largest difference of work and energy plus dissipation, over the largest energy."""
     size = max(abs(state.energy) for state in states)
@@ -78,9 +67,9 @@ def test_ux_in_place_of_q(titanium_in_aluminium, parameter, kind):
     history = FRETTING[:4] if parameter >= 0.0 else [{"P": 1.0, "Q": 0.0}, *FRETTING[1:4]]
     force = solve(pushed, history, nodes=101, between=2)
     driven = joint(titanium_in_aluminium, parameter, kind, "ux")
-    corners = driven_corners(driven, [state for state in force if state.fraction == 1.0])
-    result = solve(driven, corners, grid=force.grid)
     corner_states = [state for state in force if state.fraction == 1.0]
+    corners = driven_corners(driven, corner_states)
+    result = solve(driven, corners, grid=force.grid)
     assert difference(corner_states, result, "slip") < 1e-9
     assert [state.load["Q"] for state in result] == pytest.approx([s.load["Q"] for s in corner_states], abs=1e-11)
     assert [state.load["ux"] for state in result] == [corner["ux"] for corner in corners]
@@ -164,7 +153,7 @@ def test_the_gauge_is_a_compliance_in_series(titanium_in_aluminium, drive):
         moved.append({name: given.get(name, load[name]) for name in names})
     two = solve(far, moved, grid=one.grid)
     assert difference(one, two) < (1e-9 if drive == "ux" else 3e-2)  # one load alone changes in a step under ux only
-    for name in ("ux", "uy")[: 1 if drive == "ux" else 2][0 if drive != "uy" else 1 :]:
+    for name in ("ux", "uy") if drive == "both" else (drive,):
         assert [s.displacement[name] for s in two] == pytest.approx([s.load[name] for s in two], abs=1e-12)
 
 
@@ -355,12 +344,8 @@ def test_loads_that_the_drive_refuses(titanium_in_aluminium, drive, corner, fiel
 @pytest.mark.parametrize(
     ("kind", "options", "field"),
     [
-        (KINDS[0], {"drive": "dx"}, "drive"),
-        (KINDS[0], {"drive": 1}, "drive"),
-        (KINDS[0], {"gauge_radius": 2.0}, "gauge_radius"),
         (KINDS[0], {"drive": "ux", "gauge_radius": 0.9}, "gauge_radius"),
         (KINDS[0], {"drive": "ux", "gauge_radius": math.inf}, "gauge_radius"),
-        (KINDS[0], {"hub_radius": 0.5}, "hub_radius"),
         (KINDS[2], {"drive": "ux", "hub_radius": 0.5}, "hub_radius"),
         (KINDS[0], {"drive": "ux", "hub_radius": 1.5}, "hub_radius"),
     ],
@@ -454,7 +439,6 @@ def test_error_bars(case):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (CASE.replace('drive = "ux"', 'drive = "x"'), "drive: must be"),
         (CASE.replace("ux = [10e-6, -10e-6]", "Q = [1e5, -1e5]"), 'Q: the force is a reaction where drive = "ux"'),
         (CASE.replace("gauge_radius = 15e-3", "gauge_radius = 5e-3"), "gauge_radius: must be at least the hole radius"),
         (CASE.replace('drive = "ux"\ngauge_radius = 15e-3\nhub_radius = 4e-3', ""), "ux: a displacement can be"),

@@ -18,7 +18,7 @@ from fastpin.solver.solving import solve
 from fastpin.studies.identity import canonical
 from fastpin.studies.plan import parse_plan
 from fastpin.verification.sliding import solve_sliding
-from tests.support.programs import assert_same
+from tests.support.programs import assert_same, difference
 from tests.support.tiers import gate
 
 HISTORY = [{"P": 1.0}, {"Q": 0.25}, {"Q": -0.25}, {"Q": 0.25}, {"P": 0.6, "Q": -0.2}]
@@ -40,16 +40,6 @@ def hub_rotation(state):
     shear = -state.resultants["M"] / problem.hole_radius**2
     inside = problem.pair.pin_kolosov + 1.0 - (problem.hole_radius / problem.hub_radius) ** 2
     return state.rotation + inside * problem.pair.pin_compliance * shear / (4.0 * math.pi)
-
-
-def difference(one, two):
-    """Largest difference of tractions between two results on one grid, over the peak."""
-    peak = max(state.peak_pressure for state in one)
-    return max(
-        float(np.abs(getattr(first, name) - getattr(second, name)).max()) / peak
-        for first, second in zip(one, two, strict=True)
-        for name in ("pressure", "shear")
-    )
 
 
 @pytest.mark.parametrize("options", [{}, INCREMENTS], ids=["path", "increment"])
@@ -190,18 +180,10 @@ def test_case_file_tables_and_files(tmp_path):
     assert np.array_equal(rest[-1].shear, result[-1].shear)
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        (CASE.replace("hub_stiffness = 2e5\n", ""), "needs the stiffness of the spring"),
-        (CASE.replace("hub_stiffness = 2e5", "hub_stiffness = -2"), "must be positive"),
-        (CASE.replace('rotation = "spring"', 'rotation = "fixed"'), 'only a pin with rotation = "spring"'),
-    ],
-)
-def test_faults_of_case_files(text, words):
-    with pytest.raises(CaseFileError, match=words) as caught:
-        parse_case(text)
-    assert len(str(caught.value).splitlines()) == 1
+def test_a_case_file_without_the_stiffness():
+    with pytest.raises(CaseFileError, match="needs the stiffness of the spring") as caught:
+        parse_case(CASE.replace("hub_stiffness = 2e5\n", ""))
+    assert len(caught.value.problems) == 1
 
 
 def test_a_plan_varies_the_stiffness(tmp_path):

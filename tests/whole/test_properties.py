@@ -10,6 +10,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
+from tests.support.programs import assert_same_bits
 from tests.support.tiers import gate, seeds
 from tests.survey.histories import NODES, random_case
 from tests.survey.random_histories import examine
@@ -48,12 +49,7 @@ def test_a_split_history_gives_the_same_bits(problem, solver, cut):
     whole = solve(problem, history, nodes=81, arc=ARC, **solver)
     first = solve(problem, history[:cut], nodes=81, arc=ARC, **solver)
     second = solve(problem, history[cut:], start=first, **solver)
-    for one, two in zip(whole, [*first, *second], strict=True):
-        for name in ("pressure", "shear", "gap", "slip", "status"):
-            assert np.array_equal(getattr(one, name), getattr(two, name))
-        assert (one.dx, one.dy, one.rotation) == (two.dx, two.dy, two.rotation)
-        assert (one.dissipation, one.work, one.energy) == (two.dissipation, two.work, two.energy)
-        assert one.load == two.load
+    assert_same_bits(whole, [*first, *second])
 
 
 def test_states_between_corners_do_not_change_the_corners(problem):
@@ -105,7 +101,13 @@ def test_a_symmetric_contact_is_symmetric(titanium_in_aluminium):
 
 @pytest.mark.parametrize(
     ("load", "rotation", "extra"),
-    [("body", "free", {}), ("centre", "fixed", {}), ("centre", "free", {"M": 0.05}), ("body", "free", {"sxx": 0.03})],
+    [
+        ("body", "free", {}),
+        ("centre", "fixed", {}),
+        ("centre", "free", {"M": 0.05}),
+        ("body", "free", {"sxx": 0.03}),
+        ("body", "free", {"sxy": 0.05}),
+    ],
 )
 def test_work_is_energy_plus_dissipation(titanium_in_aluminium, load, rotation, extra):
     """Exactly along the path; what is left is the asymmetry of collocation, which falls with the mesh."""
@@ -167,13 +169,6 @@ def test_steady_cycles_repeat(similar):
     assert np.ptp(per_cycle) < 1e-9 * per_cycle[0]
 
 
-def test_free_pins_settle_over_some_cycles(similar):
-    problem = Problem.from_load_parameter(similar, 0.05, 0.55, "body")
-    result = solve(problem, LoadHistory.cycles({"P": 1.0}, {"Q": 0.275}, 12), nodes=81)
-    drift = [np.abs(b.shear - a.shear).max() for a, b in zip(result[1::2], result[3::2], strict=False)]
-    assert drift[-1] < 1e-3 * drift[0]
-
-
 def test_graded_nodes_give_the_same_answer(similar):
     problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
     t = np.linspace(-1.0, 1.0, 201)
@@ -221,13 +216,3 @@ def test_random_histories_by_increments(seed):
     for one, two in zip(path, steps, strict=True):
         assert np.abs(one.pressure - two.pressure).sum() < 0.01 * one.pressure.sum() + 1e-12
         assert np.abs(one.shear - two.shear).sum() < 0.03 * problem.friction * one.pressure.sum() + 1e-12
-
-
-def test_rotation_of_the_whole_problem_turns_the_state(similar):
-    """The theory knows no bottom: loads turned by a right angle give the same state, turned."""
-    problem = Problem.from_load_parameter(similar, 0.2, 0.4, "centre")
-    down = solve(problem, [{"P": 1.0}, {"Q": 0.2}], nodes=101, arc=(BOTTOM - 1.4, BOTTOM + 1.4))[-1]
-    right = solve(problem, [{"Q": 1.0}, {"P": -0.2}], nodes=101, arc=(-1.4, 1.4))[-1]
-    assert np.abs(down.pressure - right.pressure).max() < 1e-10
-    assert np.abs(down.shear - right.shear).max() < 1e-10
-    assert (down.dx, down.dy) == pytest.approx((right.dy, -right.dx), abs=1e-10)

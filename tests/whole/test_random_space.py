@@ -14,7 +14,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from tests.support.potentials import displacement_kernels
 from tests.support.slip_cases import UNLIKE
-from tests.support.tiers import seeds
+from tests.support.tiers import seeds, some_gate
 from tests.survey import conditions, metamorphic, two_roads
 from tests.survey.histories import GENERATORS, generate, lug
 from tests.survey.random_histories import Outcome, examine
@@ -23,27 +23,21 @@ QUICK = ("extreme", "remote", "fits", "rough", "laminates")
 """Classes of which three histories take less than half a second."""
 
 
+KINDS = [kind for kind in GENERATORS if kind not in ("drift", "scales")]
+
+
 def assert_right(outcome: Outcome) -> None:
     """No state is wrong. A refusal is no wrong state."""
     assert outcome.violations() == {}, f"{outcome.kind} {outcome.seed}"
 
 
-def assert_most_are_solved(outcomes: list[Outcome]) -> None:
+@pytest.mark.parametrize("kind", some_gate(KINDS, *(kind for kind in KINDS if kind not in QUICK)))
+def test_a_few_random_histories_of_each_class(kind):
+    """Friction that changes and odd scales take more time than all others. The survey has them."""
+    outcomes = [examine(kind, seed) for seed in seeds(3)]
     for outcome in outcomes:
         assert_right(outcome)
     assert sum(outcome.ending == "solved" for outcome in outcomes) >= 2
-
-
-@pytest.mark.parametrize("kind", QUICK)
-def test_a_few_random_histories_of_quick_classes(kind):
-    assert_most_are_solved([examine(kind, seed) for seed in seeds(3)])
-
-
-@pytest.mark.gate
-@pytest.mark.parametrize("kind", [kind for kind in GENERATORS if kind not in (*QUICK, "drift", "scales")])
-def test_a_few_random_histories_of_each_class(kind):
-    """Friction that changes and odd scales take more time than all others. The survey has them."""
-    assert_most_are_solved([examine(kind, seed) for seed in seeds(3)])
 
 
 @pytest.mark.gate

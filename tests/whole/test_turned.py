@@ -11,14 +11,12 @@ import math
 import numpy as np
 import pytest
 
-import fastpin
 from fastpin.bodies import Plate
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
-from fastpin.report.case import load_columns
 from fastpin.solver.solving import solve
 from fastpin.verification.sliding import solve_sliding
 from tests.support.bodies import joint_problem
@@ -140,28 +138,18 @@ def test_any_angle_in_increments(titanium_in_aluminium, angle):
     assert_turned(one, two, angle, 1e-10)
 
 
-@pytest.fixture(scope="module")
-def slid(titanium_in_aluminium):
+@functools.cache
+def slid(pair, slip):
     """A problem, and its contact in full sliding."""
-    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, "centre", "fixed")
-    return problem, solve_sliding(problem, {"P": 1.0, "Q": 0.3, "sxx": 0.05, "syy": 0.02, "sxy": 0.1}, 1)
+    problem = Problem.from_load_parameter(pair, 0.3, 0.4, "centre", "fixed")
+    return problem, solve_sliding(problem, {"P": 1.0, "Q": 0.3, "sxx": 0.05, "syy": 0.02, "sxy": 0.1}, slip)
 
 
-@pytest.mark.parametrize("angle", ANGLES)
-def test_any_angle_in_full_sliding(slid, angle):
-    problem, sliding = slid
-    (other,) = turned([sliding.load], angle)
-    one, two = sliding, solve_sliding(problem, other, 1)
+@pytest.mark.parametrize(("angle", "slip"), [*((angle, 1) for angle in ANGLES), (0.25 * math.pi, -1)])
+def test_any_angle_in_full_sliding(titanium_in_aluminium, angle, slip):
+    problem, one = slid(titanium_in_aluminium, slip)
+    (other,) = turned([one.load], angle)
+    two = solve_sliding(problem, other, slip)
     away = np.array(two.contact) - angle - one.contact
     assert away - 2.0 * math.pi * np.round(away / (2.0 * math.pi)) == pytest.approx([0.0, 0.0], abs=1e-11)
     assert (two.peak_pressure, two.moment) == pytest.approx((one.peak_pressure, one.moment), rel=1e-11)
-
-
-def test_a_turned_history_survives_file_and_table(titanium_in_aluminium, tmp_path):
-    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, "centre", "fixed")
-    result = solve(problem, turned(HISTORY, 0.3), nodes=61)
-    result.save(tmp_path / "turned.h5")
-    loaded = fastpin.load(tmp_path / "turned.h5")
-    assert [state.load for state in loaded] == [state.load for state in result]
-    shown = {name: cells for name, _, cells in load_columns(problem, [state.load for state in loaded])}
-    assert shown["sxy"] == [f"{corner['sxy']:.5g}" for corner in turned(HISTORY, 0.3)]
