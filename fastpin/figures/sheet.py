@@ -73,8 +73,8 @@ class Look:
     ax: Axes | None = None
 
     def __post_init__(self) -> None:
-        check_figure_text(self.title, self.width)
-        number_of_dots(self.dpi)
+        object.__setattr__(self, "width", check_figure_text(self.title, self.width))
+        object.__setattr__(self, "dpi", number_of_dots(self.dpi))
         if self.path is not None:
             check_format(file_path("path", self.path))
         if self.ax is not None:

@@ -249,6 +249,14 @@ def test_print_quality(tmp_path: Path) -> None:
         assert picture.width == 900
 
 
+def test_the_size_may_be_any_number() -> None:
+    class Reading:
+        def __float__(self) -> float:
+            return 6.0
+
+    assert plot_tractions(sample_result(), width=Reading(), dpi=np.int64(50)).get_figwidth() == 6.0
+
+
 def test_a_sketch_may_stand_beside_the_pressure() -> None:
     pressure = plot_tractions(sample_result(), sketch=True).axes[0]
     (panel,) = pressure.child_axes
