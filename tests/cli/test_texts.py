@@ -57,8 +57,7 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_names_of_files_never_steer_the_terminal(command, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_names_of_files_never_steer_the_terminal(command, capsys):
     Path(f"{HOSTILE}.toml").write_text("[contact]\nfriction = 7\n", encoding="utf-8")
     Path(f"{HOSTILE}-plan.toml").write_text('[grid]\n"contact.friction" = [0.1]\n', encoding="utf-8")
     Path(f"{HOSTILE}.h5").write_text("no result", encoding="utf-8")
