@@ -39,7 +39,7 @@ from fastpin.solver.errors import Interrupted
 from fastpin.states.quantities import QUANTITIES
 from fastpin.storage.layout import RESIDUALS
 from tests.support.drawing import outline_figures
-from tests.support.html import Page
+from tests.support.html import Page, words_of
 from tests.support.samples import JOINT, sample_result
 from tests.support.tiers import for_gate, gate
 
@@ -213,7 +213,6 @@ def test_the_extremes_of_a_long_history_are_drawn_and_have_rows() -> None:
 def test_the_last_closed_part_of_a_history_without_blocks_is_its_cycle() -> None:
     corners = [{"P": 2e6, "Q": load} for load in (0.0, 4e5, -4e5, 1e5, 4e5)]
     source = Source.of_result(sample_result(corners))
-    assert source.cycle is not None
     assert (source.cycle.first, source.cycle.last) == (2, 5)
     assert Source.of_result(sample_result(corners[:4])).cycle is None
 
@@ -258,8 +257,7 @@ def test_a_convergence_study_is_shown(only: Callable[..., None], tmp_path: Path)
     only(convergence)
     result = sample_result()
     study = fastpin.converge(result.problem, [{"P": 2.42e6}], nodes=(51, 101, 201))
-    result.report(tmp_path / "page.html", convergence=study)
-    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    words = words_of(result, tmp_path / "page.html", convergence=study)
     assert "Corner 1, path solver" in words
     assert "Distance to the limit" in words
     assert "There is no convergence study" not in words
@@ -276,8 +274,7 @@ def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(only
         file.with_suffix(".toml").unlink(missing_ok=True)
         if text is not None:
             file.with_suffix(".toml").write_text(text)
-        write_report(file, page)
-        words = Page(page.read_text(encoding="utf-8")).text
+        words = words_of(file, page)
         assert (own in words) == shown
         assert ("--case CASE.toml shows it" in words) != shown
 
@@ -285,14 +282,13 @@ def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(only
 @pytest.mark.usefixtures("undrawn")
 def test_a_branch_begins_with_the_loads_of_its_start(only: Callable[..., None], tmp_path: Path) -> None:
     only(loads)
-    problem, page = sample_result().problem, tmp_path / "page.html"
+    problem = sample_result().problem
     first = fastpin.solve(problem, [{"P": 1e6}], nodes=61, arc=(-3.0, -0.2))
     branch = fastpin.solve(problem, [{"Q": 1e5}, {"Q": -1e5}], start=first)
     source = Source.of_result(branch)
     assert source.initial == pytest.approx([1e6 if name == "P" else 0.0 for name in LOADS], rel=1e-12)
     assert not Source.of_result(first).initial.any()
-    branch.report(page)
-    words = Page(page.read_text(encoding="utf-8")).text
+    words = words_of(branch, tmp_path / "page.html")
     assert "It begins with its loads: P = 1 MN/m." in words
     assert "from no load" not in words
 
@@ -330,28 +326,26 @@ def test_a_run_that_goes_on_or_ended_early_has_a_page(only: Callable[..., None],
 
     def stop(done: float, total: float) -> None:
         if done >= 3.0:
-            write_report(path, page)
-            found.append(page.read_text(encoding="utf-8"))
+            found.append(words_of(path, page))
             raise Interrupted
 
     with pytest.raises(Interrupted):
         fastpin.record(problem, [{"P": k * 1e5} for k in range(1, 9)], path, nodes=61, arc=(-3.0, -0.2), progress=stop)
-    write_report(path, page)
-    for text in (*found, page.read_text(encoding="utf-8")):
-        assert "Unfinished: corner" in Page(text).text
-        assert ("Its run goes on." in Page(text).text) == (text in found)
-        assert (f"fastpin resume {path}" in Page(text).text) == (text not in found)
-    assert "interrupted" in Page(page.read_text(encoding="utf-8")).text
+    ended = words_of(path, page)
+    for words in (*found, ended):
+        assert "Unfinished: corner" in words
+        assert ("Its run goes on." in words) == (words in found)
+        assert (f"fastpin resume {path}" in words) == (words not in found)
+    assert "interrupted" in ended
 
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_result_without_states_says_what_is_missing(tmp_path: Path) -> None:
     empty = sample_result(complete=False)
     empty.states.clear()
-    empty.report(tmp_path / "page.html")
-    page = Page((tmp_path / "page.html").read_text(encoding="utf-8"))
-    assert page.text.count("There is no state") >= 5
-    assert "Unfinished" in page.text
+    words = words_of(empty, tmp_path / "page.html")
+    assert words.count("There is no state") >= 5
+    assert "Unfinished" in words
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -359,8 +353,7 @@ def test_doubtful_values_and_notes_stand_in_the_overview(only: Callable[..., Non
     only(overview, materials)
     result = sample_result(friction=4.0)
     result.statistics["jumps"] = 2.0
-    result.report(tmp_path / "page.html")
-    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    words = words_of(result, tmp_path / "page.html")
     assert re.search(r"Warning: friction: 4 is above 2[^\n]*\.", words)
     assert "Note: the pin snapped 2 times; work does not balance there." in words
     assert "828 MPa" in words  # the yield strength of the pin
@@ -372,8 +365,7 @@ def test_the_materials_show_a_laminate_with_its_plies_and_sources(only: Callable
     plate = Laminate.from_layup("[0/45/-45/90]2s", "T300/5208")
     problem = fastpin.Problem(MaterialPair(Material(210e9, 0.3), plate, "stress"), 10e-3, 2e-5, 0.2)
     history = fastpin.LoadHistory([{"P": 1e6}, {"P": 5e5}]).repeated(2)
-    fastpin.solve(problem, history, nodes=31).report(tmp_path / "page.html")
-    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    words = words_of(fastpin.solve(problem, history, nodes=31), tmp_path / "page.html")
     assert "[0/45/-45/90]2s of T300/5208" in words
     assert "69.676 GPa" in words
     assert "axis 1 at 0 deg from the bottom" in words
@@ -401,8 +393,7 @@ def test_the_pin_radius_is_that_of_the_free_pin(interference: float, clearance: 
 @pytest.mark.usefixtures("undrawn")
 def test_a_pin_that_does_not_touch_has_no_tractions(tmp_path: Path) -> None:
     result = fastpin.solve(sample_result().problem, [{"sxx": 1e6}], nodes=61)
-    result.report(tmp_path / "page.html")
-    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    words = words_of(result, tmp_path / "page.html")
     assert "Pin and hole do not touch in the drawn states." in words
     assert "no contact" in words
     assert "nan" not in words.split()
