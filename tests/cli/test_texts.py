@@ -9,6 +9,7 @@ import pytest
 from fastpin.cli.main import main
 from fastpin.errors import printable
 from tests.support.case_texts import PRESSED
+from tests.support.commands import said
 from tests.support.processes import fastpin, finished
 
 CASE = f"""{PRESSED}[[load]]
@@ -72,11 +73,9 @@ def test_names_of_files_never_steer_the_terminal(command, capsys):
 
 
 @pytest.mark.parametrize("command", ["check", "sweep"])
-def test_names_of_files_that_are_no_text_are_shown(command, capsys, tmp_path):
-    name = os.fsdecode(os.fsencode(tmp_path) + b"/caf\xe9.toml")
+def test_names_of_files_that_are_no_text_are_shown(command):
+    name = os.fsdecode(b"caf\xe9.toml")
     Path(name).write_text(CASE, encoding="utf-8")
-    code = main([command, name])
-    out, err = capsys.readouterr()
-    assert code == (0 if command == "check" else 2), err
+    out, err = said(command, name, code=0 if command == "check" else 2)
     assert is_shown(out + err)
     assert command == "check" or "caf\\udce9.toml" in err
