@@ -153,18 +153,12 @@ def test_named_materials_have_sources_and_plausible_numbers() -> None:
     assert {name for name, one in fastpin.MATERIALS.items() if one.known_yield_strength is None} == generic
 
 
-@pytest.mark.parametrize(
-    ("typed", "name"),
-    [
-        ("aluminum", "aluminium"),
-        ("Ti64", "Ti-6Al-4V"),
-        ("7075", "7075-T6"),
-        ("bronze", "C93200"),
-        ("718", "Inconel 718"),
-    ],
-)
-def test_other_names_of_materials_are_answered(typed: str, name: str) -> None:
-    with pytest.raises(CaseFileError, match=rf'did you mean "{name}"\?'):
+NAMES = {"aluminum": "aluminium", "Ti64": "Ti-6Al-4V", "7075": "7075-T6", "bronze": "C93200", "718": "Inconel 718"}
+
+
+@pytest.mark.parametrize("typed", NAMES)
+def test_other_names_of_materials_are_answered(typed: str) -> None:
+    with pytest.raises(CaseFileError, match=rf'did you mean "{NAMES[typed]}"\?'):
         parse_case(EXAMPLE.replace('"Ti-6Al-4V"', f'"{typed}"', 1))
 
 

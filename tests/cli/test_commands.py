@@ -78,12 +78,7 @@ def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> N
 
 def test_check_says_what_was_understood(case: Path) -> None:
     out = printed("check", case)
-    for words in (
-        "Ti-6Al-4V, E = 116 GPa, nu = 0.32",
-        "alpha = 0.2507, beta = 0.0595",
-        "radius 10 mm",
-        "401 nodes",
-    ):
+    for words in ("Ti-6Al-4V, E = 116 GPa, nu = 0.32", "alpha = 0.2507, beta = 0.0595", "radius 10 mm", "401 nodes"):
         assert words in out
     rows = [line.split() for line in out.splitlines()]
     assert rows[-4:] == [
@@ -103,46 +98,29 @@ def test_check_prints_all_faults_and_nothing_else(case: Path) -> None:
     assert all(line.startswith(f"{case}, line ") for line in lines)
 
 
-LIGHT: dict[str, list[list[str]]] = {
-    "": [
-        ["--help"],
-        ["--version"],
-        ["run", "--help"],
-        ["paper", "--help"],
-        ["sweep", "--help"],
-        ["merge", "--help"],
-        ["verify", "--help"],
-        ["verify", "--json", "no/where.json"],
-        ["converge", "--help"],
-        ["converge", "CASE", "--nodes", "x"],
-        ["run", "--colour"],
-        ["sweep", "CASE", "--shard", "3/2"],
-    ],
-    "numpy": [
-        ["sweep", "CASE"],
-        ["example"],
-        ["compliance", "--example"],
-        ["compliance", "CASE"],
-        ["check", "CASE"],
-        ["run", "CASE", "--nodes", "1"],
-    ],
+LIGHT = {
+    "": "--help; --version; run --help; paper --help; sweep --help; merge --help; verify --help; converge --help; "
+    "verify --json no/where.json; converge case.toml --nodes x; run --colour; sweep case.toml --shard 3/2",
+    "numpy": "sweep case.toml; example; compliance --example; compliance case.toml; check case.toml; "
+    "run case.toml --nodes 1",
 }
 """Commands by the heavy packages that they may import."""
 
 
 @pytest.mark.gate
+@pytest.mark.usefixtures("case")
 @pytest.mark.parametrize("needed", some_gate(LIGHT, "numpy"))
-def test_heavy_imports_wait_until_they_are_needed(needed: str, case: Path) -> None:
+def test_heavy_imports_wait_until_they_are_needed(needed: str) -> None:
     """The commands run in one process, one after the other. The first that imports more is named."""
     code = (
         "import sys\nfrom fastpin.cli.main import main\n"
         "for command in sys.argv[1:]:\n"
-        "    try:\n        main(command.split('|'))\n    except SystemExit:\n        pass\n"
+        "    try:\n        main(command.split())\n    except SystemExit:\n        pass\n"
         "    names = ('numpy', 'numba', 'scipy', 'matplotlib', 'h5py', 'tqdm')\n"
-        "    print('\\nimported', command.split('|'), *(name for name in names if name in sys.modules))"
+        "    print('\\nimported', command, *(name for name in names if name in sys.modules))"
     )
-    commands = [[str(case) if word == "CASE" else word for word in command] for command in LIGHT[needed]]
-    done = finished(python(code, *map("|".join, commands)))
+    commands = LIGHT[needed].split("; ")
+    done = finished(python(code, *commands), env={**os.environ, "PYTHONPATH": str(ROOT)}, cwd=".")
     imported = [line for line in done.stdout.splitlines() if line.startswith("imported ")]
     assert imported == [f"imported {command} {needed}".strip() for command in commands]
 

@@ -18,21 +18,9 @@ from fastpin.figures.subjects import InMemory
 from fastpin.model import Laminate, Material, MaterialPair
 from fastpin.model.loads import LOAD, LOADS
 from fastpin.model.options import OPTIONS, SolveOptions
-from fastpin.pages import album, write_report
+from fastpin.pages import album, sections, write_report
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Text
-from fastpin.pages.sections import (
-    RESIDUAL_WORDS,
-    SECTIONS,
-    PageParts,
-    case,
-    convergence,
-    fatigue,
-    loads,
-    materials,
-    overview,
-    provenance,
-)
 from fastpin.pages.source import MOST_DRAWN, Source
 from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
@@ -79,7 +67,7 @@ def text(stored: Path) -> str:
 @pytest.fixture
 def only(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """A function that leaves these sections on the page: all of them take half a second."""
-    return lambda *sections: monkeypatch.setattr("fastpin.pages.result.SECTIONS", sections)
+    return lambda *chosen: monkeypatch.setattr("fastpin.pages.result.SECTIONS", chosen)
 
 
 def test_page_is_well_formed_and_needs_nothing_from_outside(text: str) -> None:
@@ -123,10 +111,10 @@ def test_page_can_be_read_without_seeing_it(text: str) -> None:
 
 def test_every_section_stands_in_the_contents(text: str) -> None:
     page = Page(text)
-    sections = [found["id"] for tag, found in page.attributes if tag == "section"]
-    assert len(sections) == len(SECTIONS) - 3 == 14  # no seat, no crack, no strength
+    names = [found["id"] for tag, found in page.attributes if tag == "section"]
+    assert len(names) == len(sections.SECTIONS) - 3 == 14  # no seat, no crack, no strength
     links = [found["href"] for tag, found in page.attributes if tag == "a"]
-    assert links == ["#content", *(f"#{name}" for name in sections)]
+    assert links == ["#content", *(f"#{name}" for name in names)]
 
 
 def test_text_of_the_user_is_escaped(text: str) -> None:
@@ -221,7 +209,7 @@ def test_the_last_closed_part_of_a_history_without_blocks_is_its_cycle() -> None
 @pytest.mark.usefixtures("undrawn")
 def test_a_history_without_cycles_has_the_damage_of_a_spectrum(only: Callable[..., None], tmp_path: Path) -> None:
     """A long one, and one whose material lacks constants, say why there is no fatigue."""
-    only(overview, fatigue)
+    only(sections.overview, sections.fatigue)
     history = fastpin.LoadHistory([{"P": 4e5, "Q": 2e5}, {"P": 1e5}, {"P": 6e5, "Q": -2e5}, {"P": 2e5, "Q": 0.0}])
     words = {}
     for name in ("2024-T3", "steel"):
@@ -249,12 +237,12 @@ def test_a_result_in_memory_has_the_same_page(tmp_path: Path) -> None:
     assert re.search(r"\d ± \d", words)
     assert "There are no error bars" not in words
     assert "shortcut" not in words  # the options of the solver are not known
-    assert calls == [(k, len(SECTIONS) - 3) for k in range(len(SECTIONS) - 2)]
+    assert calls == [(k, len(sections.SECTIONS) - 3) for k in range(len(sections.SECTIONS) - 2)]
 
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_convergence_study_is_shown(only: Callable[..., None], tmp_path: Path) -> None:
-    only(convergence)
+    only(sections.convergence)
     result = sample_result()
     study = fastpin.converge(result.problem, [{"P": 2.42e6}], nodes=(51, 101, 201))
     words = words_of(result, tmp_path / "page.html", convergence=study)
@@ -266,7 +254,7 @@ def test_a_convergence_study_is_shown(only: Callable[..., None], tmp_path: Path)
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(only, tmp_path):
-    only(provenance)
+    only(sections.provenance)
     file, page = tmp_path / "result.h5", tmp_path / "page.html"
     sample_result().save(file)
     own = f'{JOINT}\npin_load = "body"\n[[load]]\nP = 2.42e6\n[[load]]\nQ = [4.84e5, -4.84e5]\n'
@@ -281,7 +269,7 @@ def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(only
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_branch_begins_with_the_loads_of_its_start(only: Callable[..., None], tmp_path: Path) -> None:
-    only(loads)
+    only(sections.loads)
     problem = sample_result().problem
     first = fastpin.solve(problem, [{"P": 1e6}], nodes=61, arc=(-3.0, -0.2))
     branch = fastpin.solve(problem, [{"Q": 1e5}, {"Q": -1e5}], start=first)
@@ -320,7 +308,7 @@ def test_a_large_figure_becomes_a_bitmap(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_a_run_that_goes_on_or_ended_early_has_a_page(only: Callable[..., None], tmp_path: Path) -> None:
-    only(overview)
+    only(sections.overview)
     problem, path, page = sample_result().problem, tmp_path / "a.h5", tmp_path / "a.html"
     found: list[str] = []
 
@@ -350,7 +338,7 @@ def test_a_result_without_states_says_what_is_missing(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("undrawn")
 def test_doubtful_values_and_notes_stand_in_the_overview(only: Callable[..., None], tmp_path: Path) -> None:
-    only(overview, materials)
+    only(sections.overview, sections.materials)
     result = sample_result(friction=4.0)
     result.statistics["jumps"] = 2.0
     words = words_of(result, tmp_path / "page.html")
@@ -361,7 +349,7 @@ def test_doubtful_values_and_notes_stand_in_the_overview(only: Callable[..., Non
 
 @pytest.mark.usefixtures("undrawn")
 def test_the_materials_show_a_laminate_with_its_plies_and_sources(only: Callable[..., None], tmp_path: Path) -> None:
-    only(materials, fatigue)
+    only(sections.materials, sections.fatigue)
     plate = Laminate.from_layup("[0/45/-45/90]2s", "T300/5208")
     problem = fastpin.Problem(MaterialPair(Material(210e9, 0.3), plate, "stress"), 10e-3, 2e-5, 0.2)
     history = fastpin.LoadHistory([{"P": 1e6}, {"P": 5e5}]).repeated(2)
@@ -380,13 +368,13 @@ def test_the_pin_radius_is_that_of_the_free_pin(interference: float, clearance: 
     bush = Bushing(Material(103e9, 0.34, yield_strength=138e6), 12.5e-3, interference)
     pair = MaterialPair(Material(210e9, 0.3), Material(71e9, 0.33))
     problem = fastpin.Problem(pair, 10e-3, clearance, 0.2, plate_body=bush)
-    page = PageParts(Source.of_result(fastpin.solve(problem, [{"P": 1e5}], nodes=61)), Album())
-    rows = dict(next(part.rows for part in case(page).parts if isinstance(part, Facts)))
+    page = sections.PageParts(Source.of_result(fastpin.solve(problem, [{"P": 1e5}], nodes=61)), Album())
+    rows = dict(next(part.rows for part in sections.case(page).parts if isinstance(part, Facts)))
     assert rows["pin radius"] == f"{1e3 * (10e-3 - clearance):.6g} mm"
     name = "clearance after the press fit / radius" if interference else "clearance / radius"
     assert rows[name] == f"{problem.assembled_clearance / 10e-3:.4g}"
     # the press fit that yields stands in the overview
-    notes = [part.words for part in overview(page).parts if isinstance(part, Text)]
+    notes = [part.words for part in sections.overview(page).parts if isinstance(part, Text)]
     assert any("in the bore of the bush, before any load" in note for note in notes) == (clearance < 40e-6)
 
 
@@ -403,7 +391,7 @@ def test_words_cover_all_names() -> None:
     assert all(each.words for each in (*QUANTITIES.values(), *LOAD.values()))
     assert all(each["words"] for each in OPTIONS.values())
     assert set(OPTIONS) == set(SolveOptions().keywords())
-    assert set(RESIDUAL_WORDS) == set(RESIDUALS)
+    assert set(sections.RESIDUAL_WORDS) == set(RESIDUALS)
 
 
 @pytest.mark.parametrize(
