@@ -29,7 +29,7 @@ def case():
 def test_show_says_that_a_run_is_unfinished(case):
     parts = read_case(case)
     with pytest.raises(Interrupted):
-        record(parts.problem, parts.history, "a.h5", nodes=61, arc=(-3.0, -0.2), progress=StopAt(2.0))
+        record(parts.problem, parts.history, "a.h5", nodes=61, arc=(-3.0, -0.2), progress=StopAt(1.0))
     expected = "note: unfinished, at corner 1 of 3: interrupted; continue with: fastpin resume a.h5"
     assert printed("show", "a.h5").splitlines()[-1] == expected
     said("report", "a.h5", "-o", "a.html")

@@ -125,13 +125,8 @@ def locked(path: Path) -> Iterator[None]:
         yield
 
 
-def another_name(path: Path, command: str) -> None:
-    """Give the input of the command a second name."""
-    os.link(COMMANDS[command][1], path)
-
-
 KINDS: dict[str, tuple[Callable[[Path, Path, str], object], str]] = {
-    "input": (lambda path, samples, command: another_name(path, command), "is an input of this command"),
+    "input": (lambda path, samples, command: os.link(COMMANDS[command][1], path), "is an input of this command"),
     "result": (lambda path, samples, command: shutil.copyfile(samples / "r.h5", path), "is a stored result"),
     "link": (lambda path, samples, command: path.symlink_to(samples / "r.h5"), "is a stored result"),
     "index": (lambda path, samples, command: shutil.copyfile(samples / INDEX, path), "is a database"),
