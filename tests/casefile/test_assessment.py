@@ -12,6 +12,7 @@ from fastpin.casefile.toml_text import CaseText
 from fastpin.casefile.writer import case_text
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model import FatigueAssessment
+from tests.support.faults import fault_of
 from tests.support.strategies import assessments
 
 CASE = """\
@@ -77,16 +78,13 @@ FAULTS = {
 
 @pytest.mark.parametrize("keys", FAULTS)
 def test_a_fault_names_its_line_and_has_the_sentence_of_python(keys):
-    with pytest.raises(CaseFileError) as error:
-        parse_case(text_of(keys))
-    (fault,) = error.value.problems
     place = re.match(r"\w+", FAULTS[keys])[0]
     lines = text_of(keys).splitlines()
     written = [number for number, line in enumerate(lines, 1) if re.match(rf"{place} = ", line)]
-    assert fault == (written[-1] if written else lines.index("[fatigue]") + 1, FAULTS[keys])
-    values = CaseText(keys).root.table
+    line = written[-1] if written else lines.index("[fatigue]") + 1
+    assert fault_of(parse_case, text_of(keys)) == (line, FAULTS[keys])
     with pytest.raises(InputError) as same:
-        FatigueAssessment(**values)
+        FatigueAssessment(**CaseText(keys).root.table)
     assert str(same.value) == FAULTS[keys]
 
 
@@ -107,11 +105,9 @@ TOGETHER = {
 @pytest.mark.parametrize("name", TOGETHER)
 def test_a_case_whose_fatigue_cannot_be_assessed(name):
     how, words = TOGETHER[name]
-    with pytest.raises(CaseFileError) as error:
-        parse_case(text_of(**how))
-    (fault,) = error.value.problems
-    assert fault[1].startswith(words)
-    assert fault[0] >= 1
+    line, found = fault_of(parse_case, text_of(**how))
+    assert found.startswith(words)
+    assert line >= 1
 
 
 def test_the_length_of_the_materials():

@@ -1,6 +1,7 @@
 """The sections [pin_body] and [plate_body] of case files."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +11,12 @@ import pytest
 from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.bodies.compliance import MOST_BYTES, Compliance
 from fastpin.casefile.reader import EXAMPLE, parse_case
-from fastpin.cli.main import main
-from fastpin.errors import CaseFileError, InputError
+from fastpin.errors import InputError
 from fastpin.model.materials import MATERIALS, Material
 from fastpin.model.problem import Problem
 from tests.support.body_texts import HEAD
+from tests.support.commands import refused
+from tests.support.faults import faults_of
 
 LINES = HEAD.count("\n")
 BUSH = "[plate_body]\nE = 110e9\nnu = 0.34\nouter_radius = 12.5e-3\n"
@@ -34,9 +36,7 @@ def problem(bodies: str, folder: Path | str = ".", head: str = HEAD) -> Problem:
 
 def faults(bodies: str, folder: Path | str = ".", head: str = HEAD) -> list[tuple[int, str]]:
     """Lines after the head, and sentences."""
-    with pytest.raises(CaseFileError) as raised:
-        parse_case(head + bodies, folder=folder)
-    return [(line - head.count("\n"), text) for line, text in raised.value.problems]
+    return [(line - head.count("\n"), text) for line, text in faults_of(parse_case, head + bodies, folder=folder)]
 
 
 def the_fault(bodies: str, folder: Path | str = ".", head: str = HEAD) -> tuple[int, str]:
@@ -202,37 +202,29 @@ def test_bodies_beside_dundurs_parameters(tmp_path):
     ],
 )
 def test_a_fault_is_told_once_with_its_line(bodies, line, words):
-    found = [fault for fault in faults(bodies) if "lug.json" not in fault[1]]
-    assert len(found) == 1
-    assert found[0][1].startswith(words)
-    assert found[0][0] == line
+    ((found_line, found),) = (fault for fault in faults(bodies) if "lug.json" not in fault[1])
+    assert found.startswith(words)
+    assert found_line == line
+
+
+HOLLOW = "[pin_body]\nbore_radius = 5e-3\n"
+GAUGED = 'drive = "ux"\ngauge_radius = 3e-2'
+TOO_FAR = "gauge_radius: must be at most the outer radius 0.02, not 0.03"
 
 
 @pytest.mark.parametrize(
     ("contact", "bodies", "words"),
     [
-        (
-            'pin_load = "body"',
-            "[pin_body]\nbore_radius = 5e-3\n",
-            "pin_load: a hollow pin has its load in its own body",
-        ),
+        ('pin_load = "body"', HOLLOW, "pin_load: a hollow pin has its load in its own body"),
         (
             'rotation = "fixed"\nhub_radius = 4e-3',
-            "[pin_body]\nbore_radius = 5e-3\n",
+            HOLLOW,
             "hub_radius: must be at least the bore radius 0.005, not 0.004",
         ),
+        (GAUGED, "[plate_body]\nouter_radius = 2e-2\n", TOO_FAR),
+        (GAUGED, BUSH + "ring_outer_radius = 2e-2\n", TOO_FAR),
         (
-            'drive = "ux"\ngauge_radius = 3e-2',
-            "[plate_body]\nouter_radius = 2e-2\n",
-            "gauge_radius: must be at most the outer radius 0.02, not 0.03",
-        ),
-        (
-            'drive = "ux"\ngauge_radius = 3e-2',
-            BUSH + "ring_outer_radius = 2e-2\n",
-            "gauge_radius: must be at most the outer radius 0.02, not 0.03",
-        ),
-        (
-            'drive = "ux"\ngauge_radius = 3e-2',
+            GAUGED,
             "[plate_body]\nreaction = [0, 0.1]\n",
             "gauge_radius: a plate with a reaction at a point has no gauge circle",
         ),
@@ -247,89 +239,84 @@ def test_faults_of_the_contact_beside_bodies_stand_in_contact(contact, bodies, w
 
 def test_loads_that_a_body_can_not_carry_stand_at_their_blocks(tmp_path):
     head = HEAD + "[[load]]\nsxx = 1e6\n"
-    line, text = the_fault("[plate_body]\nouter_radius = 2e-2\n", head=head)
-    assert (line, text.partition(";")[0]) == (0, "sxx: a held rim leaves no remote stress")
     problem('[plate_body]\nouter_radius = 2e-2\nsupport = "uniform"\n', head=head)
-    line, text = the_fault(BUSH + "ring_outer_radius = 2e-2\n", head=head)
-    assert (line, text.partition(";")[0]) == (0, "sxx: a held rim leaves no remote stress")
     (tmp_path / "lug.json").write_text(plate().to_text())
-    line, text = the_fault('[plate_body]\nfile = "lug.json"\n', tmp_path, head)
-    assert (line, text.partition(";")[0]) == (0, "sxx: the compliance of the plate has no column of this load")
+    for bodies, words in (
+        ("[plate_body]\nouter_radius = 2e-2\n", "sxx: a held rim leaves no remote stress"),
+        (BUSH + "ring_outer_radius = 2e-2\n", "sxx: a held rim leaves no remote stress"),
+        ('[plate_body]\nfile = "lug.json"\n', "sxx: the compliance of the plate has no column of this load"),
+    ):
+        line, text = the_fault(bodies, tmp_path, head)
+        assert (line, text.partition(";")[0]) == (0, words)
 
 
-def wrong_file(path: Path, kind: str) -> None:
-    good = plate().document()
-    matrix = np.array(good["matrix"])
-    if kind == "asymmetric":
-        matrix[2, 7] = 0.3
-    elif kind == "undecayed":
-        matrix[-1, -1] = 0.2
-    elif kind == "not finite":
-        matrix[3, 3] = np.nan
-    elif kind == "short":
-        matrix = matrix[:5]
-    elif kind == "large":
-        matrix[2, 2] = 1e308
-    texts = {
-        "foreign": json.dumps({"name": "something else"}),
-        "text": "no JSON",
-        "list": "[1, 2]",
-        "nested": "[" * 200_000,
-        "version": json.dumps(good | {"version": 99}),
-        "no matrix": json.dumps({key: value for key, value in good.items() if key != "matrix"}),
-        "column": json.dumps(good | {"columns": {"P": [0.0] * 18}}),
-        "large column": json.dumps(good | {"columns": {"syy": [1e308] * 18}}),
-        "order": json.dumps(good | {"order": 10**9}),
-        "order in words": json.dumps(good | {"order": "4"}),
-        "true order": json.dumps(good | {"order": True}),
-        "material": plate(nu=0.3).to_text(),
-        "plane": plate(plane="stress").to_text(),
-        "hole": plate(hole_radius=0.02).to_text(),
-    }
-    path.write_text(texts.get(kind, json.dumps(good | {"matrix": matrix.tolist()})))
-    if kind == "binary":
-        path.write_bytes(bytes(range(256)) * 10)
-    elif kind == "huge":
-        with path.open("wb") as file:
-            file.truncate(MOST_BYTES + 1)
-    elif kind == "folder":
-        path.unlink()
-        path.mkdir()
-    elif kind == "missing":
-        path.unlink()
+GOOD = plate().document()
 
 
-@pytest.mark.parametrize(
-    ("kind", "words"),
-    [
-        ("asymmetric", "matrix: must be symmetric"),
-        ("undecayed", "matrix: its last harmonic 4 is"),
-        ("not finite", "matrix: must be a finite number"),
-        ("short", "matrix: must have the shape (2 + 4 K, 2 + 4 K)"),
-        ("foreign", "is no compliance file"),
-        ("text", "is no compliance file"),
-        ("list", "is no compliance file"),
-        ("nested", "is no compliance file"),
-        ("binary", "is no compliance file"),
-        ("version", "version: must be 1, not 99"),
-        ("no matrix", "matrix: is missing"),
-        ("column", 'columns: must be "sxx", "syy" or "sxy", not "P"'),
-        ("large", "matrix: must be at least -1e+09 and at most 1e+09, not 1e+308"),
-        ("large column", "columns.syy: must be at least -1e+09 and at most 1e+09, not 1e+308"),
-        ("order", "order: must be 4, the last harmonic of the matrix, not 1000000000"),
-        ("order in words", 'order: must be 4, the last harmonic of the matrix, not "4"'),
-        ("true order", "order: must be 4, the last harmonic of the matrix, not true"),
-        ("huge", "is larger than 10,000,000 bytes"),
-        ("missing", "there is no such file"),
-        ("folder", "is a directory, a file is needed"),
-        ("material", "the compliance was made for nu = 0.3, plane strain; the plate has nu = 0.33"),
-        ("plane", "the compliance was made for nu = 0.33, plane stress"),
-        ("hole", "the compliance was made for a hole of radius 0.02; the hole radius is 0.01"),
-    ],
-)
-def test_wrong_files_of_compliances(kind, words, tmp_path, capsys):
+def with_number(row: int, column: int, value: float) -> str:
+    """The good file with another number in its matrix."""
+    matrix = np.array(GOOD["matrix"])
+    matrix[row, column] = value
+    return json.dumps(GOOD | {"matrix": matrix.tolist()})
+
+
+WRONG_FILES: dict[str, tuple[str | bytes | Callable[[Path], object], str]] = {
+    "asymmetric": (with_number(2, 7, 0.3), "matrix: must be symmetric"),
+    "undecayed": (with_number(-1, -1, 0.2), "matrix: its last harmonic 4 is"),
+    "not finite": (with_number(3, 3, np.nan), "matrix: must be a finite number"),
+    "large": (with_number(2, 2, 1e308), "matrix: must be at least -1e+09 and at most 1e+09, not 1e+308"),
+    "short": (json.dumps(GOOD | {"matrix": GOOD["matrix"][:5]}), "matrix: must have the shape (2 + 4 K, 2 + 4 K)"),
+    "no matrix": (json.dumps({key: GOOD[key] for key in GOOD if key != "matrix"}), "matrix: is missing"),
+    "foreign": (json.dumps({"name": "something else"}), "is no compliance file"),
+    "text": ("no JSON", "is no compliance file"),
+    "list": ("[1, 2]", "is no compliance file"),
+    "nested": ("[" * 200_000, "is no compliance file"),
+    "binary": (bytes(range(256)) * 10, "is no compliance file"),
+    "version": (json.dumps(GOOD | {"version": 99}), "version: must be 1, not 99"),
+    "column": (
+        json.dumps(GOOD | {"columns": {"P": [0.0] * 18}}),
+        'columns: must be "sxx", "syy" or "sxy", not "P"',
+    ),
+    "large column": (
+        json.dumps(GOOD | {"columns": {"syy": [1e308] * 18}}),
+        "columns.syy: must be at least -1e+09 and at most 1e+09, not 1e+308",
+    ),
+    "order": (
+        json.dumps(GOOD | {"order": 10**9}),
+        "order: must be 4, the last harmonic of the matrix, not 1000000000",
+    ),
+    "order in words": (
+        json.dumps(GOOD | {"order": "4"}),
+        'order: must be 4, the last harmonic of the matrix, not "4"',
+    ),
+    "true order": (
+        json.dumps(GOOD | {"order": True}),
+        "order: must be 4, the last harmonic of the matrix, not true",
+    ),
+    "huge": (lambda path: path.write_bytes(bytes(MOST_BYTES + 1)), "is larger than 10,000,000 bytes"),
+    "missing": (lambda path: None, "there is no such file"),
+    "folder": (Path.mkdir, "is a directory, a file is needed"),
+    "material": (
+        plate(nu=0.3).to_text(),
+        "the compliance was made for nu = 0.3, plane strain; the plate has nu = 0.33",
+    ),
+    "plane": (plate(plane="stress").to_text(), "the compliance was made for nu = 0.33, plane stress"),
+    "hole": (
+        plate(hole_radius=0.02).to_text(),
+        "the compliance was made for a hole of radius 0.02; the hole radius is 0.01",
+    ),
+}
+"""The content of a file, or what makes it, and its fault."""
+
+
+@pytest.mark.parametrize("kind", WRONG_FILES)
+def test_wrong_files_of_compliances(kind, tmp_path):
     path = tmp_path / "lug.json"
-    wrong_file(path, kind)
+    content, words = WRONG_FILES[kind]
+    if callable(content):
+        content(path)
+    else:
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
     line, text = the_fault('[plate_body]\nfile = "lug.json"\n', tmp_path)
     assert line == 2
     assert text.startswith("file: ")
@@ -339,8 +326,7 @@ def test_wrong_files_of_compliances(kind, words, tmp_path, capsys):
             Compliance.from_file(path)
         assert str(raised.value) == text
     (tmp_path / "case.toml").write_text(f'{HEAD}[plate_body]\nfile = "lug.json"\n')
-    assert main(["check", str(tmp_path / "case.toml")]) == 2
-    assert f"line {LINES + 2}: {text}" in capsys.readouterr().err
+    assert f"line {LINES + 2}: {text}" in refused("check", tmp_path / "case.toml")
 
 
 def test_all_faults_of_bodies_at_once(tmp_path):
@@ -366,16 +352,12 @@ colour = "red"
 
 def test_bodies_are_checked_without_a_contact_section_or_a_hole():
     bodies = "[pin_body]\nbore_radius = -1\n[plate_body]\nouter_radius = 1e-9\n"
-    head = HEAD[: HEAD.index("[contact]")] + "[[load]]\nP = 1e6\n"
-    assert [text for _, text in faults(bodies, head=head)] == [
-        "the section [contact] is missing",
-        "bore_radius: must be positive, not -1",
-    ]
-    head = HEAD.replace("hole_radius = 10e-3", "hole_radius = -1")
-    assert [text for _, text in faults(bodies, head=head)] == [
-        "hole_radius: must be positive, not -1",
-        "bore_radius: must be positive, not -1",
-    ]
+    for head, words in (
+        (HEAD[: HEAD.index("[contact]")] + "[[load]]\nP = 1e6\n", "the section [contact] is missing"),
+        (HEAD.replace("hole_radius = 10e-3", "hole_radius = -1"), "hole_radius: must be positive, not -1"),
+    ):
+        found = [text for _, text in faults(bodies, head=head)]
+        assert found == [words, "bore_radius: must be positive, not -1"]
 
 
 def test_a_compliance_beside_a_wrong_material_is_not_blamed(tmp_path):

@@ -5,9 +5,9 @@ import pytest
 from fastpin import casefile
 from fastpin.casefile.reader import EXAMPLE, parse_case
 from fastpin.cracks import Nasgro, Walker
-from fastpin.errors import CaseFileError
 from fastpin.model import CrackGrowth
 from fastpin.model.angles import DEGREE, angle_at
+from tests.support.faults import fault_of
 
 SECTION = """
 [crack]
@@ -56,8 +56,6 @@ def test_the_law_may_be_that_of_the_plate():
     ],
 )
 def test_a_fault_is_one_sentence_with_its_line(old, new, line, sentence):
-    with pytest.raises(CaseFileError) as caught:
-        parse_case(EXAMPLE + SECTION.replace(old, new, 1))
-    ((found_line, found),) = caught.value.problems
+    found_line, found = fault_of(parse_case, EXAMPLE + SECTION.replace(old, new, 1))
     assert found_line == LINE + line
     assert found.startswith(sentence)

@@ -54,7 +54,6 @@ def test_a_ply_of_ones_own() -> None:
     )
     ply = plate.plies[0][0]
     assert (ply.E1, ply.name) == (135e9, "mine")
-    assert ply.strengths is not None
     assert ply.strengths.Yc == 2e8
     several = plate_of(f'layup = "[0/90]s"\nply = ["T300/5208", {OWN} }}, {OWN} }}, "T300/5208"]')
     assert [each.E1 for each, _ in several.plies] == [181e9, 135e9, 135e9, 181e9]

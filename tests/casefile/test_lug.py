@@ -8,6 +8,7 @@ from fastpin.casefile.lug import LUG_EXAMPLE, LUG_KEYS, parse_lug, read_lug
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.lug import Hole, PartLoad, rectangle
 from fastpin.model.materials import MATERIALS
+from tests.support.faults import faults_of
 
 GOOD = """\
 title = "a plate"
@@ -34,9 +35,7 @@ harmonics = 9
 
 
 def faults(text: str) -> list[tuple[int, str]]:
-    with pytest.raises(CaseFileError) as caught:
-        parse_lug(text, "lug.toml")
-    return caught.value.problems
+    return faults_of(parse_lug, text)
 
 
 def replaced(line: str, by: str) -> str:

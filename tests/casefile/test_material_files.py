@@ -15,6 +15,7 @@ from fastpin.model import materials
 from fastpin.model.doubts import doubts
 from fastpin.studies.identity import canonical
 from fastpin.studies.plan import read_plan
+from tests.support.faults import fault_of
 
 SHEET = """
 [sheet]
@@ -122,17 +123,12 @@ def test_a_plan_varies_them(folder: Path) -> None:
 def test_a_fault_gets_one_sentence_in_python_and_in_a_case(folder, old, new, line, sentence):
     path = folder / "own.toml"
     path.write_text(SHEET.replace(old, new, 1))
-    with pytest.raises(CaseFileError) as caught:
-        read_materials(path)
-    ((found_line, found),) = caught.value.problems
+    found_line, found = fault_of(read_materials, path)
     assert (found_line, found[: len(sentence)]) == (line, sentence)
-    with pytest.raises(CaseFileError) as caught:
-        parse_case(
-            OWN if '["cast iron"]' in path.read_text() else OWN.replace('"cast iron"', '"steel"', 1), folder=folder
-        )
+    case = OWN if '["cast iron"]' in path.read_text() else OWN.replace('"cast iron"', '"steel"', 1)
     where = f"materials: own.toml{f', line {line}' if line else ''}: "
     place = OWN[: OWN.index('\nmaterials = "own')].count("\n") + 2
-    assert caught.value.problems == [(place, where + found)]
+    assert fault_of(parse_case, case, folder=folder) == (place, where + found)
 
 
 def test_a_missing_file_and_an_unknown_name_are_faults(folder: Path) -> None:
@@ -157,33 +153,28 @@ def test_named_materials_have_sources_and_plausible_numbers() -> None:
     assert {name for name, one in fastpin.MATERIALS.items() if one.known_yield_strength is None} == generic
 
 
-@pytest.mark.parametrize(
-    ("typed", "name"),
-    [
-        ("aluminum", "aluminium"),
-        ("Ti64", "Ti-6Al-4V"),
-        ("7075", "7075-T6"),
-        ("bronze", "C93200"),
-        ("718", "Inconel 718"),
-    ],
-)
-def test_other_names_of_materials_are_answered(typed: str, name: str) -> None:
-    with pytest.raises(CaseFileError, match=rf'did you mean "{name}"\?'):
+NAMES = {"aluminum": "aluminium", "Ti64": "Ti-6Al-4V", "7075": "7075-T6", "bronze": "C93200", "718": "Inconel 718"}
+
+
+@pytest.mark.parametrize("typed", NAMES)
+def test_other_names_of_materials_are_answered(typed: str) -> None:
+    with pytest.raises(CaseFileError, match=rf'did you mean "{NAMES[typed]}"\?'):
         parse_case(EXAMPLE.replace('"Ti-6Al-4V"', f'"{typed}"', 1))
 
 
 NASGRO = 'growth = { law = "nasgro", C = 1e-10, n = 2.5, p = 1, q = 1, threshold_range = 1e6, toughness = 4e7 }'
 
 
+def with_plate(keys: str) -> str:
+    """The example with more keys of the plate."""
+    return EXAMPLE.replace("nu = 0.33 ", f"nu = 0.33\n{keys} ", 1)
+
+
 def test_a_body_of_a_case_has_growth_constants() -> None:
-    case = parse_case(EXAMPLE.replace("nu = 0.33 ", f"nu = 0.33\n{NASGRO} ", 1))
-    assert case.problem.pair.plate.growth == Nasgro(1e-10, 2.5, 1.0, 1.0, 1e6, 4e7)
+    text = with_plate(NASGRO)
+    assert parse_case(text).problem.pair.plate.growth == Nasgro(1e-10, 2.5, 1.0, 1.0, 1e6, 4e7)
     with pytest.raises(CaseFileError, match="growth: has no meaning with load_parameter"):
-        parse_case(
-            EXAMPLE.replace("nu = 0.33 ", f"nu = 0.33\n{NASGRO} ", 1)
-            .replace("hole_radius = 10e-3", "load_parameter = 0.1")
-            .replace("clearance = 20e-6", "")
-        )
+        parse_case(text.replace("hole_radius = 10e-3", "load_parameter = 0.1").replace("clearance = 20e-6", ""))
 
 
 @pytest.mark.parametrize(
@@ -199,7 +190,7 @@ def test_a_body_of_a_case_has_growth_constants() -> None:
     ],
 )
 def test_constants_in_other_units_are_doubted(constants: str, sentence: str | None) -> None:
-    case = parse_case(EXAMPLE.replace("nu = 0.33 ", f"nu = 0.33\ngrowth = {{ law = {constants} }} ", 1))
+    case = parse_case(with_plate(f"growth = {{ law = {constants} }}"))
     found = [str(doubt) for doubt in doubts(case.problem, case.history)]
     assert [text[: len(sentence or "")] for text in found] == ([sentence] if sentence else [])
 
@@ -215,8 +206,8 @@ def test_only_laws_that_files_can_hold_belong_to_a_material() -> None:
 
 def test_ids_change_with_the_growth_constants_only_where_they_are_given() -> None:
     plain, grown, cited = (
-        parse_case(EXAMPLE.replace("nu = 0.33 ", f"nu = 0.33{text} ", 1))
-        for text in ("\nultimate_strength = 4e8", f"\n{NASGRO}", "\n" + NASGRO.replace("p = 1", 'source = "x", p = 1'))
+        parse_case(with_plate(keys))
+        for keys in ("ultimate_strength = 4e8", NASGRO, NASGRO.replace("p = 1", 'source = "x", p = 1'))
     )
     assert canonical(plain) == canonical(parse_case(EXAMPLE))
     assert canonical(grown) == canonical(cited) != canonical(plain)

@@ -15,6 +15,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.studies.identity import canonical
 from tests.support.case_texts import PRESSED
+from tests.support.faults import faults_of
 
 ANGLES = np.linspace(-math.pi, math.pi, 61)
 
@@ -31,9 +32,7 @@ def text(friction: str = "0.3", gap: str = "") -> str:
 
 
 def faults(friction: str = "0.3", gap: str = "", folder: Path | str = ".") -> list[str]:
-    with pytest.raises(CaseFileError) as caught:
-        problem(friction, gap, folder)
-    return [sentence for _, sentence in caught.value.problems]
+    return [sentence for _, sentence in faults_of(problem, friction, gap, folder)]
 
 
 HOLES = {

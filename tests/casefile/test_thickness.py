@@ -11,7 +11,6 @@ import pytest
 import fastpin
 from fastpin.casefile.reader import EXAMPLE, parse_case
 from fastpin.casefile.writer import case_text
-from fastpin.cli.main import main
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.doubts import doubts
 from fastpin.model.loads import LOADS
@@ -20,15 +19,19 @@ from fastpin.report.case import describe
 from fastpin.report.states import state_table
 from fastpin.report.summary import document
 from fastpin.studies.plan import Plan, parse_plan, read_plan
+from tests.support.commands import printed, said
+from tests.support.faults import fault_of
 from tests.support.samples import PAIR
 from tests.support.tiers import seeds
 
 T = 2.0**-8  # m: a division by it is exact
-THICK = EXAMPLE.replace("friction = 0.4 ", f"thickness = {T}\nfriction = 0.4 ", 1)
 
 
-def thick(text: str) -> str:
-    return text.replace("friction = 0.4 ", f"thickness = {T}\nfriction = 0.4 ", 1)
+def thick(text: str, thickness: object = T) -> str:
+    return text.replace("friction = 0.4 ", f"thickness = {thickness}\nfriction = 0.4 ", 1)
+
+
+THICK = thick(EXAMPLE)
 
 
 def test_loads_are_divided_wherever_they_come_from(tmp_path: Path) -> None:
@@ -63,7 +66,7 @@ def given_decimals(seed: int) -> tuple[str, list[str]]:
 
 
 def with_decimals(thickness: str, forces: list[str]) -> str:
-    text = THICK.replace(f"thickness = {T}", f"thickness = {thickness}")
+    text = thick(EXAMPLE, thickness)
     loads = f"[[load]]\nP = [{forces[0]}, {forces[1]}]\nQ = [0.0, {forces[2]}]\n"
     spring = f'rotation = "spring"\nhub_stiffness = {forces[0]}'
     text = text.replace('rotation = "free"', spring).replace('pin_load = "body"', 'pin_load = "centre"')
@@ -132,7 +135,7 @@ def test_a_spring_is_divided_too() -> None:
 
 
 @pytest.mark.gate
-def test_printed_texts_are_in_newtons_and_results_per_metre(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_printed_texts_are_in_newtons_and_results_per_metre(tmp_path: Path) -> None:
     path, stored = tmp_path / "case.toml", tmp_path / "a.h5"
     path.write_text(THICK.replace("2.42e6", "9453.125").replace("7.26e5", "2.8359375e3"))
     plain, case = parse_case(EXAMPLE), fastpin.read_case(path)
@@ -142,9 +145,9 @@ def test_printed_texts_are_in_newtons_and_results_per_metre(tmp_path: Path, caps
     for state, other in zip(result, expected, strict=True):
         assert state.pressure.tobytes() == other.pressure.tobytes()
         assert state.dissipation == other.dissipation
-    said = describe(case)
-    assert "thickness 3.90625 mm" in said
-    assert said.splitlines()[-4].split()[:3] == ["1", "9.4531", "0"]
+    words = describe(case)
+    assert "thickness 3.90625 mm" in words
+    assert words.splitlines()[-4].split()[:3] == ["1", "9.4531", "0"]
     head, units, first = state_table(case.problem, list(result)).splitlines()[:3]
     assert dict(zip(head.replace("load point", "point").split(), ["", *units.split()], strict=False))["P"] == "kN"
     assert units.split()[-1] == "mJ"
@@ -155,15 +158,12 @@ def test_printed_texts_are_in_newtons_and_results_per_metre(tmp_path: Path, caps
     assert (found["problem"]["thickness"], found["units"]["force"]) == (T, "N")
     assert found["states"][0]["load"]["P"] == 9453.125
     json.dumps(found)
-    assert main(["run", str(path), "--nodes", "61", "-o", str(stored)]) == 0
-    printed = capsys.readouterr().out.splitlines()[:6]
-    assert main(["show", str(stored)]) == 0
-    assert capsys.readouterr().out.splitlines()[:6] == printed
+    ran, shown = printed("run", path, "--nodes", "61", "-o", stored), printed("show", stored)
+    assert ran.splitlines()[:6] == shown.splitlines()[:6]
     kept = fastpin.load(stored)
     assert kept.problem == case.problem
     assert kept[0].load["P"] == 2.42e6
-    assert main(["check", str(path)]) == 0
-    assert capsys.readouterr().err == ""
+    assert said("check", path).err == ""
 
 
 @pytest.mark.parametrize(
@@ -176,23 +176,21 @@ def test_printed_texts_are_in_newtons_and_results_per_metre(tmp_path: Path, caps
     ],
 )
 def test_a_wrong_thickness_gets_one_sentence(value: object, sentence: str) -> None:
-    with pytest.raises(CaseFileError) as caught:
-        parse_case(EXAMPLE.replace("friction = 0.4 ", f"thickness = {json.dumps(value)}\nfriction = 0.4 ", 1))
-    assert [text for _, text in caught.value.problems] == [f"thickness: {sentence}"]
-    with pytest.raises(InputError) as error:
-        fastpin.Problem(PAIR, 0.01, 0.0, 0.4, thickness=value)
-    assert str(error.value) == f"thickness: {sentence}"
-    with pytest.raises(InputError) as error:
-        fastpin.LoadHistory([{"P": 1.0}]).per_thickness(value)
-    assert str(error.value) == f"thickness: {sentence}"
+    assert fault_of(parse_case, thick(EXAMPLE, json.dumps(value)))[1] == f"thickness: {sentence}"
+    history = fastpin.LoadHistory([{"P": 1.0}])
+    for use in (
+        lambda: fastpin.Problem(PAIR, 0.01, 0.0, 0.4, thickness=value),
+        lambda: history.per_thickness(value),
+    ):
+        with pytest.raises(InputError) as error:
+            use()
+        assert str(error.value) == f"thickness: {sentence}"
 
 
 def test_a_dimensionless_problem_has_none() -> None:
     sentence = "thickness: has no meaning in a dimensionless problem, whose loads are in units of F"
     text = THICK.replace("hole_radius = 10e-3 ", "").replace("clearance = 20e-6 ", "load_parameter = 0.1")
-    with pytest.raises(CaseFileError) as caught:
-        parse_case(text.replace("2.42e6", "1.0").replace("7.26e5", "0.3"))
-    assert [found for _, found in caught.value.problems] == [sentence]
+    assert fault_of(parse_case, text.replace("2.42e6", "1.0").replace("7.26e5", "0.3"))[1] == sentence
     with pytest.raises(InputError, match=f"^{sentence}$"):
         fastpin.Problem(PAIR, 1.0, 0.1, 0.4, dimensionless=True, thickness=1.0)
 
@@ -236,14 +234,14 @@ def test_each_run_counts_with_its_own_thickness(tmp_path: Path) -> None:
 
 
 def test_doubts_speak_of_newtons() -> None:
-    def said(load: float, thickness: float = 5e-3) -> list[str]:
+    def doubted(load: float, thickness: float = 5e-3) -> list[str]:
         problem = fastpin.Problem(PAIR, 0.01, 2e-5, 0.4, thickness=thickness)
         return [str(doubt) for doubt in doubts(problem, fastpin.LoadHistory([{"P": load}]).per_thickness(thickness))]
 
-    assert said(12.1e3) == []
-    assert said(12.1) == ["P: 12.1 N is a bearing stress of 0.121 MPa only; forces are in N: 1 kN is 1e3"]
-    assert said(2.42e6) == ["P: 2.42e6 N strains the bodies by 2, far beyond linear elasticity; forces are in N"]
-    assert said(12.1e6, 5.0)[0] == "thickness: 5 m is more than 50 hole radii; lengths are in m: 5 mm is 5e-3"
+    assert doubted(12.1e3) == []
+    assert doubted(12.1) == ["P: 12.1 N is a bearing stress of 0.121 MPa only; forces are in N: 1 kN is 1e3"]
+    assert doubted(2.42e6) == ["P: 2.42e6 N strains the bodies by 2, far beyond linear elasticity; forces are in N"]
+    assert doubted(12.1e6, 5.0)[0] == "thickness: 5 m is more than 50 hole radii; lengths are in m: 5 mm is 5e-3"
 
 
 def test_errors_speak_of_newtons(titanium_in_aluminium: fastpin.MaterialPair) -> None:

@@ -7,30 +7,26 @@ from pathlib import Path
 import pytest
 
 from fastpin.benchmarks import catalog
-from fastpin.cli.main import main
+from tests.support.commands import printed, refused, said
 
 
-def test_the_list_names_all_benchmarks(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["benchmarks", "--list"]) == 0
-    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(catalog.BENCHMARKS)
+def test_the_list_names_all_benchmarks() -> None:
+    assert [line.split()[0] for line in printed("benchmarks", "--list").splitlines()] == list(catalog.BENCHMARKS)
 
 
-def test_chosen_benchmarks_are_printed_once(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["benchmarks", "kirsch", "Shrink-Fit", "kirsch"]) == 0
-    out = capsys.readouterr().out
+def test_chosen_benchmarks_are_printed_once() -> None:
+    out = printed("benchmarks", "kirsch", "Shrink-Fit", "kirsch")
     assert out.count("kirsch: Kirsch: hoop stress") == 1
     assert out.count("agrees to the digits printed") == 3
 
 
-def test_files_and_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["benchmarks", "shrink-fit", "-o", str(tmp_path / "new"), "--json", str(tmp_path / "rows.json")]
-    assert main(arguments) == 0
-    assert (tmp_path / "new" / "shrink-fit.csv").exists()
-    (row,) = json.loads((tmp_path / "rows.json").read_text())["benchmarks"]["shrink-fit"]
+def test_files_and_json() -> None:
+    words = printed("benchmarks", "shrink-fit", "-o", "new", "--json", "rows.json")
+    assert "shrink-fit: new/shrink-fit.csv" in words
+    assert Path("new/shrink-fit.csv").exists()
+    (row,) = json.loads(Path("rows.json").read_text())["benchmarks"]["shrink-fit"]
     assert row["agrees"]
-    assert f"shrink-fit: {tmp_path / 'new' / 'shrink-fit.csv'}" in capsys.readouterr().out
-    assert main(["benchmarks", "shrink-fit", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["benchmarks"]["shrink-fit"] == [row]
+    assert json.loads(printed("benchmarks", "shrink-fit", "--json"))["benchmarks"]["shrink-fit"] == [row]
 
 
 @pytest.mark.parametrize(
@@ -42,19 +38,17 @@ def test_files_and_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
         (["kirsch", "-o", "FILE"], "--output: "),
     ],
 )
-def test_wrong_options_are_refused_before_the_work(arguments, message, tmp_path, capsys):
-    (tmp_path / "FILE").write_text("")
-    given = [str(tmp_path / word) if word in ("DIR", "FILE") else word for word in arguments]
-    assert main(["benchmarks", *given]) == 2
-    assert message in capsys.readouterr().err
+def test_wrong_options_are_refused_before_the_work(arguments, message, tmp_path):
+    Path("FILE").write_text("")
+    assert message in refused("benchmarks", *arguments)
     assert not list(tmp_path.glob("**/*.csv"))
 
 
-def test_an_interrupted_run_says_what_is_finished(monkeypatch, capsys):
+def test_an_interrupted_run_says_what_is_finished(monkeypatch):
     def interrupt(progress: object = None) -> None:
         raise KeyboardInterrupt
 
     interrupted = replace(catalog.BENCHMARKS["shrink-fit"], compute=interrupt)
     monkeypatch.setitem(catalog.BENCHMARKS, "shrink-fit", interrupted)
-    assert main(["benchmarks", "kirsch", "shrink-fit"]) == 130
-    assert "interrupted; benchmarks that are finished: kirsch" in capsys.readouterr().err
+    words = said("benchmarks", "kirsch", "shrink-fit", code=130).err
+    assert "interrupted; benchmarks that are finished: kirsch" in words

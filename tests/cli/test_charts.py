@@ -7,35 +7,32 @@ from pathlib import Path
 import pytest
 
 from fastpin.charts import CHARTS, chart_formulas, lookup
-from fastpin.cli.main import main
+from tests.support.commands import printed, refused, said
 
 AT = ["--load-parameter", "0.3", "--friction", "0.25"]
 
 
-def test_the_list_has_all_charts_with_bounds_and_ranges(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["charts"]) == 0
-    out = capsys.readouterr().out
+def test_the_list_has_all_charts_with_bounds_and_ranges() -> None:
+    out = printed("charts")
     assert all(f"  {name} " in out for name in CHARTS)
     assert "largest bound" in out
     assert "load_parameter 0 to 100" in out
     assert "cycle of Q, unlike bodies: load_parameter 0.02 to 3, friction 0.1 to 0.6" in out
 
 
-def test_a_value_has_its_error(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["charts", "kt_bearing", *AT, "--pin-load", "body", "--alpha", "-0.2", "--beta", "-0.05"]) == 0
-    name, value, error = capsys.readouterr().out.replace("=", "").replace("+-", "").split()
+def test_a_value_has_its_error() -> None:
+    words = printed("charts", "kt_bearing", *AT, "--pin-load", "body", "--alpha", "-0.2", "--beta", "-0.05")
+    name, value, error = words.replace("=", "").replace("+-", "").split()
     found = lookup("kt_bearing", load_parameter=0.3, friction=0.25, pin_load="body", alpha=-0.2, beta=-0.05)
     assert name == "kt_bearing"
     assert float(value) == pytest.approx(found.value, abs=found.error / 10.0)
     assert float(error) == pytest.approx(found.error, rel=0.1)
-    assert main(["charts", "contact_angle", *AT]) == 0
-    assert capsys.readouterr().out.endswith(" deg\n")
+    assert printed("charts", "contact_angle", *AT).endswith(" deg\n")
 
 
-def test_json_has_the_value_and_its_parameters(capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_has_the_value_and_its_parameters() -> None:
     words = ["cycle_energy", *AT, "--load-ratio", "0.2", "--rotation", "fixed", "--json"]
-    assert main(["charts", *words]) == 0
-    document = json.loads(capsys.readouterr().out)
+    document = json.loads(printed("charts", *words))
     found = lookup("cycle_energy", load_parameter=0.3, friction=0.25, load_ratio=0.2, rotation="fixed")
     assert document["value"] == found.value
     assert document["error"] == found.error
@@ -43,11 +40,9 @@ def test_json_has_the_value_and_its_parameters(capsys: pytest.CaptureFixture[str
 
 
 @pytest.mark.gate
-def test_the_nodes_of_a_chart_as_csv(tmp_path: Path) -> None:
-    path = tmp_path / "kt.csv"
-    assert main(["charts", "kt_bearing", "--csv", str(path)]) == 0
-    with path.open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+def test_the_nodes_of_a_chart_as_csv() -> None:
+    said("charts", "kt_bearing", "--csv", "kt.csv")
+    rows = list(csv.DictReader(Path("kt.csv").read_text(encoding="utf-8").splitlines()))
     row = rows[len(rows) // 3]
     given = {name: float(row[name]) for name in ("load_parameter", "friction", "alpha", "beta", "kolosov")}
     found = lookup("kt_bearing", pin_load=row["pin_load"], **given)
@@ -56,21 +51,19 @@ def test_the_nodes_of_a_chart_as_csv(tmp_path: Path) -> None:
 
 
 @pytest.mark.survey
-def test_the_book_is_a_pdf_with_a_page_for_each_chart(tmp_path: Path) -> None:
+def test_the_book_is_a_pdf_with_a_page_for_each_chart() -> None:
     pypdf = pytest.importorskip("pypdf")
-    path = tmp_path / "book.pdf"
-    assert main(["charts", "--book", str(path)]) == 0
-    first = path.read_bytes()
-    pages = pypdf.PdfReader(path).pages
+    said("charts", "--book", "book.pdf")
+    first = Path("book.pdf").read_bytes()
+    pages = pypdf.PdfReader("book.pdf").pages
     assert len(pages) == 1 + len(CHARTS)
     assert "largest bound" in pages[0].extract_text()
-    assert main(["charts", "--book", str(path)]) == 0
-    assert path.read_bytes() == first
+    said("charts", "--book", "book.pdf")
+    assert Path("book.pdf").read_bytes() == first
 
 
-def test_formulas_are_printed_with_their_errors(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["charts", "--formulas"]) == 0
-    lines = capsys.readouterr().out.splitlines()
+def test_formulas_are_printed_with_their_errors() -> None:
+    lines = printed("charts", "--formulas").splitlines()
     assert all(formula.cell in lines for formula in chart_formulas())
     assert sum("error at most" in line for line in lines) == len(chart_formulas())
 
@@ -95,11 +88,6 @@ def test_formulas_are_printed_with_their_errors(capsys: pytest.CaptureFixture[st
         (["--book", "book.png"], '--book: must be the name of a PDF, which ends in .pdf, not "book.png"'),
     ],
 )
-def test_wrong_input_is_one_sentence(
-    arguments: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
-    monkeypatch.chdir(tmp_path)
-    assert main(["charts", *arguments]) == 2
-    assert message in capsys.readouterr().err
+def test_wrong_input_is_one_sentence(arguments: list[str], message: str, tmp_path: Path) -> None:
+    assert message in refused("charts", *arguments)
     assert not list(tmp_path.iterdir())

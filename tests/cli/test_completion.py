@@ -8,6 +8,7 @@ import pytest
 
 from fastpin.cli.main import main
 from fastpin.cli.options import SHELLS
+from tests.support.commands import printed, refused
 from tests.support.processes import finished
 
 COMPLETE = r"""
@@ -21,38 +22,34 @@ printf '%s\n' "${COMPREPLY[@]}"
 
 @pytest.mark.gate
 @pytest.mark.parametrize("shell", SHELLS)
-def test_each_shell_has_a_script(shell: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["completion", shell]) == 0
-    script = tmp_path / "script"
-    script.write_text(capsys.readouterr().out)
+def test_each_shell_has_a_script(shell: str) -> None:
+    script = printed("completion", shell)
     long = "error-bars" if shell == "fish" else "--error-bars"
-    assert long in script.read_text() or shell == "tcsh"
+    assert long in script or shell == "tcsh"
+    Path("script").write_text(script)
     if shutil.which(shell):
-        assert finished([shell, "-n", script]).stderr == ""
+        assert finished([shell, "-n", "script"], cwd=".").stderr == ""
 
 
 @pytest.mark.gate
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
-def test_bash_completes_commands_options_choices_and_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    main(["completion", "bash"])
-    script = tmp_path / "script"
-    script.write_text(capsys.readouterr().out)
-    (tmp_path / "case.toml").write_text("")
+def test_bash_completes_commands_options_choices_and_files() -> None:
+    Path("script").write_text(printed("completion", "bash"))
+    Path("case.toml").write_text("")
 
     def completed(*words: str) -> list[str]:
-        return finished(["bash", "-c", COMPLETE, "bash", script, *words]).stdout.split()
+        return finished(["bash", "-c", COMPLETE, "bash", "./script", *words], cwd=".").stdout.split()
 
     assert completed("sw") == ["sweep"]
     assert completed("run", "--nod") == ["--nodes"]
     assert completed("plot", "a.h5", "ho") == ["hoop"]
-    assert completed("check", str(tmp_path / "ca")) == [str(tmp_path / "case.toml")]
+    assert completed("check", "ca") == ["case.toml"]
 
 
-def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "shtab", None)
-    assert main(["completion", "bash"]) == 2
     sentence = "completion: needs the package shtab: pip install 'fastpin[completion]'"
-    assert capsys.readouterr().err == f"fastpin: {sentence}\n"
+    assert refused("completion", "bash") == f"fastpin: {sentence}\n"
 
 
 def test_an_unknown_shell_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

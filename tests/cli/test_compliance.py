@@ -7,7 +7,7 @@ import pytest
 from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.lug import LUG_EXAMPLE
 from fastpin.cli import compliance
-from fastpin.cli.main import main
+from tests.support.commands import printed, refused, said
 from tests.support.lugs import make_coarse
 
 TEXT = """\
@@ -31,48 +31,43 @@ harmonics = 6
 
 
 @pytest.fixture
-def lug(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def lug(monkeypatch: pytest.MonkeyPatch) -> Path:
     make_coarse(monkeypatch)
-    path = tmp_path / "small.toml"
+    path = Path("small.toml")
     path.write_text(TEXT, encoding="utf-8")
     return path
 
 
-def test_the_example_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["compliance", "--example"]) == 0
-    assert capsys.readouterr().out == LUG_EXAMPLE
+def test_the_example_is_printed() -> None:
+    assert printed("compliance", "--example") == LUG_EXAMPLE
 
 
 @pytest.mark.gate
-def test_a_file_a_figure_and_a_report(lug, capsys, monkeypatch):
+def test_a_file_a_figure_and_a_report(lug, monkeypatch):
     monkeypatch.setattr(compliance, "DOUBTFUL", 1e-2)  # the nodes are few here
-    figure = lug.with_name("small.svg")
-    assert main(["compliance", str(lug), "--plot", str(figure)]) == 0
-    found = Compliance.from_file(lug.with_suffix(".json"))
+    out, err = said("compliance", lug, "--plot", "small.svg")
+    found = Compliance.from_file("small.json")
     assert (found.order, found.nu, found.hole_radius, list(found.columns)) == (6, 0.3, 1.0, ["syy"])
     assert "a small plate" in found.made_by
-    assert "bottom" in figure.read_text(encoding="utf-8")
-    out, err = capsys.readouterr()
+    assert "bottom" in Path("small.svg").read_text(encoding="utf-8")
     assert [line.split("  ")[0] for line in out.splitlines()[:-1]] == [
         "harmonics", "last harmonic", "symmetry error", "estimated error", "nodes", "loads",
     ]  # fmt: skip
-    assert out.endswith(f"wrote {lug.with_suffix('.json')} and {figure}\n")
+    assert out.endswith("wrote small.json and small.svg\n")
     assert err == ""
 
 
 @pytest.mark.gate
 def test_the_same_file_gives_the_same_bits(lug: Path) -> None:
-    outputs = [lug.with_name(name) for name in ("a.json", "b.json")]
-    for output in outputs:
-        assert main(["compliance", str(lug), "-o", str(output)]) == 0
-    assert outputs[0].read_bytes() == outputs[1].read_bytes()
+    for output in ("a.json", "b.json"):
+        said("compliance", lug, "-o", output)
+    assert Path("a.json").read_bytes() == Path("b.json").read_bytes()
 
 
 @pytest.mark.gate
-def test_a_doubtful_result_has_a_note(lug, capsys, monkeypatch):
+def test_a_doubtful_result_has_a_note(lug, monkeypatch):
     monkeypatch.setattr(compliance, "DOUBTFUL", 1e-12)
-    assert main(["compliance", str(lug)]) == 0
-    assert capsys.readouterr().err.startswith("note: the estimated error is above 1e-12")
+    assert said("compliance", lug).err.startswith("note: the estimated error is above 1e-12")
 
 
 @pytest.mark.parametrize(
@@ -80,30 +75,28 @@ def test_a_doubtful_result_has_a_note(lug, capsys, monkeypatch):
     [
         ([], "fastpin: lug: the lug file is missing; start with: fastpin compliance --example > lug.toml"),
         (
-            ["LUG", "-o", "other.toml"],
+            ["small.toml", "-o", "other.toml"],
             "fastpin: --output: won't overwrite other.toml: by its name it is a case file or plan",
         ),
         (
-            ["LUG", "--plot", "lug.doc"],
+            ["small.toml", "--plot", "lug.doc"],
             "fastpin: --plot: must be the name of a figure, which ends in .png, .pdf or .svg",
         ),
-        (["LUG", "-o", "no/where.json"], "fastpin: --output: no/where.json: the directory no does not exist"),
+        (["small.toml", "-o", "no/where.json"], "fastpin: --output: no/where.json: the directory no does not exist"),
         (["no.toml"], "no.toml: there is no such file"),
     ],
 )
-def test_wrong_arguments(arguments: list[str], message: str, lug: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["compliance", *[str(lug) if word == "LUG" else word for word in arguments]]) == 2
-    assert capsys.readouterr().err.startswith(message)
+@pytest.mark.usefixtures("lug")
+def test_wrong_arguments(arguments: list[str], message: str) -> None:
+    assert refused("compliance", *arguments).startswith(message)
 
 
-def test_a_fault_names_its_line(lug: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_fault_names_its_line(lug: Path) -> None:
     lug.write_text(TEXT.replace('"top"', '"tip"'), encoding="utf-8")
-    assert main(["compliance", str(lug)]) == 2
-    assert capsys.readouterr().err.startswith(f'{lug}, line 10: parts: no part or hole is called "tip"')
+    assert refused("compliance", lug).startswith(f'{lug}, line 10: parts: no part or hole is called "tip"')
 
 
 @pytest.mark.gate
-def test_too_few_harmonics_name_the_file(lug: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_too_few_harmonics_name_the_file(lug: Path) -> None:
     lug.write_text(TEXT.replace("= 6", "= 2").replace("5.0", "1.5"), encoding="utf-8")
-    assert main(["compliance", str(lug)]) == 2
-    assert capsys.readouterr().err.startswith(f"{lug}: harmonics: its last harmonic 2 is ")
+    assert refused("compliance", lug).startswith(f"{lug}: harmonics: its last harmonic 2 is ")

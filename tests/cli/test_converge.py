@@ -9,11 +9,11 @@ import pytest
 
 from fastpin import studies
 from fastpin.casefile.reader import EXAMPLE
-from fastpin.cli.main import main
 from fastpin.model.materials import MaterialPair
 from fastpin.report.convergence import COLUMNS
 from fastpin.studies import convergence
 from fastpin.studies.convergence import Convergence, StudyInterrupted
+from tests.support.commands import printed, refusal, said
 from tests.support.outcomes import FILE
 from tests.support.studies import small_problem, small_study
 
@@ -24,26 +24,24 @@ def study(similar: MaterialPair) -> Convergence:
 
 
 @pytest.fixture
-def case(tmp_path: Path) -> Path:
-    path = tmp_path / "case.toml"
+def case() -> Path:
+    path = Path("case.toml")
     path.write_text(EXAMPLE)
     return path
 
 
+OUTPUTS = ["--csv", "a.csv", "--json", "a.json", "--plot", "a.png"]
+
+
 @pytest.mark.gate
-def test_the_command_prints_and_writes(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["--nodes", "51,101,151", "--increments", "4,8,16", "--corner", "2"]
-    files = {name: tmp_path / f"a.{name}" for name in ("csv", "json", "png")}
-    written = ["--csv", str(files["csv"]), "--json", str(files["json"]), "--plot", str(files["png"])]
-    assert main(["converge", str(case), *arguments, *written]) == 0
-    out = capsys.readouterr().out
+def test_the_command_prints_and_writes(case: Path) -> None:
+    out = printed("converge", case, "--nodes", "51,101,151", "--increments", "4,8,16", "--corner", "2", *OUTPUTS)
     assert "corner 2: P = 2.42 MN/m, Q = 726 kN/m" in out
     lines = [line.split() for line in out.splitlines()]
     assert ["quantity", "unit", "51", "101", "151", "verdict", "limit", "bar"] in lines
     assert ["quantity", "unit", "4", "8", "16", "verdict", "limit", "bar", "path", "within"] in lines
     assert ["P", "MN/m", "2.42", "2.42", "2.42", "converged", "to", "rounding", "-", "-"] in lines
-    with files["csv"].open() as file:
-        rows = list(csv.DictReader(file))
+    rows = list(csv.DictReader(Path("a.csv").read_text().splitlines()))
     assert tuple(rows[0]) == COLUMNS
     solvers = {(row["solver"], row["nodes"], row["increments"]) for row in rows}
     assert solvers == {("path", count, "") for count in ("51", "101", "151")} | {
@@ -55,21 +53,18 @@ def test_the_command_prints_and_writes(case: Path, tmp_path: Path, capsys: pytes
     assert peaks[-1]["path"] == peaks[2]["value"]
     start = next(row for row in rows if row["quantity"] == "contact_1_start")
     assert (start["unit"], round(float(start["value"]))) == ("deg", -49)
-    document = json.loads(files["json"].read_text())
+    document = json.loads(Path("a.json").read_text())
     assert document["complete"] is True
     assert document["studies"][1]["quantities"][0]["path"] == float(peaks[-1]["path"])
     assert document["studies"][1]["quantities"][0]["scatter"] == float(peaks[-1]["scatter"]) > 0.0
-    assert files["png"].read_bytes().startswith(b"\x89PNG")
+    assert Path("a.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.gate
-def test_outcomes_are_studied_too(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "mine.py").write_text(FILE)
-    written = {name: str(tmp_path / f"a.{name}") for name in ("csv", "json", "png")}
-    outputs = ["--csv", written["csv"], "--json", written["json"], "--plot", written["png"]]
+def test_outcomes_are_studied_too(case: Path) -> None:
+    Path("mine.py").write_text(FILE)
     nodes = ["--nodes", "51,101,201", "--corner", "2"]
-    assert main(["converge", str(case), *nodes, "--outcomes", str(tmp_path / "mine.py"), *outputs]) == 1
-    captured = capsys.readouterr()
+    captured = said("converge", case, *nodes, "--outcomes", "mine.py", *OUTPUTS, code=1)
     reason = "ZeroDivisionError: division by zero (mine.py, line 20)"
     assert captured.err == f"fastpin: outcome broken can't be read with 51 nodes: {reason}\n"
     lines = [line.split() for line in captured.out.splitlines()]
@@ -78,19 +73,19 @@ def test_outcomes_are_studied_too(case: Path, tmp_path: Path, capsys: pytest.Cap
     peak = next(line for line in lines if line[:2] == ["peak", "N"])
     assert largest[1] == "MPa"
     assert largest != peak  # the peak is larger at the first corner
-    with Path(written["csv"]).open() as file:
-        rows = [row for row in csv.DictReader(file) if row["quantity"] in ("largest_pressure", "broken")]
+    table = csv.DictReader(Path("a.csv").read_text().splitlines())
+    rows = [row for row in table if row["quantity"] in ("largest_pressure", "broken")]
     assert [row["unit"] for row in rows] == ["Pa"] * 3 + [""] * 3
     assert [row["value"] for row in rows[3:]] == [""] * 3
-    document = json.loads(Path(written["json"]).read_text())
+    document = json.loads(Path("a.json").read_text())
     assert document["unread"] == {"broken": f"51 nodes: {reason}"}
     assert document["studies"][0]["quantities"][-3]["quantity"] == "largest_pressure"
-    assert Path(written["png"]).read_bytes().startswith(b"\x89PNG")
+    assert Path("a.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_json_goes_to_standard_output_alone(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["converge", str(case), "--nodes", "51,61,71", "--corner", "1", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["loads"]["1"]["P"] == 2.42e6
+def test_json_goes_to_standard_output_alone(case: Path) -> None:
+    document = json.loads(printed("converge", case, "--nodes", "51,61,71", "--corner", "1", "--json"))
+    assert document["loads"]["1"]["P"] == 2.42e6
 
 
 @pytest.mark.parametrize(
@@ -109,29 +104,22 @@ def test_json_goes_to_standard_output_alone(case: Path, capsys: pytest.CaptureFi
         (["--csv", "a.toml"], "won't overwrite a.toml: by its name it is a case file"),
     ],
 )
-def test_options_are_checked_before_the_work(arguments, words, case, capsys, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
+def test_options_are_checked_before_the_work(arguments, words, case, monkeypatch, tmp_path):
     monkeypatch.setattr(convergence, "solve", None)
-    assert main(["converge", str(case), *arguments]) == 2
-    err = capsys.readouterr().err
-    assert words in err
-    assert err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == [case]
+    assert words in refusal("converge", case, *arguments)
+    assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
 
 
 @pytest.mark.gate
-def test_an_interrupted_command_hands_out_what_there_is(case, study, capsys, monkeypatch):
+def test_an_interrupted_command_hands_out_what_there_is(case, study, monkeypatch):
     kept: list[Convergence | None] = [replace(study, studies=study.studies[:1], complete=False), None]
 
     def interrupted(*_: object) -> Convergence:
         raise StudyInterrupted(kept.pop(0))
 
     monkeypatch.setattr(studies, "converge", interrupted)
-    csv_file = case.parent / "a.csv"
-    assert main(["converge", str(case), "--csv", str(csv_file)]) == 130
-    captured = capsys.readouterr()
+    captured = said("converge", case, "--csv", "a.csv", code=130)
     assert "path solver; nodes on one arc:" in captured.out
     assert "interrupted; kept: corner 1, 2, 3 with 51, 101, 201 nodes" in captured.err
-    assert csv_file.exists()
-    assert main(["converge", str(case)]) == 130
-    assert "interrupted; less than three grids were finished" in capsys.readouterr().err
+    assert Path("a.csv").exists()
+    assert "interrupted; less than three grids were finished" in said("converge", case, code=130).err

@@ -11,68 +11,63 @@ import pytest
 import fastpin
 from fastpin import cracks, damage
 from fastpin.casefile import case_text
-from fastpin.cli.main import main
 from fastpin.report import json_schema
+from tests.support.commands import printed, refused, said
 
 jsonschema = pytest.importorskip("jsonschema")
 
 LAW = ["--first", "1e-4", "--last", "3e-3", "--C", "1e-10", "--m", "3"]
 
 
+PAIR = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.Material(70e9, 0.33))
+PROBLEM = fastpin.Problem(PAIR, 10e-3, 20e-6, 0.3)
+PULSES = fastpin.LoadHistory([{"P": 3e6}, {"P": 3e5}]).repeated(2)
+
+
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A result with two cycles of P and three states in each step."""
     path = tmp_path_factory.mktemp("crack") / "joint.h5"
-    pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.Material(70e9, 0.33))
-    problem = fastpin.Problem(pair, 10e-3, 20e-6, 0.3)
-    history = fastpin.LoadHistory([{"P": 3e6}, {"P": 3e5}]).repeated(2)
-    fastpin.save(fastpin.solve(problem, history, nodes=101, between=2), path)
+    fastpin.save(fastpin.solve(PROBLEM, PULSES, nodes=101, between=2), path)
     return path
 
 
 @pytest.mark.gate
-def test_a_crack_at_a_place(stored, tmp_path, capsys):
-    numbers, figure = tmp_path / "a.csv", tmp_path / "a.svg"
-    outputs = ["-o", str(figure), "--csv", str(numbers)]
-    assert main(["crack", str(stored), *LAW, "--at", "66", "--angle", "5", "--exponent", "0.5", *outputs]) == 0
+def test_a_crack_at_a_place(stored):
+    options = [*LAW, "--at", "66", "--angle", "5", "--exponent", "0.5", "-o", "a.svg", "--csv", "a.csv"]
+    lines = printed("crack", stored, *options).splitlines()
     result = fastpin.load(stored)
     states = damage.cycle_states(result, result.cycles[-1])
     crack = cracks.Crack(math.radians(-24.0), math.radians(5.0))
     found = cracks.growth(states, crack, cracks.Walker(1e-10, 3.0, 0.5), 1e-4, 3e-3)
-    lines = capsys.readouterr().out.splitlines()
     assert lines[0] == f"crack at 66.00 deg from the bottom: {found.words}"
     assert " ".join(lines[2].split()) == "length K_I largest smallest K_II range threshold growth cycles"
     assert lines[3].split() == ["mm", *["MPa", "sqrt(m)"] * 5, "nm/cycle"]
     assert lines[4].split()[:2] == ["0.1", f"{found.K_max[0] / 1e6:.4g}"]
     assert lines[-1].split()[-1] == f"{found.life:.4g}"
     assert len(lines) == 4 + 13
-    rows = list(csv.DictReader(numbers.read_text().splitlines()))
+    rows = list(csv.DictReader(Path("a.csv").read_text().splitlines()))
     assert len(rows) == found.length.size
     assert float(rows[-1]["cycles"]) == pytest.approx(found.life)
-    assert "<svg" in figure.read_text()
+    assert "<svg" in Path("a.svg").read_text()
 
 
 @pytest.mark.gate
-def test_the_fastest_crack(stored, capsys):
-    assert main(["crack", str(stored), *LAW, "--threshold-range", "1e6", "--intrinsic-length", "5e-5"]) == 0
-    place = float(capsys.readouterr().out.split()[2])
+def test_the_fastest_crack(stored):
+    place = float(printed("crack", stored, *LAW, "--threshold-range", "1e6", "--intrinsic-length", "5e-5").split()[2])
     assert 30.0 < abs(place) < 100.0
 
 
-def test_a_crack_that_never_grows(stored, capsys):
-    assert main(["crack", str(stored), *LAW, "--at", "66", "--threshold-range", "1e9"]) == 0
-    lines = capsys.readouterr().out.splitlines()
+def test_a_crack_that_never_grows(stored):
+    lines = printed("crack", stored, *LAW, "--at", "66", "--threshold-range", "1e9").splitlines()
     assert lines[0].endswith("no growth at 100 um")
     assert lines[-1].split()[-1] == "never"
 
 
-def test_a_cycle_of_corners_alone_is_noted(tmp_path, capsys):
-    path = tmp_path / "joint.h5"
-    pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.Material(70e9, 0.33))
-    history = fastpin.LoadHistory([{"P": 3e6}, {"P": 3e5}]).repeated(2)
-    fastpin.save(fastpin.solve(fastpin.Problem(pair, 10e-3, 20e-6, 0.3), history, nodes=61), path)
-    assert main(["crack", str(path), *LAW, "--at", "66"]) == 0
-    assert "note: the cycle has only its 3 corners; K between the corners is unknown" in capsys.readouterr().err
+def test_a_cycle_of_corners_alone_is_noted():
+    fastpin.save(fastpin.solve(PROBLEM, PULSES, nodes=61), "joint.h5")
+    words = "note: the cycle has only its 3 corners; K between the corners is unknown"
+    assert words in said("crack", "joint.h5", *LAW, "--at", "66").err
 
 
 @pytest.mark.parametrize(
@@ -91,17 +86,13 @@ def test_a_cycle_of_corners_alone_is_noted(tmp_path, capsys):
         (["--at", "0", "--case", "none.toml"], "none.toml: there is no such file"),
     ],
 )
-def test_refusals(stored, capsys, arguments, words):
-    assert main(["crack", str(stored), *LAW, *arguments]) == 2
-    assert words in capsys.readouterr().err
+def test_refusals(stored, arguments, words):
+    assert words in refused("crack", stored, *LAW, *arguments)
 
 
-def test_a_result_without_a_cycle(tmp_path, capsys):
-    path = tmp_path / "joint.h5"
-    pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
-    fastpin.save(fastpin.solve(fastpin.Problem(pair, 10e-3, 20e-6, 0.3), [{"P": 3e6}], nodes=61), path)
-    assert main(["crack", str(path), *LAW]) == 2
-    assert "no cycle of the history has ended" in capsys.readouterr().err
+def test_a_result_without_a_cycle():
+    fastpin.save(fastpin.solve(PROBLEM, [{"P": 3e6}], nodes=61), "joint.h5")
+    assert "no cycle of the history has ended" in refused("crack", "joint.h5", *LAW)
 
 
 CASE = """
@@ -127,83 +118,68 @@ residual_stress = -10e6
 def planned(case: fastpin.Case, spectrum: bool = False) -> cracks.Growth:
     result = fastpin.solve(case.problem, case.history, nodes=61)
     states = list(result) if spectrum else damage.cycle_states(result, result.cycles[-1])
-    assert case.crack is not None
     return cracks.planned_growth(states, case.crack, spectrum)
 
 
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
-def test_a_case_with_a_crack_is_told_by_every_command(tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_case_with_a_crack_is_told_by_every_command():
     Path("case.toml").write_text(CASE)
     found = planned(fastpin.read_case("case.toml"))
     line = f"crack at 66.00 deg from the bottom: {found.words}"
-    assert main(["run", "case.toml"]) == 0
-    assert line in capsys.readouterr().out
-    assert main(["run", "case.toml", "-o", "case.h5", "--json", "case.json"]) == 0
-    assert line in capsys.readouterr().out
+    assert line in printed("run", "case.toml")
+    assert line in printed("run", "case.toml", "-o", "case.h5", "--json", "case.json")
     document = json.loads(Path("case.json").read_text())["crack"]
     assert document["life"] == pytest.approx(found.life, rel=1e-12)
     assert document["law"]["source"] == "own tests"
     assert (document["fate"], document["arrest"], document["angle_of_mouth"]) == ("grows", None, pytest.approx(66.0))
     assert fastpin.storage.stored_case("case.h5").crack == fastpin.read_case("case.toml").crack
-    for command in (["show", "case.h5"], ["crack", "case.h5"], ["check", "case.toml"]):
-        assert main(command) == 0
-        assert (
-            line if command[0] != "check" else "100 um to 1 mm, at 66 deg, walker, C = 1e-10"
-        ) in capsys.readouterr().out
-    assert main(["report", "case.h5", "-o", "page.html"]) == 0
+    assert line in printed("show", "case.h5")
+    assert line in printed("crack", "case.h5")
+    assert "100 um to 1 mm, at 66 deg, walker, C = 1e-10" in printed("check", "case.toml")
+    said("report", "case.h5", "-o", "page.html")
     page = Path("page.html").read_text()
     assert line[1:] in page
     assert "Law of growth: walker, C = 1e-10, m = 3, exponent = 0.5; source: own tests." in page
 
 
 @pytest.mark.gate
-def test_options_and_another_case_replace_the_crack_of_a_result(tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_options_and_another_case_replace_the_crack_of_a_result():
     Path("case.toml").write_text(CASE)
-    assert main(["run", "case.toml", "-o", "case.h5"]) == 0
-    capsys.readouterr()
+    said("run", "case.toml", "-o", "case.h5")
     case = fastpin.read_case("case.toml")
     other = replace(case.crack, last=2e-3, law=cracks.Nasgro(6e-10, 2.5, 1.0, 1.0, 1e6, 3e7), theta=None)
     Path("other.toml").write_text(case_text(replace(case, crack=other)))
     nasgro = ["--law", "nasgro", "--C", "6e-10", "--n", "2.5", "--p", "1", "--q", "1"]
     nasgro += ["--threshold-range", "1e6", "--toughness", "3e7", "--last", "2e-3"]
+    expected = planned(replace(case, crack=replace(other, theta=case.crack.theta)))
     for words in (nasgro, ["--case", "other.toml", "--at", "66"]):
-        assert main(["crack", "case.h5", *words]) == 0
-        expected = planned(replace(case, crack=replace(other, theta=case.crack.theta)))
-        assert capsys.readouterr().out.startswith(f"crack at 66.00 deg from the bottom: {expected.words}\n")
+        line = f"crack at 66.00 deg from the bottom: {expected.words}\n"
+        assert printed("crack", "case.h5", *words).startswith(line)
     Path("none.toml").write_text(CASE[: CASE.index("[crack]")])
-    assert main(["crack", "case.h5", "--case", "none.toml"]) == 2
-    assert "--case: none.toml has no section [crack]" in capsys.readouterr().err
+    assert "--case: none.toml has no section [crack]" in refused("crack", "case.h5", "--case", "none.toml")
 
 
 @pytest.mark.gate
-def test_a_history_without_cycles_is_a_spectrum(tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_history_without_cycles_is_a_spectrum():
     Path("case.toml").write_text(CASE.replace("P = [3e6, 3e5]\nrepeat = 2", "P = [3e6, 3e5, 1.5e6, 3e5, 1.5e6, 3e5]"))
     found = planned(fastpin.read_case("case.toml"), spectrum=True)
-    assert main(["run", "case.toml", "-o", "case.h5"]) == 0
-    assert f"crack at 66.00 deg from the bottom: {found.words}\n" in capsys.readouterr().out
-    assert main(["crack", "case.h5", "-o", "figure.svg"]) == 0
-    printed = capsys.readouterr().out
-    assert printed.startswith(f"crack at 66.00 deg from the bottom: {found.words}\n")
-    assert printed.splitlines()[2].endswith("spectra")
+    assert f"crack at 66.00 deg from the bottom: {found.words}\n" in printed("run", "case.toml", "-o", "case.h5")
+    shown = printed("crack", "case.h5", "-o", "figure.svg")
+    assert shown.startswith(f"crack at 66.00 deg from the bottom: {found.words}\n")
+    assert shown.splitlines()[2].endswith("spectra")
     assert "m/spectrum" in Path("figure.svg").read_text()
 
 
-def test_a_crack_that_can_not_be_followed_is_noted(tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_crack_that_can_not_be_followed_is_noted():
     Path("case.toml").write_text(CASE.replace("nodes = 61", 'nodes = 61\nkeep = "every 3"'))
-    assert main(["run", "case.toml"]) == 0
-    assert "note: no crack is followed: states: must hold all corners of the cycle" in capsys.readouterr().err
+    assert "note: no crack is followed: states: must hold all corners of the cycle" in said("run", "case.toml").err
 
 
 @pytest.mark.gate
-def test_json_has_the_growth_and_its_margins(stored, tmp_path, capsys):
+def test_json_has_the_growth_and_its_margins(stored):
     law = [*LAW, "--at", "66", "--threshold-range", "1e6", "--toughness", "5e7"]
-    assert main(["crack", str(stored), *law, "--csv", str(tmp_path / "a.csv"), "--json", "-"]) == 0
-    document = json.loads(capsys.readouterr().out)
+    document = json.loads(printed("crack", stored, *law, "--csv", "a.csv", "--json", "-"))
     jsonschema.validate(document, json_schema("crack"))
     result = fastpin.load(stored)
     states = damage.cycle_states(result, result.cycles[-1])
@@ -215,6 +191,5 @@ def test_json_has_the_growth_and_its_margins(stored, tmp_path, capsys):
     margins = {row["name"]: row["margin"] for row in document["margins"]}
     assert margins["fracture"] == pytest.approx(5e7 / found.K_max.max() - 1.0)
     assert margins["growth"] == pytest.approx(1e6 / found.delta_K[0] - 1.0)
-    assert main(["crack", str(stored), *law, "--json", str(tmp_path / "a.json")]) == 0
-    assert json.loads((tmp_path / "a.json").read_text()) == document
-    assert capsys.readouterr().out.startswith("crack at 66.00 deg")
+    assert printed("crack", stored, *law, "--json", "a.json").startswith("crack at 66.00 deg")
+    assert json.loads(Path("a.json").read_text()) == document

@@ -2,13 +2,14 @@
 
 import io
 import sys
+from pathlib import Path
 
 import pytest
 
 from fastpin.casefile.reader import EXAMPLE
 from fastpin.cli import progress
-from fastpin.cli.main import main
 from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration
+from tests.support.commands import said
 
 
 @pytest.mark.parametrize(
@@ -30,23 +31,18 @@ def test_long_work_is_announced_in_words(length: float, words: str, capsys: pyte
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("command", ["run", "converge", "sweep"])
-def test_each_command_announces_long_work(command, tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize(
+    "command",
+    ["run case.toml --nodes 101", "converge case.toml --nodes 51,61,71", "sweep plan.toml --workers 1"],
+)
+def test_each_command_announces_long_work(command, monkeypatch):
     monkeypatch.setattr(progress, "LONG", 1e-3)
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "case.toml").write_text(EXAMPLE)
-    (tmp_path / "plan.toml").write_text('case = "case.toml"\n[grid]\nsolve.nodes = [51, 61]\n')
-    arguments = {
-        "run": ["run", "case.toml", "--nodes", "101"],
-        "converge": ["converge", "case.toml", "--nodes", "51,61,71"],
-        "sweep": ["sweep", "plan.toml", "--workers", "1"],
-    }
-    assert main(arguments[command]) == 0
-    more = ", with 101 nodes; half as many take a fifth of the time" if command == "run" else ""
-    assert capsys.readouterr().err == f"fastpin: note: this will take about 1 minute{more}\n"
-    if command == "sweep":  # nothing is left to do
-        assert main(arguments[command]) == 0
-        assert capsys.readouterr().err == ""
+    Path("case.toml").write_text(EXAMPLE)
+    Path("plan.toml").write_text('case = "case.toml"\n[grid]\nsolve.nodes = [51, 61]\n')
+    more = ", with 101 nodes; half as many take a fifth of the time" if "run" in command else ""
+    assert said(*command.split()).err == f"fastpin: note: this will take about 1 minute{more}\n"
+    if "sweep" in command:  # nothing is left to do
+        assert said(*command.split()).err == ""
 
 
 def test_progress_counts_whole_load_points(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ import fcntl
 import os
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 import pytest
@@ -13,11 +13,11 @@ import pytest
 import fastpin
 from fastpin.casefile.lug import LUG_EXAMPLE
 from fastpin.casefile.reader import EXAMPLE
-from fastpin.cli.main import main
 from fastpin.cli.options import parser
 from fastpin.storage.files import INDEX
 from fastpin.studies.index import Index
 from fastpin.studies.plan import read_plan
+from tests.support.commands import refusal, refused, said
 from tests.support.files import contents
 
 CASE = EXAMPLE.split("[[load]]")[0] + "\n[[load]]\nP = 2e6\n[[load]]\nrepeat = 2\nQ = [1e5, -1e5]\n"
@@ -95,10 +95,9 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def folder(samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(samples: Path, tmp_path: Path) -> Path:
     for name in ("case.toml", "lug.toml", "plan.toml", "tolerances.toml", "r.h5"):
         shutil.copyfile(samples / name, tmp_path / name)
-    monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
@@ -119,11 +118,6 @@ def test_every_option_that_names_a_file_is_known_here() -> None:
 
 
 @contextmanager
-def nothing(_: Path) -> Iterator[None]:
-    yield
-
-
-@contextmanager
 def locked(path: Path) -> Iterator[None]:
     """A writer's lock on a file, as another process holds it."""
     with path.open("rb") as file:
@@ -131,13 +125,8 @@ def locked(path: Path) -> Iterator[None]:
         yield
 
 
-def another_name(path: Path, command: str) -> None:
-    """Give the input of the command a second name."""
-    os.link(COMMANDS[command][1], path)
-
-
 KINDS: dict[str, tuple[Callable[[Path, Path, str], object], str]] = {
-    "input": (lambda path, samples, command: another_name(path, command), "is an input of this command"),
+    "input": (lambda path, samples, command: os.link(COMMANDS[command][1], path), "is an input of this command"),
     "result": (lambda path, samples, command: shutil.copyfile(samples / "r.h5", path), "is a stored result"),
     "link": (lambda path, samples, command: path.symlink_to(samples / "r.h5"), "is a stored result"),
     "index": (lambda path, samples, command: shutil.copyfile(samples / INDEX, path), "is a database"),
@@ -149,19 +138,18 @@ KINDS: dict[str, tuple[Callable[[Path, Path, str], object], str]] = {
 
 @pytest.mark.gate
 @pytest.mark.parametrize(("command", "option", "ending"), ENDINGS)
-def test_no_text_or_figure_replaces_another_kind(command, option, ending, folder, samples, capsys):
+def test_no_text_or_figure_replaces_another_kind(command, option, ending, folder, samples):
     for kind, (make, words) in KINDS.items():
         if kind == "input" and command in ("benchmarks", "charts", "verify"):
             continue  # they have no input
         path = Path(f"{kind}{ending}")
         make(path, samples, command)
         before, outside = contents(folder), contents(samples)
-        with locked(path) if kind == "running" else nothing(path):
-            assert main([*COMMANDS[command], option, str(path)]) == 2, kind
-        (said,) = capsys.readouterr().err.splitlines()
-        assert str(path) in said
+        with locked(path) if kind == "running" else nullcontext():
+            sentence = refusal(*COMMANDS[command], option, path)
+        assert str(path) in sentence
         # The page is refused before the result is read.
-        assert words in said or (command, kind) == ("report", "input"), kind
+        assert words in sentence or (command, kind) == ("report", "input"), kind
         assert (contents(folder), contents(samples)) == (before, outside), kind
 
 
@@ -177,7 +165,7 @@ def test_no_text_or_figure_replaces_another_kind(command, option, ending, folder
     ],
 )
 @pytest.mark.parametrize("command", RESULTS)
-def test_a_result_replaces_results_only(command, kind, words, folder, samples, capsys):
+def test_a_result_replaces_results_only(command, kind, words, folder, samples):
     path = Path("case.toml" if kind == "input" else "keep.h5")
     if kind == "text":
         path.write_text("notes")
@@ -187,34 +175,32 @@ def test_a_result_replaces_results_only(command, kind, words, folder, samples, c
     elif kind != "input":
         KINDS[kind][0](path, samples, command)
     before = contents(folder)
-    with locked(path) if kind == "running" else nothing(path):
-        assert main([*COMMANDS[command], "--nodes", "41", "-o", str(path), "--overwrite"]) == 2
-    assert words in capsys.readouterr().err
+    with locked(path) if kind == "running" else nullcontext():
+        assert words in refused(*COMMANDS[command], "--nodes", "41", "-o", path, "--overwrite")
     assert contents(folder) == before
 
 
 @pytest.mark.parametrize(("command", "name"), [("paper", "figure03.png"), ("benchmarks", "kirsch.csv")])
-def test_files_in_a_directory_follow_the_rule(command, name, folder, samples, capsys):
+def test_files_in_a_directory_follow_the_rule(command, name, folder, samples):
     Path("out").mkdir()
     shutil.copyfile(samples / "r.h5", Path("out") / name)
     before = contents(folder)
-    assert main([*COMMANDS[command], "-o", "out"]) == 2
-    assert f"{name}: is a stored result" in capsys.readouterr().err
+    assert f"{name}: is a stored result" in refused(*COMMANDS[command], "-o", "out")
     assert contents(folder) == before
 
 
-def test_files_that_the_case_names_are_inputs(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_that_the_case_names_are_inputs(folder: Path) -> None:
     Path("h.csv").write_text("P\n1e6\n2e6\n")
     Path("c.toml").write_text(EXAMPLE.split("[[load]]")[0] + '\n[[load]]\ncsv = "h.csv"\nrepeat = 2\n')
     for option in ("--json", "--cycle-csv"):
-        assert main(["run", "c.toml", "--nodes", "41", option, "h.csv"]) == 2
-    assert main(["run", "c.toml", "--nodes", "41", "-o", "h.csv", "--overwrite"]) == 2
-    assert capsys.readouterr().err.count("h.csv: is an input of this command") >= 2
+        words = refused("run", "c.toml", "--nodes", "41", option, "h.csv")
+        assert "h.csv: is an input of this command" in words
+    refused("run", "c.toml", "--nodes", "41", "-o", "h.csv", "--overwrite")
     assert Path("h.csv").read_text() == "P\n1e6\n2e6\n"
 
 
 @pytest.mark.gate
 def test_an_input_may_be_written_by_a_later_command(folder: Path) -> None:
-    assert main(["show", "r.h5", "--json", "a.json"]) == 0
-    assert main(["show", "r.h5", "--json", "a.json"]) == 0
-    assert main(["run", "case.toml", "--nodes", "41", "-o", "r.h5", "--overwrite"]) == 0
+    said("show", "r.h5", "--json", "a.json")
+    said("show", "r.h5", "--json", "a.json")
+    said("run", "case.toml", "--nodes", "41", "-o", "r.h5", "--overwrite")

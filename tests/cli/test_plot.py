@@ -4,14 +4,15 @@ import csv
 import functools
 import importlib
 import inspect
+from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 import pytest
 
 from fastpin import MATERIALS, InputError, LoadHistory, MaterialPair, Problem, figures, load, load_wear, record, storage
-from fastpin.cli.main import main
 from fastpin.figures.kinds import KIND_OPTIONS, KINDS
+from tests.support.commands import printed, refused, said
 from tests.support.lives import sample_life
 from tests.support.samples import JOINT
 from tests.support.tiers import for_gate, gate
@@ -40,6 +41,8 @@ def of_kind(stored, life):
     return {name: life if "result" not in kind.sources or name == "gap" else stored for name, kind in KINDS.items()}
 
 
+SHEET = Problem(MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"]), 1e-2, 1e-5, 0.3)
+
 EXTREMES = functools.cache(storage.marked_extremes)
 
 
@@ -56,8 +59,8 @@ def coarse(monkeypatch):
     monkeypatch.setattr(figures.stress, "field_curves", functools.partial(figures.stress.field_curves, fineness=40))
 
 
-def read_rows(path):
-    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+def read_rows(path="a.csv"):
+    return list(csv.DictReader(Path(path).read_text(encoding="utf-8").splitlines()))
 
 
 def test_the_function_of_each_kind_has_its_options():
@@ -82,12 +85,11 @@ BARE = (
 @pytest.mark.parametrize(
     "kind", [name for name, kind in KINDS.items() if "csv" in kind.options and not kind.of_laminates]
 )
-def test_a_figure_and_its_numbers_with_units(of_kind, kind, tmp_path, capsys):
-    figure, numbers = tmp_path / f"{kind}.svg", tmp_path / f"{kind}.csv"
-    assert main(["plot", str(of_kind[kind]), kind, "-o", str(figure), "--csv", str(numbers)]) == 0
-    assert figure.read_text(encoding="utf-8").startswith("<?xml")
-    assert capsys.readouterr().out.splitlines()[-1] == f"wrote {figure} and {numbers}"
-    rows = read_rows(numbers)
+def test_a_figure_and_its_numbers_with_units(of_kind, kind):
+    words = printed("plot", of_kind[kind], kind, "-o", "a.svg", "--csv", "a.csv")
+    assert words.splitlines()[-1] == "wrote a.svg and a.csv"
+    assert Path("a.svg").read_text(encoding="utf-8").startswith("<?xml")
+    rows = read_rows()
     assert len(rows) >= 2
     for row in rows:
         for name, cell in row.items():
@@ -97,53 +99,48 @@ def test_a_figure_and_its_numbers_with_units(of_kind, kind, tmp_path, capsys):
 
 @pytest.mark.gate
 @pytest.mark.usefixtures("coarse")
-def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, of_kind, tmp_path):
+def test_a_result_in_memory_has_the_same_figures_as_its_file(stored, of_kind):
     result = load(stored)
     with mpl.rc_context({"svg.hashsalt": "fastpin"}):
         shown = [name for name, file in of_kind.items() if KINDS[name].ending == "png" and file == stored]
         for name in (name for name in shown if not KINDS[name].of_laminates):
-            result.plot(tmp_path / "memory.svg", kind=name)
-            assert main(["plot", str(stored), name, "-o", str(tmp_path / "file.svg")]) == 0
-            assert (tmp_path / "memory.svg").read_bytes() == (tmp_path / "file.svg").read_bytes(), name
+            result.plot("memory.svg", kind=name)
+            said("plot", stored, name, "-o", "file.svg")
+            assert Path("memory.svg").read_bytes() == Path("file.svg").read_bytes(), name
 
 
 @pytest.mark.survey
 @pytest.mark.usefixtures("coarse")
-def test_all_kinds_but_that_of_cycles_show_a_life_of_wear(life, tmp_path, monkeypatch, capsys):
+def test_all_kinds_but_that_of_cycles_show_a_life_of_wear(life):
     for name, kind in KINDS.items():
-        code = main(["plot", str(life), name, "-o", str(tmp_path / f"a.{kind.ending}")])
-        assert code == (0 if "life" in kind.sources and not kind.of_laminates else 2), name
-        shows_a_profile = "the figure shows a cycle after 60 cycles\n" in capsys.readouterr().out
+        code = 0 if "life" in kind.sources and not kind.of_laminates else 2
+        words = said("plot", life, name, "-o", f"a.{kind.ending}", code=code).out
+        shows_a_profile = "the figure shows a cycle after 60 cycles\n" in words
         assert kind.of_laminates or shows_a_profile == (kind.sources == ("result", "life")), name
 
 
 @pytest.mark.gate
-def test_a_profile_of_a_life_is_chosen_by_its_cycles(life, tmp_path, capsys):
-    numbers = tmp_path / "a.csv"
-    arguments = ["plot", str(life), "tractions", "-o", str(tmp_path / "a.svg"), "--csv", str(numbers)]
+def test_a_profile_of_a_life_is_chosen_by_its_cycles(life):
+    arguments = ["plot", life, "tractions", "-o", "a.svg", "--csv", "a.csv"]
     found = load_wear(life)
     for number in (0, 20):
-        assert main([*arguments, "--after", str(number)]) == 0
-        assert f"the figure shows a cycle after {number} cycles\n" in capsys.readouterr().out
+        assert f"the figure shows a cycle after {number} cycles\n" in printed(*arguments, "--after", number)
         points = [state.step + state.fraction for state in found.after(number).states]
-        assert {float(row["load point"]) for row in read_rows(numbers)} == {*points}
-    assert main([*arguments, "--states", "6-7"]) == 0  # states on any profile
-    assert {float(row["load point"]) for row in read_rows(numbers)} == {6.0, 7.0}
+        assert {float(row["load point"]) for row in read_rows()} == {*points}
+    said(*arguments, "--states", "6-7")  # states on any profile
+    assert {float(row["load point"]) for row in read_rows()} == {6.0, 7.0}
     with mpl.rc_context({"svg.hashsalt": "fastpin"}):
-        found.plot(tmp_path / "memory.svg", kind="tractions", after=20)
-        assert main(["plot", str(life), "tractions", "--after", "2e1", "-o", str(tmp_path / "file.svg")]) == 0
-    memory, file = ((tmp_path / name).read_text() for name in ("memory.svg", "file.svg"))
-    assert "<!-- after 20 cycles" in memory
-    assert "<!-- Worn lug, after 20 cycles" in file
+        found.plot("memory.svg", kind="tractions", after=20)
+        said("plot", life, "tractions", "--after", "2e1", "-o", "file.svg")
+    assert "<!-- after 20 cycles" in Path("memory.svg").read_text()
+    assert "<!-- Worn lug, after 20 cycles" in Path("file.svg").read_text()
 
 
 @pytest.mark.gate
-def test_the_usual_kind_is_that_of_the_file(stored, life, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "case.toml").write_text(f"{JOINT}\n[[load]]\nP = 1e6\n")
+def test_the_usual_kind_is_that_of_the_file(stored, life):
+    Path("case.toml").write_text(f"{JOINT}\n[[load]]\nP = 1e6\n")
     for source, name in ((stored, "tractions"), (life, "scar"), ("case.toml", "sketch")):
-        assert main(["plot", str(source)]) == 0
-        assert capsys.readouterr().out.splitlines()[-1] == f"wrote {name}.png"
+        assert printed("plot", source).splitlines()[-1] == f"wrote {name}.png"
 
 
 def test_kinds_and_options_of_a_result_in_memory_are_checked(stored):
@@ -157,86 +154,75 @@ def test_kinds_and_options_of_a_result_in_memory_are_checked(stored):
 
 
 @pytest.mark.gate
-def test_the_terminal_says_which_states_are_drawn(stored, tmp_path, capsys):
-    assert main(["plot", str(stored), "tractions", "-o", str(tmp_path / "a.png")]) == 0
-    assert capsys.readouterr().out.startswith("the figure shows 5 of 10 states: load points 3, 3.5, 4, 4.5, 5\n")
-    assert main(["plot", str(stored), "tractions", "-o", str(tmp_path / "b.png"), "--sketch"]) == 0
-    assert (tmp_path / "a.png").read_bytes() != (tmp_path / "b.png").read_bytes()
-    assert main(["show", str(stored), "--plot", str(tmp_path / "a.png"), "--states", "2,5"]) == 0
-    assert f"{tmp_path / 'a.png'} shows 2 of 10 states: load points 2, 5\n" in capsys.readouterr().out
+def test_the_terminal_says_which_states_are_drawn(stored):
+    words = "the figure shows 5 of 10 states: load points 3, 3.5, 4, 4.5, 5\n"
+    assert printed("plot", stored, "tractions", "-o", "a.png").startswith(words)
+    said("plot", stored, "tractions", "-o", "b.png", "--sketch")
+    assert Path("a.png").read_bytes() != Path("b.png").read_bytes()
+    words = printed("show", stored, "--plot", "a.png", "--states", "2,5")
+    assert "a.png shows 2 of 10 states: load points 2, 5\n" in words
 
 
 @pytest.mark.gate
-def test_bars_are_drawn_and_written(tmp_path, capsys):
+def test_bars_are_drawn_and_written():
     problem = Problem(MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"]), 2.4e-3, 10e-6, 0.4)
-    stored, numbers = tmp_path / "joint.h5", tmp_path / "bars.csv"
-    record(problem, LoadHistory([{"P": 6e5}, {"Q": 1e5}]), stored, nodes=101, error_bars=True)
-    arguments = ["plot", str(stored), "tractions", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]
-    assert main([*arguments, "--states", "2", "--bars"]) == 0
-    rows = read_rows(numbers)
+    record(problem, LoadHistory([{"P": 6e5}, {"Q": 1e5}]), "joint.h5", nodes=101, error_bars=True)
+    arguments = ["plot", "joint.h5", "tractions", "-o", "a.png", "--csv", "a.csv", "--states", "2"]
+    said(*arguments, "--bars")
+    rows = read_rows()
     angle, bar = (np.array([float(row[name]) for row in rows]) for name in ("angle [deg]", "shear bar [Pa]"))
-    assert np.allclose(bar, load(stored)[1].error_bars.of_curves(np.radians(angle - 90.0))[1], rtol=1e-3)
+    assert np.allclose(bar, load("joint.h5")[1].error_bars.of_curves(np.radians(angle - 90.0))[1], rtol=1e-3)
     assert "pressure bar [Pa]" in rows[0]
-    assert main([*arguments, "--states", "2"]) == 0
-    assert not [name for name in read_rows(numbers)[0] if "bar" in name]
+    said(*arguments)
+    assert not [name for name in read_rows()[0] if "bar" in name]
 
 
 @pytest.mark.gate
-def test_more_states_than_a_figure_holds_get_a_remedy(stored, tmp_path, capsys):
+def test_more_states_than_a_figure_holds_get_a_remedy(stored):
     remedy = "; of the 10 chosen states it holds 8: choose at most so many with --states\n"
-    assert main(["plot", str(stored), "tractions", "-o", str(tmp_path / "a.png"), "--states", "all"]) == 0
-    first = capsys.readouterr().out.splitlines(keepends=True)[0]
+    first = printed("plot", stored, "tractions", "-o", "a.png", "--states", "all").splitlines(keepends=True)[0]
     assert first.startswith("the figure shows 8 of 10 states: load points ")
     assert first.endswith(remedy)
-    assert main(["show", str(stored), "--plot", str(tmp_path / "a.png"), "--states", "all"]) == 0
-    assert remedy in capsys.readouterr().out
-    assert main(["plot", str(stored), "tractions", "-o", str(tmp_path / "a.png"), "--states", "1-3"]) == 0
-    assert "chosen" not in capsys.readouterr().out
-    assert main(["plot", str(stored), "hoop", "-o", str(tmp_path / "a.png"), "--states", "20"]) == 2
-    assert "--states: there is no state at load point 20; the last is 5" in capsys.readouterr().err
+    assert remedy in printed("show", stored, "--plot", "a.png", "--states", "all")
+    assert "chosen" not in printed("plot", stored, "tractions", "-o", "a.png", "--states", "1-3")
 
 
-def test_a_sketch_of_a_result_and_of_a_case_file(stored, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["example"]) == 0
-    (tmp_path / "case.toml").write_text(capsys.readouterr().out)
-    for source in (str(stored), "case.toml"):
-        assert main(["plot", source, "sketch"]) == 0
-        assert (tmp_path / "sketch.png").read_bytes().startswith(b"\x89PNG")
-    assert main(["plot", "case.toml", "hoop"]) == 2
-    assert "case.toml: is a case file; hoop needs a result: fastpin run CASE -o FILE" in capsys.readouterr().err
-    assert main(["plot", "case.toml", "scar"]) == 2
-    assert "case.toml: is a case file; scar needs a life of wear: fastpin wear CASE -o FILE" in capsys.readouterr().err
-    assert main(["plot", "case.toml", "sketch", "--states", "1"]) == 2
-    assert "--states: chooses a state of a result; a case file has none" in capsys.readouterr().err
+def test_a_sketch_of_a_result_and_of_a_case_file(stored):
+    Path("case.toml").write_text(printed("example"))
+    for source in (stored, "case.toml"):
+        said("plot", source, "sketch")
+        assert Path("sketch.png").read_bytes().startswith(b"\x89PNG")
+    for arguments, words in (
+        (["hoop"], "case.toml: is a case file; hoop needs a result: fastpin run CASE -o FILE"),
+        (["scar"], "case.toml: is a case file; scar needs a life of wear: fastpin wear CASE -o FILE"),
+        (["sketch", "--states", "1"], "--states: chooses a state of a result; a case file has none"),
+    ):
+        assert words in refused("plot", "case.toml", *arguments)
 
 
 @pytest.mark.gate
-def test_an_animation_of_the_last_cycle(stored, tmp_path, capsys):
-    assert main(["plot", str(stored), "animation", "-o", str(tmp_path / "a.gif"), "--rate", "10"]) == 0
-    assert capsys.readouterr().out.startswith("the figure shows 5 of 10 states: ")
-    assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
+def test_an_animation_of_the_last_cycle(stored):
+    words = printed("plot", stored, "animation", "-o", "a.gif", "--rate", "10")
+    assert words.startswith("the figure shows 5 of 10 states: ")
+    assert Path("a.gif").read_bytes().startswith(b"GIF89a")
 
 
 @pytest.mark.gate
 @pytest.mark.usefixtures("coarse")
-def test_the_name_of_the_figure_is_the_kind(stored, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert main(["plot", str(stored), "map", "--component", "hoop", "--extent", "3", "--body", "plate"]) == 0
-    assert (tmp_path / "map.png").exists()
+def test_the_name_of_the_figure_is_the_kind(stored):
+    said("plot", stored, "map", "--component", "hoop", "--extent", "3", "--body", "plate")
+    assert Path("map.png").exists()
 
 
 @pytest.mark.gate
-def test_states_are_chosen_by_load_points(stored, tmp_path):
-    numbers = tmp_path / "a.csv"
-    arguments = ["-o", str(tmp_path / "a.png"), "--csv", str(numbers)]
+def test_states_are_chosen_by_load_points(stored):
     for kind, chosen, points in (
         (["hoop", "--body", "plate"], "last", {"5"}),
         (["tractions"], "2,3.5", {"2", "3.5"}),
         (["tractions"], "cycle", {"3", "3.5", "4", "4.5", "5"}),
     ):
-        assert main(["plot", str(stored), *kind, *arguments, "--states", chosen]) == 0
-        assert {f"{float(row['load point']):g}" for row in read_rows(numbers)} == points
+        said("plot", stored, *kind, "--states", chosen, "-o", "a.png", "--csv", "a.csv")
+        assert {f"{float(row['load point']):g}" for row in read_rows()} == points
 
 
 @pytest.mark.parametrize(
@@ -247,7 +233,7 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         (["sketch", "--csv", "a.csv"], "--csv: has no effect on sketch; it is for tractions, polar, stick-slip, gap"),
         (["animation", "--states", "last"], "--states: an animation needs two states or more"),
         (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
-        (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
+        (["hoop", "--states", "20"], "--states: there is no state at load point 20; the last is 5"),
         (["hoop", "--bars"], "--bars: has no effect on hoop; it is for tractions"),
         *gate(
             (
@@ -257,6 +243,8 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         ),
         (["hoop", "--sketch"], "--sketch: has no effect on hoop; it is for tractions"),
         (["hoop", "--states", "now"], "load points such as 2,3.5, 1-9 or 10-, not 'now'"),
+        (["polar", "--states", "3-2"], "load points such as 2,3.5, 1-9 or 10-, not '3-2'"),
+        (["hoop", "--cycle", "2"], "--cycle: has no effect on hoop; it is for loops"),
         (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),
         (["map", "--component", "x"], "--component: must be "),
         (["profile", "--body", "both"], '--body: must be "plate", "pin" or "seat"'),
@@ -267,10 +255,8 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         (["hoop", "-o", "hoop.txt"], "--output: must be the name of a figure, which ends in .png, .pdf or .svg, not"),
     ],
 )
-def test_wrong_options(stored, arguments, message, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert main(["plot", str(stored), *arguments]) == 2
-    assert message in capsys.readouterr().err
+def test_wrong_options(stored, arguments, message, tmp_path):
+    assert message in refused("plot", stored, *arguments)
     assert not list(tmp_path.iterdir())
 
 
@@ -285,99 +271,58 @@ def test_wrong_options(stored, arguments, message, capsys, tmp_path, monkeypatch
         (["damage", "--criterion", "findley"], "fatigue: findley needs bending_limit, torsion_limit of the plate"),
     ],
 )
-def test_wrong_options_of_a_life_of_wear(life, arguments, message, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert main(["plot", str(life), *arguments]) == 2
-    assert message in capsys.readouterr().err
+def test_wrong_options_of_a_life_of_wear(life, arguments, message, tmp_path):
+    assert message in refused("plot", life, *arguments)
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--states", "last"], "--states: chooses the states of a figure: it needs --plot FILE"),
-        (["--plot", "a.png", "--states", "9"], "--states: there is no state at load point 9; the last is 4"),
-        (["--plot", "a.png", "--states", "cycle"], "--states: no cycle of the history has ended"),
-        (["--plot", "a.png", "--states", "x"], "--states: must be last, cycle, all or load points such as 2,3.5"),
-    ],
-)
-def test_wrong_states_are_refused_before_the_run(arguments, message, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert main(["run", *arguments]) == 2
-    assert message in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_result_that_was_cut_short_leaves_no_figure(stored, tmp_path, capsys):
+def test_a_result_that_was_cut_short_leaves_no_figure(stored, tmp_path):
     text = stored.with_name("short.h5")
     text.write_bytes(stored.read_bytes()[: stored.stat().st_size // 2])
-    assert main(["plot", str(text), "tractions", "-o", str(tmp_path / "a.png")]) == 2
-    assert "short.h5: is damaged or cut short" in capsys.readouterr().err
+    assert "short.h5: is damaged or cut short" in refused("plot", text, "tractions", "-o", "a.png")
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.gate
-def test_a_cycle_without_its_corners_has_no_fatigue(tmp_path, capsys):
-    path = tmp_path / "ends.h5"
-    pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"])
-    history = LoadHistory([{"P": 1e5}]) + LoadHistory([{"Q": 2e4}, {"Q": -2e4}]).repeated(3)
-    record(Problem(pair, 1e-2, 1e-5, 0.3), history, path, nodes=61, keep="cycles")
-    assert main(["plot", str(path), "fatigue", "-o", str(tmp_path / "a.png")]) == 2
-    assert "must hold all corners of the cycle, 5 to 7" in capsys.readouterr().err
-
-
-@pytest.mark.gate
-def test_a_history_without_cycles_has_the_damage_of_a_spectrum(tmp_path, capsys, monkeypatch):
+def test_a_history_without_cycles_has_the_damage_of_a_spectrum(monkeypatch):
     """A body without constants of a life has the parameter over all states. Many states have straight lines."""
-    path, table = tmp_path / "flight.h5", tmp_path / "a.csv"
     history = LoadHistory([{"P": 4e5, "Q": 2e5}, {"P": 1e5}, {"P": 6e5, "Q": -2e5}, {"P": 2e5, "Q": 0.0}])
-    pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"])
-    record(Problem(pair, 1e-2, 1e-5, 0.3), history, path, nodes=61)
-    command = ["plot", str(path), "fatigue", "-o", str(tmp_path / "a.png"), "--csv", str(table)]
-    assert main(command) == 0
-    assert capsys.readouterr().out.strip() == f"wrote {tmp_path / 'a.png'} and {table}"
-    found, rows = load(path).spectrum_damage(), read_rows(table)
+    record(SHEET, history, "flight.h5", nodes=61)
+    command = ["plot", "flight.h5", "fatigue", "-o", "a.png", "--csv", "a.csv"]
+    assert printed(*command).strip() == "wrote a.png and a.csv"
+    found, rows = load("flight.h5").spectrum_damage(), read_rows()
     assert max(float(row["damage by smith-watson-topper"]) for row in rows) == pytest.approx(found.hot_spot.damage)
     assert min(float(row["life [spectra]"]) for row in rows) == pytest.approx(found.hot_spot.life)
-    assert main([*command, "--body", "pin"]) == 0
-    assert {"body", "smith-watson-topper [Pa]", "plane [deg]"} < set(read_rows(table)[0])
+    said(*command, "--body", "pin")
+    assert {"body", "smith-watson-topper [Pa]", "plane [deg]"} < set(read_rows()[0])
     monkeypatch.setattr(figures.fatigue, "MOST_REFINED", 3)
-    assert main(command) == 0
-    assert "the stresses of 4 states are those of straight lines between the nodes" in capsys.readouterr().out
-    assert main(["plot", str(path), "fatigue", "--criterion", "crossland", "-o", str(tmp_path / "b.png")]) == 2
-    assert "crossland needs bending_limit, torsion_limit of the plate" in capsys.readouterr().err
-    assert main(["plot", str(path), "fatigue", "--criterion", "x", "-o", str(tmp_path / "b.png")]) == 2
-    assert "criterion: must be" in capsys.readouterr().err
+    assert "the stresses of 4 states are those of straight lines between the nodes" in printed(*command)
+    assert "crossland needs bending_limit, torsion_limit of the plate" in refused(*command, "--criterion", "crossland")
+    assert "criterion: must be" in refused(*command, "--criterion", "x")
 
 
-def test_a_cycle_without_its_corners_has_no_loop(tmp_path, capsys):
-    path = tmp_path / "ends.h5"
-    history = LoadHistory([{"P": 1e5}]) + LoadHistory([{"Q": 2e4}, {"Q": -2e4}]).repeated(2)
-    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
-    record(Problem(pair, 1e-2, 1e-5, 0.3), history, path, nodes=31, keep="cycles")
-    assert main(["plot", str(path), "loops", "-o", str(tmp_path / "a.png")]) == 2
+def test_a_cycle_without_its_corners_has_neither_loop_nor_fatigue():
+    history = LoadHistory([{"P": 1e5}]) + LoadHistory([{"Q": 2e4}, {"Q": -2e4}]).repeated(3)
+    record(SHEET, history, "ends.h5", nodes=31, keep="cycles")
     message = 'cycle: has no loop: only its ends were kept; keep "corners" or "all" keeps its corners'
-    assert capsys.readouterr().err.strip() == f"fastpin: {message}"
-    assert not (tmp_path / "a.png").exists()
+    assert refused("plot", "ends.h5", "loops", "-o", "a.png").strip() == f"fastpin: {message}"
+    assert "must hold all corners of the cycle, 5 to 7" in refused("plot", "ends.h5", "fatigue", "-o", "a.png")
+    assert not Path("a.png").exists()
 
 
-def test_the_result_is_not_overwritten(stored, capsys):
+def test_the_result_is_not_overwritten(stored):
     before = stored.read_bytes()
-    for option in ("--csv", "-o"):
-        assert main(["plot", str(stored), "hoop", option, str(stored)]) == 2
-        assert ("is an input of this command" if option == "--csv" else "joint.h5") in capsys.readouterr().err
+    assert "is an input of this command" in refused("plot", stored, "hoop", "--csv", stored)
+    assert "joint.h5" in refused("plot", stored, "hoop", "-o", stored)
     assert stored.read_bytes() == before
 
 
 @pytest.mark.gate
-def test_a_result_without_cycles(tmp_path, capsys):
-    path = tmp_path / "one.h5"
-    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
-    record(Problem(pair, 1e-2, 1e-5, 0.3), LoadHistory([{"P": 1e5}]), path, nodes=61)
-    assert main(["plot", str(path), "loops", "-o", str(tmp_path / "a.png")]) == 2
-    assert "no cycle of the history has ended" in capsys.readouterr().err
-    assert main(["plot", str(path), "hoop", "-o", str(tmp_path / "a.png")]) == 0
-    assert main(["plot", str(path), "cycles", "-o", str(tmp_path / "b.png")]) != 0
+def test_a_result_without_cycles():
+    record(SHEET, LoadHistory([{"P": 1e5}]), "one.h5", nodes=61)
+    for kind in ("loops", "cycles"):
+        assert "no cycle of the history has ended" in refused("plot", "one.h5", kind, "-o", "a.png")
+    said("plot", "one.h5", "hoop", "-o", "a.png")
 
 
 @pytest.fixture(scope="module")
@@ -392,67 +337,49 @@ def blocks(tmp_path_factory):
     return path
 
 
-def test_loops_of_chosen_cycles(blocks, tmp_path, capsys):
-    numbers = tmp_path / "loops.csv"
-    arguments = ["plot", str(blocks), "loops", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]
-    assert main([*arguments, "--cycle", "blocks"]) == 0
-    printed = capsys.readouterr()
-    assert printed.out.count("dissipated on the path") == 2
-    assert printed.out.splitlines()[1].startswith("cycle 6: area ")
-    assert "few states draw the loop" in printed.err
-    assert {line.split(",")[0] for line in numbers.read_text().splitlines()[1:]} == {"3", "6"}
-    assert main([*arguments, "--cycle", "1-"]) == 0
-    assert "note: cycle 1 is left out: the cycle to corner 3 is not closed" in capsys.readouterr().err
-    assert main([*arguments, "--cycle", "1"]) == 2
-    assert "not closed" in capsys.readouterr().err
-    assert main([*arguments, "--cycle", "7"]) == 2
-    assert "--cycle: there is no cycle 7; the history has 6, counted from 1" in capsys.readouterr().err
-    assert main([*arguments, "--abscissa", "prescribed"]) == 2
-    assert "--abscissa: no displacement is prescribed here" in capsys.readouterr().err
-    assert main(["plot", str(blocks), "hoop", "--cycle", "2"]) == 2
-    assert "--cycle: has no effect on hoop; it is for loops" in capsys.readouterr().err
+def test_loops_of_chosen_cycles(blocks):
+    arguments = ["plot", blocks, "loops", "-o", "a.png", "--csv", "a.csv"]
+    words = said(*arguments, "--cycle", "blocks")
+    assert words.out.count("dissipated on the path") == 2
+    assert words.out.splitlines()[1].startswith("cycle 6: area ")
+    assert "few states draw the loop" in words.err
+    assert {line.split(",")[0] for line in Path("a.csv").read_text().splitlines()[1:]} == {"3", "6"}
+    assert "note: cycle 1 is left out: the cycle to corner 3 is not closed" in said(*arguments, "--cycle", "1-").err
+    assert "not closed" in refused(*arguments, "--cycle", "1")
+    assert "--cycle: there is no cycle 7; the history has 6, counted from 1" in refused(*arguments, "--cycle", "7")
+    assert "--abscissa: no displacement is prescribed here" in refused(*arguments, "--abscissa", "prescribed")
 
 
-def test_ranges_of_states(blocks, tmp_path, capsys):
-    assert main(["plot", str(blocks), "stick-slip", "--states", "10-", "-o", str(tmp_path / "a.png")]) == 0
-    assert "states: load points 10 to 13" in capsys.readouterr().out
-    assert main(["show", str(blocks), "--plot", str(tmp_path / "b.png"), "--states", "2-3"]) == 0
-    assert main(["plot", str(blocks), "polar", "--states", "3-2", "-o", str(tmp_path / "c.png")]) == 2
-    assert "or load points such as 2,3.5, 1-9 or 10-, not '3-2'" in capsys.readouterr().err
+def test_ranges_of_states(blocks):
+    assert "states: load points 10 to 13" in printed("plot", blocks, "stick-slip", "--states", "10-", "-o", "a.png")
+    said("show", blocks, "--plot", "b.png", "--states", "2-3")
 
 
-def test_cycles_are_counted_from_1_and_their_numbers_have_units(blocks, tmp_path):
-    numbers = tmp_path / "cycles.csv"
-    assert main(["plot", str(blocks), "cycles", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]) == 0
-    header, first, *others = numbers.read_text().splitlines()
+def test_cycles_are_counted_from_1_and_their_numbers_have_units(blocks):
+    said("plot", blocks, "cycles", "-o", "a.png", "--csv", "a.csv")
+    header, first, *others = Path("a.csv").read_text().splitlines()
     assert header.startswith("cycle,corner,length,number,")
     assert "dissipation [J/m],rotation_change [rad]" in header
     assert first.startswith("1,3,2,1,")
     assert len(others) == 5
 
 
-def test_a_long_map_of_stick_and_slip_says_what_its_columns_join(blocks, tmp_path, capsys, monkeypatch):
+def test_a_long_map_of_stick_and_slip_says_what_its_columns_join(blocks, monkeypatch):
     monkeypatch.setattr(figures.stick_slip, "MOST_COLUMNS", 5)
-    numbers = tmp_path / "map.csv"
-    arguments = ["plot", str(blocks), "stick-slip", "--states", "all", "-o", str(tmp_path / "a.png")]
-    assert main([*arguments, "--csv", str(numbers)]) == 0
-    said = capsys.readouterr().out
-    assert "states in 5 columns: each column joins 2 cycles, or states outside of cycles" in said
-    header, first, *_ = numbers.read_text().splitlines()
+    words = printed("plot", blocks, "stick-slip", "--states", "all", "-o", "a.png", "--csv", "a.csv")
+    assert "states in 5 columns: each column joins 2 cycles, or states outside of cycles" in words
+    header, first, *_ = Path("a.csv").read_text().splitlines()
     assert header == "load points after,to,start [deg],stop [deg],slip"
     assert first.startswith("0,")
 
 
-def test_a_map_joins_all_states_of_a_long_history_with_cycles(blocks, tmp_path, capsys, monkeypatch):
+def test_a_map_joins_all_states_of_a_long_history_with_cycles(blocks, monkeypatch):
     monkeypatch.setattr(figures.stick_slip, "MOST_COLUMNS", 5)
-    arguments = ["plot", str(blocks), "stick-slip", "-o", str(tmp_path / "a.png")]
-    assert main(arguments) == 0
-    assert "the figure shows 39 states in 5 columns" in capsys.readouterr().out
+    arguments = ["plot", str(blocks), "stick-slip", "-o", "a.png"]
+    assert "the figure shows 39 states in 5 columns" in printed(*arguments)
     monkeypatch.setattr(figures.states, "MOST_JOINED", 38)
-    assert main(arguments) == 0
-    assert "the figure shows 7 of 39 states: load points 11, 11.333" in capsys.readouterr().out
+    assert "the figure shows 7 of 39 states: load points 11, 11.333" in printed(*arguments)
 
 
-def test_the_regime_is_printed(blocks, capsys):
-    assert main(["show", str(blocks)]) == 0
-    assert "partial slip, slip range up to" in capsys.readouterr().out
+def test_the_regime_is_printed(blocks):
+    assert "partial slip, slip range up to" in printed("show", blocks)

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.cli.main import main
 from fastpin.pages.album import Album
 from fastpin.pages.content import Picture
+from tests.support.commands import printed, refusal, refused, said
 from tests.support.html import Page
 from tests.support.samples import JOINT
 
@@ -20,10 +20,9 @@ nodes = 121
 
 
 @pytest.fixture
-def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def case(monkeypatch: pytest.MonkeyPatch) -> Path:
     """A case file in the working directory. Pages have captions in place of figures, which take long."""
     monkeypatch.setattr(Album, "picture", lambda self, draw, words, caption, bitmap=False: Picture("", caption, 1))
-    monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(CASE)
     return Path("case.toml")
 
@@ -33,28 +32,25 @@ def words(path: str) -> str:
 
 
 @pytest.mark.gate
-def test_a_stored_result_gets_the_name_of_its_file(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", str(case), "-o", "result.h5"]) == 0
-    capsys.readouterr()
-    assert main(["report", "result.h5", "--case", str(case), "--title", "Another title"]) == 0
-    assert capsys.readouterr().out == "wrote result.html\n"
+def test_a_stored_result_gets_the_name_of_its_file(case: Path) -> None:
+    said("run", case, "-o", "result.h5")
+    assert printed("report", "result.h5", "--case", case, "--title", "Another title") == "wrote result.html\n"
     assert "Another title" in words("result.html")
     assert CASE in words("result.html")
 
 
 @pytest.mark.gate
 def test_a_case_is_solved_with_error_bars(case: Path) -> None:
-    assert main(["report", str(case), "-o", "page.html", "--error-bars"]) == 0
+    said("report", case, "-o", "page.html", "--error-bars")
     assert "There are no error bars" not in words("page.html")
     assert CASE in words("page.html")
     assert "A joint" in words("page.html")
 
 
 @pytest.mark.gate
-def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path) -> None:
     case.write_text(CASE.replace("friction = 0.4", 'friction = 0.4\npin_load = "centre"') + "[[load]]\nM = 1e5\n")
-    assert main(["report", str(case), "-o", "page.html"]) == 1
-    reason = capsys.readouterr().err.removeprefix("fastpin: ").strip()
+    reason = said("report", case, "-o", "page.html", code=1).err.removeprefix("fastpin: ").strip()
     assert f"The reason: {reason}" in words("page.html")
 
 
@@ -72,48 +68,41 @@ def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path, capsys: p
         (["plan.toml"], "plan.toml: is a plan: name the directory of its sweep, such as plan"),
     ],
 )
-def test_wrong_input_is_refused_in_one_sentence(arguments, message, case, capsys):
+def test_wrong_input_is_refused_in_one_sentence(arguments, message, case):
     Path("junk.h5").write_bytes(b"junk")
     Path("plan.toml").write_text('case = "case.toml"\n[grid]\n"contact.friction" = [0.1, 0.2]\n')
-    assert main(["report", *arguments]) == 2
-    error = capsys.readouterr().err
-    assert error.startswith(f"fastpin: {message}")
-    assert error.count("\n") == 1
+    assert refusal("report", *arguments).startswith(f"fastpin: {message}")
     assert sorted(path.name for path in Path().iterdir()) == ["case.toml", "junk.h5", "plan.toml"]
 
 
-def test_all_faults_of_a_case_are_listed(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_all_faults_of_a_case_are_listed(case: Path) -> None:
     case.write_text(CASE.replace("nodes = 121", "nodes = 1").replace("friction = 0.4", "friction = -1"))
-    assert main(["report", str(case)]) == 2
-    assert len(capsys.readouterr().err.splitlines()) == 2
+    assert len(refused("report", case).splitlines()) == 2
 
 
 @pytest.mark.gate
-def test_options_replace_who_made_the_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_options_replace_who_made_the_case(case: Path) -> None:
     about = '[about]\nproject = "<i>Hinge</i> \\";}</style>"\nrevision = "A"\nauthor = "A. Engineer"\n'
     case.write_text(CASE.replace("[contact]", f"{about}[contact]", 1))
-    assert main(["run", str(case), "-o", "result.h5"]) == 0
+    said("run", case, "-o", "result.h5")
     for source in ("case.toml", "result.h5"):
-        assert main(["report", source, "-o", "page.html", "--revision", "B", "--date", "1 May 2026"]) == 0
+        said("report", source, "-o", "page.html", "--revision", "B", "--date", "1 May 2026")
         text = Path("page.html").read_text(encoding="utf-8")
-        said = " ".join(Page(text).text.split())
-        assert 'Project<i>Hinge</i> ";}</style>' in said.replace("Project ", "Project")
+        told = " ".join(Page(text).text.split())
+        assert 'Project<i>Hinge</i> ";}</style>' in told.replace("Project ", "Project")
         for name, value in {"Author": "A. Engineer", "Revision": "B", "Date": "1 May 2026"}.items():
-            assert f"{name}{value}" in said.replace(f"{name} ", name)
+            assert f"{name}{value}" in told.replace(f"{name} ", name)
         left = text.partition('@top-left { content: "')[2].partition('"')[0]
         assert left.startswith("\\00003ci\\00003eHinge")
         assert left.endswith("A joint")
         assert 'page " counter(page) " of " counter(pages)' in text
-    capsys.readouterr()
 
 
 @pytest.mark.gate
-def test_a_sweep_takes_who_made_its_base_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_sweep_takes_who_made_its_base_case(case: Path) -> None:
     case.write_text(CASE.replace("[contact]", '[about]\nproject = "Hinge"\n[contact]', 1))
     Path("plan.toml").write_text('case = "case.toml"\n[grid]\n"contact.friction" = [0.1, 0.2]\nsolve.nodes = [41]\n')
-    assert main(["sweep", "plan.toml", "--workers", "1"]) == 0
-    assert main(["report", "plan", "-o", "page.html", "--author", "A. Engineer"]) == 0
-    said = Page(Path("page.html").read_text(encoding="utf-8")).text
-    assert "Hinge" in said
-    assert "A. Engineer" in said
-    capsys.readouterr()
+    said("sweep", "plan.toml", "--workers", "1")
+    said("report", "plan", "-o", "page.html", "--author", "A. Engineer")
+    assert "Hinge" in words("page.html")
+    assert "A. Engineer" in words("page.html")

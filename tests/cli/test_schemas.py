@@ -18,6 +18,7 @@ from fastpin.report.schema import COMMANDS
 from fastpin.verification.rows import Check
 from tests.support import seats
 from tests.support.case_texts import PRESSED
+from tests.support.commands import printed, said
 from tests.support.tiers import some_gate
 
 BUSHED = PRESSED + '[plate_body]\nmaterial = "C93200"\nouter_radius = 0.012\ninterference = 1e-5\n'
@@ -42,15 +43,9 @@ def faults(document: Any, command: str) -> list[str]:
     ]
 
 
-def written(folder: Path, *words: str) -> Any:
-    file = folder / "out.json"
-    main([*words, "--json", str(file)])
-    return json.loads(file.read_text())
-
-
-@pytest.fixture(autouse=True)
-def _inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def written(*words: str) -> Any:
+    main([*words, "--json", "out.json"])
+    return json.loads(Path("out.json").read_text())
 
 
 @pytest.mark.gate
@@ -72,58 +67,58 @@ def test_every_command_with_json_has_a_schema() -> None:
 @pytest.mark.parametrize(
     "case", some_gate(CASES, "example", "dimensionless", "bushed", "bush that slips", "not followed", "lug")
 )
-def test_summaries(case: str, tmp_path: Path) -> None:
-    (tmp_path / "case.toml").write_text(CASES[case])
-    found = written(tmp_path, "run", "case.toml", "--nodes", "61", "-o", "a.h5")
+def test_summaries(case: str) -> None:
+    Path("case.toml").write_text(CASES[case])
+    found = written("run", "case.toml", "--nodes", "61", "-o", "a.h5")
     assert faults(found, "run") == []
     assert (found["error"] is not None) == (case == "not followed")
-    assert faults(written(tmp_path, "show", "a.h5"), "run") == []
+    assert faults(written("show", "a.h5"), "run") == []
 
 
-def test_summaries_with_error_bars_and_a_cycle(tmp_path: Path) -> None:
-    (tmp_path / "case.toml").write_text(CASES["dimensionless"])
+def test_summaries_with_error_bars_and_a_cycle() -> None:
+    Path("case.toml").write_text(CASES["dimensionless"])
     words = ("run", "case.toml", "--nodes", "101", "--error-bars", "--slip-sums", "--cycle-csv", "c.csv")
-    found = written(tmp_path, *words)
+    found = written(*words)
     assert found["states"][0]["error_bars"]
     assert found["cycle"]
     assert faults(found, "run") == []
 
 
 @pytest.mark.gate
-def test_a_study(tmp_path: Path) -> None:
-    (tmp_path / "case.toml").write_text(PRESSED)
+def test_a_study() -> None:
+    Path("case.toml").write_text(PRESSED)
     for more in ([], ["--increments", "5,10,20"]):
-        assert faults(written(tmp_path, "converge", "case.toml", "--nodes", "51,61,81", *more), "converge") == []
+        assert faults(written("converge", "case.toml", "--nodes", "51,61,81", *more), "converge") == []
 
 
-def test_checks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_checks(monkeypatch: pytest.MonkeyPatch) -> None:
     checks = [Check("a", "b", "c", 1.0, 1.5, 0.5, 0.1, "relative"), Check("a", "b", message="no path")]
     monkeypatch.setattr(verification, "verify", lambda _: checks)
-    assert faults(written(tmp_path, "verify"), "verify") == []
+    assert faults(written("verify"), "verify") == []
 
 
 @pytest.mark.gate
-def test_benchmarks(tmp_path: Path) -> None:
-    assert faults(written(tmp_path, "benchmarks", "nafems-loaded-pin"), "benchmarks") == []
+def test_benchmarks() -> None:
+    assert faults(written("benchmarks", "nafems-loaded-pin"), "benchmarks") == []
 
 
 @pytest.mark.parametrize(
     "words", [(), ("kt_bearing",), ("contact_angle", "--load-parameter", "1", "--friction", "0.3")]
 )
-def test_charts(words: tuple[str, ...], tmp_path: Path) -> None:
-    assert faults(written(tmp_path, "charts", *words), "charts") == []
+def test_charts(words: tuple[str, ...]) -> None:
+    assert faults(written("charts", *words), "charts") == []
 
 
 @pytest.mark.gate
-def test_a_compliance(tmp_path: Path) -> None:
-    (tmp_path / "lug.toml").write_text(LUG_EXAMPLE)
-    assert main(["compliance", "lug.toml", "-o", "lug.json"]) == 0
-    assert faults(json.loads((tmp_path / "lug.json").read_text()), "compliance") == []
+def test_a_compliance() -> None:
+    Path("lug.toml").write_text(LUG_EXAMPLE)
+    said("compliance", "lug.toml", "-o", "lug.json")
+    assert faults(json.loads(Path("lug.json").read_text()), "compliance") == []
 
 
-def test_a_key_that_is_missing_or_new_is_noticed(tmp_path: Path) -> None:
-    (tmp_path / "case.toml").write_text(PRESSED)
-    found = written(tmp_path, "run", "case.toml", "--nodes", "61")
+def test_a_key_that_is_missing_or_new_is_noticed() -> None:
+    Path("case.toml").write_text(PRESSED)
+    found = written("run", "case.toml", "--nodes", "61")
     for key in ("states", "units"):
         assert faults({name: value for name, value in found.items() if name != key}, "run")
     assert faults(found | {"more": 1}, "run")
@@ -132,6 +127,5 @@ def test_a_key_that_is_missing_or_new_is_noticed(tmp_path: Path) -> None:
     assert faults(other, "run") == ["$.states[0].peak_pressure: 'high' is not of type 'number', 'null'"]
 
 
-def test_the_command_prints_the_schema(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["schema", "run"]) == 0
-    assert json.loads(capsys.readouterr().out) == json_schema("run")
+def test_the_command_prints_the_schema() -> None:
+    assert json.loads(printed("schema", "run")) == json_schema("run")

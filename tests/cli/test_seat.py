@@ -8,22 +8,18 @@ import pytest
 
 from fastpin import solve, wear
 from fastpin.casefile import parse_case
-from fastpin.cli.main import main
-from fastpin.errors import CaseFileError, InputError
+from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS
 from fastpin.model.angles import from_bottom
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.states import bush_line, seat_line
+from tests.support.commands import printed, refused, said
+from tests.support.faults import fault_of
 from tests.support.seats import BONDED, LOADS, SLIPS, TEXT, sample_case, sample_seat, stored_sample
 
-NOT_OF_STATES = {
-    "scar",
-    "wear",
-    "damage",
-    "animation",
-    "gap",
-    *(name for name, kind in KINDS.items() if kind.of_laminates),
+NOT_OF_STATES = {"scar", "wear", "damage", "animation", "gap"} | {
+    name for name, kind in KINDS.items() if kind.of_laminates
 }
 """Kinds that need a life of wear, write a film, or have nothing to show of this joint."""
 
@@ -37,18 +33,17 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.gate
-def test_run_and_show_say_the_same_of_the_seat(stored: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_run_and_show_say_the_same_of_the_seat(stored: Path) -> None:
     lines = []
-    for words in (["run", str(stored.with_suffix(".toml"))], ["show", str(stored)]):
-        assert main(words) == 0
-        out = capsys.readouterr().out
+    for words in (["run", stored.with_suffix(".toml")], ["show", stored]):
+        out = printed(*words)
         assert "would slip" not in out
         assert "bonded bush" not in out
-        lines.append([line for line in out.splitlines() if line.startswith("bush in its seat")])
-    assert lines[0] == lines[1]
+        lines += [line for line in out.splitlines() if line.startswith("bush in its seat")]
+    line, again = lines
+    assert line == again
     result = sample_seat()
-    seats = [state.seat for state in result if state.seat is not None]
-    (line,) = lines[0]
+    seats = result.seat.states
     most = max(seats, key=lambda seat: abs(seat.peak_slip))
     assert line.startswith("bush in its seat at load point 10: contact all round, stick ")
     slip = f"{most.peak_slip * 1e6:.4g} um at {from_bottom(most.peak_slip_angle):.2f} deg, load point {most.step + 1}"
@@ -74,39 +69,33 @@ def test_without_a_seat_there_is_no_line() -> None:
     assert "the bush sticks with a friction of" in bush_line(problem, [state])
 
 
-def test_check_says_that_the_bush_slips(stored: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["check", str(stored.with_suffix(".toml"))]) == 0
-    assert "outer radius 12.5 mm, slips, friction 0.15 in the plate\n" in capsys.readouterr().out
+def test_check_says_that_the_bush_slips(stored: Path) -> None:
+    assert "outer radius 12.5 mm, slips, friction 0.15 in the plate\n" in printed("check", stored.with_suffix(".toml"))
 
 
 # --- the seat alone --------------------------------------------------------------------------------------------
 
 
 @pytest.mark.gate
-def test_show_prints_the_table_of_the_seat(stored: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = tmp_path / "seat.json"
-    assert main(["show", str(stored), "--interface", "seat", "--json", str(file)]) == 0
-    out = capsys.readouterr().out.splitlines()
+def test_show_prints_the_table_of_the_seat(stored: Path) -> None:
+    out = printed("show", stored, "--interface", "seat", "--json", "seat.json").splitlines()
     assert out[0] == "seat of the bush"
-    last, seat = next(line.split() for line in out if line.split()[:1] == ["10"]), sample_seat()[-1].seat
-    assert seat is not None
-    assert last[3:5] == [f"{seat.peak_pressure / 1e6:.5g}", f"{from_bottom(seat.peak_pressure_angle):.2f}"]
+    seat = sample_seat().seat
+    last = next(line.split() for line in out if line.split()[:1] == ["10"])
+    assert last[3:5] == [f"{seat[-1].peak_pressure / 1e6:.5g}", f"{from_bottom(seat[-1].peak_pressure_angle):.2f}"]
     turned = next(line for line in out if line.startswith("to corner 10"))
-    found = sample_seat().seat
-    assert found is not None
-    walked = units(found.problem)["rotation"].text(found.cycles[-1].rotation_change, 3)
+    walked = units(seat.problem)["rotation"].text(seat.cycles[-1].rotation_change, 3)
     assert turned.endswith(f"turned {walked}")
-    document = json.loads(file.read_text(encoding="utf-8"))
-    assert document["states"][-1]["rotation"] == seat.rotation
+    document = json.loads(Path("seat.json").read_text(encoding="utf-8"))
+    assert document["states"][-1]["rotation"] == seat[-1].rotation
     assert "seat" not in document["states"][-1]
 
 
 @pytest.mark.gate
-def test_the_summary_of_a_state_has_its_seat(stored: Path, tmp_path: Path) -> None:
-    file = tmp_path / "joint.json"
-    assert main(["show", str(stored), "--json", str(file)]) == 0
-    document = json.loads(file.read_text(encoding="utf-8"))
-    seats = [state.seat for state in sample_seat() if state.seat is not None]
+def test_the_summary_of_a_state_has_its_seat(stored: Path) -> None:
+    said("show", stored, "--json", "joint.json")
+    document = json.loads(Path("joint.json").read_text(encoding="utf-8"))
+    seats = sample_seat().seat.states
     for told, seat in zip(document["states"], seats, strict=True):
         assert told["seat"]["rotation"] == seat.rotation
         assert told["seat"]["peak_pressure"] == seat.peak_pressure
@@ -118,48 +107,35 @@ def test_the_summary_of_a_state_has_its_seat(stored: Path, tmp_path: Path) -> No
 
 @pytest.mark.gate
 @pytest.mark.parametrize("kind", sorted(KINDS.keys() - NOT_OF_STATES))
-def test_every_kind_of_figure_shows_the_seat(kind: str, stored: Path, tmp_path: Path) -> None:
-    figure = tmp_path / "a.png"
-    assert main(["plot", str(stored), kind, "--interface", "seat", "-o", str(figure)]) == 0
-    seat = sample_seat().seat
-    assert seat is not None
-    seat.plot(tmp_path / "b.png", kind=kind)
-    assert all(path.read_bytes().startswith(b"\x89PNG") for path in (figure, tmp_path / "b.png"))
+def test_every_kind_of_figure_shows_the_seat(kind: str, stored: Path) -> None:
+    said("plot", stored, kind, "--interface", "seat", "-o", "a.png")
+    sample_seat().seat.plot("b.png", kind=kind)
+    assert all(Path(name).read_bytes().startswith(b"\x89PNG") for name in ("a.png", "b.png"))
 
 
-def test_the_numbers_of_a_figure_are_those_of_the_seat(stored: Path, tmp_path: Path) -> None:
-    table = tmp_path / "a.csv"
-    words = ["plot", str(stored), "tractions", "--interface", "seat", "--states", "last"]
-    assert main([*words, "-o", str(tmp_path / "a.png"), "--csv", str(table)]) == 0
-    seat = sample_seat()[-1].seat
-    assert seat is not None
-    head, *rows = [line.split(",") for line in table.read_text(encoding="utf-8").splitlines()]
+def test_the_numbers_of_a_figure_are_those_of_the_seat(stored: Path) -> None:
+    said("plot", stored, "tractions", "--interface", "seat", "--states", "last", "-o", "a.png", "--csv", "a.csv")
+    head, *rows = [line.split(",") for line in Path("a.csv").read_text(encoding="utf-8").splitlines()]
     pressure = [float(row[next(k for k, name in enumerate(head) if "pressure" in name)] or "nan") for row in rows]
-    assert max(pressure) == pytest.approx(seat.pressure.max(), rel=1e-2)
+    assert max(pressure) == pytest.approx(sample_seat()[-1].seat.pressure.max(), rel=1e-2)
 
 
 @pytest.mark.gate
-def test_other_files_have_no_seat(stored: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    bonded = tmp_path / "bonded.toml"
-    bonded.write_text(BONDED + "[solve]\nnodes = 48\n[[load]]\nP = 40e3\n", encoding="utf-8")
-    assert main(["run", str(bonded), "-o", str(tmp_path / "bonded.h5")]) == 0
-    capsys.readouterr()
+def test_other_files_have_no_seat(stored: Path) -> None:
+    Path("bonded.toml").write_text(BONDED + "[solve]\nnodes = 48\n[[load]]\nP = 40e3\n", encoding="utf-8")
+    said("run", "bonded.toml", "-o", "bonded.h5")
     for command in ("show", "plot"):
-        assert main([command, str(tmp_path / "bonded.h5"), "--interface", "seat"]) == 2
-        words = "--interface: {}: the joint has no seat of a bush that slips (bonded = false)"
-        assert words.format(tmp_path / "bonded.h5") in capsys.readouterr().err
-    assert main(["plot", str(stored.with_suffix(".toml")), "--interface", "seat"]) == 2
-    assert "--interface: chooses a contact of a result; a case file has none" in capsys.readouterr().err
+        words = "--interface: bonded.h5: the joint has no seat of a bush that slips (bonded = false)"
+        assert words in refused(command, "bonded.h5", "--interface", "seat")
+    words = "--interface: chooses a contact of a result; a case file has none"
+    assert words in refused("plot", stored.with_suffix(".toml"), "--interface", "seat")
 
 
 # --- what is refused, in Python and in files -------------------------------------------------------------------
 
 
 def fault(text: str) -> tuple[int, str]:
-    with pytest.raises(CaseFileError) as caught:
-        parse_case(text)
-    (found,) = caught.value.problems
-    return found
+    return fault_of(parse_case, text)
 
 
 def line_of(text: str, start: str) -> int:
@@ -188,13 +164,12 @@ def test_a_displacement_does_not_drive_a_pin_in_a_bush_that_slips(drive: str) ->
     assert str(caught.value) == words
 
 
-def test_wear_needs_a_bonded_bush(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wear_needs_a_bonded_bush() -> None:
     words = "bonded: must be true, in an infinite plate or a ring: the wear in other bushes is not known"
     text = TEXT + "[wear]\ncoefficient = 1e-15\ncycles = 10\n"
     assert fault(text) == (line_of(text, "bonded"), words)
-    (tmp_path / "case.toml").write_text(TEXT, encoding="utf-8")
-    assert main(["wear", str(tmp_path / "case.toml"), "--coefficient", "1e-15"]) == 2
-    assert capsys.readouterr().err == f"fastpin: {words}\n"
+    Path("case.toml").write_text(TEXT, encoding="utf-8")
+    assert refused("wear", "case.toml", "--coefficient", "1e-15") == f"fastpin: {words}\n"
     case = sample_case()
     for problem in (case.problem, case.problem.interfaces[1]):
         with pytest.raises(InputError) as caught:

@@ -8,8 +8,8 @@ import pytest
 
 import fastpin
 from fastpin import damage, studies
-from fastpin.cli.main import main
 from fastpin.report import json_schema
+from tests.support.commands import printed, said
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -34,31 +34,27 @@ failure = true
 HEAD = "strength ratio {:.4g} by tsai-wu 500 um from the edge, the least of 3 kept states, at load point 1; at "
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+@pytest.fixture(autouse=True)
+def _case():
     Path("case.toml").write_text(CASE)
-    return tmp_path
 
 
 @pytest.mark.gate
-def test_a_case_with_a_strength_is_told_by_every_command(folder, capsys):
+def test_a_case_with_a_strength_is_told_by_every_command():
     case = fastpin.read_case("case.toml")
     states = fastpin.solve(case.problem, case.history, nodes=61)
     found = damage.joint_strength(states[0], "tsai-wu", distance=0.5e-3)
     assert found.least_ratio < damage.joint_strength(states[1], "tsai-wu", distance=0.5e-3).least_ratio
-    assert main(["run", "case.toml"]) == 0
-    printed = capsys.readouterr().out.splitlines()
-    lines = [each for each in printed if each.startswith(("load at failure", "strength"))]
-    assert f"1 of {found.least_ratio:.3g}" in next(each for each in printed if "plate: first ply by tsai-wu" in each)
+    shown = printed("run", "case.toml").splitlines()
+    lines = [each for each in shown if each.startswith(("load at failure", "strength"))]
+    assert f"1 of {found.least_ratio:.3g}" in next(each for each in shown if "plate: first ply by tsai-wu" in each)
     assert lines[0].startswith(HEAD.format(found.least_ratio))
     assert f"ply of {found.ply_angle:g} deg by {found.ply_mode}, {found.joint_mode}" in lines[0]
     options = {"over": "history", "nodes": 61}
     failure = studies.failure_load(case.problem, case.history, "tsai-wu", distance=0.5e-3, **options)
     assert lines[1].startswith(f"load at failure: {failure.factor:.4g} times all loads; load point 1; at ")
-    assert main(["run", "case.toml", "-o", "case.h5", "--json", "case.json"]) == 0
-    assert main(["show", "case.h5", "--json", "shown.json"]) == 0
-    assert capsys.readouterr().out.count(lines[0]) == 2
+    assert lines[0] in printed("run", "case.toml", "-o", "case.h5", "--json", "case.json")
+    assert lines[0] in printed("show", "case.h5", "--json", "shown.json")
     document = json.loads(Path("case.json").read_text())
     jsonschema.validate(document, json_schema("run"))
     told = document["strength"]
@@ -68,9 +64,8 @@ def test_a_case_with_a_strength_is_told_by_every_command(folder, capsys):
     assert told["failure"]["factor"] == pytest.approx(failure.factor, rel=1e-9)
     assert told["failure"]["load"]["P"] == pytest.approx(2e3 * failure.factor)  # N: with a thickness
     assert fastpin.storage.stored_case("case.h5").strength == case.strength
-    assert main(["check", "case.toml"]) == 0
-    assert "tsai-wu 500 um from the edge, with the load at failure" in capsys.readouterr().out
-    assert main(["report", "case.h5", "-o", "page.html"]) == 0
+    assert "tsai-wu 500 um from the edge, with the load at failure" in printed("check", "case.toml")
+    said("report", "case.h5", "-o", "page.html")
     page = Path("page.html").read_text()
     assert lines[0][1:] in page
     assert lines[1][1:] in page
@@ -82,45 +77,39 @@ def test_a_case_with_a_strength_is_told_by_every_command(folder, capsys):
 
 
 @pytest.mark.gate
-def test_a_figure_takes_the_section_unless_options_replace_it(folder, capsys):
-    assert main(["run", "case.toml", "-o", "case.h5"]) == 0
+def test_a_figure_takes_the_section_unless_options_replace_it():
+    said("run", "case.toml", "-o", "case.h5")
     state = fastpin.load("case.h5")[0]
     for words, criterion, distance in (
         ([], "tsai-wu", 0.5e-3),
         (["--criterion", "yamada-sun"], "yamada-sun", 0.5e-3),
         (["--depth", "1e-3"], "tsai-wu", 1e-3),
     ):
-        assert main(["plot", "case.h5", "strength", "--states", "1", "--csv", "one.csv", *words]) == 0
+        said("plot", "case.h5", "strength", "--states", "1", "--csv", "one.csv", *words)
         ratios = [float(row["strength ratio"]) for row in csv.DictReader(Path("one.csv").read_text().splitlines())]
-        assert min(ratios) == pytest.approx(
-            damage.joint_strength(state, criterion, distance=distance).least_ratio, rel=1e-7
-        )
+        least = damage.joint_strength(state, criterion, distance=distance).least_ratio
+        assert min(ratios) == pytest.approx(least, rel=1e-7)
 
 
 @pytest.mark.gate
-def test_states_without_a_force_have_no_curve(folder, capsys):
-    Path("case.toml").write_text(CASE.replace("distance = 0.5e-3", "tension = 0.5e-3\ncompression = 1e-3"))
-    assert main(["run", "case.toml", "-o", "case.h5"]) == 0
-    assert "by tsai-wu on the characteristic curve of 500 um in tension and 1 mm in compr" in capsys.readouterr().out
-    assert main(["plot", "case.h5", "strength", "--states", "1"]) == 0
-    Path("case.toml").write_text(
-        CASE.replace("distance = 0.5e-3", "tension = 0.5e-3\ncompression = 1e-3").replace("[2e3, 1e3, 0]", "0")
-    )
-    assert main(["run", "case.toml"]) == 0
-    told = capsys.readouterr()
-    assert "note: no strength is assessed: tension: needs a force on the pin" in told.err
+def test_states_without_a_force_have_no_curve():
+    curve = CASE.replace("distance = 0.5e-3", "tension = 0.5e-3\ncompression = 1e-3")
+    Path("case.toml").write_text(curve)
+    words = "by tsai-wu on the characteristic curve of 500 um in tension and 1 mm in compr"
+    assert words in printed("run", "case.toml", "-o", "case.h5")
+    said("plot", "case.h5", "strength", "--states", "1")
+    Path("case.toml").write_text(curve.replace("[2e3, 1e3, 0]", "0"))
+    assert "note: no strength is assessed: tension: needs a force on the pin" in said("run", "case.toml").err
 
 
-def test_a_failure_that_is_not_found_has_a_reason(folder, capsys):
+def test_a_failure_that_is_not_found_has_a_reason():
     Path("case.toml").write_text(CASE.replace("P = [2e3, 1e3, 0]", "P = [0, 0, 0]"))
-    assert main(["run", "case.toml", "--json", "case.json"]) == 0
-    assert "strength by tsai-wu 500 um from the edge: no stress" in capsys.readouterr().out
+    assert "strength by tsai-wu 500 um from the edge: no stress" in printed("run", "case.toml", "--json", "case.json")
     told = json.loads(Path("case.json").read_text())["strength"]
     assert told["ratio"] is None
     assert told["error"].startswith("history: must stress the laminate")
 
 
-def test_json_of_another_case_has_none(folder):
+def test_json_of_another_case_has_none():
     Path("case.toml").write_text(CASE[: CASE.index("[strength]")])
-    assert main(["run", "case.toml", "--json", "case.json"]) == 0
-    assert json.loads(Path("case.json").read_text())["strength"] is None
+    assert json.loads(printed("run", "case.toml", "--json"))["strength"] is None

@@ -1,12 +1,9 @@
 """The commands ``sweep`` and ``merge``: what they print, their exit codes and their files."""
 
-from __future__ import annotations
-
 import csv
 import sys
-from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -15,59 +12,47 @@ from fastpin.cli import sweep as sweep_command
 from fastpin.cli.main import main
 from fastpin.cli.progress import READ_POINTS
 from fastpin.studies import sweep, workers
-from scripts.inline import Inline
+from tests.support.commands import printed, refusal, refused, said
 from tests.support.outcomes import FILE
-from tests.support.plans import MOMENT
+from tests.support.plans import MOMENT, run_here
 
 
 @pytest.fixture
-def path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def path(monkeypatch: pytest.MonkeyPatch) -> Path:
     """A plan file in the working directory; its runs are made in this process."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(workers, "through_processes", lambda _, tasks, submit, size: inline(tasks, submit))
-    (tmp_path / "moment.toml").write_text(MOMENT)
+    monkeypatch.setattr(workers, "through_processes", run_here)
+    Path("moment.toml").write_text(MOMENT)
     return Path("moment.toml")
 
 
-def inline(tasks: list[str], submit: Callable[..., Any]) -> Any:
-    for task in tasks:
-        yield (task,), submit(Inline(), (task,)).result()
-
-
 @pytest.mark.gate
-def test_a_sweep_says_what_was_done_and_what_failed(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["sweep", str(path), "--status"]) == 0
-    out = capsys.readouterr().out
+def test_a_sweep_says_what_was_done_and_what_failed(path: Path) -> None:
+    out = printed("sweep", path, "--status")
     assert out == "Moment that friction carries\n6 runs in moment: 0 done, 0 failed, 6 waiting\n"
     assert not Path("moment").exists()
 
-    assert main(["sweep", str(path)]) == 1
-    captured = capsys.readouterr()
+    captured = said("sweep", path, code=1)
     lines = captured.out.splitlines()
     assert lines[1].startswith("6 runs in moment: 4 done, 2 failed, 0 waiting; 6 in ")
     assert len([line for line in lines if line.startswith("failed: ") and "nothing holds the pin" in line]) == 2
     assert 'contact.pin_load = "centre", solve.nodes = 41, contact.friction = 0.1, load.2.M = 3000.0' in lines[2]
     assert captured.err == ""  # no progress bar: standard error is no terminal
 
-    assert main(["sweep", str(path), "--status"]) == 0
-    assert capsys.readouterr().out.splitlines()[1] == "6 runs in moment: 4 done, 2 failed, 0 waiting"
-    assert main(["sweep", str(path)]) == 1
-    assert "; 0 in " in capsys.readouterr().out
-    assert main(["sweep", str(path), "--retry"]) == 1
-    assert "; 2 in " in capsys.readouterr().out
+    assert printed("sweep", path, "--status").splitlines()[1] == "6 runs in moment: 4 done, 2 failed, 0 waiting"
+    assert "; 0 in " in said("sweep", path, code=1).out
+    assert "; 2 in " in said("sweep", path, "--retry", code=1).out
 
 
 @pytest.mark.gate
-def test_table_csv_and_figure_come_after_the_runs(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["sweep", str(path), "-o", "out", "--table", "--plot", "a.png"]) == 1
-    captured = capsys.readouterr()
+def test_table_csv_and_figure_come_after_the_runs(path: Path) -> None:
+    captured = said("sweep", path, "-o", "out", "--table", "--plot", "a.png", code=1)
     assert "note: 2 of 6 points have no value in the figure" in captured.err
     table = captured.out.splitlines()[-8:]
     assert table[0].split()[:4] == ["run", "contact.pin_load", "solve.nodes", "contact.friction"]
     assert [line.split()[-1] for line in table[2:]] == ["done", "failed", "failed", "done", "done", "done"]
     assert Path("a.png").read_bytes().startswith(b"\x89PNG")
 
-    assert main(["sweep", str(path), "-o", "out", "--status", "--table", "a.csv"]) == 0
+    said("sweep", path, "-o", "out", "--status", "--table", "a.csv")
     lines = Path("a.csv").read_text().splitlines()
     assert lines[0].startswith("# fastpin ")
     assert "peak_pressure Pa, peak_pressure_angle deg" in lines[1]
@@ -81,24 +66,20 @@ def test_table_csv_and_figure_come_after_the_runs(path: Path, capsys: pytest.Cap
 
 
 def test_parts_are_merged(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for part in ("1/2", "2/2"):
-        main(["sweep", str(path), "--shard", part, "-o", f"part{part[0]}"])
+    for part in (1, 2):
+        main(["sweep", str(path), "--shard", f"{part}/2", "-o", f"part{part}"])
         assert "3 runs in part" in capsys.readouterr().out
-    assert main(["merge", "part1", "part2", "-o", "whole"]) == 0
-    assert capsys.readouterr().out == "6 runs in whole\n"
-    assert main(["sweep", str(path), "--status", "-o", "whole"]) == 0
-    assert "6 runs in whole: 4 done, 2 failed, 0 waiting" in capsys.readouterr().out
+    assert printed("merge", "part1", "part2", "-o", "whole") == "6 runs in whole\n"
+    assert "6 runs in whole: 4 done, 2 failed, 0 waiting" in printed("sweep", path, "--status", "-o", "whole")
 
 
 @pytest.mark.gate
-def test_outcomes_come_from_the_plan_and_from_the_option(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["sweep", str(path)]) == 1
-    capsys.readouterr()
+def test_outcomes_come_from_the_plan_and_from_the_option(path: Path) -> None:
+    said("sweep", path, code=1)
     Path("mine.py").write_text(FILE)
     path.write_text(MOMENT + '[outcomes]\nshear = { quantity = "peak_shear", take = "largest magnitude" }\n')
     arguments = ["sweep", str(path), "--outcomes", "mine.py"]
-    assert main([*arguments, "--table", "--plot", "a.png"]) == 1
-    captured = capsys.readouterr()
+    captured = said(*arguments, "--table", "--plot", "a.png", code=1)
     lines = captured.out.splitlines()
     run = lines[-6].split()[0]
     assert lines[1].startswith("6 runs in moment: 4 done, 2 failed, 0 waiting; 0 in ")
@@ -111,8 +92,8 @@ def test_outcomes_come_from_the_plan_and_from_the_option(path: Path, capsys: pyt
     assert Path("a.png").read_bytes().startswith(b"\x89PNG")  # of the first outcome
     assert "2 of 6 points have no value" in captured.err
 
-    assert main([*arguments, "--status", "--table", "a.csv", "--plot", "b.png", "--value", "largest_pressure"]) == 0
-    assert "outcome broken can't be read in 4 runs" in capsys.readouterr().out
+    outputs = ["--table", "a.csv", "--plot", "b.png", "--value", "largest_pressure"]
+    assert "outcome broken can't be read in 4 runs" in printed(*arguments, "--status", *outputs)
     lines = Path("a.csv").read_text().splitlines()
     assert "# units: load.2.M N, shear Pa, largest_pressure Pa, peak_pressure Pa" in lines[1]
     for row in csv.DictReader(lines[2:]):
@@ -120,11 +101,9 @@ def test_outcomes_come_from_the_plan_and_from_the_option(path: Path, capsys: pyt
         assert row["shear"] == row["max_shear"]
 
 
-def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "plan.toml"
-    path.write_text("[grid]\nplate.nu = [0.33, 0.330]\n")
-    assert main(["sweep", str(path), "--status", "-o", str(tmp_path / "out")]) == 0
-    out = capsys.readouterr().out
+def test_points_that_share_a_run_are_counted() -> None:
+    Path("plan.toml").write_text("[grid]\nplate.nu = [0.33, 0.330]\n")
+    out = printed("sweep", "plan.toml", "--status", "-o", "out")
     assert "1 runs in " in out
     assert "1 points of the plan have the same input as another and share its run" in out
 
@@ -151,48 +130,36 @@ def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.Capt
         (["-o", "moment.toml"], "moment.toml: can't be made: File exists"),
     ],
 )
-def test_what_can_not_be_done_is_told_before_the_runs(arguments, words, path, capsys, monkeypatch):
+def test_what_can_not_be_done_is_told_before_the_runs(arguments, words, path, monkeypatch):
     monkeypatch.setattr(sweep_command, "CLUSTER_SECONDS", 0.1)
-    assert main(["sweep", str(path), *arguments]) == 2
-    captured = capsys.readouterr()
-    assert words in captured.err
-    assert captured.out == ""
+    assert words in refused("sweep", path, *arguments)
     assert not Path("moment").exists()
 
 
-def test_a_plan_with_faults_prints_them_all(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "plan.toml"
-    path.write_text("[grid]\ncontact.friction = [-1]\nsolve.nodes = [1]\n")
-    assert main(["sweep", str(path)]) == 2
-    lines = capsys.readouterr().err.splitlines()
+def test_a_plan_with_faults_prints_them_all() -> None:
+    Path("plan.toml").write_text("[grid]\ncontact.friction = [-1]\nsolve.nodes = [1]\n")
+    lines = refused("sweep", "plan.toml").splitlines()
     assert [line.split(": ")[1] for line in lines] == ["contact.friction", "solve.nodes"]
-    assert all(line.startswith(f"{path}, line ") for line in lines)
+    assert all(line.startswith("plan.toml, line ") for line in lines)
 
 
-def test_a_foreign_index_is_one_sentence(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_foreign_index_is_one_sentence(path: Path) -> None:
     Path("moment").mkdir()
     Path("moment/index.sqlite").write_text("mine" * 1000)
     for arguments in ([], ["--status"]):
-        assert main(["sweep", str(path), *arguments]) == 2
-        err = capsys.readouterr().err
-        assert "index.sqlite: is no index of a sweep, or a damaged one" in err
-        assert err.count("\n") == 1
+        assert "index.sqlite: is no index of a sweep, or a damaged one" in refusal("sweep", path, *arguments)
 
 
-def test_the_cluster_extra_is_asked_for(path, capsys, monkeypatch):
+def test_the_cluster_extra_is_asked_for(path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    assert main(["sweep", str(path), "--dask", "tcp://x:1"]) == 2
-    assert "pip install 'fastpin[cluster]'" in capsys.readouterr().err
+    assert "pip install 'fastpin[cluster]'" in refused("sweep", path, "--dask", "tcp://x:1")
 
 
-def test_the_progress_bar_has_the_time_left(path, capsys, monkeypatch):
+def test_the_progress_bar_has_the_time_left(path, monkeypatch):
     shown = []
 
-    class Bar:
+    class Bar(AbstractContextManager):
         n = total = 0
-
-        def __enter__(self) -> Bar:
-            return self
 
         def __exit__(self, *_: object) -> None:
             pass
@@ -205,16 +172,15 @@ def test_the_progress_bar_has_the_time_left(path, capsys, monkeypatch):
             shown.append((self.text, self.n, self.total))
 
     monkeypatch.setattr(sweep_command, "Bar", Bar)
-    main(["sweep", str(path)])
+    said("sweep", path, code=1)
     read, ran = [(READ_POINTS, k, 6) for k in range(6)], [("run {n} of {total}", k, 6) for k in range(7)]
     assert shown == read + ran
 
 
-@pytest.mark.parametrize("command", ["sweep PLAN -o DIR --status", "report PLAN"])
-def test_reading_a_plan_moves_a_bar(command, tmp_path, capsys, monkeypatch):
-    (tmp_path / "plan.toml").write_text("[grid]\ncontact.friction = [0.3, 0.4]\nsolve.nodes = [41]\n")
+@pytest.mark.parametrize("command", ["sweep plan.toml -o runs --status", "report plan.toml"])
+def test_reading_a_plan_moves_a_bar(command, capsys, monkeypatch):
+    Path("plan.toml").write_text("[grid]\ncontact.friction = [0.3, 0.4]\nsolve.nodes = [41]\n")
     monkeypatch.setattr(progress, "DELAY", -1.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    words = {"PLAN": str(tmp_path / "plan.toml"), "DIR": str(tmp_path / "runs")}
-    main([words.get(word, word) for word in command.split()])
+    main(command.split())
     assert "checking the plan, 0 of 2 points" in capsys.readouterr().err

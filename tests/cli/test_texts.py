@@ -9,6 +9,7 @@ import pytest
 from fastpin.cli.main import main
 from fastpin.errors import printable
 from tests.support.case_texts import PRESSED
+from tests.support.commands import said
 from tests.support.processes import fastpin, finished
 
 CASE = f"""{PRESSED}[[load]]
@@ -57,8 +58,7 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_names_of_files_never_steer_the_terminal(command, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_names_of_files_never_steer_the_terminal(command, capsys):
     Path(f"{HOSTILE}.toml").write_text("[contact]\nfriction = 7\n", encoding="utf-8")
     Path(f"{HOSTILE}-plan.toml").write_text('[grid]\n"contact.friction" = [0.1]\n', encoding="utf-8")
     Path(f"{HOSTILE}.h5").write_text("no result", encoding="utf-8")
@@ -73,11 +73,9 @@ def test_names_of_files_never_steer_the_terminal(command, capsys, tmp_path, monk
 
 
 @pytest.mark.parametrize("command", ["check", "sweep"])
-def test_names_of_files_that_are_no_text_are_shown(command, capsys, tmp_path):
-    name = os.fsdecode(os.fsencode(tmp_path) + b"/caf\xe9.toml")
+def test_names_of_files_that_are_no_text_are_shown(command):
+    name = os.fsdecode(b"caf\xe9.toml")
     Path(name).write_text(CASE, encoding="utf-8")
-    code = main([command, name])
-    out, err = capsys.readouterr()
-    assert code == (0 if command == "check" else 2), err
+    out, err = said(command, name, code=0 if command == "check" else 2)
     assert is_shown(out + err)
     assert command == "check" or "caf\\udce9.toml" in err

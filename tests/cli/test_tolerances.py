@@ -1,17 +1,19 @@
 """The command ``tolerances``: what it prints, its exit codes, its files and its report."""
 
 import csv
+import itertools
 import json
-from collections.abc import Callable
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from fastpin.cli.main import main
 from fastpin.report import json_schema
 from fastpin.studies import workers
-from scripts.inline import Inline
+from tests.support.body_texts import HEAD
+from tests.support.commands import printed, refused, said
+from tests.support.plans import run_here
 
 PLAN = """
 title = "Moment that friction may not carry"
@@ -24,46 +26,25 @@ load.2.M = { from = 1000.0, to = 3000.0 }
 pressure = { quantity = "peak_pressure", take = "largest" }
 """
 
-CASE = """
-pin.material = "steel"
-plate.material = "aluminium"
-[contact]
-hole_radius = 10e-3
-clearance = 20e-6
-friction = 0.3
-pin_load = "centre"
-[[load]]
-P = 1e6
-[[load]]
-M = 1200.0
-[solve]
-nodes = 41
-"""
+CASE = HEAD.replace("friction = 0.3", 'friction = 0.3\npin_load = "centre"')
+CASE += "[[load]]\nM = 1200.0\n[solve]\nnodes = 41\n"
 
 
 @pytest.fixture
-def plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+def plan(monkeypatch: pytest.MonkeyPatch) -> str:
     """A plan in the working directory; its runs are made in this process. Small friction can't carry the moment."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(workers, "through_processes", lambda _, tasks, submit, size: inline(tasks, submit))
+    monkeypatch.setattr(workers, "through_processes", run_here)
     Path("case.toml").write_text(CASE)
     Path("moment.toml").write_text(PLAN)
     return "moment.toml"
 
 
-def inline(tasks: list[str], submit: Callable[..., Any]) -> Any:
-    for task in tasks:
-        yield (task,), submit(Inline(), (task,)).result()
-
-
 @pytest.mark.gate
-def test_a_study_prints_its_effects_and_names_what_failed(plan: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["tolerances", plan, "--status"]) == 0
-    assert capsys.readouterr().out.endswith("15 runs in moment: 0 done, 0 failed, 15 waiting\n")
+def test_a_study_prints_its_effects_and_names_what_failed(plan: str) -> None:
+    assert printed("tolerances", plan, "--status").endswith("15 runs in moment: 0 done, 0 failed, 15 waiting\n")
     assert not Path("moment").exists()
 
-    assert main(["tolerances", plan]) == 1  # some runs have failed
-    out = capsys.readouterr().out
+    out = said("tolerances", plan, code=1).out  # some runs have failed
     assert "nothing holds the pin any more" in out
     assert "failed: 2 of 4 corners, " in out
     assert "1 of 3 values of contact.friction alone; they count nowhere below" in out
@@ -75,15 +56,13 @@ def test_a_study_prints_its_effects_and_names_what_failed(plan: str, capsys: pyt
     assert largest.endswith("MPa at contact.friction = 0.5, load.2.M = 3 kN")
     assert any(line.startswith("percentiles of 6 samples: 5 %: ") for line in lines)
 
-    assert main(["tolerances", plan, "--status"]) == 0
-    assert "failed: 2 of 4 corners" in capsys.readouterr().out
+    assert "failed: 2 of 4 corners" in printed("tolerances", plan, "--status")
 
 
 @pytest.mark.gate
-def test_files_come_after_the_runs(plan: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_come_after_the_runs(plan: str) -> None:
     options = ["--table", "a.csv", "--plot", "a.png", "--scatter", "b.svg", "--json"]
-    assert main(["tolerances", plan, "-o", "out", *options]) == 1
-    document = json.loads(capsys.readouterr().out)
+    document = json.loads(said("tolerances", plan, "-o", "out", *options, code=1).out)
     assert (document["points"], document["corners"], document["samples"]) == (15, 4, 6)
     assert [each["part"] for each in document["failed"]][:3] == ["contact.friction alone", "a corner", "a corner"]
     found = document["outcomes"]["pressure"]
@@ -97,16 +76,16 @@ def test_files_come_after_the_runs(plan: str, capsys: pytest.CaptureFixture[str]
     jsonschema = pytest.importorskip("jsonschema")
     jsonschema.validate(document, json_schema("tolerances"))
 
-    assert main(["report", "out", "-o", "out.html"]) == 0
+    said("report", "out", "-o", "out.html")
     page = Path("out.html").read_text()
     assert "A tolerance study of the frictional contact" in page
     assert "Failed: 2 of 4 corners" in page
     assert "random samples between the limits" in page
-    assert main(["report", "out", "--plan", plan, "-o", "again.html"]) == 0
+    said("report", "out", "--plan", plan, "-o", "again.html")
     assert "Fields and their limits" in Path("again.html").read_text()
 
 
-def test_options_without_effect_are_refused(plan: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_options_without_effect_are_refused(plan: str) -> None:
     Path("none.toml").write_text(PLAN.replace("samples = 6", "samples = 0"))
     for options, words in (
         (["--value", "pressure"], "--value: says what a figure shows; --plot FILE or --scatter FILE is missing"),
@@ -115,30 +94,25 @@ def test_options_without_effect_are_refused(plan: str, capsys: pytest.CaptureFix
         (["--plot", "a.png", "--scatter", "a.png"], "--scatter: writes the same file as --plot"),
         (["--status", "--retry"], "--retry: runs what failed again"),
     ):
-        assert main(["tolerances", plan, *options]) == 2
-        assert words in capsys.readouterr().err
-    assert main(["tolerances", "none.toml", "--scatter", "a.png"]) == 2
-    assert "--scatter: draws samples, and the plan has none" in capsys.readouterr().err
+        assert words in refused("tolerances", plan, *options)
+    assert "--scatter: draws samples, and the plan has none" in refused("tolerances", "none.toml", "--scatter", "a.png")
     assert not Path("moment").exists()
 
 
-def test_figures_of_a_study_that_has_not_begun_are_empty(plan: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["tolerances", plan, "--status", "--plot", "a.png", "--scatter", "b.png", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["outcomes"]["pressure"]["nominal"] is None
+def test_figures_of_a_study_that_has_not_begun_are_empty(plan: str) -> None:
+    words = printed("tolerances", plan, "--status", "--plot", "a.png", "--scatter", "b.png", "--json")
+    assert json.loads(words)["outcomes"]["pressure"]["nominal"] is None
     assert Path("a.png").stat().st_size > 0
 
 
 @pytest.mark.gate
-def test_a_study_that_is_interrupted_continues(plan, capsys, monkeypatch):
-    def interrupted(_: object, tasks: list[str], submit: Callable[..., Any], size: int) -> Any:
-        for number, end in enumerate(inline(tasks, submit)):
-            if number == 4:
-                raise KeyboardInterrupt
-            yield end
+def test_a_study_that_is_interrupted_continues(plan, monkeypatch):
+    def interrupted(*given: Any) -> Iterator[Any]:
+        yield from itertools.islice(run_here(*given), 4)
+        raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
         patch.setattr(workers, "through_processes", interrupted)
-        assert main(["tolerances", plan]) == 130
-    assert "4 of 15 runs are finished and kept; the same command continues" in capsys.readouterr().err
-    assert main(["tolerances", plan]) == 1
-    assert "; 11 in " in capsys.readouterr().out
+        words = said("tolerances", plan, code=130).err
+    assert "4 of 15 runs are finished and kept; the same command continues" in words
+    assert "; 11 in " in said("tolerances", plan, code=1).out

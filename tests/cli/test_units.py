@@ -27,7 +27,7 @@ from fastpin.live.contact import LiveContact
 from fastpin.live.protocol import Message
 from fastpin.report.summary import json_ready
 from fastpin.studies import workers
-from scripts.inline import Inline
+from tests.support.plans import run_here
 from tests.support.tiers import some_survey
 
 T = 2.0**-7
@@ -190,10 +190,7 @@ def walk(found: Walk, part: str, monkeypatch: pytest.MonkeyPatch) -> None:
         Text, "draw", lambda self, *given, **more: drawn.append(self.get_text()) or draw(self, *given, **more)
     )
     monkeypatch.setattr(figures.stress, "field_curves", functools.partial(figures.stress.field_curves, fineness=20))
-    monkeypatch.setattr(
-        workers, "through_processes",
-        lambda _, tasks, submit, size: (((task,), submit(Inline(), (task,)).result()) for task in tasks),
-    )  # fmt: skip
+    monkeypatch.setattr(workers, "through_processes", run_here)
     for line in PARTS[part]:
         drawn.clear()
         said = io.StringIO()

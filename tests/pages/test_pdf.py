@@ -67,7 +67,6 @@ def test_pages_are_numbered_and_have_a_head(report: tuple[list[str], pypdf.PdfRe
         assert "Revision B · 2026-03-31 · A. Engineer" in text
     for name, value in ABOUT.given().items():
         assert f"{name.capitalize()} {value}" in texts[0]
-    assert pdf.metadata is not None
     assert (pdf.metadata.title, pdf.metadata.author) == (HOSTILE, "A. Engineer")
 
 

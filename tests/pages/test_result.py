@@ -18,28 +18,16 @@ from fastpin.figures.subjects import InMemory
 from fastpin.model import Laminate, Material, MaterialPair
 from fastpin.model.loads import LOAD, LOADS
 from fastpin.model.options import OPTIONS, SolveOptions
-from fastpin.pages import album, write_report
+from fastpin.pages import album, sections, write_report
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Text
-from fastpin.pages.sections import (
-    RESIDUAL_WORDS,
-    SECTIONS,
-    PageParts,
-    case,
-    convergence,
-    fatigue,
-    loads,
-    materials,
-    overview,
-    provenance,
-)
 from fastpin.pages.source import MOST_DRAWN, Source
 from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.states.quantities import QUANTITIES
 from fastpin.storage.layout import RESIDUALS
 from tests.support.drawing import outline_figures
-from tests.support.html import Page
+from tests.support.html import Page, words_of
 from tests.support.samples import JOINT, sample_result
 from tests.support.tiers import for_gate, gate
 
@@ -79,7 +67,7 @@ def text(stored: Path) -> str:
 @pytest.fixture
 def only(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """A function that leaves these sections on the page: all of them take half a second."""
-    return lambda *sections: monkeypatch.setattr("fastpin.pages.result.SECTIONS", sections)
+    return lambda *chosen: monkeypatch.setattr("fastpin.pages.result.SECTIONS", chosen)
 
 
 def test_page_is_well_formed_and_needs_nothing_from_outside(text: str) -> None:
@@ -123,10 +111,10 @@ def test_page_can_be_read_without_seeing_it(text: str) -> None:
 
 def test_every_section_stands_in_the_contents(text: str) -> None:
     page = Page(text)
-    sections = [found["id"] for tag, found in page.attributes if tag == "section"]
-    assert len(sections) == len(SECTIONS) - 3 == 14  # no seat, no crack, no strength
+    names = [found["id"] for tag, found in page.attributes if tag == "section"]
+    assert len(names) == len(sections.SECTIONS) - 3 == 14  # no seat, no crack, no strength
     links = [found["href"] for tag, found in page.attributes if tag == "a"]
-    assert links == ["#content", *(f"#{name}" for name in sections)]
+    assert links == ["#content", *(f"#{name}" for name in names)]
 
 
 def test_text_of_the_user_is_escaped(text: str) -> None:
@@ -213,7 +201,6 @@ def test_the_extremes_of_a_long_history_are_drawn_and_have_rows() -> None:
 def test_the_last_closed_part_of_a_history_without_blocks_is_its_cycle() -> None:
     corners = [{"P": 2e6, "Q": load} for load in (0.0, 4e5, -4e5, 1e5, 4e5)]
     source = Source.of_result(sample_result(corners))
-    assert source.cycle is not None
     assert (source.cycle.first, source.cycle.last) == (2, 5)
     assert Source.of_result(sample_result(corners[:4])).cycle is None
 
@@ -222,7 +209,7 @@ def test_the_last_closed_part_of_a_history_without_blocks_is_its_cycle() -> None
 @pytest.mark.usefixtures("undrawn")
 def test_a_history_without_cycles_has_the_damage_of_a_spectrum(only: Callable[..., None], tmp_path: Path) -> None:
     """A long one, and one whose material lacks constants, say why there is no fatigue."""
-    only(overview, fatigue)
+    only(sections.overview, sections.fatigue)
     history = fastpin.LoadHistory([{"P": 4e5, "Q": 2e5}, {"P": 1e5}, {"P": 6e5, "Q": -2e5}, {"P": 2e5, "Q": 0.0}])
     words = {}
     for name in ("2024-T3", "steel"):
@@ -250,16 +237,15 @@ def test_a_result_in_memory_has_the_same_page(tmp_path: Path) -> None:
     assert re.search(r"\d ± \d", words)
     assert "There are no error bars" not in words
     assert "shortcut" not in words  # the options of the solver are not known
-    assert calls == [(k, len(SECTIONS) - 3) for k in range(len(SECTIONS) - 2)]
+    assert calls == [(k, len(sections.SECTIONS) - 3) for k in range(len(sections.SECTIONS) - 2)]
 
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_convergence_study_is_shown(only: Callable[..., None], tmp_path: Path) -> None:
-    only(convergence)
+    only(sections.convergence)
     result = sample_result()
     study = fastpin.converge(result.problem, [{"P": 2.42e6}], nodes=(51, 101, 201))
-    result.report(tmp_path / "page.html", convergence=study)
-    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    words = words_of(result, tmp_path / "page.html", convergence=study)
     assert "Corner 1, path solver" in words
     assert "Distance to the limit" in words
     assert "There is no convergence study" not in words
@@ -268,7 +254,7 @@ def test_a_convergence_study_is_shown(only: Callable[..., None], tmp_path: Path)
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(only, tmp_path):
-    only(provenance)
+    only(sections.provenance)
     file, page = tmp_path / "result.h5", tmp_path / "page.html"
     sample_result().save(file)
     own = f'{JOINT}\npin_load = "body"\n[[load]]\nP = 2.42e6\n[[load]]\nQ = [4.84e5, -4.84e5]\n'
@@ -276,23 +262,21 @@ def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(only
         file.with_suffix(".toml").unlink(missing_ok=True)
         if text is not None:
             file.with_suffix(".toml").write_text(text)
-        write_report(file, page)
-        words = Page(page.read_text(encoding="utf-8")).text
+        words = words_of(file, page)
         assert (own in words) == shown
         assert ("--case CASE.toml shows it" in words) != shown
 
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_branch_begins_with_the_loads_of_its_start(only: Callable[..., None], tmp_path: Path) -> None:
-    only(loads)
-    problem, page = sample_result().problem, tmp_path / "page.html"
+    only(sections.loads)
+    problem = sample_result().problem
     first = fastpin.solve(problem, [{"P": 1e6}], nodes=61, arc=(-3.0, -0.2))
     branch = fastpin.solve(problem, [{"Q": 1e5}, {"Q": -1e5}], start=first)
     source = Source.of_result(branch)
     assert source.initial == pytest.approx([1e6 if name == "P" else 0.0 for name in LOADS], rel=1e-12)
     assert not Source.of_result(first).initial.any()
-    branch.report(page)
-    words = Page(page.read_text(encoding="utf-8")).text
+    words = words_of(branch, tmp_path / "page.html")
     assert "It begins with its loads: P = 1 MN/m." in words
     assert "from no load" not in words
 
@@ -324,43 +308,40 @@ def test_a_large_figure_becomes_a_bitmap(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_a_run_that_goes_on_or_ended_early_has_a_page(only: Callable[..., None], tmp_path: Path) -> None:
-    only(overview)
+    only(sections.overview)
     problem, path, page = sample_result().problem, tmp_path / "a.h5", tmp_path / "a.html"
     found: list[str] = []
 
     def stop(done: float, total: float) -> None:
         if done >= 3.0:
-            write_report(path, page)
-            found.append(page.read_text(encoding="utf-8"))
+            found.append(words_of(path, page))
             raise Interrupted
 
     with pytest.raises(Interrupted):
         fastpin.record(problem, [{"P": k * 1e5} for k in range(1, 9)], path, nodes=61, arc=(-3.0, -0.2), progress=stop)
-    write_report(path, page)
-    for text in (*found, page.read_text(encoding="utf-8")):
-        assert "Unfinished: corner" in Page(text).text
-        assert ("Its run goes on." in Page(text).text) == (text in found)
-        assert (f"fastpin resume {path}" in Page(text).text) == (text not in found)
-    assert "interrupted" in Page(page.read_text(encoding="utf-8")).text
+    ended = words_of(path, page)
+    for words in (*found, ended):
+        assert "Unfinished: corner" in words
+        assert ("Its run goes on." in words) == (words in found)
+        assert (f"fastpin resume {path}" in words) == (words not in found)
+    assert "interrupted" in ended
 
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_result_without_states_says_what_is_missing(tmp_path: Path) -> None:
     empty = sample_result(complete=False)
     empty.states.clear()
-    empty.report(tmp_path / "page.html")
-    page = Page((tmp_path / "page.html").read_text(encoding="utf-8"))
-    assert page.text.count("There is no state") >= 5
-    assert "Unfinished" in page.text
+    words = words_of(empty, tmp_path / "page.html")
+    assert words.count("There is no state") >= 5
+    assert "Unfinished" in words
 
 
 @pytest.mark.usefixtures("undrawn")
 def test_doubtful_values_and_notes_stand_in_the_overview(only: Callable[..., None], tmp_path: Path) -> None:
-    only(overview, materials)
+    only(sections.overview, sections.materials)
     result = sample_result(friction=4.0)
     result.statistics["jumps"] = 2.0
-    result.report(tmp_path / "page.html")
-    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    words = words_of(result, tmp_path / "page.html")
     assert re.search(r"Warning: friction: 4 is above 2[^\n]*\.", words)
     assert "Note: the pin snapped 2 times; work does not balance there." in words
     assert "828 MPa" in words  # the yield strength of the pin
@@ -368,12 +349,11 @@ def test_doubtful_values_and_notes_stand_in_the_overview(only: Callable[..., Non
 
 @pytest.mark.usefixtures("undrawn")
 def test_the_materials_show_a_laminate_with_its_plies_and_sources(only: Callable[..., None], tmp_path: Path) -> None:
-    only(materials, fatigue)
+    only(sections.materials, sections.fatigue)
     plate = Laminate.from_layup("[0/45/-45/90]2s", "T300/5208")
     problem = fastpin.Problem(MaterialPair(Material(210e9, 0.3), plate, "stress"), 10e-3, 2e-5, 0.2)
     history = fastpin.LoadHistory([{"P": 1e6}, {"P": 5e5}]).repeated(2)
-    fastpin.solve(problem, history, nodes=31).report(tmp_path / "page.html")
-    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    words = words_of(fastpin.solve(problem, history, nodes=31), tmp_path / "page.html")
     assert "[0/45/-45/90]2s of T300/5208" in words
     assert "69.676 GPa" in words
     assert "axis 1 at 0 deg from the bottom" in words
@@ -388,21 +368,20 @@ def test_the_pin_radius_is_that_of_the_free_pin(interference: float, clearance: 
     bush = Bushing(Material(103e9, 0.34, yield_strength=138e6), 12.5e-3, interference)
     pair = MaterialPair(Material(210e9, 0.3), Material(71e9, 0.33))
     problem = fastpin.Problem(pair, 10e-3, clearance, 0.2, plate_body=bush)
-    page = PageParts(Source.of_result(fastpin.solve(problem, [{"P": 1e5}], nodes=61)), Album())
-    rows = dict(next(part.rows for part in case(page).parts if isinstance(part, Facts)))
+    page = sections.PageParts(Source.of_result(fastpin.solve(problem, [{"P": 1e5}], nodes=61)), Album())
+    rows = dict(next(part.rows for part in sections.case(page).parts if isinstance(part, Facts)))
     assert rows["pin radius"] == f"{1e3 * (10e-3 - clearance):.6g} mm"
     name = "clearance after the press fit / radius" if interference else "clearance / radius"
     assert rows[name] == f"{problem.assembled_clearance / 10e-3:.4g}"
     # the press fit that yields stands in the overview
-    notes = [part.words for part in overview(page).parts if isinstance(part, Text)]
+    notes = [part.words for part in sections.overview(page).parts if isinstance(part, Text)]
     assert any("in the bore of the bush, before any load" in note for note in notes) == (clearance < 40e-6)
 
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_pin_that_does_not_touch_has_no_tractions(tmp_path: Path) -> None:
     result = fastpin.solve(sample_result().problem, [{"sxx": 1e6}], nodes=61)
-    result.report(tmp_path / "page.html")
-    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    words = words_of(result, tmp_path / "page.html")
     assert "Pin and hole do not touch in the drawn states." in words
     assert "no contact" in words
     assert "nan" not in words.split()
@@ -412,7 +391,7 @@ def test_words_cover_all_names() -> None:
     assert all(each.words for each in (*QUANTITIES.values(), *LOAD.values()))
     assert all(each["words"] for each in OPTIONS.values())
     assert set(OPTIONS) == set(SolveOptions().keywords())
-    assert set(RESIDUAL_WORDS) == set(RESIDUALS)
+    assert set(sections.RESIDUAL_WORDS) == set(RESIDUALS)
 
 
 @pytest.mark.parametrize(

@@ -144,11 +144,6 @@ def test_a_changed_base_case_is_seen(folder: Path, tmp_path: Path) -> None:
         case.write_text(CASE)
 
 
-def test_a_directory_without_a_sweep_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"holds no sweep: there is no index\.sqlite"):
-        write_sweep_report(tmp_path, tmp_path / "page.html")
-
-
 def test_a_sweep_of_another_version_is_refused(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fastpin.pages.sweep.__version__", "99.0")
     with pytest.raises(InputError, match=r"was made by fastpin .*: write its page with that version"):

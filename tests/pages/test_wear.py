@@ -17,7 +17,7 @@ from fastpin.pages.wear import WEAR_SECTIONS, damage, numbers, overview, provena
 from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.solver.wear_result import WearResult, WornCycle
-from tests.support.html import Page
+from tests.support.html import Page, words_of
 from tests.support.lives import JOINT, sample_life
 from tests.support.tiers import gate
 
@@ -73,11 +73,6 @@ def only(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
         monkeypatch.setattr(source, "elastic_bodies", lambda problem: ())
 
     return leave
-
-
-def words_of(result: WearResult | Path, path: Path, **options: object) -> str:
-    write_report(result, path, **options)  # type: ignore[arg-type]
-    return Page(path.read_text(encoding="utf-8")).text
 
 
 @pytest.mark.gate

@@ -9,6 +9,7 @@ from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.reader import parse_case
 from fastpin.report.case import describe
 from fastpin.report.summary import document
+from tests.support.body_texts import HEAD
 
 
 def test_description_of_other_kinds_of_cases() -> None:
@@ -33,19 +34,7 @@ def test_description_of_other_kinds_of_cases() -> None:
     assert said.splitlines()[-1].split() == ["2", "0", "-"]
 
 
-JOINED = """
-[pin]
-material = "steel"
-[plate]
-material = "aluminium"
-[contact]
-hole_radius = 10e-3
-clearance = 20e-6
-friction = 0.3
-rotation = "fixed"
-[[load]]
-P = 1e6
-"""
+JOINED = HEAD.replace("friction = 0.3", 'friction = 0.3\nrotation = "fixed"')
 BUSH = """
 [plate_body]
 E = 110e9

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from fastpin.kernels.status import OPEN
@@ -11,7 +10,7 @@ from fastpin.model.problem import Problem
 from fastpin.report.states import hoop_line, state_table
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from tests.support.samples import PAIR, sample_result
+from tests.support.samples import PAIR, sample_result, with_values
 
 
 def test_long_tables_are_cut_in_the_middle() -> None:
@@ -62,8 +61,7 @@ def test_no_hoop_stress_is_told_of_a_rigid_plate_or_without_contact() -> None:
     rigid = Problem(MaterialPair(MATERIALS["steel"], Material.rigid()), 0.01, 2e-5, 0.4)
     assert hoop_line(rigid, list(sample_result(problem=rigid))) == ""
     closed = sample_result()[0]
-    zeros = np.zeros(closed.grid.size)
-    empty = replace(closed, pressure=zeros, shear=zeros, status=np.full(closed.grid.size, OPEN, dtype=np.int8))
+    empty = with_values(closed, pressure=0.0, shear=0.0, status=OPEN)
     assert hoop_line(closed.problem, [empty]) == ""
     assert hoop_line(closed.problem, [empty, closed]) != ""
 

@@ -58,7 +58,6 @@ def test_numbers_of_a_map(plan: Plan, rows: list[dict[str, Any]]) -> None:
     found = chart(plan, rows, "peak_pressure")
     assert found.label == "peak pressure (MPa)"
     assert found.missing == 2
-    assert found.y is not None
     assert (found.x.label, found.x.log, found.x.values.tolist()) == ("friction coefficient", False, [0.2, 0.4])
     assert (found.y.label, found.y.log) == ("clearance (um)", True)
     assert found.y.values == pytest.approx([1.0, 10.0, 100.0])

@@ -13,6 +13,7 @@ import pytest
 import fastpin
 from fastpin.errors import InputError
 from fastpin.storage import hdf5, to_xarray
+from tests.support.files import replaced, written
 
 
 @pytest.fixture(scope="module")
@@ -26,19 +27,11 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return path.read_bytes()
 
 
-def replaced(name: str, value: Any) -> Callable[[h5py.File], None]:
-    def change(file: h5py.File) -> None:
-        del file[name]
-        file[name] = value
-
-    return change
-
-
-def written(name: str, place: Any, value: float) -> Callable[[h5py.File], None]:
-    def change(file: h5py.File) -> None:
-        file[name][place] = value
-
-    return change
+@pytest.fixture
+def path(whole: bytes, path: Path) -> Path:
+    """A copy of the good file."""
+    path.write_bytes(whole)
+    return path
 
 
 @pytest.mark.parametrize(
@@ -58,11 +51,10 @@ def written(name: str, place: Any, value: float) -> Callable[[h5py.File], None]:
         (lambda file: file["restart/latest"].attrs.__setitem__("corner", "x"), "corner: must be a whole number"),
         (lambda file: file["solver/statistics"].attrs.__setitem__("events", "x"), "events: must be a number"),
         (lambda file: file.attrs.__setitem__("format", [1, 2]), "is damaged|not a result of fastpin"),
+        (lambda file: file.attrs.__delitem__("format"), "not a result of fastpin"),
     ],
 )
-def test_a_damaged_result_is_described(whole, tmp_path, change, reason):
-    path = tmp_path / "damaged.h5"
-    path.write_bytes(whole)
+def test_a_damaged_result_is_described(path, change, reason):
     with h5py.File(path, "r+") as file:
         change(file)
     before = path.read_bytes()
@@ -73,35 +65,27 @@ def test_a_damaged_result_is_described(whole, tmp_path, change, reason):
 
 
 @pytest.mark.parametrize("name", ["state", "theta", "load_name", "residual_name"])
-def test_a_result_without_its_scales_is_described(whole, tmp_path, name):
+def test_a_result_without_its_scales_is_described(path, name):
     """HDF5 itself crashes when it follows a reference to a removed scale."""
-    path = tmp_path / "damaged.h5"
-    path.write_bytes(whole)
     with h5py.File(path, "r+") as file:
         del file[f"states/{name}"]
     with pytest.raises(InputError, match="is damaged"):
         to_xarray(path)
 
 
-def test_an_unfinished_result_that_can_not_grow_is_not_continued(whole, tmp_path):
-    path = tmp_path / "damaged.h5"
-    path.write_bytes(whole)
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda file: replaced("states/gap", file["states/gap"][()])(file), "states/gap can't grow"),
+        (lambda file: file.__delitem__("solver/statistics"), "is damaged"),
+    ],
+)
+def test_a_damaged_unfinished_result_is_not_continued(path, change, reason):
+    """Statistics are written again at the end of the run, which must not fail there."""
     with h5py.File(path, "r+") as file:
         file.attrs["complete"] = False
-        rows = file["states/gap"][()]
-        replaced("states/gap", rows)(file)
-    with pytest.raises(InputError, match="states/gap can't grow"):
-        fastpin.resume(path)
-
-
-def test_an_unfinished_result_with_damaged_statistics_is_not_continued(whole, tmp_path):
-    """They are written again at the end of the run, which must not fail there."""
-    path = tmp_path / "damaged.h5"
-    path.write_bytes(whole)
-    with h5py.File(path, "r+") as file:
-        file.attrs["complete"] = False
-        del file["solver/statistics"]
-    with pytest.raises(InputError, match="is damaged"):
+        change(file)
+    with pytest.raises(InputError, match=reason):
         fastpin.resume(path)
 
 
@@ -163,10 +147,8 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("kind", HOSTILE)
-def test_a_hostile_result_takes_no_memory_and_no_other_file(whole, tmp_path, kind):
+def test_a_hostile_result_takes_no_memory_and_no_other_file(whole, path, tmp_path, kind):
     change, reason = HOSTILE[kind]
-    path = tmp_path / "hostile.h5"
-    path.write_bytes(whole)
     (tmp_path / "precious.txt").write_bytes(whole if "link" in kind else bytes(10_000))
     with h5py.File(path, "r+") as file:
         change(file)
@@ -176,7 +158,7 @@ def test_a_hostile_result_takes_no_memory_and_no_other_file(whole, tmp_path, kin
     used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     try:
         resource.setrlimit(resource.RLIMIT_AS, (used + (1 << 28), limits[1]))
-        with pytest.raises(InputError, match=f"hostile.h5: is damaged: .*{reason}"):
+        with pytest.raises(InputError, match=f"a.h5: is damaged: .*{reason}"):
             fastpin.load(path)
     finally:
         resource.setrlimit(resource.RLIMIT_AS, limits)
@@ -228,25 +210,19 @@ def test_zeros_of_a_real_result_are_no_claim(tmp_path, monkeypatch):
         assert not any(hdf5.Group(file)[name][()].any() for name in ("gap", "status"))
 
 
-def test_an_error_of_a_value_names_the_file(whole, tmp_path):
-    path = tmp_path / "damaged.h5"
-    path.write_bytes(whole)
-    with h5py.File(path, "r+") as file:
-        file["problem/pin"].attrs["E"] = np.nan
-    with pytest.raises(InputError, match=r"damaged\.h5: is damaged: E: must be"):
-        fastpin.load(path)
-    path.write_bytes(whole)
+def test_an_error_of_a_value_names_the_file(path):
     for given, reason in (({"after": 99}, "^after: must be"), ({"states": [99]}, "^states: must be")):
         with pytest.raises(InputError, match=reason):
             fastpin.load(path, **given)
+    with h5py.File(path, "r+") as file:
+        file["problem/pin"].attrs["E"] = np.nan
+    with pytest.raises(InputError, match=r"a\.h5: is damaged: E: must be"):
+        fastpin.load(path)
 
 
-def test_a_special_file_is_not_written(whole, tmp_path):
-    path = tmp_path / "a.h5"
-    path.write_bytes(whole)
-    result = fastpin.load(path)
+def test_a_special_file_is_not_written(path):
     with pytest.raises(InputError, match=r"^/dev/full: must be an ordinary file"):
-        fastpin.save(result, "/dev/full")
+        fastpin.save(fastpin.load(path), "/dev/full")
 
 
 @pytest.mark.gate

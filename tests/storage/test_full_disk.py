@@ -63,16 +63,15 @@ def output_of(program: str, *words: object) -> str:
 
 
 @pytest.mark.gate
-def test_a_result_that_finds_no_room_is_one_sentence(source, tmp_path):
+def test_a_result_that_finds_no_room_is_one_sentence(source, path, tmp_path):
     """Prepared in memory, and written in place."""
     size = source.stat().st_size
-    path = tmp_path / "out.h5"
     path.write_bytes(source.read_bytes())
     limits = [0, 100, 3000, size // 3, size // 2, size - 1000]
     said = output_of(SAVE, source, path, *limits).splitlines()
     assert said == [f"{path}: can't be written: File too large"] * 2 * len(limits)
     assert path.read_bytes() == source.read_bytes()
-    assert [found.name for found in tmp_path.iterdir()] == ["out.h5"]
+    assert [found.name for found in tmp_path.iterdir()] == ["a.h5"]
 
 
 @pytest.mark.gate

@@ -18,6 +18,9 @@ from fastpin.storage.journal import JournaledFile, journal_of
 from tests.support.processes import python, started
 from tests.support.rows import ARRAYS, ROWS, SIZE, rows_in
 
+Torn = tuple[Path, bytes, bytes, bytes]
+"""The path of a file whose process has died in a transaction, what it was, what it is, and its journal."""
+
 
 class Machine:
     """Sees every change of the file and its journal, and can make the disk as it was after any of them."""
@@ -61,18 +64,8 @@ def written(path: Path, transactions: int, machine: Machine | None = None) -> No
     """A file that grows by a row in every transaction."""
     file = JournaledFile(path, new=True)
     h5 = h5py.File(file, "w")
-    arrays = [
-        h5.create_dataset(
-            f"array{k}",
-            (0, SIZE),
-            maxshape=(None, SIZE),
-            chunks=(1, SIZE),
-            dtype=float,
-            compression="gzip",
-            shuffle=True,
-        )
-        for k in range(ARRAYS)
-    ]
+    how = {"maxshape": (None, SIZE), "chunks": (1, SIZE), "dtype": float, "compression": "gzip", "shuffle": True}
+    arrays = [h5.create_dataset(f"array{k}", (0, SIZE), **how) for k in range(ARRAYS)]
     for count in range(transactions + 1):
         for array in arrays if count else ():
             array.resize(count, axis=0)
@@ -88,10 +81,9 @@ def written(path: Path, transactions: int, machine: Machine | None = None) -> No
 
 
 @pytest.mark.survey
-def test_a_process_may_die_after_any_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_may_die_after_any_change(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every single moment: 75 transactions are enough for the index of the rows to split."""
     machine = Machine(monkeypatch)
-    path = tmp_path / "a.h5"
     written(path, 75, machine)
     monkeypatch.undo()
     unreadable = torn = 0
@@ -119,34 +111,21 @@ def readable(path: Path) -> bool:
 
 
 @pytest.mark.parametrize("cut", [1, 10, 15, 16, 17, 500])
-def test_what_a_dead_process_has_half_noted_counts_for_nothing(tmp_path: Path, cut: int) -> None:
-    path = tmp_path / "a.h5"
-    written(path, 3)
-    before = path.read_bytes()
-    file = JournaledFile(path, new=False)
-    h5 = h5py.File(file, "r+")
-    h5["array0"][0] = 1.0
-    h5.flush()
-    kept, changed = journal_of(path).read_bytes(), path.read_bytes()
-    file.abandon()
-    h5.close()
-    file.release()
-    assert changed != before
-    assert path.read_bytes() == before
+def test_what_a_dead_process_has_half_noted_counts_for_nothing(torn: Torn, cut: int) -> None:
+    path, before, changed, kept = torn
     path.write_bytes(before)  # the last change had been noted in part, and not been made
     journal_of(path).write_bytes(kept[:-cut])
-    assert rows_in(path) == 3
+    assert rows_in(path) == 5
     path.write_bytes(changed)
     journal_of(path).write_bytes(kept + b"more" * 3)
-    assert rows_in(path) == 3
+    assert rows_in(path) == 5
     assert path.read_bytes() == changed  # a reader writes nothing
     JournaledFile(path, new=False).release()
     assert path.read_bytes() == before
-    assert rows_in(path) == 3
+    assert rows_in(path) == 5
 
 
-def test_a_transaction_that_only_makes_the_file_longer_is_undone(tmp_path: Path) -> None:
-    path = tmp_path / "a.h5"
+def test_a_transaction_that_only_makes_the_file_longer_is_undone(path: Path) -> None:
     file = JournaledFile(path, new=True)
     file.write(memoryview(b"0123456789"))
     file.commit()
@@ -157,8 +136,7 @@ def test_a_transaction_that_only_makes_the_file_longer_is_undone(tmp_path: Path)
     assert path.read_bytes() == b"0123456789"
 
 
-def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "a.h5"
+def test_a_full_disk_leaves_what_was_there(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     written(path, 5)
     file = JournaledFile(path, new=False)
     h5 = h5py.File(file, "r+")
@@ -179,8 +157,7 @@ def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.M
     assert not journal_of(path).exists()
 
 
-def test_one_writer_at_a_time(tmp_path: Path) -> None:
-    path = tmp_path / "a.h5"
+def test_one_writer_at_a_time(path: Path) -> None:
     written(path, 2)
     file = JournaledFile(path, new=False)
     for new in (False, True):
@@ -210,8 +187,7 @@ print(rows_in(pathlib.Path(sys.argv[1])))
 
 
 @pytest.mark.gate
-def test_readers_wait_for_the_end_of_a_transaction(tmp_path: Path) -> None:
-    path = tmp_path / "a.h5"
+def test_readers_wait_for_the_end_of_a_transaction(path: Path) -> None:
     written(path, 2)
     file = JournaledFile(path, new=False)
     h5 = h5py.File(file, "r+")
@@ -220,7 +196,6 @@ def test_readers_wait_for_the_end_of_a_transaction(tmp_path: Path) -> None:
         h5[f"array{k}"].resize(1, axis=0)
     h5.flush()  # in the midst of a transaction
     with started(python(READER, path)) as reader:
-        assert reader.stdout is not None
         assert reader.stdout.readline() == "waits\n"
         file.commit()
         assert reader.communicate() == ("1\n", "")
@@ -230,9 +205,7 @@ def test_readers_wait_for_the_end_of_a_transaction(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def torn(tmp_path: Path) -> tuple[Path, bytes, bytes, bytes]:
-    """A file whose process has died in a transaction: its path, what it was, what it is, and the journal."""
-    path = tmp_path / "a.h5"
+def torn(path: Path) -> Torn:
     written(path, 5)
     before = path.read_bytes()
     file = JournaledFile(path, new=False)
@@ -246,13 +219,15 @@ def torn(tmp_path: Path) -> tuple[Path, bytes, bytes, bytes]:
     file.abandon()
     h5.close()
     file.release()
+    assert changed != before
+    assert path.read_bytes() == before
     path.write_bytes(changed)
     journal_of(path).write_bytes(kept)
     return path, before, changed, kept
 
 
 @pytest.mark.parametrize("rows", [1, 4, 5, 7, 80])
-def test_the_journal_of_another_file_does_no_harm(torn: tuple[Path, bytes, bytes, bytes], rows: int) -> None:
+def test_the_journal_of_another_file_does_no_harm(torn: Torn, rows: int) -> None:
     path, _, _, kept = torn
     other = path.with_name("b.h5")
     written(other, rows)
@@ -265,7 +240,7 @@ def test_the_journal_of_another_file_does_no_harm(torn: tuple[Path, bytes, bytes
     assert path.read_bytes() == content
 
 
-def test_links_lead_to_the_journal_of_the_file(torn: tuple[Path, bytes, bytes, bytes], tmp_path: Path) -> None:
+def test_links_lead_to_the_journal_of_the_file(torn: Torn, tmp_path: Path) -> None:
     path, before, changed, _ = torn
     (tmp_path / "below").mkdir()
     link = tmp_path / "below" / "link.h5"
@@ -277,18 +252,17 @@ def test_links_lead_to_the_journal_of_the_file(torn: tuple[Path, bytes, bytes, b
     assert path.read_bytes() == before
 
 
-def test_file_systems_without_locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_file_systems_without_locks(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise OSError(errno.ENOLCK, "No locks available")
 
     monkeypatch.setattr(journal.fcntl, "flock", refuse)
-    written(tmp_path / "a.h5", 3)
-    assert rows_in(tmp_path / "a.h5") == 3
-    check_free(tmp_path / "a.h5")
+    written(path, 3)
+    assert rows_in(path) == 3
+    check_free(path)
 
 
-def test_a_journal_that_can_not_be_written(tmp_path: Path) -> None:
-    path = tmp_path / "a.h5"
+def test_a_journal_that_can_not_be_written(path: Path) -> None:
     written(path, 2)
     journal_of(path).mkdir()
     for _ in range(2):  # and the lock is given back
@@ -299,16 +273,13 @@ def test_a_journal_that_can_not_be_written(tmp_path: Path) -> None:
 
 
 def test_missing_and_unwritable_files(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="can't be written"):
-        JournaledFile(tmp_path / "none" / "a.h5", new=True)
-    with pytest.raises(InputError, match="can't be written"):
-        JournaledFile(tmp_path / "a.h5", new=False)
-    with pytest.raises(InputError, match="can't be written"):
-        JournaledFile(tmp_path, new=True)
+    for path, new in ((tmp_path / "none" / "a.h5", True), (tmp_path / "a.h5", False), (tmp_path, True)):
+        with pytest.raises(InputError, match="can't be written"):
+            JournaledFile(path, new)
 
 
 @pytest.mark.parametrize("kind", ["link", "pipe", "device", "second name"])
-def test_a_journal_that_is_no_ordinary_file_is_refused(torn: tuple[Path, bytes, bytes, bytes], kind: str) -> None:
+def test_a_journal_that_is_no_ordinary_file_is_refused(torn: Torn, kind: str) -> None:
     """A stranger's folder may hold a link to a file of the user beside a result."""
     path, _, changed, kept = torn
     precious = path.with_name("precious.txt")
@@ -331,7 +302,7 @@ def test_a_journal_that_is_no_ordinary_file_is_refused(torn: tuple[Path, bytes, 
     assert path.read_bytes() == changed
 
 
-def test_a_reader_needs_no_right_to_write(torn: tuple[Path, bytes, bytes, bytes], monkeypatch) -> None:
+def test_a_reader_needs_no_right_to_write(torn: Torn, monkeypatch) -> None:
     path, _, changed, kept = torn
 
     def forbidden(*_: object) -> None:
@@ -344,8 +315,7 @@ def test_a_reader_needs_no_right_to_write(torn: tuple[Path, bytes, bytes, bytes]
     assert (path.read_bytes(), journal_of(path).read_bytes()) == (changed, kept)
 
 
-def test_a_file_without_a_transaction_is_empty_again(tmp_path: Path) -> None:
-    path = tmp_path / "a.h5"
+def test_a_file_without_a_transaction_is_empty_again(path: Path) -> None:
     file = JournaledFile(path, new=True)
     file.begin()
     kept = journal_of(path).read_bytes()
@@ -362,8 +332,7 @@ def test_a_file_without_a_transaction_is_empty_again(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "records", [[(2**40, b"")], [(0, b"x" * 50)], [(50, b""), (2**62, b"x")], [(50, b""), *[(0, b"")] * 9]]
 )
-def test_records_beyond_the_file_are_not_undone(tmp_path: Path, records: list[tuple[int, bytes]]) -> None:
-    path = tmp_path / "a.h5"
+def test_records_beyond_the_file_are_not_undone(path: Path, records: list[tuple[int, bytes]]) -> None:
     written(path, 3)
     before = path.read_bytes()
     content = b""
@@ -381,9 +350,8 @@ def test_records_beyond_the_file_are_not_undone(tmp_path: Path, records: list[tu
 
 @pytest.mark.parametrize("latest", [b"old2", b"new2", b"neX?"])
 @pytest.mark.parametrize("first", [b"old1", b"new1", b"neX?"])
-def test_bytes_that_are_neither_old_nor_new_belong_to_another_file(tmp_path: Path, first: bytes, latest: bytes) -> None:
+def test_bytes_that_are_neither_old_nor_new_belong_to_another_file(path: Path, first: bytes, latest: bytes) -> None:
     """A dead process may have written a part of the last record only. All records before it are whole."""
-    path = tmp_path / "a.h5"
     path.write_bytes(first + latest)
     content = struct.pack("<QIII", 8, 0, zlib.crc32(b"", 8), 0)
     for place, old, new in ((0, b"old1", b"new1"), (4, b"old2", b"new2")):

@@ -4,9 +4,7 @@ It holds results of both versions of the format with their summaries (``show --j
 its table. ``python -m scripts.corpus`` wrote them. A new format adds files, and leaves the old ones.
 """
 
-import contextlib
 import csv
-import io
 import json
 import zipfile
 from pathlib import Path
@@ -16,9 +14,9 @@ import pytest
 
 import fastpin
 from fastpin.casefile.reader import read_case
-from fastpin.cli.main import main
 from fastpin.storage.store import load
 from fastpin.studies import identity, sweep
+from tests.support.commands import printed
 
 RESULTS = ("example", "fretting", "stopped")
 
@@ -32,13 +30,6 @@ def old(tmp_path_factory) -> Path:
     with zipfile.ZipFile(Path(__file__).with_name("old_files.zip")) as archive:
         archive.extractall(folder)
     return folder
-
-
-def said(*command: object) -> str:
-    out = io.StringIO()
-    with contextlib.redirect_stdout(out):
-        assert main([str(word) for word in command]) == 0
-    return out.getvalue()
 
 
 TIED = ("place", "load_point")
@@ -68,7 +59,7 @@ def assert_kept(new: Any, old: Any, place: str = "") -> None:
 @pytest.mark.gate
 @pytest.mark.parametrize("name", RESULTS)
 def test_an_old_result_has_the_same_summary(name, old):
-    new = json.loads(said("show", old / f"{name}.h5", "--json"))
+    new = json.loads(printed("show", old / f"{name}.h5", "--json"))
     assert_kept(new, json.loads((old / f"{name}.json").read_text(encoding="utf-8")))
 
 
@@ -91,7 +82,7 @@ def test_an_old_finite_plate_is_read(old):
 
 def test_an_old_sweep_is_finished(old):
     """Its runs are not solved again, and its rows are the same."""
-    assert "6 done" in said("sweep", old / "plan.toml", "-o", old / "runs", "--status")
+    assert "6 done" in printed("sweep", old / "plan.toml", "-o", old / "runs", "--status")
     with (old / "table.csv").open(encoding="utf-8") as file:
         before = list(csv.DictReader(line for line in file if not line.startswith("#")))
     rows = {row["id"]: row for row in sweep.load(old / "runs")}

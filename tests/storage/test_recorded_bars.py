@@ -4,14 +4,13 @@ import h5py
 import numpy as np
 import pytest
 
-from fastpin.cli.main import main
 from fastpin.errors import InputError
-from fastpin.model.problem import Problem
 from fastpin.solver.errors import Interrupted, NoEquilibriumError
 from fastpin.solver.solving import solve
 from fastpin.storage import recording, store, writer
 from fastpin.storage.recording import lacks_error_bars, record, resume, stored_case
 from fastpin.storage.writer import coarse_of
+from tests.support.commands import printed, said
 from tests.support.programs import P, assert_same, q
 
 HISTORY = P + q(*np.random.default_rng(2).uniform(-0.28, 0.28, 12))
@@ -32,18 +31,8 @@ class StopAtRun:
 
 
 @pytest.fixture(scope="module")
-def problem(similar):
-    return Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed")
-
-
-@pytest.fixture(scope="module")
 def expected(problem):
     return solve(problem, HISTORY, error_bars=True, **OPTIONS)
-
-
-@pytest.fixture
-def path(tmp_path):
-    return tmp_path / "a.h5"
 
 
 def assert_bars(path, expected):
@@ -114,7 +103,6 @@ def test_a_coarse_grid_that_loses_the_load_leaves_the_states(problem, path, monk
     def lose(*_, **__):
         raise NoEquilibriumError("lost", 0, 0.5, {})
 
-    monkeypatch.setattr(recording.Task, "follow", recording.Task.follow)
     first = recording.Task.follow
     monkeypatch.setattr(
         recording.Task, "follow", lambda task, writer: first(task, writer) if task.grid is None else lose()
@@ -154,16 +142,14 @@ def test_damaged_coarse_states_are_one_sentence(problem, path):
 
 @pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
-def test_show_says_what_is_missing(problem, path, capsys):
+def test_show_says_what_is_missing(problem, path):
     with pytest.raises(Interrupted):
         record(problem, HISTORY[:5], path, error_bars=True, progress=StopAtRun(2, 2.0), **OPTIONS)
-    assert main(["show", str(path)]) == 0
-    out = capsys.readouterr().out
+    words = f"no error bars: their run on the coarse grid has not ended; continue with: fastpin resume {path}"
+    out = printed("show", path)
     assert "+-" not in out
-    assert (
-        f"note: no error bars: their run on the coarse grid has not ended; continue with: fastpin resume {path}" in out
-    )
-    assert main(["resume", str(path)]) == 0
-    assert "+-" in capsys.readouterr().out
-    assert main(["report", str(path), "-o", str(path.with_suffix(".html"))]) == 0
-    assert "There are no error bars" not in path.with_suffix(".html").read_text(encoding="utf-8")
+    assert f"note: {words}" in out
+    assert "+-" in printed("resume", path)
+    page = path.with_suffix(".html")
+    said("report", path, "-o", page)
+    assert "There are no error bars" not in page.read_text(encoding="utf-8")

@@ -1,7 +1,6 @@
 """Bodies of problems in HDF5 files: equal when read back, and described when damaged."""
 
 from enum import StrEnum
-from pathlib import Path
 from typing import Any
 
 import h5py
@@ -19,6 +18,7 @@ from fastpin.solver.errors import Interrupted
 from fastpin.storage.export import to_xarray
 from fastpin.storage.recording import record, resume, stored_case
 from fastpin.storage.store import load, save
+from tests.support.files import replaced
 from tests.support.interrupts import StopAt
 from tests.support.samples import PAIR, sample_result
 
@@ -51,8 +51,7 @@ def problem(**bodies: Any) -> Problem:
 
 
 @pytest.mark.parametrize("bodies", BODIES, ids=repr)
-def test_a_problem_with_bodies_comes_back_equal(bodies, tmp_path):
-    path = tmp_path / "a.h5"
+def test_a_problem_with_bodies_comes_back_equal(bodies, path):
     save(sample_result(problem=problem(**bodies)), path)
     found = load(path).problem
     assert found == problem(**bodies)
@@ -62,8 +61,7 @@ def test_a_problem_with_bodies_comes_back_equal(bodies, tmp_path):
         assert {"pin_body", "plate_body"} & set(file["problem"]) == set(bodies)
 
 
-def test_a_compliance_is_stored_whole(tmp_path):
-    path = tmp_path / "a.h5"
+def test_a_compliance_is_stored_whole(path):
     save(sample_result(problem=problem(plate_body=plate())), path)
     found = load(path).problem.plate_body
     assert found.matrix.tobytes() == plate().matrix.tobytes()
@@ -72,16 +70,14 @@ def test_a_compliance_is_stored_whole(tmp_path):
     assert found.digest == plate().digest
 
 
-def test_bodies_in_units_of_the_paper_come_back_equal(tmp_path):
-    path = tmp_path / "a.h5"
+def test_bodies_in_units_of_the_paper_come_back_equal(path):
     bush = Bushing(Material(110e9, 0.34), 1.25, interference=3.0)
     whole = Problem.from_load_parameter(PAIR, 5.0, 0.4, pin_body=Tube(0.5), plate_body=bush)
     save(sample_result([{"P": 1.0}], problem=whole), path)
     assert load(path).problem == whole
 
 
-def test_a_file_without_bodies_has_a_solid_pin_in_an_infinite_plate(tmp_path):
-    path = tmp_path / "a.h5"
+def test_a_file_without_bodies_has_a_solid_pin_in_an_infinite_plate(path):
     save(sample_result(), path)
     found = load(path).problem
     assert (found.pin_body, found.plate_body) == (Disk(), Plate())
@@ -104,17 +100,7 @@ def test_a_history_with_bodies_is_resumed(bodies, tmp_path):
 
 def changed(place: str, name: str, value: Any) -> Any:
     """A change of an attribute of a group of /problem."""
-    return lambda file: file[f"problem/{place}"].attrs.__setitem__(name, value)
-
-
-def put(place: str, value: Any) -> Any:
-    """Another array in the place of one of /problem."""
-
-    def change(file: h5py.File) -> None:
-        del file[f"problem/{place}"]
-        file[f"problem/{place}"] = value
-
-    return change
+    return lambda group: group[place].attrs.__setitem__(name, value)
 
 
 @pytest.mark.parametrize(
@@ -132,20 +118,23 @@ def put(place: str, value: Any) -> Any:
         (BODIES[5], changed("plate_body", "interference", -1.0), "interference: must not be negative"),
         (BODIES[5], changed("plate_body/material", "E", -1.0), "E: Young's modulus must be positive"),
         (BODIES[5], changed("plate_body/inside", "kind", "tube"), "is damaged"),
-        (BODIES[5], lambda file: file.__delitem__("problem/plate_body/material"), "is damaged: .*material"),
-        (BODIES[7], put("plate_body/matrix", np.eye(18)[:5]), "matrix: must have the shape"),
-        (BODIES[7], put("plate_body/matrix", np.triu(np.ones((18, 18)))), "matrix: must be symmetric"),
-        (BODIES[7], put("plate_body/matrix", ["a", "b"]), "problem/plate_body/matrix has numbers of the type object"),
-        (BODIES[7], lambda file: file.__delitem__("problem/plate_body/matrix"), "no array problem/plate_body/matrix"),
-        (BODIES[7], put("plate_body/columns/sxx", np.ones(5)), "columns.sxx: must have the shape"),
+        (BODIES[5], lambda group: group.__delitem__("plate_body/material"), "is damaged: .*material"),
+        (BODIES[7], replaced("plate_body/matrix", np.eye(18)[:5]), "matrix: must have the shape"),
+        (BODIES[7], replaced("plate_body/matrix", np.triu(np.ones((18, 18)))), "matrix: must be symmetric"),
+        (
+            BODIES[7],
+            replaced("plate_body/matrix", ["a", "b"]),
+            "problem/plate_body/matrix has numbers of the type object",
+        ),
+        (BODIES[7], lambda group: group.__delitem__("plate_body/matrix"), "no array problem/plate_body/matrix"),
+        (BODIES[7], replaced("plate_body/columns/sxx", np.ones(5)), "columns.sxx: must have the shape"),
         (BODIES[7], changed("plate_body", "nu", 0.3), "the compliance was made for nu = 0.3"),
     ],
 )
-def test_damaged_bodies_are_described(bodies, change, words, tmp_path):
-    path: Path = tmp_path / "a.h5"
+def test_damaged_bodies_are_described(bodies, change, words, path):
     save(sample_result(problem=problem(**bodies)), path)
     with h5py.File(path, "r+") as file:
-        change(file)
+        change(file["problem"])
     with pytest.raises(InputError, match=words) as raised:
         load(path)
     assert "\n" not in str(raised.value)

@@ -12,6 +12,7 @@ import fastpin
 from fastpin.errors import InputError
 from fastpin.model import Laminate, Ply, PlyStrengths
 from fastpin.storage.layout import FORMAT_VERSION, WITH_LAMINATE
+from tests.support.files import replaced
 
 OWN = Ply(135e9, 9e9, 5e9, 0.3, 0.125e-3, PlyStrengths(2e9, 1e9, 5e7, 2e8, 1e8), "mine", "tests")
 SEVERAL = [("T300/5208", 0.0), (OWN, 45.0), (OWN, 45.0), ("T300/5208", 0.0)]
@@ -33,41 +34,33 @@ def result_of(laminate: fastpin.Material) -> fastpin.Result:
 
 
 @pytest.mark.parametrize("name", LAMINATES)
-def test_a_stored_laminate_comes_back(name: str, tmp_path: Path) -> None:
+def test_a_stored_laminate_comes_back(name: str, path: Path) -> None:
     laminate = LAMINATES[name]
-    result_of(laminate).save(tmp_path / "a.h5")
-    with h5py.File(tmp_path / "a.h5") as file:
+    result_of(laminate).save(path)
+    with h5py.File(path) as file:
         assert file.attrs["format_version"] == WITH_LAMINATE
-    found = fastpin.load(tmp_path / "a.h5").problem.pair.plate
+    found = fastpin.load(path).problem.pair.plate
     assert found == laminate
     assert isinstance(found, Laminate)
     assert found.compliance == laminate.compliance
 
 
-def test_an_isotropic_plate_is_stored_as_before(tmp_path: Path) -> None:
-    result_of(fastpin.MATERIALS["aluminium"]).save(tmp_path / "a.h5")
-    with h5py.File(tmp_path / "a.h5") as file:
+def test_an_isotropic_plate_is_stored_as_before(path: Path) -> None:
+    result_of(fastpin.MATERIALS["aluminium"]).save(path)
+    with h5py.File(path) as file:
         assert file.attrs["format_version"] == FORMAT_VERSION
         assert "laminate" not in file["problem/plate"]
 
 
-def replaced(group: h5py.Group, name: str, value: object) -> None:
-    del group[name]
-    if value is None:
-        group.create_group(name)
-    else:
-        group[name] = value
-
-
 DAMAGE: dict[str, Callable[[h5py.Group], object]] = {
-    "a place beyond the plies": lambda group: replaced(group, "which", np.array([0, 1, 7, 0])),
-    "places that are no whole numbers": lambda group: replaced(group, "which", np.array([0.0, 1.0, 1.0, 0.0])),
-    "too few places": lambda group: replaced(group, "which", np.array([0, 1])),
+    "a place beyond the plies": replaced("which", [0, 1, 7, 0]),
+    "places that are no whole numbers": replaced("which", [0.0, 1.0, 1.0, 0.0]),
+    "too few places": replaced("which", [0, 1]),
     "no angles": lambda group: group.pop("angles"),
-    "a group of angles": lambda group: replaced(group, "angles", None),
-    "angles in two dimensions": lambda group: replaced(group, "angles", np.zeros((4, 2))),
-    "angles that are texts": lambda group: replaced(group, "angles", ["a", "b", "c", "d"]),
-    "a stack that bends": lambda group: replaced(group, "angles", np.array([90.0, 45.0, 45.0, 0.0])),
+    "a group of angles": lambda group: (group.pop("angles"), group.create_group("angles")),
+    "angles in two dimensions": replaced("angles", np.zeros((4, 2))),
+    "angles that are texts": replaced("angles", ["a", "b", "c", "d"]),
+    "a stack that bends": replaced("angles", [90.0, 45.0, 45.0, 0.0]),
     "a ply with a negative modulus": lambda group: group["plies/1"].attrs.modify("E1", -1.0),
     "a ply without a modulus": lambda group: group["plies/1"].attrs.pop("E1"),
     "plies under other names": lambda group: group["plies"].move("0", "zero"),
@@ -84,19 +77,19 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("damage", DAMAGE)
-def test_a_damaged_laminate_is_refused(damage: str, stored: Path, tmp_path: Path) -> None:
-    shutil.copy(stored, tmp_path / "a.h5")
-    with h5py.File(tmp_path / "a.h5", "r+") as file:
+def test_a_damaged_laminate_is_refused(damage: str, stored: Path, path: Path) -> None:
+    shutil.copy(stored, path)
+    with h5py.File(path, "r+") as file:
         DAMAGE[damage](file["problem/plate/laminate"])
     with pytest.raises(InputError, match="is damaged"):
-        fastpin.load(tmp_path / "a.h5")
+        fastpin.load(path)
 
 
-def test_names_of_later_versions_are_skipped(stored: Path, tmp_path: Path) -> None:
-    shutil.copy(stored, tmp_path / "a.h5")
-    with h5py.File(tmp_path / "a.h5", "r+") as file:
+def test_names_of_later_versions_are_skipped(stored: Path, path: Path) -> None:
+    shutil.copy(stored, path)
+    with h5py.File(path, "r+") as file:
         group = file["problem/plate/laminate"]
         group.attrs["later"] = 3.0
         group["more"] = np.zeros(3)
         group["plies/0"].attrs["later"] = 3.0
-    assert fastpin.load(tmp_path / "a.h5").problem.pair.plate == LAMINATES["several"]
+    assert fastpin.load(path).problem.pair.plate == LAMINATES["several"]

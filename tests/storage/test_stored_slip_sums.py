@@ -1,5 +1,6 @@
 """Slip sums in files: resumed runs, restarts, states that are read in part, and files without them."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,21 +17,12 @@ from fastpin.storage.export import to_xarray
 from fastpin.storage.layout import SLIP_FIELDS
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load, places_between
+from tests.support.files import replaced, written
 from tests.support.interrupts import StopAt
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
 from tests.support.tiers import gate
 
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
-
-
-@pytest.fixture(scope="module")
-def problem(similar) -> Problem:
-    return Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed")
-
-
-@pytest.fixture
-def path(tmp_path: Path) -> Path:
-    return tmp_path / "a.h5"
 
 
 @pytest.mark.gate
@@ -73,7 +65,9 @@ def test_many_states_are_copied_piece_by_piece(problem: Problem, path: Path, mon
     monkeypatch.setattr(writer, "PIECE", 7)
     for keep in ("all", "every 3"):
         record(problem, PROGRAMS["spectrum"], path, nodes=61, keep=keep, slip_sums=True, overwrite=True)
-        assert_same(load(path), solve(problem, PROGRAMS["spectrum"], nodes=61, keep=keep, slip_sums=True))
+        found, expected = load(path), solve(problem, PROGRAMS["spectrum"], nodes=61, keep=keep, slip_sums=True)
+        assert_same(found, expected)
+        assert known(found) == known(expected)
 
 
 def test_files_without_the_option_have_nothing_new(problem: Problem, path: Path) -> None:
@@ -107,23 +101,25 @@ def test_datasets_have_the_sums_with_units(problem: Problem, path: Path) -> None
         assert np.array_equal(from_file[name], from_memory[name], equal_nan=True)
 
 
-@pytest.mark.parametrize("damage", ["missing", "shape", "restart", "order", "half"])
+def raised(file: h5py.File) -> None:
+    file["restart/latest/slip_tally"][2] += 1.0
+
+
+DAMAGES: dict[str, Callable[[h5py.File], object]] = {
+    "missing": lambda file: file.pop("states/friction_energy"),
+    "shape": replaced("states/slip_distance", np.zeros((1, 7))),
+    "restart": replaced("restart/latest/slip_tally", np.zeros((3, 61))),
+    "order": raised,
+    "half": written("restart/latest/slip_tally", (3, 30), -np.inf),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
 def test_damaged_sums_are_told(problem: Problem, path: Path, damage: str) -> None:
     with pytest.raises(Interrupted):
         record(problem, RANDOM, path, nodes=61, keep="every 9", slip_sums=True, arc=(-3.0, -0.1), progress=StopAt(13.0))
     with h5py.File(path, "a") as file:
-        if damage == "missing":
-            del file["states/friction_energy"]
-        elif damage == "shape":
-            del file["states/slip_distance"]
-            file["states/slip_distance"] = np.zeros((1, 7))
-        elif damage == "restart":
-            del file["restart/latest/slip_tally"]
-            file["restart/latest/slip_tally"] = np.zeros((3, 61))
-        elif damage == "order":
-            file["restart/latest/slip_tally"][2] += 1.0
-        else:
-            file["restart/latest/slip_tally"][3, 30] = -np.inf
+        DAMAGES[damage](file)
     with pytest.raises(InputError, match="damaged"):
         resume(path)
 

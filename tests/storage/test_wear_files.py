@@ -41,8 +41,7 @@ def assert_same_life(one: WearResult, other: WearResult) -> None:
 
 
 @pytest.mark.gate
-def test_a_file_holds_the_life_to_the_last_bit(tmp_path):
-    path = tmp_path / "life.h5"
+def test_a_file_holds_the_life_to_the_last_bit(path, tmp_path):
     written, kept = life(path, title="one life"), life()
     assert_same_life(written, kept)
     read = fastpin.load_wear(path)
@@ -53,12 +52,11 @@ def test_a_file_holds_the_life_to_the_last_bit(tmp_path):
     # It is a result, too: its states are those over one cycle after each chosen cycle.
     states = fastpin.load(path)
     assert len(states) == 3 * len(kept)
-    assert sorted(each.name for each in tmp_path.iterdir()) == ["life.h5"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["a.h5"]
 
 
 @pytest.mark.survey
-def test_a_history_may_be_its_cycle_alone(tmp_path):
-    path = tmp_path / "life.h5"
+def test_a_history_may_be_its_cycle_alone(path):
     history = fastpin.LoadHistory([{"P": 1.0}, {"P": 0.5}]).repeated(2)
     written = life(path, history)
     assert_same_life(written, life(history=history))
@@ -81,9 +79,8 @@ def test_an_interrupted_life_goes_on_to_the_same_bits(tmp_path):
 
 
 @pytest.mark.gate
-def test_a_life_goes_on_from_its_checkpoint(tmp_path, monkeypatch):
+def test_a_life_goes_on_from_its_checkpoint(path, monkeypatch):
     monkeypatch.setattr(wear_files, "CHECKPOINT_EVERY", 0.0)
-    path = tmp_path / "life.h5"
 
     def stop(done: float, total: int) -> None:
         if done >= 46.0:
@@ -121,9 +118,7 @@ def test_a_life_that_needs_finer_nodes_later_begins_anew_there(tmp_path, monkeyp
 
 
 @pytest.mark.gate
-def test_a_life_that_ended_before_its_first_transaction_begins_anew(tmp_path, monkeypatch):
-    path = tmp_path / "life.h5"
-
+def test_a_life_that_ended_before_its_first_transaction_begins_anew(path, monkeypatch):
     def fail(file: JournaledFile) -> None:
         raise RuntimeError("killed")
 
@@ -137,9 +132,8 @@ def test_a_life_that_ended_before_its_first_transaction_begins_anew(tmp_path, mo
 
 
 @pytest.mark.gate
-def test_a_life_whose_pin_touches_beyond_its_arc_later_begins_anew_there(tmp_path):
+def test_a_life_whose_pin_touches_beyond_its_arc_later_begins_anew_there(path):
     """Interrupted or not: a bump is touched in the fourth cycle."""
-    path = tmp_path / "life.h5"
     given: dict[str, Any] = {"coefficient": 0.1, "cycles": 5, "tolerance": 0.0, "nodes": 31}
     whole = fastpin.wear(BUMPED, BUMPED_TURNS, **given)
     with pytest.raises(Interrupted) as caught:
@@ -149,8 +143,7 @@ def test_a_life_whose_pin_touches_beyond_its_arc_later_begins_anew_there(tmp_pat
 
 
 @pytest.mark.gate
-def test_a_life_of_another_kind_is_not_continued(tmp_path):
-    path = tmp_path / "life.h5"
+def test_a_life_of_another_kind_is_not_continued(path):
     with pytest.raises(Interrupted):
         life(path, progress=StopAt(5))
     for name, value in {"coefficient": 2.0, "tolerance": 0.01, "law": "energy", "at": [7]}.items():
@@ -163,14 +156,13 @@ def test_a_life_of_another_kind_is_not_continued(tmp_path):
     with pytest.raises(InputError, match="belongs to a life of wear"):
         fastpin.resume(path)
     life(path, resume=True)
-    with pytest.raises(InputError, match=r"there is nothing to continue; try fastpin show .*life\.h5 --json"):
+    with pytest.raises(InputError, match=r"there is nothing to continue; try fastpin show .*a\.h5 --json"):
         life(path, resume=True)
     with pytest.raises(InputError, match="exists already"):
         life(path)
 
 
-def test_other_files_hold_no_life(tmp_path):
-    path = tmp_path / "run.h5"
+def test_other_files_hold_no_life(path):
     fastpin.record(CASE.problem, [{"P": 1.0}], path, nodes=31)
     with pytest.raises(InputError, match="holds no wear: it is the result of a run"):
         fastpin.load_wear(path)
@@ -179,8 +171,7 @@ def test_other_files_hold_no_life(tmp_path):
 
 
 @pytest.mark.parametrize("part", ["pin_depth", "cycle", *gate("coefficients")])
-def test_a_damaged_file_is_told_in_one_sentence(tmp_path, part):
-    path = tmp_path / "life.h5"
+def test_a_damaged_file_is_told_in_one_sentence(path, part):
     life(path, cycles=2)
     with h5py.File(path, "r+") as file:
         if part == "cycle":
@@ -203,8 +194,7 @@ def spoil(array):
 
 @pytest.mark.gate
 @pytest.mark.parametrize("damage", [spoil, shorten, lambda array: array.resize(10**8, axis=0)])
-def test_a_damaged_life_is_not_continued(tmp_path, damage):
-    path = tmp_path / "life.h5"
+def test_a_damaged_life_is_not_continued(path, damage):
     with pytest.raises(Interrupted):
         life(path, progress=StopAt(5))
     before = path.read_bytes()
@@ -212,14 +202,12 @@ def test_a_damaged_life_is_not_continued(tmp_path, damage):
         path.write_bytes(before)
         with h5py.File(path, "r+") as file:
             damage(file[f"wear/{part}"])
-        with pytest.raises(InputError, match=rf"life\.h5: is damaged: .*wear/(cycle|pin_depth|{part}) "):
+        with pytest.raises(InputError, match=rf"a\.h5: is damaged: .*wear/(cycle|pin_depth|{part}) "):
             life(path, resume=True)
 
 
 @pytest.mark.gate
-def test_a_life_without_a_stored_cycle_keeps_its_title(tmp_path, monkeypatch):
-    path = tmp_path / "life.h5"
-
+def test_a_life_without_a_stored_cycle_keeps_its_title(path, monkeypatch):
     def full(*_):
         raise MemoryError
 

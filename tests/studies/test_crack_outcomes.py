@@ -11,6 +11,7 @@ from fastpin.cli.main import main
 from fastpin.cracks import CrackFate
 from fastpin.errors import CaseFileError
 from fastpin.studies import read_plan, sweep
+from tests.support.faults import fault_of
 
 CASE = """
 [pin]
@@ -83,9 +84,7 @@ def test_a_sweep_tells_the_fate_of_cracks(folder: Path) -> None:
 )
 def test_a_fault_is_one_sentence_with_its_line(folder: Path, old: str, new: str, line: int, sentence: str) -> None:
     Path("plan.toml").write_text(PLAN.replace(old, new, 1))
-    with pytest.raises(CaseFileError) as caught:
-        read_plan("plan.toml")
-    ((found_line, found),) = caught.value.problems
+    found_line, found = fault_of(read_plan, "plan.toml")
     assert found_line == line
     assert found.startswith(sentence)
 

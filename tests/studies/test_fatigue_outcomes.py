@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.cli.main import main
 from fastpin.errors import CaseFileError
 from fastpin.model import FatigueConstants
 from fastpin.model.angles import from_bottom
@@ -21,6 +20,9 @@ from fastpin.studies import converge
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, OutcomeValue, StudyOutcome, value_of
 from fastpin.studies.plan import parse_plan
+from tests.support.case_texts import FATIGUED
+from tests.support.commands import printed, said
+from tests.support.faults import faults_of
 
 CONSTANTS = FatigueConstants(
     fatigue_strength=1100e6,
@@ -96,13 +98,11 @@ def test_a_criterion_is_read_at_the_hot_spot_of_the_last_cycle(name: str, result
 def test_slip_and_friction_energy_are_the_largest_of_a_node(result: Result) -> None:
     cycle = result.cycle()
     energy = cycle.friction_energy
-    assert energy is not None
     assert read("largest_slip_range", result).value == cycle.slip_range.max() > 0.0
     assert read("largest_slip_range_angle", result).value == cycle.largest_slip_range_angle
     assert read("largest_friction_energy", result).value == energy.max() > 0.0
-    angle = read("largest_friction_energy_angle", result).value
-    assert angle is not None
-    assert np.cos(angle - cycle.theta[np.argmax(energy)]) == pytest.approx(1.0, abs=1e-12)
+    away = read("largest_friction_energy_angle", result).value - cycle.theta[np.argmax(energy)]
+    assert np.cos(away) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_slip_that_is_rounding_is_no_slip() -> None:
@@ -164,16 +164,12 @@ def test_units_of_the_parameters_follow_the_problem() -> None:
 def test_what_is_missing_is_named(name: str, reason: str) -> None:
     bare = fastpin.solve(problem(None), HISTORY, nodes=61)
     assert read(name, bare)[:3] == (outcome(name).definition, None, reason)
-    parameter = read("smith_watson_topper", bare).value  # it needs no constants
-    assert parameter is not None
-    assert parameter > 0.0
+    assert read("smith_watson_topper", bare).value > 0.0  # it needs no constants
 
 
 def test_limits_that_contradict_each_other_are_a_reason() -> None:
     wrong = fastpin.solve(problem(FatigueConstants(bending_limit=1e8, torsion_limit=2e8)), HISTORY, nodes=61)
-    reason = read("findley", wrong).reason
-    assert reason is not None
-    assert "torsion_limit" in reason
+    assert "torsion_limit" in read("findley", wrong).reason
 
 
 def test_a_rigid_plate_has_no_hot_spot() -> None:
@@ -182,18 +178,14 @@ def test_a_rigid_plate_has_no_hot_spot() -> None:
     assert read("smith_watson_topper", rigid).reason == "body: the plate is rigid: its stress is not determined"
 
 
-def test_criteria_need_all_corners_of_the_last_cycle() -> None:
+def test_criteria_need_all_corners_of_the_last_cycle(result: Result) -> None:
     ends = fastpin.solve(problem(), HISTORY, nodes=61, keep="cycles", slip_sums=True)
     reason = 'not all corners of the last cycle are kept; keep = "corners" keeps them'
     assert read("smith_watson_topper", ends).reason == reason
     for name in ("largest_friction_energy", "largest_slip_range"):  # slip sums count between kept states, too
-        assert read(name, ends).value == pytest.approx(read(name, solved_at_corners()).value, rel=1e-12)
+        assert read(name, ends).value == pytest.approx(read(name, result).value, rel=1e-12)
     unsummed = fastpin.solve(problem(), HISTORY, nodes=61, keep="cycles")
     assert read("largest_slip_range", unsummed).reason == reason
-
-
-def solved_at_corners() -> Result:
-    return fastpin.solve(problem(), HISTORY, nodes=61, slip_sums=True)
 
 
 def test_an_infinite_life_is_no_number(result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -247,9 +239,8 @@ def plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.gate
-def test_a_sweep_ranks_designs_by_life(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["sweep", "plan.toml", "--table", "a.csv", "--plot", "a.png", "--workers", "1"]) == 1
-    out = capsys.readouterr().out
+def test_a_sweep_ranks_designs_by_life(plan: Path) -> None:
+    out = said("sweep", plan, "--table", "a.csv", "--plot", "a.png", "--workers", "1", code=1).out
     reason = "fatigue: findley needs bending_limit, torsion_limit of the plate's material"
     assert "outcome torsion can't be read in 3 runs" in out
     assert reason in out
@@ -269,7 +260,7 @@ def test_a_sweep_ranks_designs_by_life(plan: Path, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.gate
-def test_a_convergence_study_gives_a_life_an_error_bar(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_convergence_study_gives_a_life_an_error_bar(plan: Path) -> None:
     names = ("smith_watson_topper", "smith_watson_topper_life", "largest_friction_energy", "crossland_angle")
     study = converge(problem(), HISTORY, (51, 101, 201), outcomes={name: {"cycle": name} for name in names})
     found = {series.name: series for series in study.studies[0].series if series.outcome}
@@ -278,31 +269,12 @@ def test_a_convergence_study_gives_a_life_an_error_bar(plan: Path, capsys: pytes
         assert math.isfinite(found[name].estimate.bar), name
         assert found[name].estimate.bar < 0.2 * abs(found[name].values[-1]), name
     plan.write_text(PLAN.replace('torsion = { cycle = "findley" }', ""))
-    assert main(["converge", "case.toml", "--nodes", "51,101,201", "--outcomes", "plan.toml"]) == 0
-    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    words = printed("converge", "case.toml", "--nodes", "51,101,201", "--outcomes", plan)
+    lines = [line.split() for line in words.splitlines()]
     assert [line[1] for line in lines if line[:1] in (["place"], ["energy"])] == ["deg", "J/m^2"]
 
 
 # -- the section [fatigue] -------------------------------------------------------------------------------------------
-
-SECTION_CASE = """\
-pin.material = "Ti-6Al-4V"
-plate.material = "2024-T3"
-[contact]
-hole_radius = 10e-3
-clearance = 40e-6
-friction = 0.4
-[[load]]
-P = 3e6
-[[load]]
-Q = [7e5, -7e5]
-repeat = 2
-[fatigue]
-small_cycles = "haibach"
-knee = 1e6
-[solve]
-nodes = 41
-"""
 
 SECTION_PLAN = """\
 case = "case.toml"
@@ -321,7 +293,7 @@ cycle = { fatigue = "life", over = "cycle" }
 
 @pytest.mark.gate
 def test_outcomes_of_the_section(tmp_path):
-    (tmp_path / "case.toml").write_text(SECTION_CASE, encoding="utf-8")
+    (tmp_path / "case.toml").write_text(FATIGUED, encoding="utf-8")
     plan = parse_plan(SECTION_PLAN, folder=tmp_path)
     assert [plan.outcomes[name].unit for name in ("life", "never")] == ["spectra", "spectra"]
     assert plan.outcomes["cycle"].kind == "life"
@@ -340,11 +312,11 @@ def test_outcomes_of_the_section(tmp_path):
 
 
 def test_keys_of_the_section_change_no_run(tmp_path):
-    (tmp_path / "case.toml").write_text(SECTION_CASE, encoding="utf-8")
+    (tmp_path / "case.toml").write_text(FATIGUED, encoding="utf-8")
     words = 'an outcome such as { fatigue = "life" } may have knee beside it'
     with pytest.raises(CaseFileError, match=f'"fatigue.knee": changes no run of a sweep; {words}'):
         parse_plan('case = "case.toml"\n[grid]\nfatigue.knee = [1e5, 1e6]\n', folder=tmp_path)
-    without = SECTION_CASE.replace('small_cycles = "haibach"\nknee = 1e6\n', "").replace("[fatigue]\n", "")
+    without = FATIGUED.replace('small_cycles = "haibach"\nknee = 1e6\n', "").replace("[fatigue]\n", "")
     plan = parse_plan(SECTION_PLAN, folder=tmp_path)
     (tmp_path / "case.toml").write_text(without, encoding="utf-8")
     other = parse_plan(SECTION_PLAN, folder=tmp_path)
@@ -353,9 +325,8 @@ def test_keys_of_the_section_change_no_run(tmp_path):
 
 def test_faults_of_an_outcome(tmp_path):
     text = '[outcomes]\na = { fatigue = "knee" }\nb = { fatigue = "life", small_cycles = "haibach" }\n'
-    with pytest.raises(CaseFileError) as error:
-        parse_plan("[grid]\ncontact.friction = [0.2]\n" + text)
-    assert [fault for _, fault in error.value.problems] == [
+    found = faults_of(parse_plan, "[grid]\ncontact.friction = [0.2]\n" + text)
+    assert [fault for _, fault in found] == [
         'a: fatigue: must be "life", "damage" or "angle", not "knee"',
         'b: knee: must be given with small_cycles = "haibach": the cycles at the knee, such as 1e6',
     ]

@@ -63,12 +63,12 @@ def test_rows_come_back(plan: Plan, directory: Path) -> None:
 
 
 def test_plain_sql_reads_it(plan: Plan, directory: Path) -> None:
-    database = sqlite3.connect(directory / INDEX)
-    found = database.execute(
+    query = (
         "SELECT id, json_extract(\"load.2.Q\", '$[1]'), json_extract(input, '$.plate.E') FROM runs "
         "WHERE \"plate.material\" = 'steel' AND status = 'done' AND nodes > 40"
-    ).fetchall()
-    database.close()
+    )
+    with contextlib.closing(sqlite3.connect(directory / INDEX)) as database:
+        found = database.execute(query).fetchall()
     assert found == [(plan.points[0].id, -1e5, 210e9)]
 
 
@@ -80,12 +80,13 @@ def test_a_plan_that_has_grown_keeps_what_is_known(plan: Plan, directory: Path) 
     assert len(rows) == 8
     assert rows[plan.points[0].id]["status"] == "done"
     assert rows[plan.points[0].id]["solve.nodes"] == 401
-    assert list(index_fields(directory)) == [*plan.fields, "solve.nodes"]
-
-
-def index_fields(directory: Path) -> dict[str, str]:
     with Index(directory) as index:
-        return dict(index.fields)
+        assert [*index.fields] == [*plan.fields, "solve.nodes"]
+
+
+def execute(path: Path, statement: str, *values: object) -> None:
+    with contextlib.closing(sqlite3.connect(path, isolation_level=None)) as database:
+        database.execute(statement, values)
 
 
 def truncated(path: Path) -> None:
@@ -98,30 +99,17 @@ def text(path: Path) -> None:
 
 def foreign(path: Path) -> None:
     path.unlink()
-    database = sqlite3.connect(path)
-    database.execute("CREATE TABLE runs (id TEXT)")
-    database.close()
+    execute(path, "CREATE TABLE runs (id TEXT)")
 
 
 def later(path: Path) -> None:
-    database = sqlite3.connect(path)
-    database.execute("PRAGMA user_version = 99")
-    database.close()
+    execute(path, "PRAGMA user_version = 99")
 
 
 def garbled(path: Path) -> None:
     content = bytearray(path.read_bytes())
     content[200:-100] = b"\xff" * (len(content) - 300)
     path.write_bytes(content)
-
-
-def missing(path: Path) -> None:
-    path.unlink()
-
-
-def a_directory(path: Path) -> None:
-    path.unlink()
-    path.mkdir()
 
 
 @pytest.mark.parametrize("create", [False, True])
@@ -145,11 +133,12 @@ def test_what_is_no_index_is_refused(damage: Callable[[Path], None], words: str,
     assert (directory / INDEX).read_bytes() == before
 
 
-@pytest.mark.parametrize(("damage", "words"), [(missing, "holds no sweep"), (a_directory, "holds no sweep")])
-def test_a_sweep_that_is_not_there(damage: Callable[[Path], None], words: str, directory: Path) -> None:
-    damage(directory / INDEX)
-    with pytest.raises(InputError, match=words):
-        Index(directory)
+@pytest.mark.parametrize("make", [lambda path: None, Path.mkdir, Path.touch], ids=["missing", "directory", "empty"])
+def test_a_sweep_that_is_not_there(make: Callable[[Path], None], tmp_path: Path) -> None:
+    """SQLite makes an empty file before it writes."""
+    make(tmp_path / INDEX)
+    with pytest.raises(InputError, match="holds no sweep"):
+        Index(tmp_path)
 
 
 def test_an_index_that_can_not_be_written_is_named(plan: Plan, directory: Path) -> None:
@@ -184,26 +173,13 @@ def test_half_a_transaction_is_none(plan: Plan, tmp_path: Path) -> None:
         assert len(index.rows()) == 4
 
 
-def test_a_directory_is_locked_for_one(tmp_path: Path) -> None:
-    with (
-        lock_directory(tmp_path),
-        pytest.raises(InputError, match="another sweep is running in this directory"),
-        lock_directory(tmp_path),
-    ):
-        pass
-    with lock_directory(tmp_path):
-        pass
-
-
 def test_a_lock_that_can_not_be_made_is_named() -> None:
     with pytest.raises(InputError, match="can't be used: unable to open"), lock_directory(Path("/proc/1")):
         pass
 
 
-def test_an_index_that_is_about_to_be_made_is_none_yet(tmp_path: Path) -> None:
-    (tmp_path / INDEX).touch()  # as SQLite does before it writes
-    with pytest.raises(InputError, match="holds no sweep"):
-        Index(tmp_path)
+def test_an_index_that_is_about_to_be_made_is_written(tmp_path: Path) -> None:
+    (tmp_path / INDEX).touch()
     with Index(tmp_path, write=True):
         pass
     with Index(tmp_path):
@@ -226,8 +202,7 @@ def test_a_damaged_row_is_described(tmp_path, statement, reason):
     plan = parse_plan('[grid]\n"contact.friction" = [0.1, 0.2]\n')
     with Index(tmp_path, write=True) as index:
         index.expect(plan, plan.points)
-    with contextlib.closing(sqlite3.connect(tmp_path / "index.sqlite", isolation_level=None)) as database:
-        database.execute(statement)
+    execute(tmp_path / INDEX, statement)
     with Index(tmp_path) as index, pytest.raises(InputError, match=reason) as raised:
         index.rows()
     assert "\n" not in str(raised.value)
@@ -235,7 +210,6 @@ def test_a_damaged_row_is_described(tmp_path, statement, reason):
 
 def test_a_reason_of_millions_of_characters_is_cut(directory: Path) -> None:
     """Characters that are to be made printable, one after the other, would take seconds."""
-    with contextlib.closing(sqlite3.connect(directory / INDEX, isolation_level=None)) as database:
-        database.execute("UPDATE runs SET reason = ?", ("\x1b" * 4_000_000,))
+    execute(directory / INDEX, "UPDATE runs SET reason = ?", "\x1b" * 4_000_000)
     with Index(directory) as index:
         assert {row["reason"] for row in index.rows()} == {printable("\x1b" * LONGEST_WORDS)}

@@ -13,6 +13,8 @@ from scripts.inline import Inline
 from tests.support.case_texts import PRESSED
 from tests.support.plans import MOMENT
 
+xarray = pytest.importorskip("xarray")
+
 PLAN = """
 title = "slip of two pins"
 [grid]
@@ -45,7 +47,6 @@ def directory(plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_grid_gives_the_dimensions(plan: Plan, directory: Path) -> None:
-    pytest.importorskip("xarray")
     data = sweep.to_xarray(plan, directory)
     assert dict(data.sizes) == {"run": 2, "contact.friction": 3, "solve.nodes": 2, "load.2.Q": 1}
     assert data["contact.friction"].values.tolist() == [0.3, 0.4, 0.5]
@@ -64,7 +65,6 @@ def test_the_grid_gives_the_dimensions(plan: Plan, directory: Path) -> None:
 
 
 def test_variables_have_units_and_words(plan: Plan, directory: Path) -> None:
-    pytest.importorskip("xarray")
     data = sweep.to_xarray(plan, directory)
     assert data["work"].attrs == {"units": "J/m", "long_name": "friction work"}
     assert data["where"].attrs == {"units": "deg", "long_name": "where"}
@@ -77,7 +77,6 @@ def test_variables_have_units_and_words(plan: Plan, directory: Path) -> None:
 
 def test_failed_and_waiting_runs_are_missing(tmp_path: Path) -> None:
     """A failed run has key figures of its last state, which are no results."""
-    pytest.importorskip("xarray")
     moments = parse_plan(MOMENT)
     waiting = sweep.to_xarray(moments, tmp_path / "none")
     assert set(waiting["status"].values.ravel()) == {"waiting"}
@@ -92,7 +91,6 @@ def test_failed_and_waiting_runs_are_missing(tmp_path: Path) -> None:
 
 
 def test_a_plan_of_lists_has_one_dimension(tmp_path: Path) -> None:
-    pytest.importorskip("xarray")
     listed = parse_plan("[[list]]\ncontact.friction = 0.3\n[[list]]\ncontact.friction = 0.4\nsolve.nodes = 41\n")
     data = sweep.to_xarray(listed, tmp_path)
     assert dict(data.sizes) == {"run": 2}
@@ -102,7 +100,6 @@ def test_a_plan_of_lists_has_one_dimension(tmp_path: Path) -> None:
 
 
 def test_files_of_loads_and_their_columns_can_be_varied(tmp_path: Path) -> None:
-    pytest.importorskip("xarray")
     for name in ("a.csv", "b.csv"):
         (tmp_path / name).write_text("Force [kN/m],Other [kN/m]\n1000,2000\n")
     text = """
@@ -124,7 +121,6 @@ def test_files_of_loads_and_their_columns_can_be_varied(tmp_path: Path) -> None:
 
 @pytest.mark.gate
 def test_a_dataset_can_be_written_and_read(plan: Plan, directory: Path, tmp_path: Path) -> None:
-    xarray = pytest.importorskip("xarray")
     data = sweep.to_xarray(plan, directory)
     data.to_netcdf(tmp_path / "sweep.nc", engine="h5netcdf")
     with xarray.open_dataset(tmp_path / "sweep.nc", engine="h5netcdf") as read:

@@ -5,13 +5,14 @@ import json
 import pytest
 
 import fastpin
-from fastpin.cli.main import main
 from fastpin.errors import CaseFileError
 from fastpin.report import summary
 from fastpin.storage import stored_case
 from fastpin.studies import read_plan, read_tolerances, sweep
 from fastpin.studies.outcomes import value_of
 from fastpin.studies.plan import parse_plan
+from tests.support.commands import printed
+from tests.support.faults import fault_of
 
 CASE = """\
 [pin]
@@ -75,7 +76,7 @@ def swept(folder, text):
 
 @pytest.mark.gate
 def test_outcomes_are_the_margins_of_the_table(folder):
-    plan = parse_plan(f'case = "case.toml"\n[grid]\ncontact.friction = [0.4]\n{OUTCOMES}', folder=folder)
+    plan = parse_plan(ONE + OUTCOMES, folder=folder)
     case = plan.case(plan.points[0])
     result = fastpin.solve(case.problem, case.history, **case.options.keywords())
     values = {name: value_of(outcome, result).value for name, outcome in plan.outcomes.items()}
@@ -132,17 +133,14 @@ def test_an_outcome_that_is_added_later_changes_the_ids(folder):
 
 
 @pytest.mark.gate
-def test_a_tolerance_study_has_the_swing_of_the_least_margin(folder, capsys):
+def test_a_tolerance_study_has_the_swing_of_the_least_margin(folder):
     (folder / "study.toml").write_text(
         'case = "case.toml"\nsamples = 0\n[tolerances]\nplate.yield_strength = { from = 350e6, to = 400e6 }\n'
         'loads = { from = 0.9, to = 1.1 }\n[outcomes]\nleast = { margin = "least" }\n',
         encoding="utf-8",
     )
     assert len(read_tolerances(folder / "study.toml").plan.runs) == 9
-    capsys.readouterr()
-    run = ["tolerances", str(folder / "study.toml"), "--workers", "1", "--plot", str(folder / "tornado.png")]
-    assert main(run) == 0
-    lines = capsys.readouterr().out.splitlines()
+    lines = printed("tolerances", "study.toml", "--workers", "1", "--plot", "tornado.png").splitlines()
     at = next(k for k, line in enumerate(lines) if line.startswith("least: nominal "))
     fields = [line.split()[0] for line in lines[at + 2 :] if line.strip()]
     assert {"loads", "plate.yield_strength"} <= set(fields[:3])
@@ -162,18 +160,16 @@ def test_a_tolerance_study_has_the_swing_of_the_least_margin(folder, capsys):
 def test_wrong_outcomes_have_a_sentence(folder, outcome, words):
     text = CASE[: CASE.index("[fatigue]")] + "[solve]\nnodes = 41\n"
     (folder / "case.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(CaseFileError) as caught:
-        parse_plan(f"{STRENGTHS}[outcomes]\nm = {outcome}\n", folder=folder)
-    (message,) = (message for _, message in caught.value.problems)
+    _, message = fault_of(parse_plan, f"{STRENGTHS}[outcomes]\nm = {outcome}\n", folder=folder)
     assert message.startswith("m: ")
     assert words in message
 
 
 @pytest.mark.gate
 @pytest.mark.parametrize("files", [False, True])
-def test_stored_runs_keep_the_sections(folder, capsys, files):
+def test_stored_runs_keep_the_sections(folder, files):
     """``fastpin show`` and ``fastpin report`` of a stored run judge it as those of the case."""
-    (folder / "plan.toml").write_text('case = "case.toml"\n[grid]\ncontact.friction = [0.4]\n', encoding="utf-8")
+    (folder / "plan.toml").write_text(ONE, encoding="utf-8")
     plan = read_plan(folder / "plan.toml")
     sweep.run(plan, folder / "plan", workers=1, files=files)
     path = folder / f"plan/results/{plan.points[0].id}.h5"
@@ -184,11 +180,8 @@ def test_stored_runs_keep_the_sections(folder, capsys, files):
         sweep.run(plan, folder / "plan", workers=1, files=True)
         assert path.exists()
         assert (stored_case(path).fatigue, stored_case(path).crack) == (case.fatigue, case.crack)
-    capsys.readouterr()
-    assert main(["show", str(path), "--json", "-"]) == 0
-    shown = json.loads(capsys.readouterr().out)
-    assert main(["run", str(folder / "case.toml"), "--json", "-"]) == 0
-    ran = json.loads(capsys.readouterr().out)
+    shown = json.loads(printed("show", path, "--json", "-"))
+    ran = json.loads(printed("run", folder / "case.toml", "--json", "-"))
     assert shown["margins"] == ran["margins"]
     assert shown["fatigue"] == ran["fatigue"] is not None
     assert shown["crack"] == ran["crack"] is not None
@@ -203,20 +196,14 @@ def test_an_outcome_of_fatigue_names_its_criterion(folder):
     text = CASE.replace("ductility_exponent = -0.59 }", f"ductility_exponent = -0.59, {shear}", 1)
     text = text.replace("life = 1e4", 'criterion = ["smith-watson-topper", "fatemi-socie"]')
     (folder / "case.toml").write_text(text, encoding="utf-8")
-    plan = parse_plan(
-        'case = "case.toml"\n[grid]\ncontact.friction = [0.4]\n[outcomes]\nfirst = { fatigue = "damage" }\n'
-        'shear = { fatigue = "damage", criterion = "fatemi-socie" }\n',
-        folder=folder,
-    )
+    outcomes = 'first = { fatigue = "damage" }\nshear = { fatigue = "damage", criterion = "fatemi-socie" }\n'
+    plan = parse_plan(f"{ONE}[outcomes]\n{outcomes}", folder=folder)
     case = plan.case(plan.points[0])
     result = fastpin.solve(case.problem, case.history, **case.options.keywords())
     found = result.assessed_fatigue(case.fatigue)
     first, second = (next(one for one in found if one.criterion == each) for each in case.fatigue.criteria)
     values = [value_of(outcome, result).value for outcome in plan.outcomes.values()]
     assert values == [first.hot_spot.damage, second.hot_spot.damage]
+    both = '[outcomes]\nboth = { fatigue = "life", criterion = ["fatemi-socie", "smith-watson-topper"] }\n'
     with pytest.raises(CaseFileError, match="both: criterion: must be one criterion, not 2"):
-        parse_plan(
-            'case = "case.toml"\n[grid]\ncontact.friction = [0.4]\n[outcomes]\n'
-            'both = { fatigue = "life", criterion = ["fatemi-socie", "smith-watson-topper"] }\n',
-            folder=folder,
-        )
+        parse_plan(ONE + both, folder=folder)

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.errors import CaseFileError
 from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.plan import Plan, parse_plan
 from tests.support.case_texts import PRESSED
+from tests.support.faults import fault_of
 
 GAP = "\n[gap]\nhole = { ellipse = 1e-5, axis = 45 }\n"
 ZONES = PRESSED.replace("friction = 0.3", "friction = [0.3, { zone = 0.2, start = -30, stop = 30 }]")
@@ -69,18 +69,18 @@ FAULTS = {
 
 @pytest.mark.parametrize("line", FAULTS)
 def test_a_wrong_axis_is_explained(tmp_path: Path, line: str) -> None:
-    with pytest.raises(CaseFileError) as caught:
-        plan(tmp_path, f"[grid]\n{line}\n", PRESSED + GAP)
-    assert caught.value.problems == [(3, FAULTS[line])]
+    assert fault_of(plan, tmp_path, f"[grid]\n{line}\n", PRESSED + GAP) == (3, FAULTS[line])
 
 
-def test_a_list_needs_the_number_of_the_term(tmp_path: Path) -> None:
-    with pytest.raises(
-        CaseFileError, match=r"is a list; write the number of the term, such as contact\.friction\.1\.axis"
-    ):
-        plan(tmp_path, "[grid]\ncontact.friction.zone = [0.1]\n", ZONES)
-    with pytest.raises(CaseFileError, match="the friction of the case has 2 terms in a list, counted from 1"):
-        plan(tmp_path, "[grid]\ncontact.friction.3.zone = [0.1]\n", ZONES)
+@pytest.mark.parametrize(
+    ("field", "words"),
+    [
+        ("friction", "is a list; write the number of the term, such as contact.friction.1.axis"),
+        ("friction.3", "the friction of the case has 2 terms in a list, counted from 1"),
+    ],
+)
+def test_a_list_needs_the_number_of_the_term(tmp_path: Path, field: str, words: str) -> None:
+    assert words in fault_of(plan, tmp_path, f"[grid]\ncontact.{field}.zone = [0.1]\n", ZONES)[1]
 
 
 def test_a_changed_file_of_samples_is_noticed(tmp_path: Path) -> None:

@@ -8,25 +8,13 @@ import pytest
 
 import fastpin
 from fastpin import damage, studies
-from fastpin.cli.main import main
-from fastpin.errors import CaseFileError
 from fastpin.report.envelope import BEARING, BYPASS, envelopes
 from fastpin.studies import read_plan, sweep
+from tests.support.case_texts import LAMINATED
+from tests.support.commands import printed, refused, said
+from tests.support.faults import fault_of
 
-CASE = """
-[pin]
-material = "steel"
-[plate]
-layup = "[0/45/-45/90]2s"
-ply = "T300/914"
-[contact]
-plane = "stress"
-hole_radius = 3e-3
-clearance = 20e-6
-friction = 0.2
-[[load]]
-P = 1e6
-[solve]
+CASE = f"""{LAMINATED}[solve]
 nodes = 61
 [strength]
 criterion = "yamada-sun"
@@ -56,8 +44,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.gate
-def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope"]) == 1  # two have no curve
+def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path) -> None:
+    words = said("sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope", code=1).out
+    assert "outcome curve can't be read in 2 runs" in words
     plan = read_plan("plan.toml")
     rows = sweep.rows(plan, "plan")
     problem = fastpin.read_case("case.toml").problem
@@ -78,9 +67,7 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path, capsys:
     assert {*np.round(curve[BYPASS])} == {round(row["factor"] * row["load.1.syy"]) for row in rows}
     assert curve[BEARING].max() == pytest.approx(max(row["factor"] for row in rows[2:]) * 1e6 / 6e-3)
     assert np.all(np.diff(np.arctan2(curve[BYPASS], curve[BEARING])) > 0.0)
-    svg = Path("one.svg").read_text()
-    assert "bypass stress (MPa)" in svg
-    assert "outcome curve can't be read in 2 runs" in capsys.readouterr().out
+    assert "bypass stress (MPa)" in Path("one.svg").read_text()
 
 
 @pytest.mark.gate
@@ -90,7 +77,7 @@ def test_an_envelope_follows_the_force_and_the_other_fields(folder: Path) -> Non
         '"plate.layup" = ["[0/90]4s", "[0/45/-45/90]2s"]\n[outcomes]\nf = { strength = "factor" }\n'
         '[labels]\n"plate.layup" = "layup"\n'
     )
-    assert main(["sweep", "plan.toml", "--workers", "1"]) == 0
+    said("sweep", "plan.toml", "--workers", "1")
     plan = read_plan("plan.toml")
     rows = sweep.rows(plan, "plan")
     for curve, row, layup in zip(envelopes(plan, rows, "f"), rows, ("[0/90]4s", "[0/45/-45/90]2s"), strict=True):
@@ -108,19 +95,19 @@ def test_an_envelope_follows_the_force_and_the_other_fields(folder: Path) -> Non
         (["--envelope"], "--envelope: says what a figure shows; --plot FILE is missing"),
     ],
 )
-def test_what_an_envelope_can_not_show(folder, capsys, words, sentence):
-    assert main(["sweep", "plan.toml", *words]) == 2
-    assert sentence in capsys.readouterr().err
+def test_what_an_envelope_can_not_show(folder, words, sentence):
+    assert sentence in refused("sweep", "plan.toml", *words)
     assert not Path("plan").exists()
 
 
 @pytest.mark.gate
-def test_points_without_a_factor_are_noted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    Path("plan.toml").write_text(PLAN.replace("[-100e6, 100e6]", "[0]"))
-    assert main(["sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope"]) == 1
-    assert "note: 1 of 2 points have no value in the figure" in capsys.readouterr().err
-    Path("plan.toml").write_text(PLAN.replace("[-100e6, 100e6]", "[0]").replace("[0, 1e6]", "[0]"))
-    assert main(["sweep", "plan.toml", "-o", "none", "--workers", "1", "--plot", "none.svg", "--envelope"]) == 1
+def test_points_without_a_factor_are_noted(folder: Path) -> None:
+    plan = PLAN.replace("[-100e6, 100e6]", "[0]")
+    Path("plan.toml").write_text(plan)
+    words = said("sweep", "plan.toml", "--workers", "1", "--plot", "one.svg", "--envelope", code=1).err
+    assert "note: 1 of 2 points have no value in the figure" in words
+    Path("plan.toml").write_text(plan.replace("[0, 1e6]", "[0]"))
+    said("sweep", "plan.toml", "-o", "none", "--workers", "1", "--plot", "none.svg", "--envelope", code=1)
     assert not Path("none.svg").exists()
 
 
@@ -135,19 +122,15 @@ def test_points_without_a_factor_are_noted(folder: Path, capsys: pytest.CaptureF
 )
 def test_a_fault_is_one_sentence_with_its_line(folder: Path, old: str, new: str, line: int, sentence: str) -> None:
     Path("plan.toml").write_text(PLAN.replace(old, new, 1))
-    with pytest.raises(CaseFileError) as caught:
-        read_plan("plan.toml")
-    ((found_line, found),) = caught.value.problems
+    found_line, found = fault_of(read_plan, "plan.toml")
     assert found_line == line
     assert found.startswith(sentence)
 
 
 @pytest.mark.survey
-def test_a_tolerance_study_has_the_strength_too(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    Path("case.toml").write_text(CASE)
+def test_a_tolerance_study_has_the_strength_too(folder: Path) -> None:
     Path("tolerances.toml").write_text(
         'case = "case.toml"\n[tolerances]\n"contact.clearance" = { from = 10e-6, to = 30e-6 }\n'
         '[outcomes]\nratio = { strength = "ratio" }\n'
     )
-    assert main(["tolerances", "tolerances.toml", "--workers", "1"]) == 0
-    assert "ratio" in capsys.readouterr().out
+    assert "ratio" in printed("tolerances", "tolerances.toml", "--workers", "1")

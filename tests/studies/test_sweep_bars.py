@@ -138,13 +138,8 @@ def test_a_number_that_the_coarse_grid_lacks_has_an_unknown_bar(result: Result) 
 
 @pytest.mark.parametrize(
     "name",
-    [
-        "dissipation",
-        "regime",
-        "shear_change",
-        "rotation_change",
-        *(n for n in CYCLE_QUANTITIES if n.startswith("largest")),
-    ],
+    ["dissipation", "regime", "shear_change", "rotation_change"]
+    + [name for name in CYCLE_QUANTITIES if name.startswith("largest")],
 )
 def test_every_quantity_of_a_cycle_has_a_bar(name: str, result: Result) -> None:
     outcome = outcomes_from({"f": {"cycle": name}})["f"]
@@ -229,10 +224,9 @@ def test_error_bars_may_vary(folder) -> None:
 
 def test_the_name_of_a_bar_is_no_outcome(folder, plan: Plan) -> None:
     words = "peak_bar: is the column of the error bar of peak; choose another name"
-    with pytest.raises(CaseFileError, match=words):
-        parse_plan(PLAN + 'peak_bar = { quantity = "dx" }\n', folder=folder)
-    with pytest.raises(CaseFileError, match="dx_bar: is the column of the error bar of dx; choose another name"):
-        parse_plan(PLAN + 'dx_bar = { quantity = "dx" }\n', folder=folder)
+    for name in ("peak", "dx"):
+        with pytest.raises(CaseFileError, match=words.replace("peak", name)):
+            parse_plan(f'{PLAN}{name}_bar = {{ quantity = "dx" }}\n', folder=folder)
     with pytest.raises(InputError, match=words):
         plan.with_outcomes({"peak_bar": {"quantity": "dx"}})
     assert np.size(parse_plan(PLAN + 'crow_bar = { quantity = "dx" }\n', folder=folder).points) == 4

@@ -124,7 +124,7 @@ def test_a_function_that_kills_its_worker_loses_no_run(bare: Plan, tmp_path: Pat
 
 
 def test_a_function_that_can_not_be_sent_is_refused_before_the_runs(bare: Plan, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="outcomes: guess: can't be sent to workers"):
+    with pytest.raises(InputError, match="outcomes: guess: can't be sent to workers, which import it by its name"):
         sweep.run(bare.with_outcomes({"guess": lambda result: 1.0}), tmp_path / "out", workers=1)
     assert not (tmp_path / "out").exists()
 

@@ -14,9 +14,11 @@ from fastpin.errors import CaseFileError
 from fastpin.solver.result import Result
 from fastpin.studies import sweep
 from fastpin.studies.outcome_tables import outcomes_from
-from fastpin.studies.outcomes import WEAR_QUANTITIES, pickled, value_of, values_in_worker
+from fastpin.studies.outcomes import WEAR_QUANTITIES, value_of
 from fastpin.studies.plan import Plan, parse_plan
 from scripts.inline import Inline
+from tests.support.faults import faults_of
+from tests.support.outcomes import value
 
 HOW: dict[str, Any] = {"cycles": 3000, "pin": 1e-15, "plate": 3e-15, "at": [1000]}
 
@@ -66,14 +68,6 @@ def result() -> Result:
     return fastpin.solve(problem, history, nodes=41)
 
 
-def read(given: dict[str, Any], result: Result) -> float | None:
-    """The value of an outcome as a worker reads it."""
-    (outcome,) = outcomes_from({"it": given}).values()
-    found = values_in_worker({"it": (outcome.definition, pickled(outcome))}, result)["it"]
-    assert found.reason is None
-    return found.value
-
-
 @pytest.mark.gate
 def test_the_numbers_are_those_of_the_life(result: Result) -> None:
     life = fastpin.wear(result.problem, result.history, nodes=41, **HOW)
@@ -91,8 +85,9 @@ def test_the_numbers_are_those_of_the_life(result: Result) -> None:
     assert tuple(expected) == tuple(WEAR_QUANTITIES)
     assert last.volume > 0.0
     assert 0.0 < found.damage[-1].max() < 1.0
-    for quantity, value in expected.items():
-        assert read({"wear": quantity, **HOW}, result) == (None if value is None else pytest.approx(value, rel=1e-12))
+    for quantity, number in expected.items():
+        found = value({"wear": quantity, **HOW}, result)
+        assert found == (None if number is None else pytest.approx(number, rel=1e-12))
 
 
 @pytest.mark.gate
@@ -100,8 +95,8 @@ def test_a_crack_has_a_life_and_wins(result: Result) -> None:
     how = HOW | {"cycles": 300_000, "at": [10_000, 30_000, 100_000]}
     found = fastpin.wear(result.problem, result.history, nodes=41, **how).fatigue()
     assert math.isfinite(found.life)
-    assert read({"wear": "life", **how}, result) == found.life
-    assert read({"wear": "race", **how}, result) == Race.CRACK
+    assert value({"wear": "life", **how}, result) == found.life
+    assert value({"wear": "race", **how}, result) == Race.CRACK
     (outcome,) = outcomes_from({"it": {"wear": "race", **how}}).values()
     assert outcome.classes == {0: "no crack in any case", 1: "wear wins", 2: "a crack wins"}
 
@@ -123,7 +118,7 @@ def test_outcomes_share_a_life_and_its_damage(result: Result, monkeypatch: pytes
     monkeypatch.setattr(fastpin.solver.WearResult, "fatigue", fatigue)
     how = HOW | {"cycles": 2000}
     for quantity in WEAR_QUANTITIES:
-        read({"wear": quantity, **how}, result)
+        value({"wear": quantity, **how}, result)
     assert counts == {"wear": 1, "fatigue": 1}
     assert value_of(outcomes_from({"it": {"wear": "depth", **how, "pin": 2e-15}})["it"], result).value
     assert counts["wear"] == 2
@@ -136,7 +131,7 @@ def test_a_coefficient_along_the_rim_is_written_as_in_a_case(result: Result) -> 
     )
     life = fastpin.wear(result.problem, result.history, nodes=41, cycles=1000, plate=profile, at=[])
     given = {"wear": "volume", "cycles": 1000, "plate": zone, "at": []}
-    assert read(given, result) == pytest.approx(life[-1].volume, rel=1e-12)
+    assert value(given, result) == pytest.approx(life[-1].volume, rel=1e-12)
     one, other = (outcomes_from({"it": given | {"plate": each}})["it"] for each in (zone, zone[:1]))
     assert one.definition != other.definition
 
@@ -175,9 +170,7 @@ g = { wear = "life", cycles = 10, coefficient = 1e-15, criterion = "findley", bo
 h = { wear = "life", cycles = 10, coefficent = 1e-15 }
 i = { wear = "life", cycles = 10, plate = { zone = 1e-15, start = 10 } }
 """
-    with pytest.raises(CaseFileError) as caught:
-        parse_plan(text, folder=tmp_path)
-    found = caught.value.problems
+    found = faults_of(parse_plan, text, folder=tmp_path)
     expected = [
         (4, 'a: wear: must be "volume", "depth"'),
         (5, "b: cycles is missing"),

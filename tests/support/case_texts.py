@@ -13,3 +13,40 @@ friction = 0.3
 P = 1e6
 """
 """A free steel pin in a steel plate, pressed down."""
+
+LAMINATED = """
+[pin]
+material = "steel"
+[plate]
+layup = "[0/45/-45/90]2s"
+ply = "T300/914"
+[contact]
+plane = "stress"
+hole_radius = 3e-3
+clearance = 20e-6
+friction = 0.2
+[[load]]
+P = 1e6
+"""
+"""A steel pin in a laminate whose plies have strengths, pressed down."""
+
+FATIGUED = """\
+title = "A repeated Q"
+pin.material = "Ti-6Al-4V"
+plate.material = "2024-T3"
+[contact]
+hole_radius = 10e-3
+clearance = 40e-6
+friction = 0.4
+[[load]]
+P = 3e6
+[[load]]
+Q = [7e5, -7e5]
+repeat = 3
+[fatigue]
+small_cycles = "haibach"
+knee = 1e6
+[solve]
+nodes = 31
+"""
+"""A pin that a repeated force Q moves in a sheet, with a section of fatigue."""

@@ -1,6 +1,12 @@
 """The parts of an HTML page, for tests of pages."""
 
 from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+from fastpin.pages import write_report
+from fastpin.solver.result import Result
+from fastpin.solver.wear_result import WearResult
 
 VOID = ("meta", "link", "br", "img", "hr", "input")
 """Elements of HTML without an end tag."""
@@ -51,3 +57,9 @@ class Page(HTMLParser):
     def handle_data(self, data: str) -> None:
         if self._open[-1:] != ["style"]:
             self.text += data
+
+
+def words_of(source: Result | WearResult | Path, path: Path, **options: Any) -> str:
+    """Write the page of a result or a life of wear, and return its words."""
+    write_report(source, path, **options)
+    return Page(path.read_text(encoding="utf-8")).text

@@ -5,6 +5,8 @@ from typing import Any
 
 import fastpin
 from fastpin.solver.result import Result
+from fastpin.studies.outcome_tables import outcomes_from
+from fastpin.studies.outcomes import pickled, values_in_worker
 
 FILE = '''
 """A file of outcomes as a user writes it."""
@@ -59,6 +61,14 @@ last_work.unit = "J/m"  # type: ignore[attr-defined]
 def deadly(result: Result) -> float:
     """End the process."""
     os._exit(9)
+
+
+def value(given: Any, result: Result) -> float | None:
+    """The value of an outcome as a worker reads and reports it."""
+    (outcome,) = outcomes_from({"it": given}).values()
+    found = values_in_worker({"it": (outcome.definition, pickled(outcome))}, result)["it"]
+    assert found.reason is None
+    return found.value
 
 
 def solved(problem: fastpin.Problem, **options: Any) -> Result:

@@ -1,5 +1,6 @@
 """Small plans, and ways to run and compare them, for the tests of sweeps."""
 
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from fastpin.states.state import State
 from fastpin.storage import store
 from fastpin.studies.plan import Plan
 from fastpin.studies.run_end import KEY_FIGURES
+from scripts.inline import Inline
 
 FRICTION = """
 title = "Friction"
@@ -38,6 +40,12 @@ MAP = """
 [[list]]
 "pin.E" = 1e11
 """
+
+
+def run_here(_: object, tasks: Iterable[Any], submit: Callable[..., Any], size: object) -> Iterator[Any]:
+    """Make runs in this process, in place of ``through_processes`` of fastpin.studies.workers."""
+    for task in tasks:
+        yield (task,), submit(Inline(), (task,)).result()
 
 
 def assert_same_as_serial(plan: Plan, directory: Path) -> None:
