@@ -10,6 +10,7 @@ compiled.
 
 import math
 import os
+import platform
 import sys
 import threading
 import time
@@ -104,6 +105,7 @@ def _size(figure: Figure, path: Any, **options: Any) -> str | None:
 
 
 def pytest_configure() -> None:
+    platform.processor()  # starts a process once, which h5py would start within a test
     sys.addaudithook(lambda event, _: _seen.__setitem__(EVENTS[event], 1) if event in EVENTS else None)
     _watch(time, "sleep", lambda seconds: "a sleep" if seconds else None)
     _watch(BaseProcess, "start", lambda process: "a child process")
