@@ -179,12 +179,6 @@ def test_laws_of_random_histories():
         laws(seed)
 
 
-@pytest.mark.gate
-def test_laws_of_500_random_histories():
-    for seed in range(100, 600):
-        laws(seed)
-
-
 def test_a_table_of_lives_ends_at_the_knee():
     """Damage of a plane from the table, and the same from Newton's method alone, on both sides of a knee."""
     curve = curve_with_knee(smith_watson_topper_curve(E, STRENGTH, B, 0.22, -0.59), 2, "haibach", 1e5)
