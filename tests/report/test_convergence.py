@@ -7,15 +7,13 @@ import pytest
 
 from fastpin.model.materials import MaterialPair
 from fastpin.report.convergence import one_digit, reported_series, series_columns, text
-from fastpin.studies.convergence import Convergence
-from tests.support.studies import small_problem, small_study
-
-pytestmark = pytest.mark.gate
+from fastpin.studies.convergence import Convergence, converge
+from tests.support.studies import CORNERS, small_problem
 
 
 @pytest.fixture(scope="module")
 def study(similar: MaterialPair) -> Convergence:
-    return small_study(small_problem(similar))
+    return converge(small_problem(similar), CORNERS[:1], (51, 61, 81))
 
 
 def test_text_shows_zeros_as_zeros(study: Convergence) -> None:
@@ -24,7 +22,7 @@ def test_text_shows_zeros_as_zeros(study: Convergence) -> None:
 
 
 def test_every_verdict_has_words(study: Convergence) -> None:
-    row = reported_series(study.studies[0], study.problem, 3)[0]
+    row = reported_series(study.studies[0], study.problem, 1)[0]
     words = {
         ("observed", 1.5, 1e-6): "order 1.50",
         ("converged", math.nan, 1.4e-6): "converged, scatter 1e-6",
@@ -39,7 +37,7 @@ def test_every_verdict_has_words(study: Convergence) -> None:
 
 
 def test_small_values_have_the_digits_of_their_bar(study: Convergence) -> None:
-    row = reported_series(study.studies[0], study.problem, 3)[0]
+    row = reported_series(study.studies[0], study.problem, 1)[0]
     values = (1.23456789e-20,) * len(row.values)
     row = replace(row, unit="m", values=values, verdict="observed", limit=1.23456789e-20, bar=1e-26)
     cells = {name: column[0] for name, _, column in series_columns(study.studies[0], [row])}

@@ -30,7 +30,7 @@ from fastpin.storage.recording import resume, stored_case
 from fastpin.storage.writer import checkpoint_of, coarse_of
 from tests.support.interrupts import StopAt
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
-from tests.support.tiers import for_gate, some_gate
+from tests.support.tiers import some_gate
 
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
 
@@ -302,16 +302,15 @@ def test_links_lead_to_one_run(problem, whole, path, tmp_path):
 
 
 @pytest.fixture(scope="module")
-@for_gate
 def died(problem, tmp_path_factory):
-    """The folder of a run that has died after some thirty corners, with checkpoints."""
+    """The folder of a run that has died after some twelve corners, with checkpoints."""
     folder = tmp_path_factory.mktemp("died")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(writer, "CHECKPOINT_EVERY", 0.0)
         patch.setattr(writer, "CHECKPOINT_SHARE", 0.0)
         patch.setattr(writer.FileRecorder, "finish", lambda writer, _: writer.abort())
         with pytest.raises(Interrupted):
-            follow(problem, RANDOM, folder / "a.h5", nodes=61, progress=StopAt(30.0), arc=(-3.0, -0.1))
+            follow(problem, RANDOM, folder / "a.h5", nodes=61, progress=StopAt(12.0), arc=(-3.0, -0.1))
     return folder
 
 
@@ -326,7 +325,7 @@ def test_a_dead_run_goes_on_from_its_checkpoint(left, path):
     assert checkpoint_of(path).exists()
     steps = []
     resume(path, lambda done, total: steps.append(done))
-    assert min(steps) >= 28.0
+    assert min(steps) >= 10.0
     assert_file(path, left)
     assert not checkpoint_of(path).exists()
 
@@ -375,11 +374,11 @@ def test_an_unfinished_run_is_not_overwritten_by_accident(left, path, problem):
 
 def test_an_unfinished_run_can_be_looked_at_but_not_gone_on_from_its_end(left, path, problem):
     found = store.load(path)
-    assert 25 <= len(found) <= 31
+    assert 7 <= len(found) <= 13
     assert not found.complete
     with pytest.raises(InputError, match="nothing can continue from this result"):
         solve(problem, [{"Q": 0.1}], start=found)
-    assert len(solve(problem, [{"Q": 0.1}], start=store.load(path, after=20))) == 1
+    assert len(solve(problem, [{"Q": 0.1}], start=store.load(path, after=6))) == 1
     assert len(store.load(path, after=len(found))) == len(found)
     with pytest.raises(InputError, match=f"must be a corner from 1 to {len(found)}, not {len(found) + 1}"):
         store.load(path, after=len(found) + 1)
