@@ -12,7 +12,7 @@ from fastpin.errors import InputWarning
 from fastpin.model.doubts import EDGES, doubts, doubts_given
 from fastpin.states import extremes
 from fastpin.states.extremes import yield_doubts_of
-from fastpin.states.yielding import circles, von_mises_peak
+from fastpin.states.yielding import Places, circles, von_mises_peak
 
 R, SEAT = 10e-3, 12.5e-3
 STEEL, BRONZE, ALUMINIUM = Material(210e9, 0.3), Material(103e9, 0.34), Material(71e9, 0.33)
@@ -53,6 +53,18 @@ def test_closed_forms_of_press_fits_are_the_stresses_of_an_unloaded_state(pin, p
     for circle in edges:
         found = state.stress(Points.at_depth(circle.depth * R, AROUND), circle.body).von_mises
         assert found == pytest.approx(expected[circle.edge], abs=1e-6 * max(expected.values()))
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+@pytest.mark.parametrize("owner", ["pin", "plate", "bush"])
+def test_the_von_mises_stress_of_places_is_that_of_the_state(owner, plane):
+    problem = Problem(MaterialPair(STEEL, ALUMINIUM, plane), R, 20e-6, 0.3, plate_body=BUSH)
+    state = solve(problem, [{"P": 1e6}], nodes=61)[-1]
+    places = Places.of(problem, state.grid, owner)
+    there = state.stress(Points.at_depth(places.depth * R, places.theta), places.body, straight=True)
+    found = places.von_mises(problem, np.stack([there.radial, there.hoop, there.shear]))
+    np.testing.assert_array_equal(found, there.von_mises)
+    assert von_mises_peak(state, owner).value == found.max()
 
 
 def test_a_pin_with_clearance_has_no_stress_before_loads():
