@@ -252,6 +252,15 @@ def test_links_lead_to_the_journal_of_the_file(torn: Torn, tmp_path: Path) -> No
     assert path.read_bytes() == before
 
 
+def test_a_file_is_being_written_while_its_writer_has_it(path: Path) -> None:
+    assert not journal.is_being_written(path)  # there is none yet
+    written(path, 2)
+    writer = JournaledFile(path, new=False)
+    assert journal.is_being_written(path)
+    writer.release()
+    assert not journal.is_being_written(path)
+
+
 def test_file_systems_without_locks(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise OSError(errno.ENOLCK, "No locks available")
