@@ -203,6 +203,18 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
         assert np.abs((rates - others)[kept]).max() < 1e-9 * np.abs(others).max()
 
 
+@pytest.mark.parametrize("largest", [1e-3, 1.0, 1e3])
+def test_values_close_to_their_bounds_reach_them(system, kernel, largest):
+    """Close means relative to the largest gap and the largest pressure: to 1e-13 and 1e-10."""
+    status = np.array([OPEN, OPEN, OPEN, 1, 1, 1], dtype=np.int8)
+    contact, rates = at_rest_on(system, status), np.zeros(15)
+    contact.gap[:3] = largest * np.array([1.0, 0.5e-13, 2e-13])
+    contact.pressure[3:] = largest * np.array([1.0, 0.5e-10, 2e-10])
+    kernel("_advance")(contact, rates, np.full(6, 0.3), np.ones(6), 0.0, 6)
+    assert (contact.gap[:3] > 0.0).tolist() == [True, False, True]
+    assert (contact.pressure[3:] > 0.0).tolist() == [True, False, True]
+
+
 @pytest.mark.gate
 @pytest.mark.parametrize("sets", [*gate("stuck"), "zones"])
 def test_columns_by_chunks_are_those_one_by_one(system, sets, monkeypatch):
