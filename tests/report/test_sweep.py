@@ -69,6 +69,13 @@ def test_numbers_of_a_map(plan: Plan, rows: list[dict[str, Any]]) -> None:
     assert not none.any()
 
 
+def test_error_bars_have_the_unit_of_their_numbers(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    assert chart(plan, rows, "peak_pressure").bars == []
+    found = chart(plan, [row | {"peak_pressure_bar": 2e4} for row in rows], "peak_pressure")
+    for (_, numbers, _), bars in zip(found.parts, found.bars, strict=True):
+        np.testing.assert_allclose(bars, np.where(np.isnan(numbers), np.nan, 0.02))
+
+
 def test_numbers_of_curves(plan: Plan, rows: list[dict[str, Any]]) -> None:
     found = chart(plan, rows, "contact_start", "contact.clearance")
     assert found.label == "contact start (deg)"
