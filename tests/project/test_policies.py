@@ -23,6 +23,9 @@ def test_the_versions_of_formats_are_those_of_the_code() -> None:
     assert listed == [
         (layout.FORMAT_VERSION, "format_version", "fastpin/storage/layout.py"),
         (layout.WITH_BODIES, "format_version", "fastpin/storage/layout.py"),
+        (layout.WITH_PROFILES, "format_version", "fastpin/storage/layout.py"),
+        (layout.WITH_SEAT, "format_version", "fastpin/storage/layout.py"),
+        (layout.WITH_LAMINATE, "format_version", "fastpin/storage/layout.py"),
         (index.FORMAT_VERSION, "user_version", "fastpin/studies/index.py"),
         (compliance.VERSION, "version", "fastpin/bodies/compliance.py"),
     ]
