@@ -7,7 +7,8 @@ import pytest
 
 import fastpin
 from fastpin import InputError, storage
-from fastpin.storage import store
+from fastpin.storage import packed, store
+from fastpin.storage.layout import WITH_SEAT
 from tests.support.seats import sample_case, sample_seat, stored_sample
 
 
@@ -55,5 +56,7 @@ def test_a_seat_is_saved_with_its_joint_only(tmp_path: Path) -> None:
 
 def test_a_packed_joint_keeps_its_seat() -> None:
     result = sample_seat()
-    back = store.unpack(store.pack(result, None, 10**7), Path("a")).seat
+    content = store.pack(result, None, 10**7)
+    assert packed.from_bytes(content).attrs["format_version"] == WITH_SEAT == 5
+    back = store.unpack(content, Path("a")).seat
     assert all(np.array_equal(one.slip, other.slip) for one, other in zip(back, result.seat, strict=True))
