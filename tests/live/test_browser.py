@@ -837,7 +837,7 @@ def test_updates_come_fast_enough_for_a_drag(chrome: webdriver.Chrome, nodes: in
         x, y = tab.tip()
         tab.mouse("mousePressed", x, y)
         began = processor_time()
-        times = chrome.execute_async_script(DRAG, x, y, 300)
+        times = chrome.execute_async_script(DRAG, x, y, 120)
         spent = 1e3 * (processor_time() - began) / len(times)
         tab.mouse("mouseReleased", x, y, 0)
         loops.append(loop_time())
