@@ -16,6 +16,9 @@ Found = TypeVar("Found")
 STACK = 2**24
 """Bytes of the stack of an undisturbed thread: compilers go deep, and some systems give threads little."""
 
+LATE = 2.0
+"""Seconds after which a thread that has not begun is taken for lost."""
+
 _alone = ContextVar("_alone", default=False)
 _starting = threading.Lock()
 
@@ -57,15 +60,32 @@ def in_chunks(count: int, size: int, work: Callable[[slice], None]) -> None:
     in_threads(work, [slice(first, first + size) for first in range(0, count, size)])
 
 
+class _Beginning(threading.Event):
+    """Whether a thread has begun. Who starts it does not wait for ever."""
+
+    def wait(self, timeout: float | None = None) -> bool:
+        return super().wait(LATE if timeout is None else timeout)
+
+
 class _Undisturbed(threading.Thread):
-    """A thread that computes one result. No process ends before it has."""
+    """A thread that computes one result. No process ends before it has.
+
+    Python 3.11 may raise an exception that is meant for the caller in a new thread, which ends before its first line.
+    """
 
     def __init__(self, work: Callable[[], object]) -> None:
         super().__init__(name="fastpin", daemon=False)
-        self.work, self.result, self.works = work, Future[object](), threading.Lock()
+        self._started = _Beginning()
+        self.work, self.result, self.works, self.taken = work, Future[object](), threading.Lock(), threading.Lock()
         self.works.acquire()
 
+    def is_lost(self) -> bool:
+        """Whether the thread has not begun in time. Then it never computes anything."""
+        return not self._started.is_set() and self.taken.acquire(blocking=False)
+
     def run(self) -> None:
+        if not self.taken.acquire(blocking=False):
+            return
         try:
             self.result.set_result(self.work())
         except BaseException as error:
@@ -95,6 +115,8 @@ def undisturbed(work: Callable[[], Found]) -> Found:
     try:
         thread.start()
     except RuntimeError:  # no more threads, or the interpreter is about to end
+        return work()
+    if thread.is_lost():
         return work()
     while thread.works.locked():
         try:

@@ -93,3 +93,27 @@ def test_undisturbed_work_raises_its_own_errors_and_needs_no_thread(monkeypatch:
     monkeypatch.setattr(threading.Thread, "start", refuse)
     assert threads.undisturbed(threading.get_ident) == threading.get_ident()
     assert threading.stack_size() == size
+
+
+def test_undisturbed_work_is_done_if_its_thread_is_lost_before_its_first_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python 3.11 may raise an exception that is meant for the caller in a thread that it has just made."""
+    monkeypatch.setattr(threads, "LATE", 0.01)
+    monkeypatch.setattr(threading.Thread, "_bootstrap", lambda thread: None)
+    assert threads.undisturbed(threading.get_ident) == threading.get_ident()
+
+
+def test_a_thread_that_begins_late_does_not_work_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    begin, times = threading.Thread._bootstrap, []
+    done, ended = threading.Event(), threading.Event()
+
+    def slow(thread: threading.Thread) -> None:
+        done.wait(10.0)
+        begin(thread)
+        ended.set()
+
+    monkeypatch.setattr(threads, "LATE", 0.01)
+    monkeypatch.setattr(threading.Thread, "_bootstrap", slow)
+    threads.undisturbed(lambda: times.append(1))
+    done.set()
+    assert ended.wait(10.0)
+    assert times == [1]
