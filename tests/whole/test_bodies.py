@@ -153,3 +153,12 @@ def test_a_far_reaction_is_a_reaction_at_infinity():
         errors.append(np.abs(solve(problem, [{"P": 1.0}], nodes=101, arc=ARC)[-1].pressure - plain).max())
     assert 1e-2 < errors[0] < 0.2
     assert errors[1] < 2e-2 * errors[0]
+
+
+def test_a_thin_tube_touches_beyond_the_side():
+    """A tube with the bore 0.9 R bends: the half-angle is 112 degrees, and 64 degrees with a solid pin."""
+    halves = []
+    for bodies in ({"pin_body": Tube(0.9)}, {}):
+        state = solve(Problem.from_load_parameter(UNLIKE, 0.1, 0.2, **bodies), [{"P": 1.0}], grid=Grid.circle(160))[-1]
+        halves.append(np.degrees(0.5 * np.ptp(state.contact[0])))
+    assert halves == pytest.approx([112.0, 64.0], abs=1.0)
