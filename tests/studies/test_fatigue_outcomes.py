@@ -20,25 +20,12 @@ from fastpin.studies import converge
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, OutcomeValue, StudyOutcome, value_of
 from fastpin.studies.plan import parse_plan
+from tests.support import fatigue
 from tests.support.case_texts import FATIGUED
 from tests.support.commands import printed, said
 from tests.support.faults import faults_of
 
-CONSTANTS = FatigueConstants(
-    fatigue_strength=1100e6,
-    strength_exponent=-0.124,
-    fatigue_ductility=0.22,
-    ductility_exponent=-0.59,
-    shear_fatigue_strength=640e6,
-    shear_strength_exponent=-0.124,
-    shear_fatigue_ductility=0.38,
-    shear_ductility_exponent=-0.59,
-    yield_strength=379e6,
-    bending_limit=140e6,
-    torsion_limit=85e6,
-    normal_stress_factor=1.0,
-    source="for tests",
-)
+CONSTANTS = replace(fatigue.CONSTANTS, threshold_range=None, limit_range=None)
 CYCLE = fastpin.LoadHistory([{"P": 4e5, "Q": 2e5, "syy": 2e7}, {"P": 4e5, "Q": -2e5, "syy": 2e6}])
 HISTORY = fastpin.LoadHistory([{"P": 4e5}]) + CYCLE.repeated(3)
 CRITERIA = ("smith_watson_topper", "fatemi_socie", "findley", "crossland", "dang_van")
