@@ -502,7 +502,9 @@ def test_the_last_cycle_is_told_and_written(cyclic: Path) -> None:
     assert f"at {cycle['largest_friction_energy_angle']:z.2f} deg" in line
 
 
-SHEET = CYCLES.replace("nu = 0.33", "").replace("E  = 69e9", 'material = "2024-T3"')
+SHEET = (
+    CYCLES.replace("nu = 0.33", "").replace("E  = 69e9", 'material = "2024-T3"').replace("repeat = 12 ", "repeat = 4 ")
+)
 
 
 @pytest.mark.gate
@@ -510,7 +512,7 @@ def test_hoop_stress_and_fatigue_are_told(cyclic: Path) -> None:
     cyclic.write_text(SHEET)
     lines = printed("run", cyclic, "-o", "a.h5").splitlines()
     result = fastpin.load("a.h5")
-    assert len(result) == 37
+    assert len(result) == 13
     hoop = next(line for line in lines if line.startswith("largest hoop stress of the plate in all kept states: "))
     assert f" {max(state.peak_hoop_stress().value for state in result) / 1e6:.4g} MPa" in hoop
     fatigue = next(line for line in lines if line.startswith("fatigue of the plate in the last cycle"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import signal
 import subprocess
@@ -15,6 +16,7 @@ import pytest
 from fastpin.casefile.reader import EXAMPLE
 from fastpin.runtime.stopping import STOPPING
 from tests.support.processes import fastpin, python, started
+from tests.support.tiers import some_survey
 
 pytestmark = [
     pytest.mark.gate,
@@ -50,6 +52,10 @@ COMMANDS = {
 }
 """Commands of a minute or more: the first file of each, and what it says after "interrupted"."""
 
+STOPPED = list(itertools.product(COMMANDS, (False, True)))
+OTHERS = [(command, background) for command, background in STOPPED if bool(COMMANDS[command][0]) != background]
+"""The gate stops in the background what writes files, and the others before a terminal."""
+
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
@@ -75,8 +81,7 @@ def ignored_by(pid: int) -> set[int]:
     return {number for number in range(1, 65) if mask >> (number - 1) & 1}
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-@pytest.mark.parametrize("background", [False, True])
+@pytest.mark.parametrize(("command", "background"), some_survey(STOPPED, *OTHERS))
 def test_a_signal_stops_a_command(folder: Path, command: str, background: bool) -> None:
     """`nohup` ignores SIGHUP, and a shell makes what a script starts in the background ignore SIGINT."""
     file, words = COMMANDS[command]

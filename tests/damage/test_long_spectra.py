@@ -12,7 +12,7 @@ from fastpin.damage.counted import MOST_PATHS, _together
 from fastpin.model import FatigueAssessment, FatigueConstants
 
 MATERIAL = fastpin.Material(70e9, 0.33, "aluminium", FatigueConstants(1100e6, -0.124, 0.22, -0.59))
-STATES, FEW, MANY = 3_000, 4, 48
+STATES, FEW, MANY = 3_000, 4, 24
 
 
 @pytest.fixture(scope="module")

@@ -68,7 +68,7 @@ CASES = {
 def test_the_product_gives_the_stresses_of_each_state(name):
     """Straight lines: to 1e-9 of the largest stress. Refined tractions: the reading of the state, to the last bit."""
     bodies, edges, steady = CASES[name]
-    corners = 50
+    corners = 24
     states = list(fastpin.solve(problem_of(**bodies), random_loads(corners, **steady), nodes=61))
     points = fastpin.Points.at_depth(np.array([[0.0], [4e-4], [4e-3]]), np.linspace(-3.0, 1.0, 7))
     for body in edges:
@@ -149,7 +149,7 @@ def test_fatemi_socie_under_pure_shear():
 
 def test_laws_of_random_histories():
     """The beginning makes no difference, repeats multiply, and slow stops on the way do nothing."""
-    for seed in seeds(300):
+    for seed in seeds(100):
         rng = np.random.default_rng(seed)
         size = int(rng.integers(2, 40))
         values = rng.uniform(-2e8, 3e8, size)
@@ -184,13 +184,13 @@ def searched(history, plane):
 
 @pytest.mark.gate
 def test_a_brute_search_finds_no_worse_plane():
-    """Stresses of one load: every quarter of a degree, counted by pylife, with the stress at the upper reversals."""
+    """Stresses of one load: every half degree, counted by pylife, with the stress at the upper reversals."""
     for seed in seeds(10):
         rng = np.random.default_rng(seed)
         history = rng.uniform(-1.0, 2.0, (25, 1, 1)) * rng.uniform(-1e8, 2e8, 4)
         counted, spectrum = CountedMaterial.of(SWT, MATERIAL, None, "plate"), Spectrum.of(np.arange(25))
         (found,), (plane,) = counted.worst(history, spectrum)
-        sums = [searched(history[:, 0], x) for x in np.radians(np.arange(-90.0, 90.0, 0.25))]
+        sums = [searched(history[:, 0], x) for x in np.radians(np.arange(-90.0, 90.0, 0.5))]
         assert max(sums) * (1.0 - 1e-9) <= found <= max(sums) * 1.001  # the scan is the coarser search
         assert found == pytest.approx(searched(history[:, 0], plane), rel=1e-9)
 

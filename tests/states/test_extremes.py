@@ -51,7 +51,7 @@ def random_history(corners: int, seed: int = 1) -> LoadHistory:
     return LoadHistory([{"P": 0.0, "Q": 0.0} if k % 5 == 4 else load for k, load in enumerate(loads)])
 
 
-MAPPED = 12
+MAPPED = 8
 """Number of different states from which on these tests compute stresses by matrices."""
 
 
@@ -62,7 +62,7 @@ def _few_states_are_many(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="module", params=some_gate(JOINTS, "bush", "bush that slips"))
 def result(request: pytest.FixtureRequest) -> Result:
-    return fastpin.solve(JOINTS[request.param], random_history(20), nodes=61)
+    return fastpin.solve(JOINTS[request.param], random_history(MAPPED + 2), nodes=41)
 
 
 @pytest.fixture

@@ -30,7 +30,7 @@ from fastpin.storage.recording import resume, stored_case
 from fastpin.storage.writer import checkpoint_of, coarse_of
 from tests.support.interrupts import StopAt
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
-from tests.support.tiers import some_gate
+from tests.support.tiers import some_gate, some_survey
 
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
 
@@ -119,7 +119,7 @@ def test_an_interrupted_run_goes_on(problem, denser, path, corner):
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("stops", [1.75, 6.0])
+@pytest.mark.parametrize("stops", some_survey([1.75, 6.0], 1.75))
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_a_run_interrupted_again_and_again(problem, path, program, stops):
     history, corner = PROGRAMS[program][: 12 if stops < 2.0 else 40], 3.0

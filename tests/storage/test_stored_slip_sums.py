@@ -20,13 +20,13 @@ from fastpin.storage.store import load, places_between
 from tests.support.files import replaced, written
 from tests.support.interrupts import StopAt
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
-from tests.support.tiers import gate
+from tests.support.tiers import gate, some_survey
 
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("keep", ["all", "cycles", "every 7"])
+@pytest.mark.parametrize("keep", some_survey(["all", "cycles", "every 7"], "cycles"))
 @pytest.mark.parametrize("program", [*gate("spectrum"), "two levels", "pressed again and again"])
 def test_a_run_interrupted_again_and_again(problem: Problem, path: Path, program: str, keep: str) -> None:
     history, corner = PROGRAMS[program][:60], 3.0

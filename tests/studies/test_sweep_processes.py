@@ -27,6 +27,7 @@ from scripts.inline import Inline
 from tests.support.outcomes import FILE
 from tests.support.plans import FRICTION, assert_same_as_serial
 from tests.support.processes import LONGEST, ROOT, fastpin, finished, python, started
+from tests.support.tiers import some_survey
 from tests.support.turnstiles import Turnstile
 
 pytestmark = pytest.mark.gate
@@ -92,7 +93,7 @@ def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     assert_same_as_serial(plan, tmp_path)
 
 
-@pytest.mark.parametrize("size", [1, 3])
+@pytest.mark.parametrize("size", some_survey([1, 3], 1))
 def test_the_run_that_kills_its_worker_is_found(size: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also among others of its batch."""
     monkeypatch.setattr(Pace, "size", lambda self, waiting: size)

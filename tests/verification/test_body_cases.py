@@ -32,15 +32,15 @@ def test_a_press_fit_makes_the_clearance_smaller():
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize(("nodes", "change"), some_survey([(801, 1e-6), FINE], FINE))
+@pytest.mark.parametrize(("nodes", "change"), some_survey([(201, 3e-5), (801, 1e-6), FINE], (801, 1e-6), FINE))
 @pytest.mark.parametrize("name", CASES)
 def test_nodes(name, nodes, change):
     """With 1,601 nodes the values are those of the table: 5e-7 (peak), 5e-7 (int N), 5e-5 (half-angle, rounded).
 
-    From 801 to 1,601 nodes the peak changes by up to 9e-7, and int N by up to 3.5e-6.
+    From 801 to 1,601 nodes the peak changes by up to 9e-7, and int N by up to 3.5e-6; from 201 on by up to 2.4e-5.
     """
     case = CASES[name]
     found = solve(case.problem, case.history, nodes=nodes)[-1]
     assert found.peak_pressure == pytest.approx(case.peak, abs=6e-7 + change)
     assert found.grid.weights @ found.pressure == pytest.approx(case.total, abs=6e-7 + 3.5 * change)
-    assert 0.5 * np.ptp(found.contact[0]) == pytest.approx(case.half_angle, abs=6e-5)
+    assert 0.5 * np.ptp(found.contact[0]) == pytest.approx(case.half_angle, abs=6e-5 + 3.0 * change)
