@@ -86,7 +86,8 @@ prepare() {
         make_environment
         [[ $kind != run ]] && what="$root[$kind]"
         say "installing the dependencies; this takes up to a minute"
-        log=$("$python" -m pip install --quiet --disable-pip-version-check --no-input --editable "$what" 2>&1) ||
+        # Python compiles the files of the dependencies that are used, when they are used.
+        log=$("$python" -m pip install --quiet --disable-pip-version-check --no-input --no-compile --editable "$what" 2>&1) ||
             { printf '%s\n' "$log" >&2; fail "installing the dependencies failed (above)."; }
         stamp=$(fingerprint)
         printf '%s\n' "$stamp" >"$environment/fastpin-run.stamp"
@@ -94,7 +95,7 @@ prepare() {
         if [[ $kind != run ]]; then printf '%s\n' "$stamp" >"$environment/fastpin-$kind.stamp"; fi
         say "compiling the solver; this takes some ten seconds"
         "$python" -m compileall -q "$root/fastpin" >/dev/null 2>&1 || true
-        "$python" -P -m fastpin run >/dev/null 2>&1 || true # if it fails, the command that follows says why
+        env -u PYTHONDONTWRITEBYTECODE "$python" -P -m fastpin run >/dev/null 2>&1 || true # if it fails, the command that follows says why
     fi
     exec 9<&-
 }
