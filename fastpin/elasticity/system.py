@@ -228,6 +228,17 @@ class System:
         return self.radius * self.weights
 
     @cached_property
+    def resultants(self) -> np.ndarray:
+        """Maps (N, T) to the forces along x and y and the moment that each interface passes on, (3 interfaces, 2n)."""
+        n, found = self.grid.size, np.zeros((3 * len(self.interfaces), 2 * self.grid.size))
+        for rim, rows in zip(self.interfaces, np.split(found, len(self.interfaces)), strict=True):
+            normal, shear = rim.nodes, slice(n + rim.nodes.start, n + rim.nodes.stop)
+            cos, sin = rim.radius * np.array(rim.grid.trig_moments())
+            rows[:2, normal], rows[:2, shear] = (cos, sin), (sin, -cos)
+            rows[2, shear] = -(rim.radius**2) * rim.grid.weights
+        return found
+
+    @cached_property
     def ends(self) -> np.ndarray:
         """Whether a node is the end of an arc, bool, shape (n,). It must stay open."""
         found = np.zeros(self.grid.size, dtype=bool)
@@ -237,7 +248,7 @@ class System:
 
     @cached_property
     def turning(self) -> tuple[slice, ...]:
-        """The nodes of each interface whose rotation only friction holds."""
+        """The nodes of each body whose rotation only friction holds: one of them sticks."""
         is_free = self.has_friction and self.problem.rotation == "free"
         return tuple(each.nodes for each in self.interfaces if is_free)
 

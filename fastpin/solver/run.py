@@ -31,6 +31,7 @@ from fastpin.solver.configuration import (
     elastic_energy,
     marks_left,
     slip_tally_with,
+    unbalanced,
 )
 from fastpin.solver.drift import DriftingSystem
 from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
@@ -386,8 +387,13 @@ class Run:
         kept = {stop for stop in self.fractions.tolist() if piece.begin < stop <= piece.end}
         for stop in sorted({*kept, piece.end}):
             load = piece.load_at(stop)
-            if problem.frictionless and problem.rotation == "free" and load[M] != 0.0:
-                raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
+            if problem.rotation == "free" and load[M] != 0.0:
+                if problem.frictionless:
+                    raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
+                if any(each.problem.frictionless for each in self.system.interfaces):
+                    raise NoEquilibriumError(
+                        "without friction in its seat nothing holds the bush against a moment: it spins with the pin"
+                    )
             while not np.array_equal(self.now.load, load):
                 if self._pin_closed.any():
                     self.stepper.advance(position, piece, stop, lambda reached: self._report(step, reached))
@@ -520,6 +526,9 @@ class Run:
         """Check the present configuration and hand it to the recorder as a state."""
         elastic = self.system.elastic(self.now.tractions)
         residuals = contact_residuals(self.system.under(self.now.load), self.now, elastic)
+        left = unbalanced(self.system, self.now)
+        if not left <= MAX_RESIDUAL:
+            raise ConvergenceError(f"the state leaves a body out of equilibrium (by {left:.2g}) and is not returned")
         if not np.max(list(residuals.values())) <= MAX_RESIDUAL:
             worst = max(residuals, key=lambda name: residuals[name])
             raise ConvergenceError(
