@@ -186,7 +186,7 @@ class JointSystem(System):
     @property
     def is_pressed(self) -> bool:
         """Whether a press fit holds the bush in its seat before any load."""
-        return self.alone[SEAT].problem.is_gripped
+        return self.alone[SEAT].rest_clearance < 0.0
 
     @cached_property
     def bonded(self) -> slice:

@@ -32,6 +32,12 @@ _ACTING_FORCES = min(DISPLACEMENTS) if max(DISPLACEMENTS) == ACTING - 1 else ACT
 """Number of loads in products under forces. The displacements, where they stand last, are left out: zeros cost bits."""
 
 
+ROUNDED = 1e-10
+"""Clearance, in F beta*, that counts as none: a tenth of the error that a returned state may have."""
+
+NEARLY = 1e-6
+"""Clearance, in F beta*, of a nearly neat fit. Its contact feels it in the last part of an unloading only."""
+
 IN_PLACE = {"friction", "clearance", "gap"}
 """Fields of a problem that the matrices do not depend on."""
 
@@ -181,7 +187,7 @@ class System:
         scales, operator = Scales.of(problem, force), cls._operator(problem, grid, bodies, drive)
         initial_gap = problem.gap_at(theta)[0] / scales.displacement
         return cls(
-            problem, grid, scales, problem.assembled_clearance / scales.displacement, initial_gap,
+            problem, grid, scales, _rest_clearance(problem, scales), initial_gap,
             problem.friction_at(theta), operator, motion, loads, equilibrium, motion_rows, forces, weights, plate,
             drive, bodies,
         )  # fmt: skip
@@ -263,6 +269,16 @@ class System:
         return self.rest_clearance + self.initial_gap
 
     @cached_property
+    def is_neat(self) -> bool:
+        """Whether the pin touches all round without load. Then everything grows in proportion to the loads."""
+        return not self.concentric_gap.any()
+
+    @cached_property
+    def is_nearly_neat(self) -> bool:
+        """Whether the pin is neat or loose by at most :data:`NEARLY`. Its contacts vanish where all loads vanish."""
+        return bool(self.concentric_gap.min() >= 0.0 and self.concentric_gap.max() <= NEARLY)
+
+    @cached_property
     def has_friction(self) -> bool:
         """Whether there is friction at a node."""
         return bool(self.friction.any())
@@ -320,9 +336,9 @@ class System:
             return None
         if problem.seat is not None:  # the system of a joint holds systems of its parts
             return None
-        rest_clearance = problem.assembled_clearance / self.scales.displacement
         return replace(
-            self, problem=problem, friction=problem.friction_at(self.grid.theta), rest_clearance=rest_clearance,
+            self, problem=problem, friction=problem.friction_at(self.grid.theta),
+            rest_clearance=_rest_clearance(problem, self.scales),
             initial_gap=problem.gap_at(self.grid.theta)[0] / self.scales.displacement, held_as=self.held_as or self,
         )  # fmt: skip
 
@@ -385,6 +401,12 @@ class System:
         result = elastic + self.motion @ motion + self.load_displacement(load)
         result[: self.grid.size] += rest_gap
         return result
+
+
+def _rest_clearance(problem: Problem, scales: Scales) -> float:
+    """The clearance of the assembled pin, dimensionless; 0 where it is rounding beside the displacements."""
+    clearance = problem.assembled_clearance / scales.displacement
+    return 0.0 if abs(clearance) <= ROUNDED and not problem.gap else clearance
 
 
 def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) -> tuple[float, np.ndarray]:

@@ -44,7 +44,7 @@ from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, R
 from fastpin.solver.rest import follow_floating, release
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
-from fastpin.solver.step import Piece, Position, Stepper, check_bond, force_of, force_on_pin, is_pushed, pieces
+from fastpin.solver.step import Piece, Position, Stepper, check_bond, force_of, force_on_pin, is_pushed, pieces, presses
 from fastpin.solver.window import WindowStepper
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
@@ -65,6 +65,9 @@ NEXT_TO_NOTHING = 1e-6
 
 UNLOADED_PRESSURE = 1e-9
 """Largest pressure of a pin after a complete unloading, in parts of the force before (dimensionless)."""
+
+LAST_PART = 1e-7
+"""Last part of a piece in which the contact of a nearly neat fit vanishes. Its tractions are rounding there."""
 
 MOST_FIRST = 12
 """First contacts that are tried while the friction changes, at most. The load of the second is that of the third."""
@@ -330,7 +333,7 @@ class Run:
         self.target, position.reached = load, 0.0
         self.corner_log.begin_step()
         try:
-            for piece in pieces(before, target):
+            for piece in pieces(before, target, self.system.is_nearly_neat):
                 self._follow_piece(piece, step)
             if not inside:
                 self._check_resolution()
@@ -394,13 +397,18 @@ class Run:
                     raise NoEquilibriumError(
                         "without friction in its seat nothing holds the bush against a moment: it spins with the pin"
                     )
-            while not np.array_equal(self.now.load, load):
+            vanishes = self.system.is_nearly_neat and not presses(load)
+            until = max(stop - LAST_PART * (piece.end - piece.begin), position.reached) if vanishes else stop
+            aim = piece.load_at(until)
+            while not np.array_equal(self.now.load, aim):
                 if self._pin_closed.any():
-                    self.stepper.advance(position, piece, stop, lambda reached: self._report(step, reached))
+                    self.stepper.advance(position, piece, until, lambda reached: self._report(step, reached))
                 else:
-                    self._touch_down(load, stop)
+                    self._touch_down(aim, until)
                 check_bond(self.system, self.now)
             position.reached = stop
+            if vanishes and not np.array_equal(self.now.load, load):
+                self._release(load)
             self._release_if_unloaded(piece, load)
             if stop in kept and stop < 1.0 and self.recorder is not None:
                 self._keep(step, stop)
@@ -444,8 +452,12 @@ class Run:
         if self.system.drive.has_displacements:  # the forces of the nodes hold the rounding of a large displacement
             left, before = float(self.system.weights @ self.now.pressure), 1.0
         if left <= UNLOADED_PRESSURE * before:
-            self.stepper.leave(self.position)
-            self.position.now = release(self.system, self.now, load)
+            self._release(load)
+
+    def _release(self, load: np.ndarray) -> None:
+        """Release the pin at a load where it carries nothing."""
+        self.stepper.leave(self.position)
+        self.position.now = release(self.system, self.now, load)
 
     def _close_step(self, load: np.ndarray, kept: bool) -> None:
         """Log the energies and the slip tally of the step that has reached its corner, under `load` (SI).
