@@ -260,8 +260,15 @@ class System:
 
     @cached_property
     def bonded(self) -> slice:
-        """The nodes that must not open: those of a bonded bush whose seat is an interface of its own."""
+        """The nodes that must stick: those of a bonded bush whose seat is an interface of its own."""
         return slice(0)
+
+    @cached_property
+    def fixed(self) -> np.ndarray:
+        """Whether a node must keep its status, bool, shape (n,): those of :attr:`ends` and :attr:`bonded`."""
+        found = self.ends.copy()
+        found[self.bonded] = True
+        return found
 
     @cached_property
     def concentric_gap(self) -> np.ndarray:
