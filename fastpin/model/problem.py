@@ -381,6 +381,12 @@ class Problem:
         return self.drive in ("ux", "both"), self.drive in ("uy", "both")
 
     @property
+    def reactions(self) -> tuple[str, ...]:
+        """Names of the loads that are reactions: Q and P to prescribed displacements, M to a held rotation."""
+        prescribed = {"Q": self.driven[0], "P": self.driven[1], "M": self.held}
+        return tuple(name for name, is_reaction in prescribed.items() if is_reaction)
+
+    @property
     def drive_compliances(self) -> tuple[float, float]:
         """The compliances g and k of a prescribed displacement, in units of beta*; docs/theory.md (T29).
 

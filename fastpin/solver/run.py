@@ -69,6 +69,9 @@ UNLOADED_PRESSURE = 1e-9
 LAST_PART = 1e-7
 """Last part of a piece in which the contact of a nearly neat fit vanishes. Its tractions are rounding there."""
 
+ROUNDED_MOMENT = 1e-12
+"""Moment that holds a pin, in parts of that of the absolute shear, which is rounding: its contact is symmetric."""
+
 MOST_FIRST = 12
 """First contacts that are tried while the friction changes, at most. The load of the second is that of the third."""
 
@@ -558,6 +561,9 @@ class Run:
         way = np.where(np.isnan(way), 0.0, way)
         moved = drive.position(now.tractions, now.motion, now.load, way[:2])
         load = drive.with_reactions(now.motion, now.load)
+        if system.problem.held:
+            load = load.copy()
+            load[M] = self._moment_that_holds()
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
         is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
         common = {
@@ -575,6 +581,13 @@ class Run:
             seat = self._state_of(place, common, turned, seat)
         assert seat is not None
         return seat
+
+    def _moment_that_holds(self) -> float:
+        """The moment that holds the rotation of the pin; 0 where it is rounding of the shear (dimensionless)."""
+        nodes = self.system.interfaces[0].nodes
+        levers, shear = self.system.levers[nodes], self.now.shear[nodes]
+        moment = -float(levers @ shear)
+        return moment if abs(moment) > ROUNDED_MOMENT * float(levers @ np.abs(shear)) else 0.0
 
     def _state_of(self, place: int, common: dict[str, Any], moved: np.ndarray, seat: State | None) -> State:
         """The state of the interface `place`, with that of the `seat` inside it; `moved` is (dx, dy, rotation)."""
