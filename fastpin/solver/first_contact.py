@@ -459,8 +459,19 @@ def _is_self_similar(system: System, resting: Configuration, way: Way) -> bool:
 def _one_step(
     system: System, resting: Configuration, load: np.ndarray, everywhere: bool = False
 ) -> Configuration | None:
-    """The implicit increment from rest; by Lemke's method where its iteration fails, see :class:`FiniteStep`."""
-    return implicit_step(system, resting, load) or FiniteStep(system, resting, everywhere).to(load)
+    """The implicit increment from rest; by Lemke's method where its iteration fails, see :class:`FiniteStep`.
+
+    If neither finds it, and all nodes may close, both begin once more with the nodes that are closed without friction.
+    """
+    found = implicit_step(system, resting, load) or FiniteStep(system, resting, everywhere).to(load)
+    is_right = found is not None and (not everywhere or worst_residual(system, found) <= MAX_RESIDUAL)
+    if is_right or not (everywhere and system.has_friction):
+        return found
+    smooth = _shearless_step(system, resting, load)
+    if smooth is None:
+        return None
+    start = replace(resting, status=smooth.status)
+    return implicit_step(system, start, load) or FiniteStep(system, start, everywhere).to(load)
 
 
 def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:

@@ -66,6 +66,14 @@ def test_a_step_is_cut_where_all_that_presses_vanishes():
     assert len(pieces(before, after, nearly_neat=False)) == 1
 
 
+@pytest.mark.gate
+def test_a_first_contact_in_two_places_under_a_force_and_stress_is_found():
+    """The iteration that begins at the lowest place finds none of the proportional contacts here, nor does Lemke's."""
+    for seed in (1062, 1510, 1670):
+        case = generate("neat", seed)
+        assert len(solve(case.problem, case.history, **case.options)) == len(case.history), seed
+
+
 @pytest.mark.parametrize("rotation", ["free", "fixed"])
 def test_a_hole_that_stress_opens_lets_a_neat_pin_go_where_its_force_vanishes(rotation):
     problem = replace(Problem.from_load_parameter(UNLIKE, 0.0, 0.2), rotation=rotation)
