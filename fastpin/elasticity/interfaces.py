@@ -26,7 +26,7 @@ from fastpin.elasticity.system import Interface, System
 from fastpin.kernels import fourier, harmonics
 from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.grid import Grid
-from fastpin.model.loads import FRICTION_CHANGE, REMOTE
+from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION
 from fastpin.model.problem import Problem
 
 PIN, SEAT = 0, 1
@@ -107,7 +107,7 @@ class JointSystem(System):
             matrix[np.ix_(rows, nodes.rows(1 - place))] = _coupling(problem, grids, place)
             motion[rows, own], loads[rows] = system.motion, system.loads
             equilibrium[own, rows], motion_rows[own, own] = system.equilibrium, system.motion_rows
-        if problem.held:
+        if pin_problem.held:
             # The rotations add up to that of the pin over the lug, and both interfaces carry the same moment. The
             # rotation of the seat is that of a solid pin at the paper's datum: the bush's outer rim turns by more.
             unit, bush = motion_rows[TURN, TURN], seat_problem.pair.pin
@@ -115,16 +115,17 @@ class JointSystem(System):
             twist = bush.kolosov(seat_problem.pair.plane) / (4.0 * math.pi * bush.shear_modulus)
             per_shear = twist / pin_problem.surfaces.beta_star * grids[SEAT].weights
             equilibrium[TURN, nodes.rows(SEAT)[grids[SEAT].size :]] = unit * per_shear
-            if not seat_problem.frictionless:
-                equilibrium[3 + TURN, nodes.rows(PIN)[grids[PIN].size :]] = pin.weights
+            equilibrium[3 + TURN, nodes.rows(PIN)[grids[PIN].size :]] = pin.weights
         stacked: dict[str, Any] = {
             "friction": np.concatenate([each.friction for each in both]),
             "forces": np.concatenate([each.forces for each in both]),
             "initial_gap": np.concatenate([each.concentric_gap for each in both]),
             "weights": np.concatenate([pin.weights, seat.weights]),
         }
-        if problem.held:
+        if pin_problem.held:
             stacked["forces"][3 + TURN] = 0.0
+        elif problem.held:  # the bush turns with the pin in it, until no moment is left between them
+            motion_rows[3 + TURN, TURN], stacked["forces"][3 + TURN, ROTATION] = 1.0, 1.0
         return cls(
             problem=problem, grid=nodes, scales=pin.scales, rest_clearance=0.0,  # type: ignore[arg-type]
             operator=DenseOperator(matrix), motion=motion, loads=loads, equilibrium=equilibrium,
@@ -150,8 +151,15 @@ class JointSystem(System):
     def ends(self) -> np.ndarray:
         return np.concatenate([each.ends for each in self.alone])
 
+    @property
+    def is_held(self) -> bool:
+        """Whether the moment that holds the pin goes through the bush. It can't if the seat has no friction."""
+        return self.alone[PIN].problem.held
+
     @cached_property
     def turning(self) -> tuple[slice, ...]:
+        if self.is_held:  # the bush may slip all round while the pin sticks in it
+            return (slice(0, self.nodes.size),)
         return tuple(each.nodes for each in self.interfaces if not self.motion_rows[each.motion + TURN].any())
 
     @cached_property
@@ -178,7 +186,7 @@ class JointSystem(System):
     @property
     def is_pressed(self) -> bool:
         """Whether a press fit holds the bush in its seat before any load."""
-        return self.alone[SEAT].problem.is_gripped
+        return self.alone[SEAT].rest_clearance < 0.0
 
     @cached_property
     def bonded(self) -> slice:

@@ -32,6 +32,12 @@ _ACTING_FORCES = min(DISPLACEMENTS) if max(DISPLACEMENTS) == ACTING - 1 else ACT
 """Number of loads in products under forces. The displacements, where they stand last, are left out: zeros cost bits."""
 
 
+ROUNDED = 1e-10
+"""Clearance, in F beta*, that counts as none: a tenth of the error that a returned state may have."""
+
+NEARLY = 1e-6
+"""Clearance, in F beta*, of a nearly neat fit. Its contact feels it in the last part of an unloading only."""
+
 IN_PLACE = {"friction", "clearance", "gap"}
 """Fields of a problem that the matrices do not depend on."""
 
@@ -181,7 +187,7 @@ class System:
         scales, operator = Scales.of(problem, force), cls._operator(problem, grid, bodies, drive)
         initial_gap = problem.gap_at(theta)[0] / scales.displacement
         return cls(
-            problem, grid, scales, problem.assembled_clearance / scales.displacement, initial_gap,
+            problem, grid, scales, _rest_clearance(problem, scales), initial_gap,
             problem.friction_at(theta), operator, motion, loads, equilibrium, motion_rows, forces, weights, plate,
             drive, bodies,
         )  # fmt: skip
@@ -228,6 +234,17 @@ class System:
         return self.radius * self.weights
 
     @cached_property
+    def resultants(self) -> np.ndarray:
+        """Maps (N, T) to the forces along x and y and the moment that each interface passes on, (3 interfaces, 2n)."""
+        n, found = self.grid.size, np.zeros((3 * len(self.interfaces), 2 * self.grid.size))
+        for rim, rows in zip(self.interfaces, np.split(found, len(self.interfaces)), strict=True):
+            normal, shear = rim.nodes, slice(n + rim.nodes.start, n + rim.nodes.stop)
+            cos, sin = rim.radius * np.array(rim.grid.trig_moments())
+            rows[:2, normal], rows[:2, shear] = (cos, sin), (sin, -cos)
+            rows[2, shear] = -(rim.radius**2) * rim.grid.weights
+        return found
+
+    @cached_property
     def ends(self) -> np.ndarray:
         """Whether a node is the end of an arc, bool, shape (n,). It must stay open."""
         found = np.zeros(self.grid.size, dtype=bool)
@@ -237,19 +254,36 @@ class System:
 
     @cached_property
     def turning(self) -> tuple[slice, ...]:
-        """The nodes of each interface whose rotation only friction holds."""
+        """The nodes of each body whose rotation only friction holds: one of them sticks."""
         is_free = self.has_friction and self.problem.rotation == "free"
         return tuple(each.nodes for each in self.interfaces if is_free)
 
     @cached_property
     def bonded(self) -> slice:
-        """The nodes that must not open: those of a bonded bush whose seat is an interface of its own."""
+        """The nodes that must stick: those of a bonded bush whose seat is an interface of its own."""
         return slice(0)
+
+    @cached_property
+    def fixed(self) -> np.ndarray:
+        """Whether a node must keep its status, bool, shape (n,): those of :attr:`ends` and :attr:`bonded`."""
+        found = self.ends.copy()
+        found[self.bonded] = True
+        return found
 
     @cached_property
     def concentric_gap(self) -> np.ndarray:
         """Gap of the unloaded, concentric pin at each node, shape (n,)."""
         return self.rest_clearance + self.initial_gap
+
+    @cached_property
+    def is_neat(self) -> bool:
+        """Whether the pin touches all round without load. Then everything grows in proportion to the loads."""
+        return not self.concentric_gap.any()
+
+    @cached_property
+    def is_nearly_neat(self) -> bool:
+        """Whether the pin is neat or loose by at most :data:`NEARLY`. Its contacts vanish where all loads vanish."""
+        return bool(self.concentric_gap.min() >= 0.0 and self.concentric_gap.max() <= NEARLY)
 
     @cached_property
     def has_friction(self) -> bool:
@@ -309,9 +343,9 @@ class System:
             return None
         if problem.seat is not None:  # the system of a joint holds systems of its parts
             return None
-        rest_clearance = problem.assembled_clearance / self.scales.displacement
         return replace(
-            self, problem=problem, friction=problem.friction_at(self.grid.theta), rest_clearance=rest_clearance,
+            self, problem=problem, friction=problem.friction_at(self.grid.theta),
+            rest_clearance=_rest_clearance(problem, self.scales),
             initial_gap=problem.gap_at(self.grid.theta)[0] / self.scales.displacement, held_as=self.held_as or self,
         )  # fmt: skip
 
@@ -374,6 +408,12 @@ class System:
         result = elastic + self.motion @ motion + self.load_displacement(load)
         result[: self.grid.size] += rest_gap
         return result
+
+
+def _rest_clearance(problem: Problem, scales: Scales) -> float:
+    """The clearance of the assembled pin, dimensionless; 0 where it is rounding beside the displacements."""
+    clearance = problem.assembled_clearance / scales.displacement
+    return 0.0 if abs(clearance) <= ROUNDED and not problem.gap else clearance
 
 
 def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) -> tuple[float, np.ndarray]:

@@ -107,7 +107,7 @@ def residuals(equations, values, elastic, loaded, forces, rest_gap, concentric_g
         lacking, total = _larger(lacking, lacks), total + size
     length = max(_largest(elastic), _largest(values.motion), SMALLEST)
     if not closed:
-        length = max(length, _largest(concentric_gap))
+        length, total = max(length, _largest(concentric_gap)), max(total, _largest(forces))
     traction = max(_largest(values.pressure), SMALLEST)
     return gap / length, slip / length, cone / traction, lacking / max(total, SMALLEST)
 

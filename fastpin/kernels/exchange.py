@@ -47,6 +47,7 @@ NO_SUPPORT = 4  # nothing holds the pin any more
 CYCLING = 5  # the statuses did not settle
 ARC_END = 6  # the contact reaches an end node
 ENDLESS = 7  # more events than allowed
+UNBONDED = 8  # a node that must stick slips or opens
 
 # Slots of `counts`.
 UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, SETTLED, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7, 8
@@ -406,7 +407,7 @@ def _work(contact, rates, friction, load, time, step):
 
 
 @inner
-def _apply_queue(tableau, contact, queue, friction, typical, ends):
+def _apply_queue(tableau, contact, queue, friction, typical, fixed):
     """Make the waiting changes of status. Returns REACHED when none is left, or another code."""
     counts = queue.counts
     while counts[NEXT] < counts[QUEUED]:
@@ -415,8 +416,8 @@ def _apply_queue(tableau, contact, queue, friction, typical, ends):
         if old == wanted:
             counts[NEXT] += 1
             continue
-        if old == OPEN and ends[node]:
-            return ARC_END
+        if fixed[node]:
+            return ARC_END if old == OPEN else UNBONDED
         updates = counts[UPDATES]
         if updates + MOST_UPDATES_A_CHANGE > tableau.left.shape[1]:
             return REBUILD
@@ -453,12 +454,12 @@ def _apply_queue(tableau, contact, queue, friction, typical, ends):
 
 
 @inner
-def _change_all_at_once(contact, queue, queued, ends):
+def _change_all_at_once(contact, queue, queued, fixed):
     """Give all queued nodes their new statuses at once, for a new tableau. The queue keeps the old statuses."""
     for k in range(queued):
         node, new = queue.node[k], queue.status[k]
-        if contact.status[node] == OPEN and ends[node]:
-            return ARC_END
+        if fixed[node]:
+            return ARC_END if contact.status[node] == OPEN else UNBONDED
         contact.status[node], queue.status[k] = new, contact.status[node]
         contact.touched[node] = contact.touched[node] or new != OPEN
     queue.counts[NEXT] = queue.counts[QUEUED]
@@ -467,7 +468,7 @@ def _change_all_at_once(contact, queue, queued, ends):
 
 
 @compiled
-def follow(tableau, contact, load, queue, friction, ends, typical, stop, most_events, all_at_once):
+def follow(tableau, contact, load, queue, friction, fixed, typical, stop, most_events, all_at_once):
     """Follow the load from sums[TIME] to `stop`, event by event.
 
     Parameters
@@ -476,8 +477,8 @@ def follow(tableau, contact, load, queue, friction, ends, typical, stop, most_ev
         All but `load` are changed in place. Time runs from 0 to 1 along the step. Rates are per unit of this time.
     friction : ndarray, shape (n,)
         Coefficient of friction at each node.
-    ends : ndarray of bool, shape (n,)
-        Whether a node is the end of an arc. It must stay open.
+    fixed : ndarray of bool, shape (n,)
+        Whether a node must keep its status: the end of an arc stays open, and the seat of a bonded bush sticks.
     typical : float
         A typical compliance (diagonal of the operator), to judge pivots.
     stop : float
@@ -498,7 +499,7 @@ def follow(tableau, contact, load, queue, friction, ends, typical, stop, most_ev
     settled = counts[SETTLED] != 0
     counts[SETTLED] = 0
     while True:
-        code = _apply_queue(tableau, contact, queue, friction, typical, ends)
+        code = _apply_queue(tableau, contact, queue, friction, typical, fixed)
         if code != REACHED:
             return code
         traction_rate, length_rate = _rate_scales(rates, contact, friction)
@@ -522,7 +523,7 @@ def follow(tableau, contact, load, queue, friction, ends, typical, stop, most_ev
                 if counts[ROUND] > 4 * contact.status.size + 200:
                     return CYCLING
                 if queued > all_at_once:
-                    return _change_all_at_once(contact, queue, queued, ends)
+                    return _change_all_at_once(contact, queue, queued, fixed)
                 continue
             settled = True
             counts[ROUND] = 0

@@ -76,7 +76,7 @@ def begin(table, stack, contact, friction, displaced, forces, tableau):
 
 @compiled
 def step(
-    begins, stack, operator, equations, displaced, forces, sides, contact, tableau, load, queue, ends, typical, stop,
+    begins, stack, operator, equations, displaced, forces, sides, contact, tableau, load, queue, fixed, typical, stop,
     most_events, all_at_once, settled,
 ):  # fmt: skip
     """Follow the load from sums[TIME] to `stop`, and correct the contact there.
@@ -93,7 +93,7 @@ def step(
         Gap and slip, and the right sides of equilibrium, by the rate of the load.
     sides : RightSides
         Those of the load at `stop`.
-    contact, tableau, load, queue, ends, typical, stop, most_events, all_at_once
+    contact, tableau, load, queue, fixed, typical, stop, most_events, all_at_once
         See :func:`fastpin.kernels.exchange.follow`.
     settled : ContactValues
         Is set to the corrected contact if `stop` is reached.
@@ -115,7 +115,7 @@ def step(
                 counts[QUEUED] += 1
                 counts[EXCHANGES] -= 1
             contact.status[i] = STICK
-    code = follow(tableau, contact, load, queue, equations.friction, ends, typical, stop, most_events, all_at_once)
+    code = follow(tableau, contact, load, queue, equations.friction, fixed, typical, stop, most_events, all_at_once)
     errors = (0.0, 0.0, 0.0, 0.0)
     if code == REACHED:
         errors = settle(tableau, counts[UPDATES], operator, equations, contact, sides, settled)

@@ -331,14 +331,16 @@ class Problem:
         """The contacts of the joint, each as a problem of its own: pin in hole, then a bush that slips in its seat.
 
         In the first one a bush that slips is a ring, free at its outer rim. In the second one it is a hollow pin, free
-        at its bore. With a single contact it is this problem.
+        at its bore. Without friction in its seat the bush passes no moment on: then the pin is free in it. With a
+        single contact it is this problem.
         """
         contacts = self.plate_body.contacts(self.pair, self.hole_radius)
         if not contacts:
             return (self,)
         of_pin, of_seat = contacts
-        held: dict[str, Any] = {"pin_load": "centre", "rotation": "free", "hub_radius": None, "hub_stiffness": None}
-        return replace(self, **of_pin), replace(self, **held, gap=NO_GAP, **of_seat)
+        free: dict[str, Any] = {"rotation": "free", "hub_radius": None, "hub_stiffness": None}
+        seat = replace(self, pin_load="centre", **free, gap=NO_GAP, **of_seat)
+        return replace(self, **(free if seat.frictionless else {}), **of_pin), seat
 
     @property
     def seat(self) -> Problem | None:
@@ -377,6 +379,12 @@ class Problem:
     def driven(self) -> tuple[bool, bool]:
         """Whether the displacement of the pin along x, and along y, is prescribed."""
         return self.drive in ("ux", "both"), self.drive in ("uy", "both")
+
+    @property
+    def reactions(self) -> tuple[str, ...]:
+        """Names of the loads that are reactions: Q and P to prescribed displacements, M to a held rotation."""
+        prescribed = {"Q": self.driven[0], "P": self.driven[1], "M": self.held}
+        return tuple(name for name, is_reaction in prescribed.items() if is_reaction)
 
     @property
     def drive_compliances(self) -> tuple[float, float]:

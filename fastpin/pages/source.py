@@ -189,9 +189,8 @@ class Source:
             (state,), problem = self.read([0]), self.case.problem
             before = self.case.history[: state.step + 1].blocks
             given = np.any([~np.isnan(block.given).all(axis=0) for block in before], axis=0)
-            reactions = {"Q": problem.driven[0], "P": problem.driven[1], "M": problem.held}
             for place, name in enumerate(LOADS):
-                if not (given[place] or reactions.get(name)):
+                if not given[place] and name not in problem.reactions:
                     found[place] = state.load[name]
         return found
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.checks import instance, instances
+from fastpin.model.loads import LOADS
 from fastpin.model.points import Body, edge_body, elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.model.ties import top
@@ -116,7 +117,8 @@ def table_rows(
     rows = same if rows is None else same[rows]
     if numbers.size > MOST_COMPARED:
         return TableRows(with_rows(cut_lines(rows.size), wanted), points)
-    if numbers.size < rows.size or repeats(row_numbers(tuple(state.load.values()) for state in states)):
+    given = [name for name in LOADS if name not in problem.reactions]
+    if numbers.size < rows.size or repeats(row_numbers(tuple(state.load[name] for name in given) for state in states)):
         columns = state_columns(problem, [states[place] for place in first.tolist()])
         # A state differs from the same state one cycle before in its number, in a sum, and by rounding.
         own = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
@@ -241,7 +243,6 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
         ("contact", "deg", [_intervals(state, "contact") for state in states]),
         ("stick", "deg", [_intervals(state, "stick") for state in states]),
         column("rotation", 4, strain),
-        *([column("M", 4)] if problem.rotation == "spring" else []),
         column("dissipation", 4, energy),
         ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
     ]

@@ -97,8 +97,10 @@ def _assembled_joint(joint: JointSystem) -> Configuration:
 def _is_gripped(system: System) -> bool:
     """Whether the nodes grip the unloaded pin. The hole may be a little too narrow for it between two nodes only."""
     problem = system.problem
-    if not (problem.gap and problem.is_gripped):
-        return problem.is_gripped
+    if not problem.gap:
+        return system.rest_clearance < 0.0
+    if not problem.is_gripped:
+        return False
     return widest_place(system.grid.theta, system.concentric_gap, problem.driven)[0] < 0.0
 
 

@@ -11,7 +11,7 @@ from fastpin.elasticity.system import Interface, System
 from fastpin.kernels import conditions, equations
 from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
-from fastpin.model.loads import P, Q
+from fastpin.model.loads import M, P, Q
 from fastpin.reading.marks import Marks
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.solver.unknowns import SINGULAR, DenseUnknowns
@@ -379,6 +379,20 @@ def worst_residual(system: System, configuration: Configuration) -> float:
     return float(
         np.max(list(contact_residuals(system, configuration, system.elastic(configuration.tractions)).values()))
     )
+
+
+def unbalanced(system: System, configuration: Configuration) -> float:
+    """The largest force or moment that the tractions leave on a body: on the pin, on a bush, on the plate.
+
+    It is recomputed from the tractions, without the conditions of equilibrium of the solver, and relative to the sum of
+    the resultants of the absolute tractions. Every interface must pass on the force on the pin, and the same moment:
+    that of a free pin is M.
+    """
+    rows, tractions = system.resultants, configuration.tractions
+    passed = (rows @ tractions).reshape(-1, 3)
+    moment = passed[0, 2] if system.problem.held else configuration.load[M]
+    left = np.abs(passed - [*system.drive.force(configuration.motion, configuration.load), moment])
+    return float(left.max() / max(float((np.abs(rows) @ np.abs(tractions)).sum()), conditions.SMALLEST))
 
 
 def contact_residuals(system: System, configuration: Configuration, elastic: np.ndarray) -> dict[str, float]:

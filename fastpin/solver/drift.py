@@ -388,6 +388,8 @@ class DriftPath:
         status = moment.status.astype(np.int8)
         if np.any(status[self._system.ends] != OPEN):
             raise StepLostError(exchange.ARC_END, self.fraction)
+        if np.any(status[self._system.bonded] != STICK):
+            raise StepLostError(exchange.UNBONDED, self.fraction)
         self.exchanges += int(np.count_nonzero(status != self.now.status))
         self.now.status = status
         self.touched |= self.now.closed

@@ -18,6 +18,13 @@ UNHELD = "nothing holds the pin any more: it spins, slides away or loses contact
 """Message of a :class:`NoEquilibriumError`."""
 
 
+OPENED = (
+    "the press fit does not hold the bonded bush, it opens in its seat; to go on, give its friction in the plate and "
+    "bonded = false"
+)
+"""Message of a :class:`NoEquilibriumError`."""
+
+
 class SolveError(FastpinError):
     """The load history could not be followed to its end.
 

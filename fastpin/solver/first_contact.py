@@ -37,7 +37,7 @@ from fastpin.solver.interfaces import PinView, part_of, with_part
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import bend, hole_gap, place_between, put_at_rest, release, rest_position
 from fastpin.solver.settling import FiniteStep
-from fastpin.solver.step import is_pushed
+from fastpin.solver.step import is_pushed, presses
 from fastpin.solver.window import SecondPlaceError, Window
 
 FIRST_NODES = (2, 4)
@@ -450,18 +450,28 @@ def _begun(
 def _is_self_similar(system: System, resting: Configuration, way: Way) -> bool:
     """Whether everything grows in proportion to the load, as in a neat fit without loads before."""
     begins, before, after, _ = way
-    is_neat = not system.concentric_gap.any()
+    is_neat = system.is_neat
     if system.problem.gap and begins == 0.0:  # it may be neat beside the middle
         is_neat = bool(resting.gap.max() <= _rounding(system))
-    is_first = not np.delete(before, [ROTATION, FRICTION_CHANGE]).any()
-    return is_neat and is_first and bool(before[FRICTION_CHANGE] == after[FRICTION_CHANGE])
+    return is_neat and not presses(before) and bool(before[FRICTION_CHANGE] == after[FRICTION_CHANGE])
 
 
 def _one_step(
     system: System, resting: Configuration, load: np.ndarray, everywhere: bool = False
 ) -> Configuration | None:
-    """The implicit increment from rest; by Lemke's method where its iteration fails, see :class:`FiniteStep`."""
-    return implicit_step(system, resting, load) or FiniteStep(system, resting, everywhere).to(load)
+    """The implicit increment from rest; by Lemke's method where its iteration fails, see :class:`FiniteStep`.
+
+    If neither finds it, and all nodes may close, both begin once more with the nodes that are closed without friction.
+    """
+    found = implicit_step(system, resting, load) or FiniteStep(system, resting, everywhere).to(load)
+    is_right = found is not None and (not everywhere or worst_residual(system, found) <= MAX_RESIDUAL)
+    if is_right or not (everywhere and system.has_friction):
+        return found
+    smooth = _shearless_step(system, resting, load)
+    if smooth is None:
+        return None
+    start = replace(resting, status=smooth.status)
+    return implicit_step(system, start, load) or FiniteStep(system, start, everywhere).to(load)
 
 
 def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:

@@ -267,7 +267,7 @@ class HeldColumns:
         )  # fmt: skip
         code, turned, self._errors = held.step(
             not self._has_begun, self._table.stack, self._operator, system.equations, self._displaced, self._forces,
-            sides, contact, self.tableau, load, queue, system.ends, system.operator.typical, stop, most_events,
+            sides, contact, self.tableau, load, queue, system.fixed, system.operator.typical, stop, most_events,
             all_at_once, settled,
         )  # fmt: skip
         self.turned, self._has_begun, self._settled = self.turned or turned, True, settled

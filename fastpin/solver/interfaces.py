@@ -75,7 +75,7 @@ class PinView:
         problem = replace(pin.problem, clearance=pin.problem.clearance + unit * mean, gap=profile)
         loads = pin.loads + to_pin @ of_load
         equilibrium, forces, self._turned = pin.equilibrium, pin.forces, 0.0
-        if joint.problem.held:  # the rotation of the pin over the lug is prescribed, and the bush turns in between
+        if joint.is_held:  # the rotation of the pin over the lug is prescribed, and the bush turns in between
             unit = float(pin.motion_rows[TURN, TURN])
             turned = now.motion[3 + TURN] + joint.equilibrium[TURN, joint.nodes.rows(SEAT)] / unit @ tractions
             self._turned = float(turned - turned_of_load @ now.load[: of_load.shape[1]])
@@ -104,11 +104,11 @@ class PinView:
         right = np.zeros((held.size, n + seat.loads.shape[1]), order="F")
         right[: held.count] = -np.hstack([to_seat, seat.loads[held.rows]])
         right[held.count :, n:] = seat.forces
-        if joint.problem.held and not seat.motion_rows[TURN, TURN]:  # the moment that holds the pin acts on the bush
+        if joint.is_held:  # the moment that holds the pin acts on the bush
             right[held.count + TURN, :n] = -joint.equilibrium[3 + TURN, columns]
         found = held.solve(right)
         tractions, turned = held.expand(found), found[held.count + TURN]
-        if joint.problem.held:
+        if joint.is_held:
             turned = turned + joint.equilibrium[TURN, rows] / joint.motion_rows[TURN, TURN] @ tractions
         return (tractions[:, :n], turned[:n]), (tractions[:, n:], turned[n:])
 
@@ -174,8 +174,18 @@ class PinView:
             if found is None or worst_residual(seat, found) > MAX_RESIDUAL:
                 return None
             add_dissipation(seat, own, found)
-        found.load = start.load
+        turned = _turned_freely(self._joint, start)
+        motion = found.motion + np.array([0.0, 0.0, turned])
+        found = replace(found, load=start.load, motion=motion, slip=found.slip + seat.radius * turned)
         return with_part(self._joint, start, SEAT, found)
+
+
+def _turned_freely(joint: JointSystem, start: Configuration) -> float:
+    """The rotation of a bush without friction in its seat, as a held pin turns in it; 0 with friction."""
+    if not joint.alone[SEAT].problem.frictionless:
+        return 0.0
+    row = 3 + TURN
+    return float(joint.load_forces(start.load)[row] - joint.motion_rows[row, TURN] * start.motion[TURN])
 
 
 def without_force(load: np.ndarray) -> np.ndarray:
@@ -249,9 +259,11 @@ def _begun_together(joint: JointSystem, start: Configuration) -> Configuration |
     if found is None:
         return None
     turns = start.motion.copy()
-    if joint.problem.held:  # without shear nothing twists
+    if joint.is_held:  # without shear nothing twists
         unit = joint.motion_rows[TURN, TURN]
         turns[TURN] = joint.load_forces(start.load)[TURN] / unit - turns[3 + TURN]
+    elif joint.alone[SEAT].problem.frictionless:
+        turns[3 + TURN] = _turned_freely(joint, start)
     for each in joint.interfaces:
         turned = turns[each.motion + TURN]
         found.motion[each.motion + TURN] = turned
@@ -280,7 +292,7 @@ def _with_followed_seat(joint: JointSystem, start: Configuration) -> Configurati
     tractions = np.r_[start.pressure[pin], start.shear[pin]]
     column = joint.operator.entries(joint.nodes.rows(SEAT), joint.nodes.rows(PIN)) @ tractions
     force = np.zeros(3)
-    if joint.problem.held:  # the moment that holds the pin is no load
+    if joint.is_held:  # the moment that holds the pin is no load
         force[TURN] = -float(joint.alone[PIN].levers @ start.shear[pin])
     alone = joint.alone[SEAT]
     loads = np.column_stack([alone.loads, column])

@@ -59,7 +59,8 @@ class StepLostError(Exception):
     Attributes
     ----------
     code : int
-        A code of :mod:`fastpin.kernels.exchange`: NO_SUPPORT, CYCLING, ARC_END or ENDLESS.
+        A code of :mod:`fastpin.kernels.exchange`: NO_SUPPORT, CYCLING, ARC_END, ENDLESS or
+        UNBONDED.
     fraction : float
         Fraction of the step that was followed.
     """
@@ -288,6 +289,8 @@ class PathStep:
             raise StepLostError(exchange.CYCLING, self.fraction)
         if np.any(status[self.system.ends] != OPEN):
             raise StepLostError(exchange.ARC_END, self.fraction)
+        if np.any(status[self.system.bonded] != STICK):
+            raise StepLostError(exchange.UNBONDED, self.fraction)
         counts = self._queue.counts
         counts[exchange.NEXT] = counts[exchange.QUEUED] = counts[exchange.ROUND] = 0
         counts[exchange.SETTLED] = 1

@@ -15,6 +15,7 @@ from fastpin.solver.drift import DriftPath
 from fastpin.solver.driven import can_float
 from fastpin.solver.errors import (
     CUT_OFF,
+    OPENED,
     UNHELD,
     ArcError,
     ConvergenceError,
@@ -164,7 +165,7 @@ class PathStepper:
 
     def _has_just_opened(self, now: Configuration, piece: Piece, lost: StepLostError) -> bool:
         """Whether a lost contact had only become too small for the grid, or carried nothing."""
-        if lost.code == exchange.ARC_END:
+        if lost.code in (exchange.ARC_END, exchange.UNBONDED):
             return False
         unloading = can_float(self._system, piece.after)
         if unloading and lost.fraction > ALMOST_UNLOADED:
@@ -190,6 +191,8 @@ def _solve_error(code: int, closed_nodes: np.ndarray, held: bool) -> SolveError:
     closed = int(closed_nodes.sum())
     if code == exchange.ARC_END:
         return ArcError(CUT_OFF)
+    if code == exchange.UNBONDED:
+        return NoEquilibriumError(OPENED)
     if closed < FEW_CLOSED // 2 or (held and closed <= FEW_CLOSED):
         return ResolutionError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
     if code == exchange.NO_SUPPORT:

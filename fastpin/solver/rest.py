@@ -77,10 +77,10 @@ def _release_pin(joint: JointSystem, last: Configuration, load: np.ndarray) -> C
         if not joint.equilibrium[each.motion + TURN].any() and not joint.load_forces(load)[each.motion + TURN]:
             last.motion[each.motion + TURN] = 0.0
     pin, seat = (release(joint.alone[place], part_of(joint, last, place), load) for place in (PIN, SEAT))
-    if joint.problem.held:  # the pin is held over the lug: it turns back in the bush by as much as the bush has turned
-        turned = seat.motion[TURN]
-        motion = pin.motion - np.array([0.0, 0.0, turned])
-        pin = replace(pin, motion=motion, slip=pin.slip - turned, rest_slip=pin.rest_slip - turned)
+    if joint.problem.held:  # over the lug: the pin turns back in the bush by as much as the bush has turned
+        turned = load[ROTATION] - seat.motion[TURN] - pin.motion[TURN]
+        motion = pin.motion + np.array([0.0, 0.0, turned])
+        pin = replace(pin, motion=motion, slip=pin.slip + turned, rest_slip=pin.rest_slip + turned)
     found = with_part(joint, with_part(joint, last, PIN, pin), SEAT, seat)
     return replace(
         found, dissipation=last.dissipation, seat_dissipation=last.seat_dissipation,

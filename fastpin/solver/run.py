@@ -31,6 +31,7 @@ from fastpin.solver.configuration import (
     elastic_energy,
     marks_left,
     slip_tally_with,
+    unbalanced,
 )
 from fastpin.solver.drift import DriftingSystem
 from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
@@ -43,7 +44,7 @@ from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, R
 from fastpin.solver.rest import follow_floating, release
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
-from fastpin.solver.step import Piece, Position, Stepper, check_bond, force_of, force_on_pin, is_pushed, pieces
+from fastpin.solver.step import Piece, Position, Stepper, check_bond, force_of, force_on_pin, is_pushed, pieces, presses
 from fastpin.solver.window import WindowStepper
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
@@ -64,6 +65,12 @@ NEXT_TO_NOTHING = 1e-6
 
 UNLOADED_PRESSURE = 1e-9
 """Largest pressure of a pin after a complete unloading, in parts of the force before (dimensionless)."""
+
+LAST_PART = 1e-7
+"""Last part of a piece in which the contact of a nearly neat fit vanishes. Its tractions are rounding there."""
+
+ROUNDED_MOMENT = 1e-12
+"""Moment that holds a pin, in parts of that of the absolute shear, which is rounding: its contact is symmetric."""
 
 MOST_FIRST = 12
 """First contacts that are tried while the friction changes, at most. The load of the second is that of the third."""
@@ -329,7 +336,7 @@ class Run:
         self.target, position.reached = load, 0.0
         self.corner_log.begin_step()
         try:
-            for piece in pieces(before, target):
+            for piece in pieces(before, target, self.system.is_nearly_neat):
                 self._follow_piece(piece, step)
             if not inside:
                 self._check_resolution()
@@ -386,15 +393,25 @@ class Run:
         kept = {stop for stop in self.fractions.tolist() if piece.begin < stop <= piece.end}
         for stop in sorted({*kept, piece.end}):
             load = piece.load_at(stop)
-            if problem.frictionless and problem.rotation == "free" and load[M] != 0.0:
-                raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
-            while not np.array_equal(self.now.load, load):
+            if problem.rotation == "free" and load[M] != 0.0:
+                if problem.frictionless:
+                    raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
+                if any(each.problem.frictionless for each in self.system.interfaces):
+                    raise NoEquilibriumError(
+                        "without friction in its seat nothing holds the bush against a moment: it spins with the pin"
+                    )
+            vanishes = self.system.is_nearly_neat and not presses(load)
+            until = max(stop - LAST_PART * (piece.end - piece.begin), position.reached) if vanishes else stop
+            aim = piece.load_at(until)
+            while not np.array_equal(self.now.load, aim):
                 if self._pin_closed.any():
-                    self.stepper.advance(position, piece, stop, lambda reached: self._report(step, reached))
+                    self.stepper.advance(position, piece, until, lambda reached: self._report(step, reached))
                 else:
-                    self._touch_down(load, stop)
+                    self._touch_down(aim, until)
                 check_bond(self.system, self.now)
             position.reached = stop
+            if vanishes and not np.array_equal(self.now.load, load):
+                self._release(load)
             self._release_if_unloaded(piece, load)
             if stop in kept and stop < 1.0 and self.recorder is not None:
                 self._keep(step, stop)
@@ -438,8 +455,12 @@ class Run:
         if self.system.drive.has_displacements:  # the forces of the nodes hold the rounding of a large displacement
             left, before = float(self.system.weights @ self.now.pressure), 1.0
         if left <= UNLOADED_PRESSURE * before:
-            self.stepper.leave(self.position)
-            self.position.now = release(self.system, self.now, load)
+            self._release(load)
+
+    def _release(self, load: np.ndarray) -> None:
+        """Release the pin at a load where it carries nothing."""
+        self.stepper.leave(self.position)
+        self.position.now = release(self.system, self.now, load)
 
     def _close_step(self, load: np.ndarray, kept: bool) -> None:
         """Log the energies and the slip tally of the step that has reached its corner, under `load` (SI).
@@ -520,6 +541,9 @@ class Run:
         """Check the present configuration and hand it to the recorder as a state."""
         elastic = self.system.elastic(self.now.tractions)
         residuals = contact_residuals(self.system.under(self.now.load), self.now, elastic)
+        left = unbalanced(self.system, self.now)
+        if not left <= MAX_RESIDUAL:
+            raise ConvergenceError(f"the state leaves a body out of equilibrium (by {left:.2g}) and is not returned")
         if not np.max(list(residuals.values())) <= MAX_RESIDUAL:
             worst = max(residuals, key=lambda name: residuals[name])
             raise ConvergenceError(
@@ -537,6 +561,9 @@ class Run:
         way = np.where(np.isnan(way), 0.0, way)
         moved = drive.position(now.tractions, now.motion, now.load, way[:2])
         load = drive.with_reactions(now.motion, now.load)
+        if system.problem.held:
+            load = load.copy()
+            load[M] = self._moment_that_holds()
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
         is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
         common = {
@@ -554,6 +581,13 @@ class Run:
             seat = self._state_of(place, common, turned, seat)
         assert seat is not None
         return seat
+
+    def _moment_that_holds(self) -> float:
+        """The moment that holds the rotation of the pin; 0 where it is rounding of the shear (dimensionless)."""
+        nodes = self.system.interfaces[0].nodes
+        levers, shear = self.system.levers[nodes], self.now.shear[nodes]
+        moment = -float(levers @ shear)
+        return moment if abs(moment) > ROUNDED_MOMENT * float(levers @ np.abs(shear)) else 0.0
 
     def _state_of(self, place: int, common: dict[str, Any], moved: np.ndarray, seat: State | None) -> State:
         """The state of the interface `place`, with that of the `seat` inside it; `moved` is (dx, dy, rotation)."""

@@ -13,13 +13,21 @@ from typing import Protocol
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.model.loads import UX, UY, P, Q
+from fastpin.kernels.status import STICK
+from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION, UX, UY, M, P, Q
 from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration
-from fastpin.solver.errors import NoEquilibriumError
+from fastpin.solver.errors import OPENED, NoEquilibriumError
 
 StepReport = Callable[[float], None]
 """Called with the fraction of the step that is done."""
+
+
+SCALING = [P, Q, M, *REMOTE, UX, UY]
+"""Loads with which the contact of a neat fit scales. A rotation or a change of friction presses nothing."""
+
+OPPOSITE = 1e-12
+"""Difference of two directions that is rounding of the loads at two corners."""
 
 
 @dataclass(frozen=True)
@@ -46,18 +54,27 @@ class Piece:
         return self.before + (fraction - self.begin) / (self.end - self.begin) * (self.after - self.before)
 
 
-def pieces(before: np.ndarray, after: np.ndarray) -> list[Piece]:
-    """The pieces of a step between two loads. It is cut where the pin's force passes through zero.
+def pieces(before: np.ndarray, after: np.ndarray, nearly_neat: bool) -> list[Piece]:
+    """The pieces of a step between two loads. It is cut where the pin's force passes through zero: contact is lost.
 
-    Contact is lost there.
+    Remote stress may hold the pin of a nearly neat fit (:attr:`System.is_nearly_neat`) there. Its contact scales with
+    all loads, so the step is also cut where all of them pass through zero together, remote stress without a force too.
     """
-    first, last = before[[P, Q]], after[[P, Q]]
-    if first @ last < 0.0 and abs(first[0] * last[1] - first[1] * last[0]) <= 1e-12 * abs(first @ last):
-        cut = float(np.linalg.norm(first) / (np.linalg.norm(first) + np.linalg.norm(last)))
-        middle = before + cut * (after - before)
-        middle[[P, Q]] = 0.0
-        return [Piece(0.0, cut, before, middle), Piece(cut, 1.0, middle, after)]
+    together = [P, Q, M]  # a moment that is left at no force by rounding would spin the pin
+    for loads in (SCALING, together, [P, Q]) if nearly_neat else (together, [P, Q]):
+        first, last = before[loads], after[loads]
+        size = first @ last
+        if size < 0.0 and np.abs(np.outer(first, last) - np.outer(last, first)).max() <= OPPOSITE * abs(size):
+            cut = float(np.linalg.norm(first) / (np.linalg.norm(first) + np.linalg.norm(last)))
+            middle = before + cut * (after - before)
+            middle[loads] = 0.0
+            return [Piece(0.0, cut, before, middle), Piece(cut, 1.0, middle, after)]
     return [Piece(0.0, 1.0, before, after)]
+
+
+def presses(load: np.ndarray) -> bool:
+    """Whether anything presses or moves the pin against the hole under a load, beside a rotation."""
+    return bool(np.delete(load, [ROTATION, FRICTION_CHANGE]).any())
 
 
 def is_pushed(load: np.ndarray) -> bool:
@@ -142,8 +159,6 @@ class Stepper(Protocol):
 
 
 def check_bond(system: System, now: Configuration) -> None:
-    """Raise :class:`NoEquilibriumError` if a bonded bush has opened in its seat."""
-    if not now.closed[system.bonded].all():
-        raise NoEquilibriumError(
-            "the press fit does not hold the bonded bush, it opens in its seat: give friction, set bonded = false"
-        )
+    """Raise :class:`NoEquilibriumError` if a bonded bush slips or opens in its seat."""
+    if np.any(now.status[system.bonded] != STICK):
+        raise NoEquilibriumError(OPENED)

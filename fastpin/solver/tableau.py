@@ -123,7 +123,7 @@ class Columns:
         """Follow the load up to the fraction `stop` of the step, and return the code of the kernel."""
         system = self._system
         code = exchange.follow(
-            self.tableau, self._contact, load, queue, system.friction, system.ends, system.operator.typical, stop,
+            self.tableau, self._contact, load, queue, system.friction, system.fixed, system.operator.typical, stop,
             most_events, all_at_once,
         )  # fmt: skip
         self._updates = int(queue.counts[exchange.UPDATES])

@@ -131,8 +131,7 @@ class LoadCycle:
     def differing_loads(self) -> list[str]:
         """Names of the loads that differ between the two ends."""
         problem, begin, end = self.states[0].problem, self.states[0].load, self.states[-1].load
-        reactions = [name for name, driven in zip(("Q", "P"), problem.driven, strict=True) if driven]
-        return [name for name in LOADS if name not in reactions and begin[name] != end[name]]
+        return [name for name in LOADS if name not in problem.reactions and begin[name] != end[name]]
 
     @cached_property
     def status(self) -> np.ndarray:

@@ -9,13 +9,16 @@ import pytest
 
 from fastpin import Grid, LoadHistory, MaterialPair, Points, Problem, Session, load, record, resume, solve
 from fastpin.bodies import Bushing, Disk, Ring, Tube
+from fastpin.elasticity.interfaces import JointSystem
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.options import ALL_ROUND
+from fastpin.model.options import ALL_ROUND, SolveOptions
 from fastpin.model.profile import InitialGap, Profile
-from fastpin.solver.errors import ArcError, NoEquilibriumError
+from fastpin.solver.errors import ArcError, ConvergenceError, NoEquilibriumError, ResolutionError
+from fastpin.solver.run import Run
+from fastpin.solver.solving import MemoryRecorder
 from fastpin.verification.body_cases import ring_compliance
-from tests.support.joints import ALUMINIUM, BRONZE, CASES, STEEL, joint, numbers, turns
+from tests.support.joints import ALUMINIUM, BRONZE, CASES, STEEL, joint, numbers, random_bush, turns
 from tests.support.programs import assert_same_bits
 from tests.support.tiers import gate, seeds, some_gate
 from tests.survey.histories import generate, lug
@@ -130,6 +133,61 @@ def test_without_friction_in_the_seat_there_is_no_shear():
     assert all(not state.seat.shear.any() for state in states)
     assert all(state.seat.dissipation == 0.0 for state in states)
     assert states[1].seat.regime.name == "GROSS_SLIDING"
+
+
+@pytest.mark.parametrize("rotation", ["fixed", "spring"])
+def test_a_held_pin_passes_no_moment_to_a_bush_without_friction_in_its_seat(rotation):
+    stiffness = {"hub_stiffness": 2.0} if rotation == "spring" else {}
+    corners = [{"P": 1.0, "Q": -0.3}, {"rotation": 0.3}]
+    without, little = (
+        solve(
+            replace(joint(0.28, 0.26, pin_load="centre", seat_friction=mu), rotation=rotation, **stiffness),
+            corners,
+            nodes=48,
+        )
+        for mu in (0.0, 1e-6)
+    )
+    for one, other in zip(without, little, strict=True):
+        assert one.resultants["M"] == pytest.approx(0.0, abs=1e-12)
+        assert one.rotation + one.seat.rotation == pytest.approx(one.load["rotation"], abs=1e-12)
+        assert one.peak_pressure == pytest.approx(other.peak_pressure, abs=1e-4)
+    assert abs(without[1].seat.rotation - without[0].seat.rotation) == pytest.approx(0.3, rel=1e-6)
+
+
+def test_nothing_holds_a_bush_without_friction_in_its_seat_against_a_moment():
+    with pytest.raises(NoEquilibriumError, match="without friction in its seat nothing holds the bush"):
+        solve(joint(0.28, 0.26, pin_load="centre", seat_friction=0.0), [{"P": 1.0}, {"M": 0.1}], nodes=32)
+
+
+@pytest.mark.gate
+def test_all_bodies_are_in_equilibrium():
+    """Pin and bush carry the same force and moment, with little friction or none between bush and plate."""
+    for seed in seeds(10):
+        problem, corners = random_bush(seed)
+        try:
+            states = solve(problem, corners, nodes=32).states
+        except (NoEquilibriumError, ResolutionError) as error:
+            states = error.result.states
+        for state in states:
+            size = state.grid.weights @ state.pressure + 1e-3 * state.seat.pressure.max()
+            moments = state.resultants["M"], state.seat.resultants["M"]
+            assert moments[0] == pytest.approx(moments[1], abs=1e-9 * size), seed
+            if problem.rotation == "free":
+                assert moments[0] == pytest.approx(state.load["M"], abs=1e-9 * size), seed
+
+
+@pytest.mark.parametrize("row", [0, 1, 3, 4, 5])
+def test_no_state_is_returned_whose_bodies_are_out_of_equilibrium(row):
+    """The check knows of no rows: it finds what a system lacks."""
+    problem = replace(joint(0.28, 0.26, pin_load="centre"), rotation="fixed")
+    system = JointSystem.join(problem, (Grid.circle(32), Grid.circle(32)), 1.0)
+    rows = {name: getattr(system, name).copy() for name in ("equilibrium", "motion_rows", "forces")}
+    for array in rows.values():
+        array[row] = 0.0
+    rows["motion_rows"][row, row] = 1.0
+    history, lacking = LoadHistory([{"P": 1.0}, {"Q": -0.3}]), replace(system, **rows)
+    with pytest.raises(ConvergenceError, match="out of equilibrium"):
+        Run(history, lacking, SolveOptions(nodes=32), MemoryRecorder()).follow()
 
 
 def test_a_torque_turns_the_bush_where_friction_ends():
@@ -404,14 +462,25 @@ def test_a_bonded_bush_sits_in_a_lug_of_any_outline():
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("method", [*gate({}), {"method": "increment", "increments": 20}])
-def test_a_bonded_bush_must_be_held_by_its_press_fit(method):
-    problem = _bonded(joint(0.28, 0.1, inside=lug(0.33, "strain")))
-    words = r"^step 2, at \d.*: the press fit does not hold the bonded bush, it opens in its seat: give friction"
-    with pytest.raises(NoEquilibriumError, match=words) as caught:
-        solve(problem, [{"P": 0.1}, {"P": 1.0}], nodes=48, between=9, **method)
-    assert all(state.seat.pressure.min() > 0.0 for state in caught.value.result)
-    assert len(caught.value.result) > 1
+@pytest.mark.parametrize(
+    ("interference", "pin_load", "method"),
+    [(0.1, "body", {}), (0.3, "centre", {}), (0.1, "body", {"method": "increment", "increments": 20})],
+)
+def test_a_bonded_bush_must_be_held_by_its_press_fit(interference, pin_load, method):
+    """The history ends where the seat opens, at the same load with any number of nodes, and goes on with friction."""
+    problem = _bonded(joint(0.28, interference, pin_load=pin_load, inside=lug(0.33, "strain")))
+    words = (
+        r"^step 2, at \d.* \(P = .*: the press fit does not hold the bonded bush, it opens in its seat; to go on, give"
+    )
+    opened = []
+    for nodes in (48, 64):
+        with pytest.raises(NoEquilibriumError, match=words) as caught:
+            solve(problem, [{"P": 0.1}, {"P": 3.0}], nodes=nodes, between=9, **method)
+        opened.append(caught.value.load["P"])
+        assert all(state.seat.pressure.min() > 0.0 for state in caught.value.result)
+    assert opened[0] == pytest.approx(opened[1], rel=0.01 if not method else 0.1)
+    slips = replace(problem, plate_body=replace(problem.plate_body, bonded=False, friction=0.2))
+    assert solve(slips, [{"P": 0.1}, {"P": 1.1 * opened[0]}], nodes=48)[-1].seat.pressure.min() >= 0.0
     with pytest.raises(InputError, match="interference: must be positive: a bonded bush in a lug of any outline"):
         replace(problem, plate_body=replace(problem.plate_body, interference=0.0))
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.bodies import Bushing, Ring
+from fastpin.bodies import Bushing, Plate, Ring
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
@@ -31,6 +31,42 @@ def joint(
     body = Bushing(bush, outer, interference, friction=seat_friction, bonded=False, **inside)
     pair = MaterialPair(STEEL, ALUMINIUM, "strain")
     return Problem.from_load_parameter(pair, clearance, friction, pin_load, plate_body=body)  # type: ignore[arg-type]
+
+
+def random_bush(seed: int) -> tuple[Problem, Corners]:
+    """A pin, free or held, in a bush with a friction of 0, 1e-6 to 1 in its seat; a moment acts or the hub turns."""
+    rng = np.random.default_rng([71, seed])
+    pin, plate, bush = (Material(10.0 ** rng.uniform(-0.4, 0.5), rng.uniform(0.2, 0.4)) for _ in range(3))
+    outer, rotation = float(rng.uniform(1.1, 1.6)), str(rng.choice(["fixed", "spring", "free"], p=[0.4, 0.4, 0.2]))
+    interference = float(rng.choice([-0.05, 0.0, 0.1, 0.3, 0.6]))
+    held: dict[str, Any] = {"hub_radius": 0.6} if rotation != "free" and rng.random() < 0.4 else {}
+    held |= {"hub_stiffness": 10.0 ** rng.uniform(-1.0, 1.5)} if rotation == "spring" else {}
+    body = Bushing(
+        bush, outer, interference, [Plate(), Ring(2.0 * outer, "uniform"), Ring(2.0 * outer, "half")][rng.integers(3)],
+        friction=float(rng.choice([0.0, 1e-6, 10.0 ** rng.uniform(-6.0, 0.0)], p=[0.4, 0.2, 0.4])), bonded=False,
+    )  # fmt: skip
+    clearance = float(rng.choice([0.05, 0.3, 0.6] + [-0.05] * (interference > 0.0)))
+    friction = float(rng.choice([0.0, 0.05, 0.2, 0.5, 1.0]))
+    pair = MaterialPair(pin, plate, "strain" if rng.random() < 0.5 else "stress")
+    problem = Problem.from_load_parameter(
+        pair,
+        clearance,
+        friction,
+        "centre",
+        rotation,
+        plate_body=body,
+        **held,  # type: ignore[arg-type]
+    )
+    corners = [{"P": float(rng.uniform(0.3, 1.5)), "Q": float(rng.uniform(-0.5, 0.5))}]
+    for _ in range(rng.integers(1, 5)):
+        corner = {"P": float(rng.uniform(-1.0, 1.5)), "Q": float(rng.uniform(-0.6, 0.6))}
+        corner = {name: value if rng.random() < 0.8 else 0.0 for name, value in corner.items()}
+        if rotation != "free":
+            corner["rotation"] = float(rng.uniform(-0.4, 0.4))
+        elif rng.random() < 0.3:
+            corner["M"] = float(rng.uniform(-0.15, 0.15))
+        corners.append(corner)
+    return problem, corners
 
 
 def _to_and_fro(size: float, times: int) -> Corners:

@@ -527,11 +527,48 @@ def laminates(rng: np.random.Generator, seed: int) -> RandomCase:
     return RandomCase(problem, LoadHistory(corners), _nodes(rng))
 
 
+def neat(rng: np.random.Generator, seed: int) -> RandomCase:
+    """A pin in a neat fit, or one that is neat to 1e-3 and less, whose loads vanish and turn round together.
+
+    P, Q, M and remote stress act alone and together, in solid and hollow pins, plates, rings and laminates.
+    """
+    plane: Plane = "strain" if rng.random() < 0.3 else "stress"
+    pin, plate = (Material(10.0 ** rng.uniform(-0.7, 0.7), rng.uniform(0.0, 0.45)) for _ in range(2))
+    kind = rng.choice(["plate", "laminate", "ring", "tube"], p=[0.5, 0.2, 0.15, 0.15])
+    support = _support(rng)
+    bodies: dict[str, Any] = {}
+    if kind == "laminate":
+        pair = replace(laminates(rng, seed).problem.pair, plane="stress")
+    else:
+        pair = MaterialPair(pin, pin if rng.random() < 0.3 else plate, plane)
+    if kind == "tube":
+        bodies, support = (
+            {"pin_body": Tube(rng.uniform(0.1, 0.9))},
+            support | {"pin_load": "centre", "hub_radius": None},
+        )
+    if kind == "ring":
+        bodies["plate_body"] = Ring(1.0 + 10.0 ** rng.uniform(-0.5, 0.7), str(rng.choice(["held", "half", "uniform"])))
+    fit = 0.0 if rng.random() < 0.65 else 10.0 ** rng.uniform(-14.0, -3.0) * rng.choice([-1.0, 1.0])
+    friction = 10.0 ** rng.uniform(math.log10(0.05), 0.0)
+    problem = Problem.from_load_parameter(pair, fit, friction, **support, **bodies)
+    names = [("P",), ("P", "Q"), ("syy",), ("sxx",), ("sxy",), ("sxx", "syy", "sxy"), ("P", "syy"), ("P", "Q", "sxx")]
+    if kind == "ring":
+        names = names[:2]
+    chosen = dict.fromkeys(names[int(rng.integers(len(names)))])
+    sizes = {name: float(rng.uniform(0.2, 1.0) * rng.choice([-1.0, 1.0])) for name in chosen}
+    if "P" in sizes and problem.rotation == "free" and problem.pin_load == "centre" and rng.random() < 0.5:
+        force = math.hypot(sizes["P"], sizes.get("Q", 0.0))
+        sizes["M"] = force * friction / math.hypot(1.0, friction) * rng.uniform(-0.8, 0.8)
+    factors = [1.0, *rng.choice([-1.0, -0.5, -0.1, 0.1, 0.5, 1.0, 0.0, 0.7, -0.3], int(rng.integers(2, 6)))]
+    corners = [{name: float(factor) * size for name, size in sizes.items()} for factor in factors]
+    return RandomCase(problem, LoadHistory(corners), {"nodes": 101})
+
+
 GENERATORS: dict[str, Callable[[np.random.Generator, int], RandomCase]] = {
     function.__name__: function
     for function in (
         general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering, bodies, gap, drift,
-        wear, bush, laminates,
+        wear, bush, laminates, neat,
     )
 }  # fmt: skip
 """The classes of random cases, by name."""

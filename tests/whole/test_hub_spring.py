@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -193,3 +194,22 @@ def test_a_plan_varies_the_stiffness(tmp_path):
     assert [case.problem.hub_stiffness for case in cases] == [1e4, 1e6]
     assert len({json.dumps(canonical(case)) for case in cases}) == 2
     assert "hub_stiffness" not in canonical(Case(joint(cases[0].problem.pair, "fixed"), cases[0].history))
+
+
+@pytest.mark.parametrize(("rotation", "stiffness"), [("fixed", None), ("spring", 3.0)])
+def test_the_load_holds_the_moment_that_turns_the_pin(titanium_in_aluminium, rotation, stiffness):
+    """A free pin under the same moment turns by the same angle."""
+    turned = joint(titanium_in_aluminium, rotation, None, stiffness)
+    states = solve(turned, [{"P": 1.0}, {"rotation": 0.1}, {"rotation": -0.1}, {"rotation": 0.1}], nodes=41)
+    assert turned.reactions == ("M",)
+    assert states[0].load["M"] == 0.0  # a symmetric contact: no rounding of its shear
+    for state in states:
+        assert state.load["M"] == pytest.approx(state.resultants["M"], abs=1e-12)
+    labels = [line.split() for line in state_table(turned, states.states).splitlines()]
+    assert labels[0].count("M") == 1
+    free = joint(titanium_in_aluminium, "free")
+    moved = solve(free, [{"P": 1.0}, {"M": states[1].load["M"]}], grid=states[1].grid)[-1]
+    assert moved.rotation == pytest.approx(states[1].rotation, rel=1e-9)
+    held = solve(replace(turned, friction=0.0), [{"P": 1.0}, {"rotation": 0.1}], nodes=41)[-1]
+    assert math.copysign(1.0, held.load["M"]) == 1.0
+    assert held.load["M"] == 0.0
