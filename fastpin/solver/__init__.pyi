@@ -1,3 +1,4 @@
+from .assembled import assembled_tractions as assembled_tractions
 from .duration import expected_seconds as expected_seconds
 from .errors import ArcError as ArcError
 from .errors import ConvergenceError as ConvergenceError
