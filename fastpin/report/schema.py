@@ -226,6 +226,7 @@ def _state(seat: Schema | None = None) -> Schema:
         "load": _object(dict.fromkeys(LOADS, _NUMBER), LOADS[:ACTING]),
         "in_contact": _TRUTH,
         **quantities,
+        "unresolved": _list_of({"enum": [name for name, each in QUANTITIES.items() if each.edge]}),
         "peak_hoop_resolved": {"type": ["boolean", "null"]},
         "contact": _list_of(interval),
         "stick": _list_of(interval),

@@ -156,6 +156,7 @@ def _state_summary(state: State) -> dict[str, Any]:
         "load": printed_loads(state.problem, state.load),
         "in_contact": state.in_contact,
         **{name: shown(name) for name in QUANTITIES if name not in resultants},
+        "unresolved": [name for name, each in QUANTITIES.items() if not each.is_resolved(state)],
         "peak_hoop_resolved": None if plate.is_rigid else state.peak_hoop_stress().resolved,
         "contact": [interval_from_bottom(*interval) for interval in state.contact],
         "stick": [interval_from_bottom(*interval) for interval in state.stick],
