@@ -121,6 +121,7 @@ def _strength() -> Schema:
 def _margins() -> Schema:
     texts, numbers = ("subject", "name", "body", "unit", "remark"), ("value", "allowable", "margin", "load_point")
     governing = {"smallest": _TRUTH, "loads": _map_of(_NUMBER, "loads of the state that governs")}
+    governing["over_yield"] = _UNKNOWN | {"description": "stress over the yield strength where it is above 1"}
     return _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing))
 
 
@@ -271,6 +272,7 @@ def _fatigue() -> Schema:
             "life": _UNKNOWN | {"description": "spectra, or cycles over the last cycle; null without damage"},
             **dict.fromkeys(("angle", "depth", "plane"), _UNKNOWN),
             "cycles": _list_of(_object(numbers | {"times": _WHOLE})) | words,
+            "over_yield": _UNKNOWN,
         }
     )
     return _object(

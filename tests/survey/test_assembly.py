@@ -14,10 +14,13 @@ MOST = 1e-9
 """Largest difference, in parts of the largest stress."""
 
 
+@pytest.mark.parametrize("part", range(5))
 @pytest.mark.parametrize(("kind", "many"), [("fits", 1), ("bodies", 2), ("bush", 1), ("laminates", 2), ("gap", 2)])
-def test_stresses_of_assembly_and_loads_add_up(kind: str, many: int) -> None:
+def test_stresses_of_assembly_and_loads_add_up(kind: str, many: int, part: int) -> None:
     """Pins and hollow pins, rings, bonded and slipping bushes, outlines, laminates and initial gaps."""
-    joints = {seed: joint for seed in seeds(many) if (joint := pressed_joint(kind, seed)) is not None}
+    joints = {
+        seed: joint for seed in seeds(many) if seed % 5 == part and (joint := pressed_joint(kind, seed)) is not None
+    }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         found = {seed: examine(*joint) for seed, joint in joints.items()}
