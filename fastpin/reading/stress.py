@@ -131,8 +131,9 @@ class HoopPeak:
         Force on the pin over the net section, F/(W - D), Pa. W is the outer diameter of a ring, and D the diameter of
         the ring's own hole. 0 for any other plate, for the pin, and for the bush in a ring.
 
-    The ratios Kt are those of ``most_of_loads``: no load causes the stress of the assembly. A ratio is NaN if its
-    nominal stress is zero or rounding.
+    The ratios Kt are those of ``most_of_loads``: no load causes the stress of the assembly. They belong to this state.
+    Where a contact opens or slips they change with the loads: after a larger load friction holds stresses that a small
+    load divides. A ratio is NaN if its nominal stress is zero or rounding.
     """
 
     value: float
