@@ -1,4 +1,4 @@
-from .assembled import assembled_tractions as assembled_tractions
+from . import assembled as assembled
 from .duration import expected_seconds as expected_seconds
 from .errors import ArcError as ArcError
 from .errors import ConvergenceError as ConvergenceError
