@@ -420,6 +420,7 @@ def _tolerances() -> Schema:
             "corners": span,
             "all": span,
             "percentiles": _map_of(_NUMBER, "percentiles of the samples"),
+            "unresolved": _WHOLE | {"description": "number of runs whose value the nodes do not resolve"},
         }
     )
     limits = _object(dict.fromkeys(("nominal", "from", "to"), _NUMBER) | {"spacing": {"enum": ["linear", "log"]}})
