@@ -5,6 +5,7 @@ import warnings
 
 import pytest
 
+from fastpin.solver.configuration import MAX_RESIDUAL
 from tests.support.tiers import seeds
 from tests.survey.assembly import examine, pressed_joint
 
@@ -30,4 +31,5 @@ def test_stresses_of_assembly_and_loads_add_up(kind: str, many: int, part: int) 
     print(max(one.before for one in known.values()), max(one.sums for one in known.values()), max(linear, default=0.0))
     assert len(known) >= 0.8 * len(found) > 0
     assert [(seed, one) for seed, one in known.items() if max(one.before, one.sums) > MOST] == []
-    assert [(seed, one) for seed, one in known.items() if one.halved > MOST] == []
+    # a state is solved to MAX_RESIDUAL: one state less twice another has three times as much
+    assert [(seed, one) for seed, one in known.items() if one.halved > 3.0 * MAX_RESIDUAL] == []
