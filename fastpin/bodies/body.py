@@ -462,6 +462,10 @@ class PlateBody(BodyBase):
         around = Uniform.of_rim(-contact, self.pressed_share(rim), rim.kolosov)
         return {edge: around.von_mises(1.0, rim.material.nu, rim.plane)}
 
+    def seat_pressure(self, rim: Rim, contact: float) -> float:
+        """Pressure in the seat of a bush before any load, Pa, under the pressure `contact` at its bore; else 0."""
+        return 0.0
+
     def highest_inside(self, rim: Rim) -> int:
         """The highest harmonic that matters in the plate, up to its outer rim."""
         return harmonics.harmonics_needed(math.sqrt(1.0 / self.far(rim)))

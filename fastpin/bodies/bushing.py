@@ -308,14 +308,21 @@ class Bushing(PlateBody):
     # -- stresses
 
     def assembly_stresses(self, rim: Rim, contact: float, edge: str = "hole") -> dict[str, float]:
+        seat, field = self.around(rim)[1], self._assembled(rim, contact)
+        edges = {"bore of the bush": 1.0, "rim of the bush": seat.ratio}
+        found = {name: field.von_mises(radius, self.material.nu, rim.plane) for name, radius in edges.items()}
+        return found | self.inside.assembly_stresses(seat, self.seat_pressure(rim, contact), "seat")
+
+    def seat_pressure(self, rim: Rim, contact: float) -> float:
+        return -self._assembled(rim, contact).radial(self.around(rim)[1].ratio)
+
+    def _assembled(self, rim: Rim, contact: float) -> Uniform:
+        """The stresses of the bush in its seat under the pressure `contact` at its bore, Pa."""
         own, seat = self.around(rim)
         unit = 0.5 * own.compliance
         whole = harmonics.uniform_of_layer(seat.ratio, own.kolosov, 2.0 * unit, self.inside.pressed(seat)) / unit
         parts = Uniform.of_rim(-contact, whole, own.kolosov), Uniform.of_press_fit(self.press_fit(rim)[0], seat.ratio)
-        field = Uniform(*map(sum, zip(*parts, strict=True)))
-        edges = {"bore of the bush": 1.0, "rim of the bush": seat.ratio}
-        found = {name: field.von_mises(radius, self.material.nu, rim.plane) for name, radius in edges.items()}
-        return found | self.inside.assembly_stresses(seat, -field.radial(seat.ratio), "seat")
+        return Uniform(*map(sum, zip(*parts, strict=True)))
 
     def highest_inside(self, rim: Rim) -> int:
         seat = self.around(rim)[1]

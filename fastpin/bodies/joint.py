@@ -72,15 +72,28 @@ class Joint:
         """Pressure between bush and plate, Pa, and displacement of the bush's inner rim, m (Lame); 0 without a bush."""
         return self.plate_body.press_fit(self.hole)
 
+    def assembly_pressures(self, clearance: float) -> tuple[float, float]:
+        """Pressures on the pin and in the seat of a bush before any load, Pa (Lame); 0 where nothing is pressed.
+
+        `clearance` is that of the pin after a bush was pressed in, m. The joint is round.
+        """
+        squeeze = max(-clearance, 0.0) / self.radius
+        contact = squeeze / self.uniform_compliance if squeeze else 0.0
+        return contact, self.plate_body.seat_pressure(self.hole, contact)
+
+    @property
+    def is_round(self) -> bool:
+        """Whether pin and hole stay round under uniform pressure: no outline, and no laminate that prevents it."""
+        laminate = self.hole.laminate
+        return not self.plate_body.lug.edge_only and (laminate is None or laminate.is_isotropic_contact)
+
     def assembly_stresses(self, clearance: float) -> dict[str, float]:
         """Von Mises stresses after the press fits, before any load, by the edges of elastic bodies, Pa (Lame).
 
         `clearance` is that of the pin after a bush was pressed in, m; a negative one presses pin and hole together.
         The edges are "hole", "bore of the bush", "rim of the bush", "seat", "pin" and "bore of the pin".
         """
-        squeeze = max(-clearance, 0.0) / self.radius
-        contact = squeeze / self.uniform_compliance if squeeze else 0.0
-        pin, found = self.pin_rim, {}
+        contact, pin, found = self.assembly_pressures(clearance)[0], self.pin_rim, {}
         if not pin.material.is_rigid:
             inside = Uniform.of_rim(-contact, self.pin_body.uniform(pin), pin.kolosov)
             found["pin"] = inside.von_mises(1.0, pin.material.nu, pin.plane)

@@ -55,7 +55,7 @@ from fastpin.report.strength import StrengthFound, assess_strength, strength_lin
 from fastpin.runtime import beside
 from fastpin.states.choice import check_choice, span_of
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
-from fastpin.states.margins import static_margins
+from fastpin.states.margins import over_yield, static_margins
 from fastpin.states.quantities import load_point
 
 if TYPE_CHECKING:  # they import compiled code
@@ -468,13 +468,14 @@ class RunReport:
         if result.cycles or any(each is not None for each in (fatigue, grown, strength)):
             margins += report.fatigue.life_margins(case.problem, states, result.cycles, fatigue, grown, strength)
         say(*margin_lines(case.problem, margins))
+        over = over_yield(margins)
         if fatigue is not None:
-            say(*report.assessment.assessment_lines(fatigue))
+            say(*report.assessment.assessment_lines(fatigue, over))
         elif result.cycles:
-            say(*report.cycle.fatigue_lines(states, result.cycles[-1]))
+            say(*report.cycle.fatigue_lines(states, result.cycles[-1], over))
         elif _is_spectrum(case):
             damages = report.cycle.spectrum_damages(result.states, len(case.history))
-            say(*(report.cycle.spectrum_line(one) for one in damages))
+            say(*(report.cycle.spectrum_line(one, over) for one in damages))
         if grown is not None:
             say(growth_line(grown))
         if strength is not None:

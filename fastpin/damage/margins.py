@@ -61,7 +61,8 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
             if not math.isnan(life):
                 remark += f"; life {life:.3g} cycles" if math.isfinite(life) else "; infinite life"
             kind = "stress times strain"
-            rows.append(Margin(f"{subject}, Smith-Watson-Topper", kind, one.hot_spot.parameter, remark=remark))
+            owner, value = owner_of(problem, body), one.hot_spot.parameter
+            rows.append(Margin(f"{subject}, Smith-Watson-Topper", kind, value, remark=remark, owner=owner))
     return rows
 
 

@@ -16,7 +16,7 @@ from fastpin.bodies.walls import PlateWalls, Wall
 from fastpin.elasticity.laminate_stress import laminate_stress
 from fastpin.elasticity.tractions import CHUNK, Tractions, cauchy_integrals
 from fastpin.kernels import fourier, laurent
-from fastpin.model.points import ROUNDING, Body
+from fastpin.model.points import ROUNDING
 from fastpin.model.problem import Problem
 from fastpin.runtime.threads import in_chunks
 
@@ -89,19 +89,6 @@ def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:
     """Whether points of the plate at these depths, in units of R, lie beyond the bush; False without a bush."""
     bush = problem.joint.bush
     return np.zeros(depth.shape, dtype=bool) if bush is None else 1.0 + depth > bush * (1.0 + ROUNDING)
-
-
-def press_fit_hoop(problem: Problem, body: Body = "plate") -> float:
-    """Hoop stress that the press fit of a bush leaves on the edge of "plate" or "seat"; 0 without a bush.
-
-    It is in the unit of the press fit's pressure.
-    """
-    bush, pressure = problem.joint.bush, problem.press_fit_pressure
-    if bush is None or pressure == 0.0:
-        return 0.0
-    if body == "seat":
-        return float(seat_stress(problem, Tractions(()), np.zeros(3), np.zeros(1), np.zeros(1))[1, 0])
-    return -2.0 * pressure / ((1.0 - 1.0 / bush) * (1.0 + 1.0 / bush))
 
 
 def hole_stress(

@@ -54,10 +54,11 @@ def plot_hoop_stress(
 ) -> Figure:
     """Draw the hoop stress round the hole, of the plate at the seat of a bush, and round the pin, a panel each.
 
-    A dot marks the largest hoop stress of each state; an open dot if the nodes do not resolve the peak. Angles are in
-    degrees from the bottom of the hole, counter-clockwise positive. Tension is positive. The `body` is "plate", "seat",
-    "pin", or "both" for all that the problem has, without rigid bodies. A rigid one raises :class:`InputError`. The
-    other arguments are those of :func:`fastpin.plot_tractions`.
+    A dot marks the largest hoop stress of each state; an open dot if the nodes do not resolve the peak. A dotted line
+    is the part that the assembly leaves before any load, if something is pressed. Angles are in degrees from the bottom
+    of the hole, counter-clockwise positive. Tension is positive. The `body` is "plate", "seat", "pin", or "both" for
+    all that the problem has, without rigid bodies. A rigid one raises :class:`InputError`. The other arguments are
+    those of :func:`fastpin.plot_tractions`.
     """
     return Look(path, title, width, dpi, ax).drawn(hoop_plot(InMemory(result), states, body))
 
@@ -82,7 +83,7 @@ def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Shee
     axes = sheet.axes
     sheet.grid()
     unit, lines = units(states[0].problem)["traction"], state_lines(states)
-    column = f"hoop stress [{unit.name}]"
+    column, before = f"hoop stress [{unit.name}]", f"hoop stress of the assembly [{unit.name}]"
     factor, label = unit.scale([float(np.abs(curve[column]).max()) for curve in curves])
     open_dots = False
     for body, panel in zip(bodies, axes[:, 0], strict=True):
@@ -94,6 +95,8 @@ def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Shee
             face = style["color"] if peak.resolved else "white"
             angle = math.degrees(peak.angle) + 90.0
             panel.plot(angle, factor * peak.value, "o", markersize=4.0, color=style["color"], markerfacecolor=face)
+        if before in mine[0].columns:
+            panel.plot(mine[0]["angle [deg]"], factor * mine[0][before], color="0.4", linestyle=":", linewidth=1.2)
         draw_zero(panel)
         words = edge_body(states[0].problem, body).replace("plate at", "plate\nat")
         panel.set_ylabel(quantity(f"hoop stress of the {words}", label))
@@ -102,6 +105,10 @@ def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Shee
     axes[-1, 0].set_xlabel(ANGLE)
     sheet.figure.align_ylabels(axes)
     styles: list[Artist] = [_dot("largest of each state", "0.4")]
+    if before in curves[0].columns:
+        styles.append(
+            Line2D([], [], color="0.4", linestyle=":", linewidth=1.2, label="of the assembly, before any load")
+        )
     if open_dots:
         styles.append(_dot("largest, not resolved by the nodes", "white"))
     name_states(sheet, states, [look.title], styles)

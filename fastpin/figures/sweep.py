@@ -72,10 +72,11 @@ def plot_sweep(
     A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
     at the geometric mean. Contour lines join equal values. Classes have colours, hatches and a legend instead, and
     lines where two classes meet. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are
-    failed runs, too. Error bars are drawn at the points of curves. In a map they are dots in the cells whose error bar
-    is larger than the differences to the cells beside them, or whose class is another one on the coarse grid. A line
-    above the maps names the largest bar. Positive values that differ by a factor of 30 or more have a logarithmic
-    scale. Of more than :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
+    failed runs, too. Error bars are drawn at the points of curves. The error of an open point is not known: the nodes
+    do not resolve it. In a map error bars are dots in the cells whose bar is not known, or larger than the differences
+    to the cells beside them, or whose class is another one on the coarse grid. A line above the maps names the largest
+    bar. Positive values that differ by a factor of 30 or more have a logarithmic scale. Of more than
+    :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
 
     The chart is made by :func:`fastpin.report.sweep.chart`. It gives the title and the width unless these are given.
     Only curves or a single map go into `ax`. Several charts, of curves or of a single map each, stand side by side.
@@ -235,7 +236,7 @@ def _draw_empty_cells(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.nda
 def _unsure(chart: Chart) -> list[np.ndarray]:
     """Return where a map shows less than its error bars, for each map: shape (len(y), len(x)), bool.
 
-    That is a cell whose error bar is larger than the differences to all cells beside it, or not known. A class is
+    That is a cell whose error bar is not known, or larger than the differences to all cells beside it. A class is
     unsure if the coarse grid finds another one.
     """
     if not chart.bars:
@@ -249,7 +250,8 @@ def _unsure(chart: Chart) -> list[np.ndarray]:
         round_about = np.pad(numbers, 1, constant_values=np.nan)
         beside = (round_about[1:-1, :-2], round_about[1:-1, 2:], round_about[:-2, 1:-1], round_about[2:, 1:-1])
         steps = np.array([np.where(np.isnan(each), -np.inf, np.abs(each - numbers)) for each in beside]).max(axis=0)
-        found.append(known & (bars > steps) & np.isfinite(np.maximum(steps, 0.0)) & (steps > -np.inf))
+        is_beyond = (bars > steps) & np.isfinite(np.maximum(steps, 0.0)) & (steps > -np.inf)
+        found.append(known & (is_beyond | np.isinf(bars)))
     return found
 
 
@@ -269,7 +271,7 @@ def _bar_line(chart: Chart) -> str:
         return f"another class on the coarse grid: {np.count_nonzero(bars):,} of {bars.size:,} runs"
     spread_of_values, finite = float(np.ptp(_known_values(chart))), bars[np.isfinite(bars)]
     if not finite.size:
-        return "error bars: not known"
+        return f"not resolved by the nodes: {bars.size:,} runs"
     largest = float(finite.max())
     part = f", {100.0 * largest / spread_of_values:.2g} % of the range" if spread_of_values > 0.0 else ""
     unknown = f"; not known in {bars.size - finite.size:,} runs" if finite.size < bars.size else ""
@@ -325,7 +327,11 @@ def _explain(sheet: Sheet, chart: Chart) -> None:
     handles: list[Any] = [*class_patches(chart.classes, _known_values(chart))] if chart.classes else []
     handles += [Patch(label="failed run", **_FAILED)] * failed + [Patch(label="no value", **_OPEN)] * empty
     if any(unsure.any() for unsure in _unsure(chart)):
-        words = "another class on the coarse grid" if chart.classes else "error bar above the differences to all sides"
+        words = (
+            "another class on the coarse grid"
+            if chart.classes
+            else "error bar not known, or above the differences to all sides"
+        )
         handles.append(Line2D([], [], label=words, **_UNSURE))
     _add_legend(sheet, handles, 4)
 
@@ -338,7 +344,7 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
     panel = sheet.axes[0, 0]
     sheet.grid()
     handles: list[Any] = []
-    any_failed = False
+    any_failed = any_unknown = False
     for index, (part, name) in enumerate(zip(shown, names, strict=True)):
         _, numbers, failed = chart.parts[part]
         style: Line = line(index, index) | {"marker": MARKERS[index], "markersize": 3.5}
@@ -350,6 +356,9 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
                 chart.x.values[kept], numbers[kept], bars[kept], fmt="none", ecolor=style["color"], elinewidth=1.0,
                 capsize=2.5,
             )  # fmt: skip
+            unknown = np.isinf(chart.bars[part]) & np.isfinite(numbers)
+            panel.plot(chart.x.values[unknown], numbers[unknown], **_UNSURE)
+            any_unknown = any_unknown or bool(unknown.any())
         _mark_failed(panel, chart.x.values[failed], index)
         any_failed = any_failed or bool(failed.any())
         if name:
@@ -363,6 +372,8 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
         panel.set_yscale("log")
         round_numbers(panel.yaxis, _known_values(chart))
     _label_panels(sheet, chart)
+    if any_unknown:
+        handles.append(Line2D([], [], label="error not known", **_UNSURE))
     if any_failed:
         handles.append(Line2D([], [], color="0.3", linestyle="none", marker="x", markersize=4.0, label="failed run"))
     some = f"{len(shown)} of {len(chart.parts)} curves" if len(shown) < len(chart.parts) else ""

@@ -11,6 +11,7 @@ import numpy as np
 from fastpin.model.angles import BOTTOM, degrees_from_bottom, from_bottom, interval_from_bottom
 from fastpin.model.doubts import pressure_doubts
 from fastpin.model.history import LoadHistory
+from fastpin.model.points import Points
 from fastpin.report.case import ROUNDING
 from fastpin.report.summary import json_ready
 from fastpin.states.curves import one_turn, thinned, traction_patches
@@ -68,14 +69,17 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         "doubt" is a warning of a pressure above the yield strength, or "". The entry "loops" has a pair for each load:
         the load, and the displacement on which it does work. The entry "rounding" has a value for each kind of
         quantity: smaller ones are shown as 0, as in tables. The entry "curves" has the tractions as figures draw them,
-        with NaN between two contact zones; "pressure" and "shear" are those of the nodes.
+        with NaN between two contact zones; "pressure" and "shear" are those of the nodes. The entry "hoop" has the part
+        of the assembly, too, if something is pressed before any load.
     """
     curves = one_turn([thinned(points, CURVE_ERROR * state.peak_pressure) for points in traction_patches(state)]).T
     hoop = None
     if not state.problem.surfaces.plate.is_rigid:
         degrees = hoop_degrees(state)
-        stress = state.hoop_stress("plate", np.radians(degrees.astype(float)) + BOTTOM)
-        hoop = {"degrees": packed(degrees), "stress": packed(stress)}
+        theta = np.radians(degrees.astype(float)) + BOTTOM
+        hoop = {"degrees": packed(degrees), "stress": packed(state.hoop_stress("plate", theta))}
+        if state.problem.is_pressed:
+            hoop["assembly"] = packed(state.assembly_stress(Points.at_depth(0.0, theta)).hoop)
     return {
         "serial": serial,
         "gesture": gesture,

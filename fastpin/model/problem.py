@@ -502,6 +502,16 @@ class Problem:
         return room < -LEAST_GRIP * float(np.abs(gap).max())
 
     @property
+    def is_round(self) -> bool:
+        """Whether pin, bush and hole stay round as they are pressed together."""
+        return not self.gap and self.joint.is_round
+
+    @property
+    def is_pressed(self) -> bool:
+        """Whether pin, bush and plate press each other before any load."""
+        return self.is_gripped or self.press_fit_pressure > 0.0
+
+    @property
     def bush_slips(self) -> bool:
         """Whether a bush may slip in its seat."""
         bush = self.plate_body.bush

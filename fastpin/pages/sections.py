@@ -55,7 +55,6 @@ from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.extremes import READINGS, yield_doubts
 from fastpin.states.load_cycle import LoadCycle
-from fastpin.states.margins import static_margins
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
 from fastpin.states.state import State
 from fastpin.studies.convergence import Convergence
@@ -117,9 +116,9 @@ def overview(page: PageParts) -> PageSection:
         sentences += lines if len(lines) <= MOST_BLOCKS else [many]
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
         known = [] if isinstance(source.fatigue, str) or source.assessed else source.fatigue
-        sentences += [] if source.assessed is None else assessment_lines(source.assessed)
-        sentences += [hot_spot_line(found, source.peaks) for found in known]
-        sentences += [spectrum_line(found) for found in source.spectrum]
+        sentences += [] if source.assessed is None else assessment_lines(source.assessed, source.over_yield)
+        sentences += [hot_spot_line(found, source.peaks, source.over_yield) for found in known]
+        sentences += [spectrum_line(found, source.over_yield) for found in source.spectrum]
         parts.append(Items([sentence(line) for line in sentences if line]))
     parts.append(Text(ANGLES))
     return PageSection("overview", "Overview", parts)
@@ -160,7 +159,7 @@ def _count(source: Source) -> str:
 def margins(page: PageParts) -> PageSection:
     """Return the margins of yield, bush, fatigue, crack and plies, each with the state that governs it."""
     source, problem = page.source, page.source.case.problem
-    found = static_margins(problem, source.found, source.read)
+    found = list(source.static_margins)
     cycle = [] if source.cycle is None else source.cycle.states
     judged = {edge_body(problem, one.body) for one in source.assessed.reserves} if source.assessed else set()
     found += [
@@ -464,7 +463,7 @@ def _assessed(page: PageParts, assessed: Assessed) -> list[SectionPart]:
         found = [one for one in assessed.found if one.criterion == criterion]
         parts += [page.album.figure(spectrum_of(found))] if found else []
     kind = "missing" if assessed.reason else ""
-    return [*parts, *(Text(sentence(line), kind) for line in assessment_lines(assessed))]
+    return [*parts, *(Text(sentence(line), kind) for line in assessment_lines(assessed, page.source.over_yield))]
 
 
 def fatigue(page: PageParts) -> PageSection:
@@ -476,13 +475,14 @@ def fatigue(page: PageParts) -> PageSection:
         return PageSection("fatigue", "Fatigue", _assessed(page, page.source.assessed))
     found = page.source.fatigue
     if page.source.spectrum:
-        figure, lines = page.album.figure(spectrum_of(page.source.spectrum)), map(spectrum_line, page.source.spectrum)
+        lines = [spectrum_line(each, page.source.over_yield) for each in page.source.spectrum]
+        figure = page.album.figure(spectrum_of(page.source.spectrum))
         return PageSection("fatigue", "Fatigue", [figure, *(Text(sentence(each)) for each in lines)])
     if isinstance(found, str):
         return PageSection("fatigue", "Fatigue", [Text(found, "missing")])
     parts: list[SectionPart] = [page.album.figure(fatigue_of(found))]
     for one in found:
-        parts.append(Text(sentence(hot_spot_line(one, page.source.peaks))))
+        parts.append(Text(sentence(hot_spot_line(one, page.source.peaks, page.source.over_yield))))
         if one.life is None:
             words = f"There is no life: the material of the {edge_body(one.problem, one.body).split(' at ')[0]}"
             words += " lacks constants for it. The key fatigue of a case file gives them; see docs/fatigue.md."

@@ -35,6 +35,7 @@ from fastpin.states.choice import even_choice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places
 from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.storage.layout import versions
@@ -216,6 +217,16 @@ class Source:
     def found(self) -> Found:
         """The extremes of all states."""
         return self.extremes()
+
+    @cached_property
+    def static_margins(self) -> list[Margin]:
+        """The margins of the strengths and of the bush over all states."""
+        return static_margins(self.case.problem, self.found, self.read)
+
+    @property
+    def over_yield(self) -> dict[str, float]:
+        """The bodies that yield, see :func:`fastpin.states.margins.over_yield`."""
+        return over_yield(self.static_margins)
 
     @cached_property
     def peaks(self) -> list[State]:

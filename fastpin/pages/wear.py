@@ -12,7 +12,7 @@ from fastpin.figures.damage import damage_of
 from fastpin.figures.scar import scar_plot, wear_plot
 from fastpin.figures.subjects import InMemory
 from fastpin.model.angles import from_bottom
-from fastpin.model.points import edge_body
+from fastpin.model.points import edge_body, owner_of
 from fastpin.model.ties import top, top_angle
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
@@ -40,6 +40,7 @@ from fastpin.report.states import TableRows
 from fastpin.report.table import columns_at, printed_rows
 from fastpin.report.wear import DEBRIS, cycle_columns, cycle_lines, followed_words, law_rows
 from fastpin.solver.wear_result import WearResult
+from fastpin.states.margins import over_yield_words
 from fastpin.states.quantities import load_point
 
 NO_PROFILE = "There is no stored profile: the life ended before its first cycle."
@@ -64,7 +65,11 @@ def overview(page: PageParts) -> PageSection:
             f"{pressures[1]} on the first profile",
             f"friction dissipates {unit['energy'].text(last.energy_per_cycle, 4)} in a cycle on the last profile",
         ]
-        lines += [f"damage of the {edge_body(life.problem, one.body)}: {one.words}" for one in source.worn]
+        lines += [
+            f"damage of the {edge_body(life.problem, one.body)}: {one.words}"
+            + over_yield_words(source.over_yield, owner_of(life.problem, one.body))
+            for one in source.worn
+        ]
         parts.append(Items([sentence(line) for line in lines]))
     parts.append(Text(ANGLES))
     return PageSection("overview", "Overview", parts)

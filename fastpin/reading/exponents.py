@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -97,3 +98,18 @@ def signs_beside(shear: np.ndarray, run: np.ndarray) -> tuple[int, int]:
         return 0, 0
     before, after = np.sign(shear[[run[0] - 1, (run[-1] + 1) % shear.size]])
     return int(before), int(after)
+
+
+def reserve_beside(
+    sticking: Sequence[np.ndarray], friction: np.ndarray, pressure: np.ndarray, shear: np.ndarray
+) -> np.ndarray:
+    """The reserve beside the start and beside the stop of each run of `sticking` nodes, shape (2, n).
+
+    It is mu N - s T, where s T = mu N in the slip zone beside. So it has no kink where T changes its sign.
+    """
+    reserve = np.array([friction * pressure - np.abs(shear)] * 2)
+    for run in sticking:
+        for values, sign in zip(reserve, signs_beside(shear, run), strict=True):
+            if sign != 0:
+                values[run] = friction[run] * pressure[run] - sign * shear[run]
+    return reserve

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
-from fastpin.elasticity.stress import press_fit_hoop
 from fastpin.elasticity.tractions import RefinedTractions
 from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.grid import Grid
-from fastpin.model.points import Body, near_rim
+from fastpin.model.points import Body, Points, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.ties import top_angle
-from fastpin.reading.stress import HoopPeak, open_hole_hoop
+from fastpin.reading.stress import HoopPeak, Stress, open_hole_hoop
 
 AROUND = 180
 """Equally spaced angles round the hole that are tried, beside edges, borders, closed nodes and their middles."""
@@ -49,9 +49,12 @@ Hoop = Callable[[np.ndarray], np.ndarray]
 
 def hoop_peak(
     problem: Problem, load: Mapping[str, float], resultants: Mapping[str, float], grid: Grid, closed: np.ndarray,
-    refined: RefinedTractions, hoop: Hoop, body: Body,
+    refined: RefinedTractions, body: Body, hoop: Hoop,
 ) -> HoopPeak:  # fmt: skip
-    """The largest hoop stress on the edge of a body that is not rigid, of a state with these `closed` nodes."""
+    """The largest hoop stress on the edge of a body that is not rigid, of a state with these `closed` nodes.
+
+    The `hoop` stress is taken for that of the loads alone.
+    """
     around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
     nodes = grid.theta[closed]
     angles = np.r_[around, nodes, nodes + 0.5 * grid.weights[closed], refined.resolved, refined.unresolved]
@@ -63,18 +66,47 @@ def hoop_peak(
     value, angle = found[top_angle(*np.array(found).T)]
     rim, force = near_rim(problem, body), math.hypot(resultants["P"], resultants["Q"])
     resolved = _is_resolved(grid.weights[closed], refined, hoop, value, angle, rim - 1.0)
-    bearing, gross, bypass, press_fit = force / (2.0 * (rim * problem.hole_radius)), 0.0, 0.0, 0.0
+    bearing, gross, bypass = force / (2.0 * (rim * problem.hole_radius)), 0.0, 0.0
     if body != "pin":
         sxx, syy, sxy = (load[name] for name in ("sxx", "syy", "sxy"))
         mean, radius = 0.5 * (sxx + syy), math.hypot(0.5 * (sxx - syy), sxy)
         gross = mean + math.copysign(radius, mean)
         bypass = open_hole_hoop(problem, np.array([sxx, syy, sxy]), angle, body)
-        press_fit = press_fit_hoop(problem, body)
     place = angle if closed.any() or value != 0.0 else math.nan
     # the width W - D of the net section beside the hole of a ring; infinite for any other plate, a bush, the pin
     is_own, edge = body == ("seat" if problem.joint.bush else "plate"), near_rim(problem, body) * problem.hole_radius
     section = 2.0 * (problem.plate_body.lug.outer_radius - edge) if is_own else math.inf
-    return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit, force / section)
+    return HoopPeak(value, place, resolved, bearing, gross, bypass, value, net_stress=force / section)
+
+
+def peak_in_parts(
+    peak_of: Callable[[Hoop], HoopPeak], hoop: Hoop, assembly: Callable[[Points], Stress], joint: Problem
+) -> HoopPeak:
+    """The largest hoop stress, with the part of the assembly at its place and the largest stress of the loads.
+
+    Parameters
+    ----------
+    peak_of : callable
+        :func:`hoop_peak` of a hoop stress in this state.
+    hoop : callable
+        The hoop stress of the state.
+    assembly : callable
+        The stress before any load at points.
+    joint : Problem
+    """
+    peak = peak_of(hoop)
+    if not joint.is_pressed:
+        return peak
+
+    def before(theta: np.ndarray) -> np.ndarray:
+        return assembly(Points.at_depth(0.0, theta)).hoop
+
+    here = float(before(np.array([0.0 if math.isnan(peak.angle) else peak.angle]))[0])
+    if joint.is_round and joint.pair.plate.is_isotropic:  # it is the same all round
+        return replace(peak, assembly=here, most_of_loads=peak.value - here)
+    of_loads = peak_of(lambda theta: hoop(theta) - before(theta))
+    resolved = peak.resolved and of_loads.resolved
+    return replace(of_loads, value=peak.value, angle=peak.angle, resolved=resolved, assembly=here)
 
 
 def _highest(hoop: Hoop, angles: np.ndarray, values: np.ndarray, tops: np.ndarray) -> list[tuple[float, float]]:

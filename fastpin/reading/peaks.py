@@ -8,9 +8,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from fastpin.kernels.status import OPEN
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid
-from fastpin.model.ties import top_angle
+from fastpin.model.ties import top_angle, top_angles
 from fastpin.reading.cusps import ShearNodes
 from fastpin.reading.ends import by_two_nodes
 from fastpin.reading.zones import Interval, is_all_round, runs
@@ -224,3 +225,14 @@ def _interpolated(grid: Grid, values: np.ndarray, angle: float) -> float:
         nearest = np.array([np.flatnonzero(offsets < 0.0)[np.argmax(offsets[offsets < 0.0])],
                             np.flatnonzero(offsets >= 0.0)[np.argmin(offsets[offsets >= 0.0])]])  # fmt: skip
     return float(np.polyval(np.polyfit(offsets[nearest], values[nearest], nearest.size - 1), 0.0))
+
+
+def peak_slips(slip: np.ndarray, status: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    """The :attr:`fastpin.State.peak_slip` of many states, shape (k,), from slip and status of their nodes (k, n)."""
+    nodes = slip_nodes(slip, status, theta)
+    return np.where((status != OPEN).any(axis=1), np.take_along_axis(slip, nodes[:, None], axis=1)[:, 0], 0.0)
+
+
+def slip_nodes(slip: np.ndarray, status: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    """The closed node with the slip of largest magnitude in each of many states, shape (k,)."""
+    return top_angles(np.where(status != OPEN, np.abs(slip), -1.0), theta)

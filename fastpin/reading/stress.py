@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from fastpin.elasticity.bush_stress import bush_stress
-from fastpin.elasticity.stress import is_beyond_bush, pin_stress, plate_stress, press_fit_hoop, seat_stress
+from fastpin.elasticity.stress import is_beyond_bush, pin_stress, plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN
@@ -119,17 +119,21 @@ class HoopPeak:
         Principal remote stress of largest magnitude, with its sign, Pa; 0 for the pin. The own loads of a compliance
         count as remote stresses.
     bypass : float
-        Hoop stress of the open hole under the remote stress at the same place, Pa; 0 for the pin. The hole is that of
-        the problem's plate: of a ring, of a bush, or of a compliance under its own loads.
-    press_fit : float
-        Hoop stress that the press fit of a bush leaves at the edge, Pa; 0 without a bush, and for the pin. It is in the
-        peak, but in no concentration by parts: no load causes it.
+        Hoop stress of the open hole under the remote stress at the place of ``most_of_loads``, Pa; 0 for the pin. The
+        hole is that of the problem's plate: of a ring, of a bush, or of a compliance under its own loads.
+    most_of_loads : float
+        Largest hoop stress of the loads round the edge, Pa. It is at the place of the peak if the stress of the
+        assembly is the same all round, as in every joint of round, isotropic bodies.
+    assembly : float
+        Part of the peak that the press fits of bush and pin leave before any load, Pa, see
+        :meth:`fastpin.State.assembly_stress`; 0 without one.
     net_stress : float
         Force on the pin over the net section, F/(W - D), Pa. W is the outer diameter of a ring, and D the diameter of
         the ring's own hole. 0 for any other plate, for the pin, and for the bush in a ring.
 
-    A ratio is NaN if its nominal stress is zero or rounding. It is NaN too if a press fit keeps the whole edge in
-    compression.
+    The ratios Kt are those of ``most_of_loads``: no load causes the stress of the assembly. They belong to this state.
+    Where a contact opens or slips they change with the loads: after a larger load friction holds stresses that a small
+    load divides. A ratio is NaN if its nominal stress is zero or rounding.
     """
 
     value: float
@@ -138,41 +142,48 @@ class HoopPeak:
     bearing_stress: float
     gross_stress: float
     bypass: float
-    press_fit: float = 0.0
+    most_of_loads: float
+    assembly: float = 0.0
     net_stress: float = 0.0
 
     @property
+    def loads(self) -> float:
+        """The part of the peak that the loads cause, Pa: value = assembly + loads."""
+        return self.value - self.assembly
+
+    @property
     def kt_gross(self) -> float:
-        """The peak over the gross remote stress; NaN without remote stress."""
-        return self._over(self._concentrated, self.gross_stress)
+        """The largest stress of the loads over the gross remote stress; NaN without remote stress."""
+        return self._over(self.most_of_loads, self.gross_stress)
 
     @property
     def kt_bearing(self) -> float:
-        """The peak over the bearing stress; NaN without a force on the pin."""
-        return self._over(self._concentrated, self.bearing_stress)
+        """The largest stress of the loads over the bearing stress; NaN without a force on the pin."""
+        return self._over(self.most_of_loads, self.bearing_stress)
 
     @property
     def kt_net(self) -> float:
-        """The peak over the net-section stress, as handbooks of lugs have it; NaN without a ring or a force."""
-        return self._over(self._concentrated, self.net_stress)
+        """The largest stress of the loads over the net-section stress, as handbooks of lugs have it.
+
+        NaN without a ring or a force.
+        """
+        return self._over(self.most_of_loads, self.net_stress)
 
     @property
     def kt_bypass_part(self) -> float:
-        """The open hole's part of the peak over the gross remote stress; NaN without remote stress.
+        """The open hole's part of the largest stress of the loads, over the gross remote stress; NaN without that.
 
-        peak = kt_bypass_part * gross_stress + kt_bearing_part * bearing_stress + press_fit.
+        most_of_loads = kt_bypass_part * gross_stress + kt_bearing_part * bearing_stress.
         """
         return self._over(self.bypass, self.gross_stress)
 
     @property
     def kt_bearing_part(self) -> float:
-        """The rest of the peak, which the pin causes, over the bearing stress; NaN without a force on the pin."""
-        return self._over(self.value - self.bypass - self.press_fit, self.bearing_stress)
+        """The pin's part of the largest stress of the loads, over the bearing stress; NaN without a force on the pin.
 
-    @property
-    def _concentrated(self) -> float:
-        """The peak; NaN where a press fit keeps the whole edge in compression: no stress is concentrated there."""
-        return math.nan if self.press_fit < 0.0 and self.value < 0.0 else self.value
+        It is all that the open hole leaves.
+        """
+        return self._over(self.most_of_loads - self.bypass, self.bearing_stress)
 
     def _over(self, stress: float, nominal: float) -> float:
         """A stress over a nominal stress; NaN if the nominal stress is zero or rounding beside the peak."""
@@ -244,6 +255,15 @@ def stress_at(
     return Stress(points.theta, radial, hoop, shear, axial)
 
 
+def assembly_stress(problem: Problem, assembled: Sequence[Tractions], points: Points, body: Body) -> Stress:
+    """The stress at points of a body before any load; see :meth:`fastpin.State.assembly_stress`.
+
+    `assembled` are the tractions of all interfaces, that of the pin first; none if nothing is pressed.
+    """
+    of_pin, *of_seat = assembled or (Tractions(()),)
+    return stress_at(problem, of_pin, {}, points, body, *of_seat)
+
+
 def _of_joint(
     problem: Problem, tractions: tuple[Tractions, Tractions], remote: np.ndarray,
     places: tuple[np.ndarray, np.ndarray], body: Body,
@@ -284,4 +304,5 @@ def open_hole_hoop(problem: Problem, remote: np.ndarray, angle: float, body: Bod
         sxx, syy, sxy = (float(value) for value in remote)
         return (sxx + syy) - 2.0 * ((sxx - syy) * math.cos(2.0 * angle) + 2.0 * sxy * math.sin(2.0 * angle))
     stress, place = seat_stress if body == "seat" else plate_stress, (np.array([angle]), np.zeros(1))
-    return float(stress(problem, Tractions(()), remote, *place)[1, 0]) - press_fit_hoop(problem, body)
+    pulled, pressed = (float(stress(problem, Tractions(()), each, *place)[1, 0]) for each in (remote, np.zeros(3)))
+    return pulled - pressed

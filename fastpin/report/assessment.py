@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,10 +13,11 @@ from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
-from fastpin.model.points import edge_body
+from fastpin.model.points import edge_body, owner_of
 from fastpin.model.units import units
 from fastpin.report.case import assessment_words
 from fastpin.solver.result import Result
+from fastpin.states.margins import over_yield_words
 
 MOST_CYCLES = 3
 """Counted cycles that are printed for each body."""
@@ -69,11 +70,17 @@ def assess(
         return Assessed(case.fatigue, [], [], str(error))
 
 
-def assessment_lines(assessed: Assessed) -> list[str]:
-    """Return lines of text: how fatigue is assessed, then each body with its hot spot, the largest damage first."""
+def assessment_lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]:
+    """Return lines of text: how fatigue is assessed, then each body with its hot spot, the largest damage first.
+
+    `over` has the bodies that yield, see :func:`fastpin.states.margins.over_yield`: their lives are marked.
+    """
     if assessed.reason:
         return [f"fatigue: not known, {assessed.reason}"]
-    return [f"fatigue over {assessment_words(assessed.how)}", *(_line(one, assessed.how) for one in assessed.found)]
+    lines = [
+        _line(one, assessed.how) + over_yield_words(over, owner_of(one.problem, one.body)) for one in assessed.found
+    ]
+    return [f"fatigue over {assessment_words(assessed.how)}", *lines]
 
 
 def _line(damage: SpectrumDamage, how: FatigueAssessment) -> str:
@@ -95,10 +102,10 @@ def _line(damage: SpectrumDamage, how: FatigueAssessment) -> str:
     return f"{name}: {', '.join(parts)}; {', '.join(cycles)}"
 
 
-def document(assessed: Assessed) -> dict[str, Any]:
+def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
     """Return an assessment as a dict: angles in degrees, from the bottom of the hole for places, from +x for planes.
 
-    A body without damage has no angle, depth, plane and life: they are None.
+    `over` is that of :func:`assessment_lines`. A body without damage has no angle, depth, plane and life: all None.
     """
     how = assessed.how
     return {
@@ -109,7 +116,7 @@ def document(assessed: Assessed) -> dict[str, Any]:
         "knee": how.knee,
         "life_asked": how.life,
         "error": assessed.reason or None,
-        "bodies": [_body(one) for one in assessed.found],
+        "bodies": [_body(one) | {"over_yield": over.get(owner_of(one.problem, one.body))} for one in assessed.found],
     }
 
 

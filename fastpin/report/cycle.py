@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from fastpin.damage.spectrum import SpectrumDamage, bodies_with_lives, spectrum_
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.points import EDGES, Body, edge_body, elastic_bodies, material_of
+from fastpin.model.points import EDGES, Body, edge_body, elastic_bodies, material_of, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.case import ROUNDING
@@ -25,6 +25,7 @@ from fastpin.report.curves import Curve
 from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
+from fastpin.states.margins import over_yield_words
 from fastpin.states.quantities import load_point, sizes
 from fastpin.states.state import State
 from fastpin.storage.files import replacing
@@ -53,8 +54,10 @@ def cycle_line(cycle: LoadCycle) -> str:
     return f"from corner {cycle.first:,} to {cycle.last:,}: {regime}, {', '.join(parts)}"
 
 
-def fatigue_lines(states: Sequence[State], cycle: Cycle) -> list[str]:
+def fatigue_lines(states: Sequence[State], cycle: Cycle, over: Mapping[str, float]) -> list[str]:
     """Return lines of text: the hot spots of plate and bush by Smith, Watson and Topper, their planes and lives.
+
+    `over` has the bodies that yield, see :func:`fastpin.states.margins.over_yield`: their lives are marked.
 
     A body without fatigue constants has no line. There is none if the states lack a corner of the cycle, or if the
     cycle has more than :data:`MOST_STOPS` states.
@@ -66,7 +69,7 @@ def fatigue_lines(states: Sequence[State], cycle: Cycle) -> list[str]:
     if not 2 <= len(stops) <= MOST_STOPS:
         return []
     bodies = [body for body in fatigue_bodies(stops[0].problem, SWT) if material_of(stops[0].problem, body).fatigue]
-    return [hot_spot_line(fatigue(stops, SWT, body), stops) for body in bodies]
+    return [hot_spot_line(fatigue(stops, SWT, body), stops, over) for body in bodies]
 
 
 def spectrum_damages(states: Sequence[State], corners: int) -> list[SpectrumDamage]:
@@ -81,14 +84,18 @@ def spectrum_damages(states: Sequence[State], corners: int) -> list[SpectrumDama
     return [spectrum_damage(states, SWT, body) for body in bodies]
 
 
-def spectrum_line(damage: SpectrumDamage) -> str:
-    """Return a line of text: the hot spot of a body over a spectrum, with its life and plane."""
+def spectrum_line(damage: SpectrumDamage, over: Mapping[str, float]) -> str:
+    """Return a line of text: the hot spot of a body over a spectrum, with its life and plane.
+
+    `over` is that of :func:`fatigue_lines`.
+    """
     spot, edge = damage.hot_spot, edge_body(damage.problem, damage.body)
     name = f"fatigue of the {edge} over the whole history as a spectrum, Smith-Watson-Topper"
     if math.isnan(spot.theta):
         return f"{name}: none, no plane has both tension and a changing strain"
     words = f"life {spot.life:.3g} spectra at {from_bottom(spot.theta):z.2f} deg"
-    return f"{name}: {words}, normal of the plane {np.degrees(spot.plane):z.2f} deg from +x"
+    mark = over_yield_words(over, owner_of(damage.problem, damage.body))
+    return f"{name}: {words}, normal of the plane {np.degrees(spot.plane):z.2f} deg from +x{mark}"
 
 
 def fatigue_bodies(problem: Problem, criterion: str) -> list[Body]:
@@ -103,11 +110,11 @@ def fatigue_bodies(problem: Problem, criterion: str) -> list[Body]:
     return known or ["plate"]
 
 
-def hot_spot_line(found: Fatigue, states: Sequence[State]) -> str:
+def hot_spot_line(found: Fatigue, states: Sequence[State], over: Mapping[str, float]) -> str:
     """Return a line of text: the hot spot of a body over the last cycle, its plane, and its life if known.
 
     The criterion of `found` is "smith-watson-topper". A parameter that is rounding beside the pressures of the states
-    is 0.
+    is 0. `over` is that of :func:`fatigue_lines`.
     """
     spot, problem = found.hot_spot, found.problem
     name = f"fatigue of the {edge_body(problem, found.body)} in the last cycle, Smith-Watson-Topper"
@@ -119,7 +126,7 @@ def hot_spot_line(found: Fatigue, states: Sequence[State]) -> str:
         parts.append(f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x")
     if not np.isnan(spot.life):
         parts.append(f"life {spot.life:.3g} cycles" if np.isfinite(spot.life) else "infinite life")
-    return f"{name}: {', '.join(parts)}"
+    return f"{name}: {', '.join(parts)}{over_yield_words(over, owner_of(problem, found.body))}"
 
 
 def natural_sizes(cycle: LoadCycle) -> dict[str, float]:

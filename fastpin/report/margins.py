@@ -13,7 +13,7 @@ from typing import Any
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, printed_loads, units
 from fastpin.report.table import aligned
-from fastpin.states.margins import Margin, smallest_margin
+from fastpin.states.margins import Margin, over_yield, over_yield_of, over_yield_words, smallest_margin
 from fastpin.states.quantities import point_name
 
 HEADS = ("subject", "value", "allowable", "margin", "load point", "loads", "remark")
@@ -33,8 +33,8 @@ def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
 
 
 def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, ...]]:
-    """Return rows of text under :data:`HEADS`."""
-    unit, least = units(problem), smallest_margin(margins)
+    """Return rows of text under :data:`HEADS`. A margin of stresses above yield is marked."""
+    unit, least, over = units(problem), smallest_margin(margins), over_yield(margins)
 
     def verdict(row: Margin) -> str:
         if math.isnan(row.margin):
@@ -57,7 +57,7 @@ def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, 
             verdict(row),
             "-" if math.isnan(row.load_point) else point_name(row.load_point),
             named_loads(problem, row.loads) if row.loads else "-",
-            row.remark,
+            row.remark + (over_yield_words(over, row.owner) if over_yield_of(row, over) else ""),
         )
         for row in margins
     ]
@@ -65,7 +65,7 @@ def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, 
 
 def document(problem: Problem, margins: Sequence[Margin]) -> list[dict[str, Any]]:
     """Return margins as JSON-ready dicts, in printed units."""
-    unit, least = units(problem), smallest_margin(margins)
+    unit, least, over = units(problem), smallest_margin(margins), over_yield(margins)
     factors = {row.kind: 1.0 if row.kind == "ratio" else unit[row.kind].factor for row in margins}
     return [
         {
@@ -77,6 +77,7 @@ def document(problem: Problem, margins: Sequence[Margin]) -> list[dict[str, Any]
             "unit": "" if row.kind == "ratio" else unit[row.kind].name,
             "margin": row.margin,
             "smallest": row is least,
+            "over_yield": over_yield_of(row, over),
             "loads": printed_loads(problem, row.loads),
             "load_point": row.load_point,
             "remark": row.remark,

@@ -121,6 +121,7 @@ def _strength() -> Schema:
 def _margins() -> Schema:
     texts, numbers = ("subject", "name", "body", "unit", "remark"), ("value", "allowable", "margin", "load_point")
     governing = {"smallest": _TRUTH, "loads": _map_of(_NUMBER, "loads of the state that governs")}
+    governing["over_yield"] = _UNKNOWN | {"description": "stress over the yield strength where it is above 1"}
     return _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing))
 
 
@@ -226,6 +227,7 @@ def _state(seat: Schema | None = None) -> Schema:
         "load": _object(dict.fromkeys(LOADS, _NUMBER), LOADS[:ACTING]),
         "in_contact": _TRUTH,
         **quantities,
+        "unresolved": _list_of({"enum": [name for name, each in QUANTITIES.items() if each.edge]}),
         "peak_hoop_resolved": {"type": ["boolean", "null"]},
         "contact": _list_of(interval),
         "stick": _list_of(interval),
@@ -270,6 +272,7 @@ def _fatigue() -> Schema:
             "life": _UNKNOWN | {"description": "spectra, or cycles over the last cycle; null without damage"},
             **dict.fromkeys(("angle", "depth", "plane"), _UNKNOWN),
             "cycles": _list_of(_object(numbers | {"times": _WHOLE})) | words,
+            "over_yield": _UNKNOWN,
         }
     )
     return _object(
@@ -417,6 +420,7 @@ def _tolerances() -> Schema:
             "corners": span,
             "all": span,
             "percentiles": _map_of(_NUMBER, "percentiles of the samples"),
+            "unresolved": _WHOLE | {"description": "number of runs whose value the nodes do not resolve"},
         }
     )
     limits = _object(dict.fromkeys(("nominal", "from", "to"), _NUMBER) | {"spacing": {"enum": ["linear", "log"]}})

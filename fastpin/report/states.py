@@ -34,6 +34,7 @@ from fastpin.report.table import (
     with_rows,
 )
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
+from fastpin.states.error_bars import known_bar
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, sizes
 from fastpin.states.regimes import Regime
 from fastpin.states.state import State
@@ -288,12 +289,12 @@ def quantity_column(
 
 
 def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -> str:
-    """Return a line of text: the largest hoop stress of a body in all kept states, and its stress concentrations.
+    """Return a line of text: the largest hoop stress of a body in all kept states, its parts, and Kt of the loads.
 
     `states` are all kept states, or those of their extremes. It is empty without the body, for a rigid one, and without
-    contact.
+    any stress.
     """
-    if body not in elastic_bodies(problem) or not any(state.in_contact for state in states):
+    if body not in elastic_bodies(problem) or not states:
         return ""
     first: dict[Hashable, State] = {}
     for state in states:  # Steady cycles repeat their states, and a peak takes some milliseconds.
@@ -301,22 +302,31 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
     distinct = list(first.values())
     state = distinct[top([state.peak_hoop_stress(body).value for state in distinct])]
     peak = state.peak_hoop_stress(body)
+    if peak.value == 0.0:
+        return ""
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
     factor, unit = units(problem)["traction"].scale([peak.value])
+    bar = _bar(state, factor, "peak_hoop" if body == "plate" else "peak_hoop_seat").replace(" +-?", "")
     text = (
         f"largest hoop stress of the {edge_body(problem, body)} in all kept states: "
-        f"{peak.value * factor:.4g}{_bar(state, factor, 'peak_hoop' if body == 'plate' else 'peak_hoop_seat')} {unit}"
+        f"{peak.value * factor:.4g}{bar} {unit}"
         f"{resolved} at {_angle(peak.angle)} deg, load point {_point(state)}"
     )
-    ratios = {"bearing": peak.kt_bearing, "net-section": peak.kt_net, "remote": peak.kt_gross}
-    known = [f"Kt {value:.4g} on the {name} stress" for name, value in ratios.items() if math.isfinite(value)]
     parts = {"remote": peak.kt_bypass_part, "bearing": peak.kt_bearing_part}
     terms = [f"{value:.4g} x {name} stress" for name, value in parts.items() if math.isfinite(value)]
-    if peak.press_fit:
-        terms.append(f"{units(problem)['traction'].text(peak.press_fit, 4)} of the press fit")
-    if known and len(terms) > 1:
-        known.append(f"it is {' + '.join(terms)}")
-    return "; ".join([text, *known])
+    ratios = {"bearing": peak.kt_bearing, "net-section": peak.kt_net, "remote": peak.kt_gross}
+    of_loads, kt, whole = "", "Kt", "it"
+    if peak.assembly:
+        loads = 0.0 if abs(peak.loads) <= ROUNDING * abs(peak.assembly) else peak.loads
+        assembly, loads_text = (units(problem)["traction"].text(value, 4) for value in (peak.assembly, loads))
+        of_loads, kt, whole = (
+            f"it is {assembly} of the assembly + {loads_text} of the loads",
+            "Kt of the loads",
+            "the part of the loads",
+        )
+    known = [f"{kt} {value:.4g} on the {name} stress" for name, value in ratios.items() if math.isfinite(value)]
+    sums = [f"{whole} is {' + '.join(terms)}"] if known and len(terms) > 1 else []
+    return "; ".join(filter(None, [text, of_loads, *known, *sums]))
 
 
 def bush_line(problem: Problem, states: Sequence[State]) -> str:
@@ -432,9 +442,11 @@ def _angle(angle: float | None) -> str:
 
 
 def _bar(state: State, factor: float, *names: str) -> str:
-    """Return " +- BAR" with the largest bar of several quantities; " +-?" if it is infinite, "" if there is none."""
-    known: Mapping[str, float] = state.error_bars or {}
-    bars = [known.get(name, math.nan) for name in names]
+    """Return " +- BAR" with the largest bar of several quantities; " +-?" if it is infinite, "" if there is none.
+
+    See :func:`fastpin.states.error_bars.known_bar`.
+    """
+    bars = [known_bar(name, state) for name in names]
     if any(math.isnan(bar) for bar in bars):
         return ""
     return f" +-{factor * max(bars):.2g}" if math.isfinite(max(bars)) else " +-?"

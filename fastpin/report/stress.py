@@ -77,10 +77,10 @@ def bodies_of(state: State, body: str = "both") -> tuple[Body, ...]:
 def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
     """The hoop stress round hole, seat of a bush and pin: a curve for each body and state.
 
-    Columns: the angle in degrees from the bottom, -180 to 180, and the hoop stress in Pa or F/R.
+    Columns: the angle in degrees from the bottom, -180 to 180, and the hoop stress in Pa or F/R; its part that the
+    assembly leaves before any load, if something is pressed.
     """
-    unit = units(states[0].problem)["traction"].name
-    curves = []
+    unit, curves = units(states[0].problem)["traction"].name, []
     for each in bodies_of(states[0], body):
         for state in states:
             around = -1.5 * math.pi + 2.0 * math.pi * np.arange(AROUND + 1) / AROUND
@@ -88,6 +88,9 @@ def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
             sharp = np.remainder(sharp + 1.5 * math.pi, 2.0 * math.pi) - 1.5 * math.pi
             theta = np.unique(np.r_[around, sharp])
             columns = {"angle [deg]": np.degrees(theta) + 90.0, f"hoop stress [{unit}]": state.hoop_stress(each, theta)}
+            if state.problem.is_pressed:
+                before = state.assembly_stress(Points.at_depth(0.0, theta), each).hoop
+                columns[f"hoop stress of the assembly [{unit}]"] = before
             curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
     return curves
 

@@ -29,7 +29,7 @@ from fastpin.report.strength import StrengthFound
 from fastpin.solver.result import Result
 from fastpin.states.extremes import READINGS, KeptStates, marked_extremes
 from fastpin.states.load_cycle import LoadCycle
-from fastpin.states.margins import static_margins
+from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
 from fastpin.states.state import State
 from fastpin.version import __version__
@@ -63,6 +63,7 @@ def document(
     problem, pair = case.problem, case.problem.pair
     alpha, beta = problem.surfaces.dundurs()
     unit = units(problem)
+    margins = [] if result is None else _margins(result, fatigue, crack, strength)
     found = {
         "fastpin": __version__,
         "title": case.title,
@@ -87,13 +88,13 @@ def document(
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
         "extremes": {} if result is None else _extremes_summary(result),
-        "margins": [] if result is None else _margins_summary(result, fatigue, crack, strength),
+        "margins": margins_document(problem, margins),
         "cycles": [
             row._asdict() | {"dissipation": unit["energy"].factor * row.dissipation}
             for row in (() if result is None else result.cycles)
         ],
         "cycle": None if cycle is None else cycle_report.document(cycle),
-        "fatigue": None if fatigue is None else assessment.document(fatigue),
+        "fatigue": None if fatigue is None else assessment.document(fatigue, over_yield(margins)),
         "crack": None if crack is None else crack_growth.document(crack),
         "strength": None if strength is None else strength_report.document(strength),
     }
@@ -156,6 +157,7 @@ def _state_summary(state: State) -> dict[str, Any]:
         "load": printed_loads(state.problem, state.load),
         "in_contact": state.in_contact,
         **{name: shown(name) for name in QUANTITIES if name not in resultants},
+        "unresolved": [name for name, each in QUANTITIES.items() if not each.is_resolved(state)],
         "peak_hoop_resolved": None if plate.is_rigid else state.peak_hoop_stress().resolved,
         "contact": [interval_from_bottom(*interval) for interval in state.contact],
         "stick": [interval_from_bottom(*interval) for interval in state.stick],
@@ -187,17 +189,16 @@ def _extremes_summary(result: Result) -> dict[str, Any]:
     }
 
 
-def _margins_summary(
+def _margins(
     result: Result, fatigue: Assessed | None, crack: cracks.Growth | None, strength: StrengthFound | None
-) -> list[dict[str, Any]]:
+) -> list[Margin]:
     """Return the margins over all states, and those of fatigue and of a crack where they are known."""
     if len(result):
         kept = KeptStates(result.states)
         rows = static_margins(result.problem, marked_extremes(kept), kept.read)
     else:
         rows = static_margins(result.problem, {}, lambda places: [])
-    rows += life_margins(result.problem, result.states, result.cycles, fatigue, crack, strength)
-    return margins_document(result.problem, rows)
+    return rows + life_margins(result.problem, result.states, result.cycles, fatigue, crack, strength)
 
 
 def crack_document(case: Case, growth: cracks.Growth) -> dict[str, Any]:

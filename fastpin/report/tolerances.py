@@ -17,6 +17,7 @@ from fastpin.report.sweep import TableRow, axis_label, printed_rows, unit_name
 from fastpin.report.table import Column, table
 from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.index import DONE, FAILED
+from fastpin.studies.run_end import bar_column
 from fastpin.studies.tolerance_effects import OutcomeEffect, Reached
 from fastpin.studies.tolerances import Tolerances, effects_of, part_words
 from fastpin.version import __version__
@@ -225,7 +226,10 @@ def _table(
         listed = (f"{percent} %: {shown(value)} {label}".rstrip() for percent, value in effect.percentiles.items())
         sentences.append(f"percentiles of {len(study.samples):,} samples: {', '.join(listed)}")
     lost = sum(row["status"] == DONE and not math.isfinite(_known(row, name)) for row in rows)
-    return head, columns, sentences + ([f"{lost:,} finished runs have no value"] if lost else [])
+    sentences += [f"{lost:,} finished runs have no value"] if lost else []
+    unknown = _unresolved(rows, name)
+    sentences += [f"{unknown:,} runs have a value that the nodes do not resolve"] if unknown else []
+    return head, columns, sentences
 
 
 def _extremes(study: Tolerances, effect: OutcomeEffect, reached: Callable[[Reached], str]) -> list[str]:
@@ -286,6 +290,7 @@ def document(study: Tolerances, rows: Sequence[TableRow]) -> dict[str, Any]:
             "corners": span(effect.corners),
             "all": span(effect.everywhere),
             "percentiles": {str(percent): value for percent, value in effect.percentiles.items()},
+            "unresolved": _unresolved(found, name),
         }
     failed = [(place, row) for place, row in enumerate(found) if row["status"] == FAILED]
     return {
@@ -311,6 +316,11 @@ def _known(row: TableRow, name: str) -> float:
     """Return the outcome of a finished run; NaN without a value."""
     value = row.get(name) if row["status"] == DONE else None
     return math.nan if value is None else float(value)
+
+
+def _unresolved(rows: Sequence[TableRow], name: str) -> int:
+    """Return the number of runs whose outcome has an error that is not known: the nodes do not resolve it."""
+    return sum(row["status"] == DONE and math.isinf(row.get(bar_column(name)) or 0.0) for row in rows)
 
 
 def _field_unit(study: Tolerances, field: str, unit: dict[str, str]) -> tuple[float, str]:

@@ -98,6 +98,16 @@ def bars(state: State, coarse: State) -> dict[str, float]:
     return found
 
 
+def known_bar(name: str, state: State) -> float:
+    """Bar of a quantity of a state, in its unit, angles in rad: that of its error bars.
+
+    Without error bars it is inf if the nodes do not resolve the value. It is NaN if there is none.
+    """
+    if state.error_bars is not None:
+        return state.error_bars.get(name, math.nan)
+    return math.nan if quantity(name).is_resolved(state) else math.inf
+
+
 def value_bar(name: str, value: float, other: float, states: Sequence[State]) -> float:
     """Error bar of one value of a quantity, or of a number that is taken from the quantity at several states.
 
@@ -175,9 +185,8 @@ def _floor(name: str, state: State) -> float:
         peak = abs(QUANTITIES[name].of(state))
         floor = PEAK_FLOORS[int(peak > (1.0 + 1e-12) * float(traction[top]))]
         return floor * max(peak - float(beside.min()), 0.0)
-    if name in ("peak_hoop", "peak_hoop_seat") or kind == "ratio":
-        resolved = state.peak_hoop_stress("seat" if name == "peak_hoop_seat" else "plate").resolved
-        part = HOOP_FLOOR / closed if resolved else reading.hoop.UNRESOLVED
+    if quantity(name).edge is not None and kind != "angle":
+        part = HOOP_FLOOR / closed if quantity(name).is_resolved(state) else reading.hoop.UNRESOLVED
         return part * abs(QUANTITIES[name].of(state))
     if kind in ("angle", "width"):
         zone, ends = name.removesuffix("_width"), 1

@@ -47,7 +47,11 @@ def _von_mises(owner: str) -> Quantity:
 
 
 READINGS: dict[str, Quantity] = {
-    **{name: each for name, each in QUANTITIES.items() if each.kind not in ("angle", "ratio", "class")},
+    **{
+        name: each
+        for name, each in QUANTITIES.items()
+        if each.kind not in ("angle", "ratio", "class") and not each.is_part
+    },
     "bush_least_friction": Quantity("bush least friction", "ratio", of_bush(lambda fit: fit.least_friction)),
     "seat_slip": Quantity(
         "slip in the seat", "displacement", lambda state: math.nan if state.seat is None else state.seat.peak_slip
@@ -57,7 +61,7 @@ READINGS: dict[str, Quantity] = {
 """The quantities that have extremes.
 
 A place on a circle and a class are neither large nor small. The ratios Kt grow without bound while the load falls to
-zero.
+zero. A part belongs to its whole.
 """
 
 MARKS: dict[tuple[str, Side], str] = {
@@ -278,8 +282,8 @@ def exists(problem: Problem, name: str) -> bool:
         return problem.seat is not None
     if name.startswith("bush_"):
         return problem.joint.bush is not None
-    edges = {"peak_hoop": "plate", "peak_hoop_seat": "seat"}
-    return name not in edges or edges[name] in elastic_bodies(problem)
+    edge = READINGS[name].edge
+    return edge is None or edge in elastic_bodies(problem)
 
 
 def marked_places(extremes: Found) -> dict[int, str]:

@@ -7,7 +7,7 @@ stand in :mod:`fastpin.damage.margins`, and margins of cracks in :mod:`fastpin.c
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -116,6 +116,24 @@ def smallest_margin(rows: Sequence[Margin]) -> Margin | None:
     """
     counted = (row for row in rows if math.isfinite(row.margin) and row.name != "growth")
     return min(counted, key=lambda row: row.margin, default=None)
+
+
+def over_yield(rows: Iterable[Margin]) -> dict[str, float]:
+    """Return the largest von Mises stress over the yield strength, above 1, by owner, from the margins of yield.
+
+    Lives and margins that take such stresses for elastic ones mean little: the body yields.
+    """
+    return {row.owner: row.value / row.allowable for row in rows if row.name == "yield" and row.margin < 0.0}
+
+
+def over_yield_of(row: Margin, over: Mapping[str, float]) -> float | None:
+    """Return the entry of :func:`over_yield` that marks a margin; None for margins of strengths and of a bush."""
+    return None if row.name in ("yield", "ultimate", "rotation", "opening") else over.get(row.owner)
+
+
+def over_yield_words(over: Mapping[str, float], owner: str) -> str:
+    """Return the mark of a life or a margin of an `owner` that yields, to follow its words; else an empty text."""
+    return f"; above yield: stresses reach {over[owner]:.3g} times the yield strength" if owner in over else ""
 
 
 def _of_bush(problem: Problem, extremes: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:

@@ -35,6 +35,10 @@ class Quantity(NamedTuple):
         Its meaning, for reports.
     classes : dict of int to str
         Of the kind "class": the words of each value.
+    edge : {"plate", "seat"} or None
+        Of a number of the largest hoop stress: the edge.
+    is_part : bool
+        Whether it is a part of another quantity, at the place of that. It has no extremes of its own.
     """
 
     label: str
@@ -42,6 +46,14 @@ class Quantity(NamedTuple):
     of: Callable[[State], float]
     words: str = ""
     classes: Mapping[int, str] = MappingProxyType({})
+    edge: Body | None = None
+    is_part: bool = False
+
+    def is_resolved(self, state: State) -> bool:
+        """Whether the nodes resolve its value in a state, see :class:`fastpin.reading.HoopPeak`."""
+        if self.edge is None or self.edge not in elastic_bodies(state.problem):
+            return True
+        return state.peak_hoop_stress(self.edge).resolved
 
     def shown(self, state: State) -> float | str:
         """The value for tables of other programs: a class in words."""
@@ -62,14 +74,19 @@ def _integral(state: State, traction: np.ndarray) -> float:
     return state.problem.hole_radius * float(state.grid.weights @ traction)
 
 
-def _hoop(read: Callable[[HoopPeak], float], body: Body = "plate") -> Callable[[State], float]:
-    """A reading of the largest hoop stress on the edge of a body; NaN without the body, or if it is rigid."""
+def _hoop(
+    label: str, kind: str, read: Callable[[HoopPeak], float], words: str, edge: Body = "plate", is_part: bool = False
+) -> Quantity:
+    """A number of the largest hoop stress on an edge; NaN without the body, or if it is rigid.
+
+    The parts of assembly and loads are NaN where nothing is pressed.
+    """
 
     def of(state: State) -> float:
-        is_stressed = body in elastic_bodies(state.problem)
-        return read(state.peak_hoop_stress(body)) if is_stressed else math.nan
+        is_known = edge in elastic_bodies(state.problem) and (state.problem.is_pressed or not is_part)
+        return read(state.peak_hoop_stress(edge)) if is_known else math.nan
 
-    return of
+    return Quantity(label, kind, of, words, edge=edge, is_part=is_part)
 
 
 def of_bush(read: Callable[[BushFit], float]) -> Callable[[State], float]:
@@ -109,26 +126,40 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "dissipation": Quantity("dissipated", "energy", lambda state: state.dissipation, "energy dissipated so far"),
     "work": Quantity("work", "energy", lambda state: state.work, "work of the loads so far"),
-    "peak_hoop": Quantity(
-        "peak hoop", "traction", _hoop(lambda peak: peak.value), "largest hoop stress round the hole"
+    "peak_hoop": _hoop("peak hoop", "traction", lambda peak: peak.value, "largest hoop stress round the hole"),
+    "peak_hoop_angle": _hoop("peak hoop at", "angle", lambda peak: peak.angle, "its place"),
+    "peak_hoop_assembly": _hoop(
+        "of the assembly", "traction", lambda peak: peak.assembly, "its part before any load", is_part=True
     ),
-    "peak_hoop_angle": Quantity("peak hoop at", "angle", _hoop(lambda peak: peak.angle), "its place"),
-    "kt_gross": Quantity(
-        "Kt gross", "ratio", _hoop(lambda peak: peak.kt_gross), "its ratio to the remote stress, Kt gross"
+    "peak_hoop_loads": _hoop(
+        "of the loads", "traction", lambda peak: peak.loads, "its part of the loads", is_part=True
     ),
-    "kt_bearing": Quantity(
-        "Kt bearing", "ratio", _hoop(lambda peak: peak.kt_bearing), "its ratio to the bearing stress, Kt bearing"
+    "kt_gross": _hoop(
+        "Kt gross", "ratio", lambda peak: peak.kt_gross, "ratio of the loads' part to the remote stress, Kt gross"
     ),
-    "kt_net": Quantity(
-        "Kt net", "ratio", _hoop(lambda peak: peak.kt_net), "its ratio to the net-section stress, Kt net"
+    "kt_bearing": _hoop(
+        "Kt bearing",
+        "ratio",
+        lambda peak: peak.kt_bearing,
+        "ratio of the loads' part to the bearing stress, Kt bearing",
     ),
-    "peak_hoop_seat": Quantity(
+    "kt_net": _hoop(
+        "Kt net", "ratio", lambda peak: peak.kt_net, "ratio of the loads' part to the net-section stress, Kt net"
+    ),
+    "peak_hoop_seat": _hoop(
         "peak hoop seat",
         "traction",
-        _hoop(lambda peak: peak.value, "seat"),
+        lambda peak: peak.value,
         "largest hoop stress of the plate at the seat of the bush",
+        "seat",
     ),
-    "peak_hoop_seat_angle": Quantity("peak hoop seat at", "angle", _hoop(lambda peak: peak.angle, "seat"), "its place"),
+    "peak_hoop_seat_angle": _hoop("peak hoop seat at", "angle", lambda peak: peak.angle, "its place", "seat"),
+    "peak_hoop_seat_assembly": _hoop(
+        "seat, of the assembly", "traction", lambda peak: peak.assembly, "its part before any load", "seat", True
+    ),
+    "peak_hoop_seat_loads": _hoop(
+        "seat, of the loads", "traction", lambda peak: peak.loads, "its part of the loads", "seat", True
+    ),
     "joint_ux": Quantity(
         "joint ux",
         "displacement",
@@ -151,10 +182,12 @@ QUANTITIES: dict[str, Quantity] = {
 }
 """The quantities of every state, by name. P, Q, M are the resultants of the tractions; integrals are over R dtheta.
 
-"peak_hoop" is the largest hoop stress round the hole, with a bush in the bore of the bush. "kt_gross", "kt_bearing" and
-"kt_net" are its ratios to the remote stress, the bearing stress and the net-section stress, see
-:class:`fastpin.reading.HoopPeak`. "peak_hoop_seat" is the largest hoop stress of the plate round a bush, at the seat of
-the bush, NaN without a bush. All are NaN for a rigid body.
+"peak_hoop" is the largest hoop stress round the hole, with a bush in the bore of the bush. "peak_hoop_assembly" is the
+part that press fits leave before any load, and "peak_hoop_loads" the rest; both are NaN where nothing is pressed.
+"kt_gross", "kt_bearing" and "kt_net" are the ratios of the largest stress of the loads to the remote stress, the
+bearing stress and the net-section stress, see :class:`fastpin.reading.HoopPeak`. "peak_hoop_seat" is the largest hoop
+stress of the plate round a bush, at the seat of the bush, with the same parts, NaN without a bush. All are NaN for a
+rigid body.
 "joint_ux" and "joint_uy" are :meth:`State.joint_displacement`. "bush_open_margin" and "bush_slip_margin" are those of
 :class:`fastpin.reading.BushFit`, NaN without a bush, and without its friction. "regime" is a number of
 :class:`fastpin.states.Regime`, :attr:`State.regime`.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, TypedDict
@@ -19,11 +19,10 @@ from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.ties import top_angles
 from fastpin.model.units import named_loads, units
 from fastpin.reading import peaks, zones
 from fastpin.reading.cusps import ShearNodes
-from fastpin.reading.exponents import Coupling, contact_exponents, signs_beside, stick_exponents
+from fastpin.reading.exponents import Coupling, contact_exponents, reserve_beside, stick_exponents
 from fastpin.reading.half_line import HalfLine, half_line
 from fastpin.reading.marks import Marks
 from fastpin.reading.old_borders import truly_sticking
@@ -142,9 +141,18 @@ class State(ReadOnly):
     slip_highest: np.ndarray | None = None
     seat: State | None = None
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.seat is not None:  # how the pin is pressed into the bush is a matter of both
+            self.seat.__dict__["_joint"] = self.problem, self.grid
+
     def __getstate__(self) -> dict[str, Any]:
         """The fields alone: everything else is computed from them."""
         return {name: self.__dict__[name] for name in _FIELDS}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()
 
     def __repr__(self) -> str:
         unit = units(self.problem)["traction"]
@@ -264,7 +272,7 @@ class State(ReadOnly):
     def _slip_peak(self) -> tuple[float, float]:
         if not self.in_contact:
             return 0.0, math.nan
-        (node,) = _slip_nodes(self.slip[None], self.status[None], self.theta)
+        (node,) = peaks.slip_nodes(self.slip[None], self.status[None], self.theta)
         return float(self.slip[node]), near_bottom(float(self.theta[node]))
 
     @cached_property
@@ -320,16 +328,8 @@ class State(ReadOnly):
 
     @cached_property
     def _reserve_beside(self) -> np.ndarray:
-        """The reserve beside the start and beside the stop of each stick zone, shape (2, n).
-
-        It is mu N - s T, where s T = mu N in the slip zone beside. So it has no kink where T changes its sign.
-        """
-        reserve = np.array([self._reserve, self._reserve])
-        for run in runs(self.grid, self._sticking):
-            for values, sign in zip(reserve, signs_beside(self.shear, run), strict=True):
-                if sign != 0:
-                    values[run] = self.friction[run] * self.pressure[run] - sign * self.shear[run]
-        return reserve
+        """The reserve beside the start and beside the stop of each stick zone, shape (2, n)."""
+        return reserve_beside(runs(self.grid, self._sticking), self.friction, self.pressure, self.shear)
 
     @cached_property
     def _sticking(self) -> np.ndarray:
@@ -411,6 +411,27 @@ class State(ReadOnly):
         )
         return reading.stress.stress_at(self.problem, next(chosen), self.load, points, body, next(chosen, None))
 
+    def assembly_stress(self, points: Points, body: Body = "plate") -> Stress:
+        """The part of :meth:`stress` that pressed pins and bushes have before any load, Pa; tension is positive.
+
+        The rest is the stress of the loads. It is 0 everywhere if nothing is pressed. Arguments and errors are those of
+        :meth:`stress`.
+        """
+        return reading.stress.assembly_stress(self.problem, self._assembled, points, body)
+
+    @property
+    def _assembled(self) -> Sequence[Tractions]:
+        """The tractions before any load of all interfaces, that of the pin first; none if nothing is pressed."""
+        import fastpin
+
+        found = fastpin.solver.assembled.assembled_tractions(*self._joint)
+        return found[-len(self.problem.interfaces) :]
+
+    @cached_property
+    def _joint(self) -> tuple[Problem, Grid]:
+        """The joint, with the nodes of its pin. That of a seat is told by the state of the joint."""
+        return self.problem, self.grid
+
     def hoop_stress(self, body: Body = "plate", theta: ArrayLike | None = None, straight: bool = False) -> np.ndarray:
         """The hoop stress on the edge of the hole, of the pin, or of the plate at the seat of a bush, Pa.
 
@@ -444,10 +465,10 @@ class State(ReadOnly):
             return self.seat.peak_hoop_stress()
         if body not in self._hoop_peaks:
             is_kept = "refined" in self.__dict__
-            self._hoop_peaks[body] = reading.hoop.hoop_peak(
-                self.problem, self.load, self.resultants, self.grid, self.status != OPEN, self.refined,
-                partial(self.hoop_stress, body), body,
-            )  # fmt: skip
+            nodes = self.grid, self.status != OPEN, self.refined
+            peak_of = partial(reading.hoop.hoop_peak, self.problem, self.load, self.resultants, *nodes, body)
+            hoop, before = partial(self.hoop_stress, body), partial(self.assembly_stress, body=body)
+            self._hoop_peaks[body] = reading.hoop.peak_in_parts(peak_of, hoop, before, self._joint[0])
             if not is_kept:  # the refined tractions of many states would fill the memory
                 del self.__dict__["refined"]
         return self._hoop_peaks[body]
@@ -569,17 +590,6 @@ class ErrorBars(Mapping[str, float]):
 
 
 _FIELDS = tuple(field.name for field in fields(State))
-
-
-def peak_slips(slip: np.ndarray, status: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """The :attr:`State.peak_slip` of many states, shape (k,), from slip and status of their nodes, shape (k, n)."""
-    nodes = _slip_nodes(slip, status, theta)
-    return np.where((status != OPEN).any(axis=1), np.take_along_axis(slip, nodes[:, None], axis=1)[:, 0], 0.0)
-
-
-def _slip_nodes(slip: np.ndarray, status: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """The closed node with the slip of largest magnitude in each of many states, shape (k,)."""
-    return top_angles(np.where(status != OPEN, np.abs(slip), -1.0), theta)
 
 
 def state_again(state: State, step: int, dissipation: float, work: float) -> State:

@@ -132,7 +132,8 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
 
     Columns are "load_point", "step", "fraction", the loads ("load_P", "load_Q", ...) and the quantities of
     :data:`fastpin.states.QUANTITIES`. Values are in SI units or in the units of a dimensionless problem, angles in rad;
-    the regime is text. ``frame.attrs["units"]`` names the unit of every column.
+    the regime is text. "unresolved" has the names of the quantities that the nodes do not resolve.
+    ``frame.attrs["units"]`` names the unit of every column.
 
     Raises
     ------
@@ -153,10 +154,11 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
             "fraction": state.fraction,
             **{f"load_{name}": value for name, value in state.load.items()},
             **{name: each.shown(state) for name, each in QUANTITIES.items()},
+            "unresolved": " ".join(name for name, each in QUANTITIES.items() if not each.is_resolved(state)),
         }
         for state in result
     ]
-    columns = ["load_point", "step", "fraction", *(f"load_{name}" for name in LOADS), *QUANTITIES]
+    columns = ["load_point", "step", "fraction", *(f"load_{name}" for name in LOADS), *QUANTITIES, "unresolved"]
     frame = pandas.DataFrame(rows, columns=columns)
     frame.attrs["units"] = {
         **{f"load_{name}": label for name, label in named.items()},

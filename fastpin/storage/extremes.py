@@ -11,10 +11,11 @@ from collections.abc import Callable, Iterator, Sequence
 import h5py
 import numpy as np
 
+from fastpin.reading.peaks import peak_slips
 from fastpin.states import extremes
 from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Kept
 from fastpin.states.reading_bounds import NUMBERS, StateBlock
-from fastpin.states.state import State, peak_slips
+from fastpin.states.state import State
 from fastpin.storage import hdf5
 from fastpin.storage.damage import check_finite, dataset_of, text_of
 from fastpin.storage.layout import (

@@ -31,7 +31,7 @@ from fastpin.model.ties import top
 from fastpin.model.units import DEGREE, Unit
 from fastpin.model.wear import Wear
 from fastpin.states.choice import missing_corners, span_of, states_between
-from fastpin.states.error_bars import number_bar, value_bar
+from fastpin.states.error_bars import known_bar, number_bar, value_bar
 from fastpin.states.load_cycle import NodeBehaviour
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.regimes import REGIMES
@@ -216,7 +216,8 @@ class OutcomeValue(NamedTuple):
     reason : str or None
         Why the number could not be read.
     bar : float or None
-        Error bar of the number. None: the result has no error bars, or the number has none.
+        Error bar of the number; inf if the nodes do not resolve it, or the coarse grid has no number to compare. None:
+        the number has none.
     """
 
     definition: str
@@ -280,13 +281,13 @@ def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Result) 
 def bar_of(outcome: StudyOutcome, value: float, result: Result) -> float | None:
     """Error bar of a number, with angles and widths in rad; inf if the coarse grid has no number to compare.
 
-    None: the result has no error bars, or the number has none.
+    Without error bars it is inf if the nodes do not resolve the number. None: the number has none.
     """
-    if result.coarse is None:
-        return None
     try:
         if outcome.bar is not None:
             bar = outcome.bar(result)
+        elif result.coarse is None:
+            return None
         else:
             other = value_of(outcome, result.coarse).value
             coarse = math.nan if other is None else _beside(outcome.kind, value, other)
@@ -358,7 +359,7 @@ def of_interface(quantity: str, interface: str) -> Callable[[State], float]:
 
 
 def bar_of_taken(quantity: str, take: str, span: str, interface: str, result: Result) -> float:
-    """Error bar of the number of :func:`taken`, for a result with error bars.
+    """Error bar of the number of :func:`taken`. Without error bars it is inf if the nodes do not resolve the number.
 
     It is 1.25 times the difference of the numbers on the two grids, plus the floor of the quantity at the state that
     the number is taken from. A range has the floors of both its ends.
@@ -373,15 +374,13 @@ def bar_of_taken(quantity: str, take: str, span: str, interface: str, result: Re
             return math.nan
         result = result.seat
     if take == "last":
-        bars = result[-1].error_bars
-        return math.nan if bars is None else bars[quantity]
-    assert result.coarse is not None
+        return known_bar(quantity, result[-1])
+    if result.coarse is None and QUANTITIES[quantity].edge is None:
+        return math.nan
     of = QUANTITIES[quantity].of
     states = [state for state in _states_of(span, result) if math.isfinite(of(state))]
     if not states:
         return math.nan
-    value, other = (taken(quantity, take, span, "pin", each) for each in (result, result.coarse))
-    kind = "width" if take == "range" else QUANTITIES[quantity].kind
     readings = np.array([of(state) for state in states])
     lowest, highest = states[top(-readings)], states[top(readings)]
     ends = {
@@ -390,6 +389,10 @@ def bar_of_taken(quantity: str, take: str, span: str, interface: str, result: Re
         "largest": [highest],
         "largest magnitude": [states[top(np.abs(readings))]],
     }
+    if result.coarse is None:
+        return math.nan if all(QUANTITIES[quantity].is_resolved(state) for state in ends[take]) else math.inf
+    value, other = (taken(quantity, take, span, "pin", each) for each in (result, result.coarse))
+    kind = "width" if take == "range" else QUANTITIES[quantity].kind
     return value_bar(quantity, value, _beside(kind, value, other), ends[take])
 
 

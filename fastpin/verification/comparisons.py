@@ -11,7 +11,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fastpin.elasticity.stress import press_fit_hoop
 from fastpin.elasticity.system import System
 from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.grid import LEAST_NODES, Grid
@@ -159,9 +158,9 @@ def strain_slip_difference(state: State) -> float:
 def _hoop_strain(state: State, body: Body, theta: np.ndarray) -> np.ndarray:
     pair = state.problem.surfaces
     material, kolosov = (pair.plate, pair.plate_kolosov) if body == "plate" else (pair.pin, pair.pin_kolosov)
-    stress = state.stress(Points.at_depth(0.0, theta), body, straight=True)
-    # the press fit of a bush is over before slip and gap count
-    hoop = stress.hoop - (press_fit_hoop(state.problem) if body == "plate" else 0.0)
+    points = Points.at_depth(0.0, theta)
+    stress = state.stress(points, body, straight=True)
+    hoop = stress.hoop - state.assembly_stress(points, body).hoop  # the assembly is over before slip and gap count
     return (hoop - 0.25 * (3.0 - kolosov) * (hoop + stress.radial)) / (2.0 * material.shear_modulus)
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, figures, solve
+from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Points, Problem, figures, solve
 from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.damage import fatigue, spectrum_damage
 from fastpin.figures.load_cycle import area_doubt
@@ -180,6 +180,18 @@ def test_a_map_has_the_stresses_of_its_points(result):
         edge = radius == 2.4e-3
         expected = state.hoop_stress(curve.parameters["body"], angle[edge])
         assert curve["hoop stress [Pa]"][edge] == pytest.approx(expected)
+
+
+def test_the_stress_of_the_assembly_is_drawn_and_written():
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"], "stress")
+    pressed = solve(Problem(pair, 0.01, -2e-5, 0.4), [{"P": 2e5}], nodes=41)
+    for curve in hoop_curves(pressed):
+        body = curve.parameters["body"]
+        before = pressed[0].assembly_stress(Points.at_depth(0.0, 0.0), body).hoop
+        assert curve["hoop stress of the assembly [Pa]"] == pytest.approx(float(before), rel=1e-12)
+    figure = figures.plot_hoop_stress(pressed)
+    assert "of the assembly, before any load" in legend_words(figure)
+    assert [sum(line.get_linestyle() == ":" for line in panel.lines) for panel in figure.axes] == [1, 1]
 
 
 def test_hoop_curves_are_of_both_bodies(result):

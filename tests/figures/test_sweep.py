@@ -255,6 +255,8 @@ def test_curves_have_error_bars() -> None:
     (collection,) = figure.axes[0].collections
     segments = [[round(float(y), 9) for y in segment[:, 1]] for segment in collection.get_segments()]
     assert segments == [[0.9, 1.1], [3.5, 4.5]]  # an infinite bar has no ends
+    assert dots(figure) == [(1.0, 2.0)]  # and an open point in their place
+    assert legend_words(figure) == ["error not known", "failed run"]
     assert "largest error bar: 0.5 m, 17 % of the range; not known in 1 runs" in figure.get_suptitle()
 
 
@@ -270,9 +272,21 @@ def test_a_map_marks_cells_whose_bar_hides_the_differences(smooth: Chart) -> Non
     assert dots(unsure) == [(smooth.x.values[1], smooth.y.values[1])]
     marked[1, 1] = 0.99 * max(steps)
     assert dots(plot_sweep(replace(smooth, bars=[marked]))) == []
-    assert legend_words(unsure)[-1] == "error bar above the differences to all sides"
+    assert legend_words(unsure)[-1] == "error bar not known, or above the differences to all sides"
     assert "largest error bar" in unsure.get_suptitle()
     assert "largest error bar" not in (plot_sweep(smooth).get_suptitle() or "")
+
+
+def test_a_map_marks_cells_whose_bar_is_not_known(smooth: Chart) -> None:
+    """Also a cell without neighbours; no other cell has a bar."""
+    numbers = smooth.parts[0][1].copy()
+    bars = np.full(numbers.shape, np.nan)
+    bars[0, 0], bars[1, 1] = np.inf, np.inf
+    numbers[0, 0], numbers[0, 1], numbers[1, 0] = 1.0, np.nan, np.nan
+    figure = plot_sweep(replace(smooth, bars=[bars], parts=[("", numbers, np.zeros(numbers.shape, bool))]))
+    x, y = smooth.x.values, smooth.y.values
+    assert dots(figure) == [(x[0], y[0]), (x[1], y[1])]
+    assert "not resolved by the nodes: 2 runs" in figure.get_suptitle()
 
 
 def test_a_map_of_classes_marks_those_that_the_coarse_grid_does_not_find() -> None:

@@ -483,6 +483,15 @@ def test_the_curve_of_the_hoop_stress_has_its_peak(nodes: int) -> None:
         page.tell("load", loads={"P": 2e6, "Q": 6e5})
 
 
+def test_the_picture_has_the_stress_of_the_assembly_of_a_pressed_joint() -> None:
+    """The hole of an interference pin has it all round; a pin with clearance has none."""
+    page = Page(contact())
+    assert "assembly" not in page.pictures[-1]["hoop"]
+    page.tell("change", changes={"clearance": -2e-5})
+    hoop, state = page.pictures[-1]["hoop"], page.live.session.state
+    assert floats(hoop["assembly"]) == pytest.approx(state.peak_hoop_stress().assembly, rel=1e-6)
+
+
 def systems() -> int:
     """Return the number of systems of matrices in this process."""
     return sum(isinstance(one, System) for one in gc.get_objects())

@@ -11,7 +11,8 @@ import fastpin
 from fastpin.model.angles import BOTTOM, angle_at, from_bottom
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.ties import TIE, top, top_angle, top_angles
-from fastpin.states.state import State, peak_slips
+from fastpin.reading.peaks import peak_slips
+from fastpin.states.state import State
 from fastpin.states.yielding import von_mises_peak
 
 

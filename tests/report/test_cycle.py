@@ -84,7 +84,7 @@ def in_sheet(fatigue: FatigueConstants | None, **options: object) -> Result:
 def test_the_fatigue_of_the_plate_is_told_with_plane_and_life() -> None:
     result = in_sheet(MATERIALS["2024-T3"].fatigue)
     spot = result.fatigue("smith-watson-topper").hot_spot
-    (line,) = fatigue_lines(result.states, result.cycles[-1])
+    (line,) = fatigue_lines(result.states, result.cycles[-1], {})
     assert line.startswith("fatigue of the plate in the last cycle, Smith-Watson-Topper: ")
     assert f"{spot.parameter / 1e3:.4g} kPa at {from_bottom(spot.theta):z.2f} deg" in line
     assert f"normal of the plane {spot.plane * 57.29577951308232:z.2f} deg from +x" in line
@@ -93,8 +93,8 @@ def test_the_fatigue_of_the_plate_is_told_with_plane_and_life() -> None:
 
 def test_fatigue_is_told_without_a_life_if_constants_for_it_are_missing() -> None:
     result = in_sheet(FatigueConstants(yield_strength=3e8))
-    assert "life" not in fatigue_lines(result.states, result.cycles[-1])[0]
-    assert "Smith-Watson-Topper" in fatigue_lines(result.states, result.cycles[-1])[0]
+    assert "life" not in fatigue_lines(result.states, result.cycles[-1], {})[0]
+    assert "Smith-Watson-Topper" in fatigue_lines(result.states, result.cycles[-1], {})[0]
 
 
 @pytest.mark.gate
@@ -107,7 +107,7 @@ def test_fatigue_of_bush_and_plate_is_told_if_they_have_constants() -> None:
     ):
         pair = MaterialPair(MATERIALS["steel"], Material(70e9, 0.33, "", known))
         result = solve(Problem(pair, 0.01, 2e-5, 0.4, plate_body=Bushing(bush, 0.0125)), history, nodes=61)
-        lines = fatigue_lines(result.states, result.cycles[-1])
+        lines = fatigue_lines(result.states, result.cycles[-1], {})
         assert [line.partition(" in the last")[0] for line in lines] == [f"fatigue of the {body}" for body in bodies]
         spot = result.fatigue("smith-watson-topper", "seat").hot_spot
         assert lines[-1].endswith(f", life {spot.life:.3g} cycles")
@@ -124,13 +124,13 @@ def test_rotation_of_a_symmetric_cycle_is_rounding() -> None:
 
 def test_no_fatigue_is_told_without_constants_or_states() -> None:
     bare = in_sheet(None)
-    assert fatigue_lines(bare.states, bare.cycles[-1]) == []
+    assert fatigue_lines(bare.states, bare.cycles[-1], {}) == []
     result = in_sheet(MATERIALS["2024-T3"].fatigue, between=60)
     assert len(result.cycle().states) > MOST_STOPS
-    assert fatigue_lines(result.states, result.cycles[-1]) == []
+    assert fatigue_lines(result.states, result.cycles[-1], {}) == []
     corners = [state for state in result if state.fraction == 1.0]
-    assert fatigue_lines(corners, result.cycles[-1])
-    assert fatigue_lines(corners[:-1], result.cycles[-1]) == []
+    assert fatigue_lines(corners, result.cycles[-1], {})
+    assert fatigue_lines(corners[:-1], result.cycles[-1], {}) == []
 
 
 @pytest.mark.gate
@@ -140,7 +140,7 @@ def test_the_damage_of_a_history_without_cycles_is_told() -> None:
     sheet = Material(70e9, 0.33, "", MATERIALS["2024-T3"].fatigue)
     result = solve(Problem(MaterialPair(MATERIALS["Ti-6Al-4V"], sheet), 0.01, 2e-5, 0.4), history, nodes=61)
     (found,) = spectrum_damages(result.states, 3)
-    line = spectrum_line(found)
+    line = spectrum_line(found, {})
     spot = result.spectrum_damage().hot_spot
     assert line.startswith("fatigue of the plate over the whole history as a spectrum, Smith-Watson-Topper: life ")
     assert f"life {spot.life:.3g} spectra at {from_bottom(spot.theta):.2f} deg, normal of the plane " in line

@@ -66,6 +66,14 @@ def test_no_hoop_stress_is_told_of_a_rigid_plate_or_without_contact() -> None:
     assert hoop_line(closed.problem, [empty, closed]) != ""
 
 
+def test_the_stress_of_an_open_hole_is_told() -> None:
+    """Kirsch: three times the stress of the sheet. No pin touches."""
+    (state,) = solve(Problem(PAIR, 0.01, 2e-3, 0.4), [{"syy": 1e8}], nodes=31)
+    assert not state.in_contact
+    line = "largest hoop stress of the plate in all kept states: 300 MPa at 90.00 deg, load point 1; "
+    assert hoop_line(state.problem, [state]) == f"{line}Kt 3 on the remote stress"
+
+
 def test_repeated_states_are_looked_at_once(states: list[State], monkeypatch: pytest.MonkeyPatch) -> None:
     copies = [replace(state) for state in states] * 5
     line, looked, peak = hoop_line(states[0].problem, states), [], State.peak_hoop_stress

@@ -10,7 +10,6 @@ import pytest
 from fastpin import InputError, Material, MaterialPair, Points, Problem, solve
 from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
 from fastpin.damage import fatigue, fatigue_at_distance
-from fastpin.elasticity.stress import press_fit_hoop
 from fastpin.model import FatigueConstants
 from fastpin.report.states import hoop_line
 from fastpin.report.stress import field_curves
@@ -89,11 +88,15 @@ def test_axial_stress_takes_the_ratio_of_the_material_at_the_point():
 
 
 def test_the_press_fit_counts_without_any_contact():
+    """Lame: the bore of a ring under pressure on its outer rim."""
     case = problem("bush")
     state = solve(case, [{"sxx": 1e-9}], nodes=101)[-1]
     assert not state.in_contact
-    assert press_fit_hoop(case) < -0.1
-    assert state.hoop_stress() == pytest.approx(press_fit_hoop(case), abs=1e-8)
+    expected = -2.0 * case.press_fit_pressure / (1.0 - case.joint.bush**-2.0)
+    assert expected < -0.1
+    assert state.hoop_stress() == pytest.approx(expected, abs=1e-8)
+    assert state.assembly_stress(Points.at_depth(0.0, [0.0, 2.0])).hoop == pytest.approx(expected, rel=1e-13)
+    assert state.peak_hoop_stress().loads == pytest.approx(4e-9, rel=0.5)
 
 
 # --- peaks -----------------------------------------------------------------------------------------------------
@@ -103,27 +106,32 @@ def test_the_press_fit_counts_without_any_contact():
 def test_parts_of_the_peak(name):
     state = solve(problem(name), [{"P": 1.0, "sxx": 0.1, "sxy": 0.03}], nodes=201, arc=ARC)[-1]
     case, peak = state.problem, state.peak_hoop_stress()
-    whole = peak.kt_bearing_part * peak.bearing_stress + peak.kt_bypass_part * peak.gross_stress + peak.press_fit
+    whole = peak.kt_bearing_part * peak.bearing_stress + peak.kt_bypass_part * peak.gross_stress + peak.assembly
     assert whole == pytest.approx(peak.value, rel=1e-13)
-    assert peak.press_fit == press_fit_hoop(case)
-    assert (peak.press_fit < 0.0) == ("bush" in name)
+    assert (peak.assembly < 0.0) == ("bush" in name)
     # far from contact, the remote stress alone
     alone = solve(case, [{"sxx": 1e-4, "sxy": 3e-5}], nodes=101)[-1]
     assert not alone.in_contact
-    bypass = 1e3 * (alone.hoop_stress("plate", [peak.angle])[0] - peak.press_fit)
+    bypass = 1e3 * (alone.hoop_stress("plate", [peak.angle])[0] - peak.assembly)
     assert peak.bypass == pytest.approx(bypass, rel=1e-8)
     kirsch = 0.1 - 2.0 * (0.1 * math.cos(2.0 * peak.angle) + 0.06 * math.sin(2.0 * peak.angle))
     assert (abs(peak.bypass - kirsch) < 1e-12) == (name == "tube")
     pin = state.peak_hoop_stress("pin")
-    assert (pin.bypass, pin.press_fit) == (0.0, 0.0)
+    assert (pin.bypass, pin.assembly) == (0.0, 0.0)
     assert pickle.loads(pickle.dumps(peak)) == peak
 
 
-def test_report_names_the_press_fit():
+def test_the_report_tells_assembly_and_loads_apart():
     states = solve(problem("bush"), [{"P": 1.0, "sxx": 0.1}], nodes=101, arc=ARC)
-    assert hoop_line(states[0].problem, states).endswith(" of the press fit")
+    peak = states[-1].peak_hoop_stress()
+    line = hoop_line(states[0].problem, states)
+    assert (
+        f"; it is {peak.assembly:.4g} F/R of the assembly + {peak.loads:.4g} F/R of the loads; Kt of the loads" in line
+    )
     states = solve(problem("half ring"), [{"P": 1.0, "sxx": 0.1}], nodes=101, arc=ARC)
-    assert hoop_line(states[0].problem, states).endswith(" x bearing stress")
+    line = hoop_line(states[0].problem, states)
+    assert line.endswith(" x bearing stress")
+    assert "assembly" not in line
 
 
 # --- points outside --------------------------------------------------------------------------------------------

@@ -1,11 +1,13 @@
 """Tolerance studies: points between the limits of fields, and the effects on outcomes."""
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
+from fastpin import report
 from fastpin.errors import CaseFileError, InputError
 from fastpin.studies import parse_plan, sweep
 from fastpin.studies.tolerance_effects import effect_of, rank_correlation
@@ -208,3 +210,16 @@ def test_files_and_kinds_of_plans_are_told_apart(tmp_path: Path):
     with pytest.raises(InputError, match="is a class, which has no swing"):
         study.with_outcomes({"r": {"quantity": "regime"}})
     assert [*study.with_outcomes({"turn": {"quantity": "rotation"}}).plan.outcomes][-1] == "turn"
+
+
+def test_values_that_the_nodes_do_not_resolve_are_counted(tmp_path: Path):
+    text = "[tolerances]\ncontact.friction = { from = 0.0, to = 0.4 }\n[outcomes]\nhoop = { quantity = 'peak_hoop' }\n"
+    study = study_of(tmp_path, text)
+    given = {"status": "done", "reason": None, "dimensionless": 0}
+    rows = [given | point.values | {"id": point.id, "hoop": 1e8} for point in study.plan.points]
+    rows[1]["hoop_bar"], rows[0]["hoop_bar"] = math.inf, 1e6
+    assert report.tolerances.document(study, rows)["outcomes"]["hoop"]["unresolved"] == 1
+    words = "1 runs have a value that the nodes do not resolve"
+    assert words in report.tolerances.text(study, rows)
+    del rows[1]["hoop_bar"]
+    assert words not in report.tolerances.text(study, rows)

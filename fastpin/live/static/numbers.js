@@ -69,9 +69,12 @@ function seatCells({ rotation, dissipation, peak_slip, contact, stick }, unit) {
   ];
 }
 
-function hoopCells({ degrees: angles, stress }, unit) {
-  const most = Math.max(...stress);
-  return [["largest hoop stress", unit("traction", most)], ["at", most === 0 ? degrees(null) : degrees(angles[stress.indexOf(most)])]];
+// The largest hoop stress, and its parts where something is pressed before any load.
+function hoopCells({ degrees: angles, stress, assembly }, unit) {
+  const most = Math.max(...stress), place = stress.indexOf(most);
+  const cells = [["largest hoop stress", unit("traction", most)], ["at", most === 0 ? degrees(null) : degrees(angles[place])]];
+  if (!assembly) return cells;
+  return [...cells, ["of the assembly", unit("traction", assembly[place])], ["of the loads", unit("traction", most - assembly[place])]];
 }
 
 function total(intervals) {
