@@ -63,11 +63,15 @@ MOST_STRAIN = 0.1
 LARGE_STRAIN = 0.05
 """Contact strain, pressure times beta*, above which linear elasticity fails."""
 
-LEAST_STRAIN = 6e-5
-"""Strain below which forces in N/m may be forces in N: those are 100 to 1,000 times smaller.
+LEAST_BEARING, LEAST_FORCE_BEARING = 3e6, 1e6
+"""Bearing stress F/(2 R), Pa, below which a force per thickness may be a force in N, and one in N a force in kN.
 
-It is a nominal bearing stress of 0.7 MPa in aluminium and 1.7 MPa in steel. Joints carry 10 MPa to 500 MPa.
+Joints carry 10 to 500 MPa. In plates of 1 to 20 mm a force in N has 1 to 20 thousandths of its bearing stress, mostly
+below 3 MPa; a force in kN has one thousandth.
 """
+
+LEAST_STRAIN = 3e-4
+"""Strain from which no bearing stress is small: soft plastics and rubber carry 1 MPa and less."""
 
 LEAST_STRESS = 2e3
 """Remote stress, Pa, below which the number is probably in MPa: no metal carries 2,000 MPa."""
@@ -464,21 +468,23 @@ def _too_small(problem: Problem, largest: dict[str, float], strains: dict[str, f
     name = max(strains, key=lambda name: strains[name])
     alone = all(LOAD_KIND[other] == "force" for other, load in largest.items() if load)
     force = abs(largest[name])
+    bearing = force / (2.0 * radius)
     if (
         alone
         and 0.0 < strains[name] < LEAST_STRAIN
+        and bearing < (LEAST_BEARING if problem.thickness is None else LEAST_FORCE_BEARING)
         and not problem.is_gripped
         and radius <= LARGEST_HOLE
         and force != 1.0
     ):
-        unit, bearing = units(problem)["force"], _mega(force / (2.0 * radius))
+        unit = units(problem)["force"]
         hint = (
             "forces are per thickness, in N/m: 1 N/mm is 1e3; divide a force in N by the thickness in m, or give the "
             "thickness"
         )
         yield InputWarning(
             name,
-            f"{_short(unit.factor * largest[name])} {unit.name} is a bearing stress of {bearing} only; "
+            f"{_short(unit.factor * largest[name])} {unit.name} is a bearing stress of {_mega(bearing)} only; "
             + (hint if problem.thickness is None else "forces are in N: 1 kN is 1e3"),
         )
     for name in ("sxx", "syy", "sxy"):
