@@ -449,7 +449,8 @@ class _Following(NamedTuple):
 
     def pace(self, lengths: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
         """The pace of :data:`fastpin.cracks.lengths.Pace` from K at lengths, and the sums of a spectrum."""
-        opening, sums = K[..., 0], ()
+        opening = K[..., 0]
+        sums: tuple[np.ndarray, ...] = ()
         top, bottom = opening.max(axis=0), opening.min(axis=0)
         if self.counted:
             sums = _sums(self.law, lengths, opening)

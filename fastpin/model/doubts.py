@@ -21,6 +21,7 @@ import numpy as np
 
 from fastpin.errors import InputWarning
 from fastpin.model.angles import meant_degrees
+from fastpin.model.grid import Grid
 from fastpin.model.growth import KnownLaw, Nasgro
 from fastpin.model.history import LoadHistory
 from fastpin.model.laminate import Laminate
@@ -29,6 +30,7 @@ from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import owner_of
 from fastpin.model.problem import LOOKED_AT, Problem
+from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import MOST_ANGLE
 from fastpin.model.units import units
 from fastpin.model.wear import Wear
@@ -72,6 +74,18 @@ below 3 MPa; a force in kN has one thousandth.
 
 LEAST_STRAIN = 3e-4
 """Strain from which no bearing stress is small: soft plastics and rubber carry 1 MPa and less."""
+
+FORM = 15
+"""Waves round the hole by which a roundness tester gives the form of a hole, without its roughness."""
+
+NODES_A_WAVE = 8
+"""Nodes that a wave of a profile needs: its pressure is right to 3 % then."""
+
+LEAST_ROUGHNESS = 0.03
+"""Pressure by waves that the nodes do not resolve, in parts of the bearing stress, from which it is worth a word.
+
+A wave with n periods round the hole and the amplitude A presses with 2 n A/(R beta*), up and down, where it is closed.
+"""
 
 LEAST_STRESS = 2e3
 """Remote stress, Pa, below which the number is probably in MPa: no metal carries 2,000 MPa."""
@@ -124,9 +138,12 @@ _GIVEN: ContextVar[bool] = ContextVar("given", default=False)
 
 
 def doubts(
-    problem: Problem, history: LoadHistory | None = None, options: SolveOptions | None = None
+    problem: Problem,
+    history: LoadHistory | None = None,
+    options: SolveOptions | None = None,
+    grid: Grid | None = None,
 ) -> list[InputWarning]:
-    """Return a warning for each doubtful value of a problem, its loads and the options of the solver."""
+    """Return a warning for each doubtful value of a problem, its loads and the options of the solver, or its grid."""
     found, has_units = [*_of_contact(problem), *_of_slip(problem)], _has_units(problem)
     for name, material in problem.joint.materials.items():
         found += _of_material(name, material, has_units)
@@ -136,6 +153,8 @@ def doubts(
         angle = max(options.arc, key=abs)
         if abs(angle) > MOST_ANGLE:
             found.append(InputWarning("arc", f"{angle:g} rad is more than two turns; angles are in rad"))
+    if history is not None and options is not None and problem.gap:
+        found += _of_roughness(problem, history, options, grid)
     if has_units:
         by_sizes = [*_of_sizes(problem)]
         found += by_sizes
@@ -282,6 +301,29 @@ def _of_contact(problem: Problem) -> Iterator[InputWarning]:
             "clearance",
             f"{_short(problem.clearance)} is more than half of the hole radius {_short(problem.hole_radius)}; "
             "clearance is the hole radius minus the pin radius",
+        )
+
+
+def _of_roughness(
+    problem: Problem, history: LoadHistory, options: SolveOptions, grid: Grid | None
+) -> Iterator[InputWarning]:
+    """A doubt about waves of the gap that the nodes do not resolve. Without an arc they lie on half of the rim."""
+    first, last = options.arc or (0.0, math.pi)
+    spacing = (last - first) / (options.nodes - 1) if grid is None else float(np.diff(grid.theta).min())
+    most, pressed = int(2.0 * math.pi / (NODES_A_WAVE * spacing) + 1e-9), 0.0
+    for profile in problem.gap.given.values():
+        waves = Profile(tuple(term for term in profile.terms if not term.needs_lengths))
+        amplitudes = np.abs(waves.amplitudes(problem.hole_radius))[most + 1 :]
+        slopes = amplitudes * np.arange(most + 1, most + 1 + amplitudes.size) / problem.hole_radius
+        pressed += 2.0 * float((slopes**2).sum())  # the mean square
+    strain = max(_strains(problem, history.largest).values(), default=0.0)
+    if strain and math.sqrt(pressed) > LEAST_ROUGHNESS * strain:
+        nodes = options.nodes if grid is None else grid.theta.size
+        yield InputWarning(
+            "gap",
+            f"has waves shorter than {360.0 / max(most, 1):.2g} degrees, {most} round the hole, the shortest that "
+            f"{nodes} nodes resolve; they press with {math.sqrt(pressed) / strain:.2g} times the bearing stress, and "
+            f"results follow the nodes; harmonics = {max(min(most, FORM), 1)} in the profile filters them",
         )
 
 
