@@ -23,9 +23,6 @@ DELAY = 2.0
 FIRST_LINE, RARER = 5.0, 2.0
 """Seconds after which a log has its first line, and the growth of the time until each next one: an hour has ten."""
 
-AT_ONCE = 0.5
-"""Seconds in which work that was done before, such as that of a stored run, is counted: it tells no speed."""
-
 LONG = 60.0
 """Seconds above which a user is told before the work begins."""
 
@@ -84,7 +81,7 @@ class Bar:
         """Move the progress by `more` units."""
         self.n += more
         passed = time.time() - self._begin
-        if passed < AT_ONCE:
+        if passed < 0.5:  # work that was done before, such as that of a stored run, tells no speed
             self._before = self.n
         if self._shown is None and passed > DELAY and sys.stderr.isatty():
             self._show()
@@ -92,14 +89,10 @@ class Bar:
             self._shown.total = self.total
             self._shown.update(self.n - self._shown.n)
         elif passed > self._next_line and not sys.stderr.isatty():
-            self._write_line(passed)
-
-    def _write_line(self, passed: float) -> None:
-        """Write a line on the part that is done after so many seconds, and on the time that is left."""
-        self._next_line = RARER * passed
-        done, left = self.n - self._before, self.total - self.n
-        if done > 0.0 and left > 0.0:
-            self._say(self.n, f"about {_words(passed * left / done)} left")
+            self._next_line = RARER * passed
+            done, left = self.n - self._before, self.total - self.n
+            if done > 0.0 and left > 0.0:
+                self._say(self.n, f"about {_words(passed * left / done)} left")
 
     def _say(self, n: float, what: str) -> None:
         """Write a line with the text of the bar after `n` units."""

@@ -448,7 +448,7 @@ class _Following(NamedTuple):
         return (*self.edge.doubts("last", crack, longest), *sliding)
 
     def pace(self, lengths: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-        """The pace of :data:`fastpin.cracks.lengths.Pace` from K at lengths, and the sums of a spectrum."""
+        """The pace of :data:`fastpin.cracks.lengths.CrackPace` from K at lengths, and the sums of a spectrum."""
         opening = K[..., 0]
         sums: tuple[np.ndarray, ...] = ()
         top, bottom = opening.max(axis=0), opening.min(axis=0)

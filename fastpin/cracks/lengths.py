@@ -17,12 +17,6 @@ MOST_COMPUTED = 250
 ROUNDS = 40
 """Most halvings of a step: an arrest is known to 1e-12 of its length then."""
 
-KEEN = 1e-8
-"""Part of the cycles by which two halves of a step may differ from the step."""
-
-SHORTEST = 1e-9
-"""Shortest step of ln(length)."""
-
 LEFT_OUT = 6.0
 """Error at a length that is left out, in parts of the error beside it. A smooth function has 16, a kink 2 to 4.
 
@@ -32,7 +26,7 @@ The errors of all lengths are summed without their signs, so that the sum is an 
 Intensities = Callable[[np.ndarray], np.ndarray]
 """K at lengths, m: shape (states, lengths, 2), Pa sqrt(m)."""
 
-Pace = Callable[[np.ndarray, np.ndarray], np.ndarray]
+CrackPace = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Of lengths, m, and K there, shape (3, lengths): the cycles in which ln(length) grows by 1, the range less the
 threshold, and the toughness less the largest K_I, Pa sqrt(m)."""
 
@@ -63,7 +57,7 @@ def spline_of(lengths: np.ndarray, K: np.ndarray) -> Intensities:
 
 
 def refined(
-    lengths: np.ndarray, K: np.ndarray, compute: Intensities, pace: Pace
+    lengths: np.ndarray, K: np.ndarray, compute: Intensities, pace: CrackPace
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Lengths with K, shape (states, lengths, 2), more of both until the life is exact, and the error that is left.
 
@@ -85,7 +79,7 @@ def refined(
         K = np.insert(K, split + 1, compute(new), axis=1)
 
 
-def _errors(lengths: np.ndarray, K: np.ndarray, pace: Pace) -> tuple[np.ndarray, float]:
+def _errors(lengths: np.ndarray, K: np.ndarray, pace: CrackPace) -> tuple[np.ndarray, float]:
     """The error of each step between computed lengths, and of all: of the life, or of the arrest before it.
 
     Each length is left out in turn with every second one. The others tell K there.
@@ -130,7 +124,7 @@ def drawn(lengths: np.ndarray, read: Callable[[np.ndarray], np.ndarray]) -> tupl
     lengths : ndarray, shape (m,)
         The first ones. Each step is halved once at least, and until the cycles up to an arrest are exact.
     read : callable
-        Of lengths: an array of the shape (rows, lengths), whose first two rows are those of :data:`Pace`.
+        Of lengths: an array of the shape (rows, lengths), whose first two rows are those of :data:`CrackPace`.
     """
     a, rows, error = lengths, read(lengths), 0.0
     split = np.arange(a.size - 1)
@@ -143,9 +137,10 @@ def drawn(lengths: np.ndarray, read: Callable[[np.ndarray], np.ndarray]) -> tupl
             off = np.abs(steps[first] + steps[first + 1] - before) / (steps[: max(end - 1, 0)].sum() or 1.0)
         off = np.where(first + 1 < end, np.where(np.isfinite(off), off, 1.0), 0.0)
         again = _may_stop(x, rows[1])
-        again[first[off > KEEN]] = again[first[off > KEEN] + 1] = True
-        error += float(off[off <= KEEN].sum())
-        split = np.flatnonzero(again & (np.arange(a.size - 1) < end) & (np.diff(x) > SHORTEST))
+        differs = off > 1e-3 * EXACT
+        again[first[differs]] = again[first[differs] + 1] = True
+        error += float(off[~differs].sum())
+        split = np.flatnonzero(again & (np.arange(a.size - 1) < end) & (np.diff(x) > 1e-9))
         if not split.size:
             break
     return a, rows, error

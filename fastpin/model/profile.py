@@ -49,9 +49,6 @@ MOST_TERMS = 512
 MOST_HARMONICS = 500
 """Most waves round the hole that a filter keeps: the finest filter of roundness testers has 500."""
 
-SPECTRUM = 8192
-"""Least number of equally spaced values behind the waves of a profile."""
-
 CALLED = 1440
 """Samples of a function round the hole: four a degree."""
 
@@ -262,7 +259,7 @@ class Profile:
     def amplitudes(self, radius: float) -> np.ndarray:
         """The amplitudes A of its waves Re A exp(i n theta), n = 0, 1, 2 and so on; `radius` of the hole, m."""
         samples = max((len(term.angles) for term in self.terms if isinstance(term, Samples)), default=0)
-        count = max(SPECTRUM, 4 * samples)
+        count = max(8192, 4 * samples)  # of a function too, which has many waves
         found = np.fft.rfft(self.at(np.arange(count) * (2.0 * math.pi / count), radius)) * (2.0 / count)
         found[0] *= 0.5
         return np.asarray(found)

@@ -53,17 +53,14 @@ def growth_curve(growth: cracks.Growth) -> Curve:
 def growth_line(growth: cracks.Growth) -> str:
     """Return a line of text: the place of a crack, and what becomes of it."""
     where = " in the plate round the bush" if growth.crack.body == "seat" else ""
+    line = f"crack{where} at {from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}"
+    if growth.fate == CrackFate.NONE or math.isnan(growth.error):
+        return line
     of = "length" if growth.fate == CrackFate.STOPS else "life"
-    error = "" if growth.fate == CrackFate.NONE or math.isnan(growth.error) else _error_words(growth.error, of)
-    return f"crack{where} at {from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}{error}"
-
-
-def _error_words(error: float, of: str) -> str:
-    """The numerical error of a life or of the length of an arrest, rounded up. Above 1 it is not known."""
-    if not error < 1.0:
-        return f"; the error of this {of} is not known"
-    power = math.floor(math.log10(max(error, 1e-9)))
-    return f"; numerical error of this {of} below {math.ceil(error / 10.0**power):g}e{power:03d}"
+    if not growth.error < 1.0:
+        return f"{line}; the error of this {of} is not known"
+    power = math.floor(math.log10(max(growth.error, 1e-9)))
+    return f"{line}; numerical error of this {of} below {math.ceil(growth.error / 10.0**power):g}e{power:03d}"
 
 
 def spectrum_stops(states: Sequence[State], corners: int) -> list[State]:

@@ -59,10 +59,6 @@ _SHOWN = {
 """Key figures of the text table and their headings, unless the plan has outcomes. The CSV file has all key figures."""
 
 
-MOST_LISTED = 6
-"""Most values of a field that a message lists."""
-
-
 def text(plan: Plan, rows: Sequence[TableRow]) -> str:
     """Return the table of :func:`run_columns` as text. A long table lacks its middle."""
     return table(run_columns(plan, rows))
@@ -244,7 +240,7 @@ def restricted(plan: Plan, where: Mapping[str, Any]) -> Plan:
             raise InputError("where", f"the plan does not vary {as_toml(name)}{hint}")
         known = _different([point.values.get(name) for point in plan.points])
         if not any(_is_same(value, each) for each in known):
-            listed = ", ".join(brief(each) for each in known[:MOST_LISTED]) + ", ..." * (len(known) > MOST_LISTED)
+            listed = ", ".join(brief(each) for each in known[:6]) + ", ..." * (len(known) > 6)
             raise InputError("where", f"the plan has no {name} = {as_toml(value)}; it has {listed}")
         points = [point for point in points if _is_same(value, point.values.get(name))]
     if not points:
