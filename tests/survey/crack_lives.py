@@ -56,7 +56,7 @@ def random_life(seed: int, nodes: int = 101, computed: int = COMPUTED) -> Compar
         K = stress_intensity(states, crack, a).K_I
         law = _law(draw, K)
         found = (spectrum_growth if counted else growth)(states, crack, law, first, last)
-    x = np.linspace(math.log(first), math.log(last), READ if not counted else READ // 10)
+    x = np.linspace(math.log(first), math.log(last), READ)
     a_fine = np.exp(x)
     K_fine = CubicSpline(np.log(a), K / np.sqrt(a), axis=1)(x) * np.sqrt(a_fine)
     rate, stops = _rates(law, a_fine, K_fine, counted)
