@@ -2,7 +2,7 @@
 
 ``python -m scripts.charts_data [--folder out/charts] [--calibration 1000] [--output fastpin/charts/charts.npz]`` keeps
 what is solved in the folder, and goes on from there if it was stopped. It prints the numbers of runs and the time. The
-calibration solves random points with twice the nodes. Their differences from the tables give the bounds of the regions.
+calibration solves random points with twice the nodes. Their differences from the tables give the bounds of the cells.
 """
 
 from __future__ import annotations
@@ -17,9 +17,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.optimize import linprog
 
 from fastpin.charts.groups import GROUPS, ChartGroup, load_parameter_at
-from fastpin.charts.tables import DATA, STORED, ChartTable, write_tables
+from fastpin.charts.tables import DATA, FEW, STORED, ChartTable, write_tables
 from fastpin.solver.errors import SolveError
 from scripts.charts_runs import first_load_runs, first_load_values, pair_of, values_at
 
@@ -37,6 +39,19 @@ CALIBRATION_SEED = 1
 
 SAFETY, USUAL = 4.0, 0.98
 """Bound of a region in parts of the largest error seen near it, and the part of all errors that is the least bound."""
+
+LOCAL_SAFETY, LEAST_PART = 4.0, 1e-3
+"""Bound of a cell in parts of the one that covers all errors of the calibration; its least part of its region's."""
+
+JUMPING = ("peak_pressure_angle", "peak_hoop_angle", "cycle_stick_angle")
+"""Quantities that jump, where another peak is the largest one, or a zone ends. All nodes round a cell may lie on one
+side of a jump: then they do not tell of it. These quantities have the bounds of their regions."""
+
+STEPS = 16
+"""Steps of bounds between a bound and twice as much: few different numbers take less room in the file."""
+
+LEAST_COUNTED = 1e-5
+"""Errors below this part of the largest one do not shape the bounds: the least bounds are larger."""
 
 
 def fill(group: ChartGroup, folder: Path) -> None:
@@ -131,13 +146,14 @@ def table_of(group: ChartGroup, folder: Path, count: int) -> ChartTable:
     values = np.stack(stored, axis=-1).astype(np.float32)
     share = UNLIKE_SHARE if group.name.startswith("unlike") else 1.0
     places, fresh = points(group, round(count * share), CALIBRATION_SEED, folder)
-    none = np.zeros((*group.regions, len(group.quantities)))
+    none = np.zeros((*(count - 1 for count in group.shape), len(group.quantities)))
     trials = {order: ChartTable(group, values, [order] * len(group.quantities), none) for order in (2, 4)}
     errors = {order: deviations(table, places, fresh) for order, table in trials.items()}
     orders = [min(errors, key=lambda order: float(errors[order][:, k].max())) for k in range(len(group.quantities))]
     bounds = none.copy()
-    for k, order in enumerate(orders):
-        bounds[..., k] = region_bounds(trials[order], places, errors[order][:, k])
+    for k, (name, order) in enumerate(zip(group.quantities, orders, strict=True)):
+        most = region_bounds(trials[order], places, errors[order][:, k])
+        bounds[..., k] = cell_bounds(trials[order], name, places, errors[order][:, k], most)
     return ChartTable(group, values, orders, bounds)
 
 
@@ -160,14 +176,94 @@ def units_of(group: ChartGroup, places: np.ndarray) -> tuple[list[np.ndarray], n
 
 def region_bounds(table: ChartTable, places: np.ndarray, errors: np.ndarray) -> np.ndarray:
     """The bound of each region: :data:`SAFETY` times the largest error in it and its neighbours, and at least the
-    part :data:`USUAL` of all errors.
+    part :data:`USUAL` of all errors. Shape (*group.regions,).
     """
-    regions = np.zeros(table.group.regions)
-    np.maximum.at(regions, table.region(units_of(table.group, places)[0]), errors)
+    regions, counts = np.zeros(table.group.regions), table.group.regions
+    units = units_of(table.group, places)[0]
+    np.maximum.at(regions, tuple(places_among(unit, count) for unit, count in zip(units, counts, strict=True)), errors)
     wide = np.pad(regions, 1, mode="edge")
     shifts = itertools.product(range(3), repeat=regions.ndim)
     near = [wide[tuple(slice(s, s + n) for s, n in zip(shift, regions.shape, strict=True))] for shift in shifts]
     return np.maximum(SAFETY * np.max(near, axis=0), np.quantile(errors, USUAL))
+
+
+def cell_bounds(table: ChartTable, name: str, places: np.ndarray, errors: np.ndarray, most: np.ndarray) -> np.ndarray:
+    """The bound of each cell between the nodes: by how rough the table is there, and at most that of its region.
+
+    Beside a kink each node differs from what its neighbours tell. The bound is a constant and a sum of these
+    differences, along each axis, in the cell and in its neighbours. The factors are the least ones, by linear
+    programming, that cover all errors of the calibration; :data:`LOCAL_SAFETY` times as much is the bound.
+
+    Parameters
+    ----------
+    table : ChartTable
+    name : str
+        The quantity.
+    places : ndarray, shape (count, axes)
+    errors : ndarray, shape (count,)
+    most : ndarray, shape (*group.regions,)
+        Bounds of the regions.
+    """
+    found = roughness(table, name)
+    units = units_of(table.group, places)[0]
+    cells = found.shape[1:]
+    at = tuple(places_among(unit, count) for unit, count in zip(units, cells, strict=True))
+    here = np.stack([*found, np.ones(cells)])[(slice(None), *at)].T
+    large = np.maximum(here.max(axis=0), 1e-300)
+    part = here / large
+    counted = errors > LEAST_COUNTED * errors.max()
+    size = 100.0 * LEAST_COUNTED * float(errors.max())  # the tolerance of the programming is some 1e-7
+    weight = 1.0 / (here[:, :-1].sum(axis=1) + np.quantile(errors, 0.7) + 1e-15)
+    wanted = (part * weight[:, None]).mean(axis=0) / np.median(weight)
+    solved = linprog(wanted, A_ub=-part[counted] / size, b_ub=-errors[counted] / size, method="highs")
+    factors = solved.x / large
+    local = LOCAL_SAFETY * (np.tensordot(factors[:-1], found, 1) + factors[-1])
+    if name in JUMPING:
+        local = np.full(cells, np.inf)
+    for axis, count in enumerate(cells):  # a cell may lie in two regions
+        ends = (places_among((np.arange(count) + part) / count, most.shape[axis]) for part in (1e-9, 1.0 - 1e-9))
+        most = np.maximum(*(most.take(end, axis) for end in ends))
+    return 2.0 ** (np.ceil(STEPS * np.log2(np.clip(local, LEAST_PART * most, most))) / STEPS)
+
+
+def roughness(table: ChartTable, name: str) -> np.ndarray:
+    """Differences of nodes from the cubics through their neighbours, largest in each cell, and in each cell with its
+    neighbours: shape (kinds, *cells). Each axis of many nodes is a kind, and all axes of few nodes together are one.
+    """
+    values, stored = table.values[name], STORED[name]
+    widths = np.maximum(load_parameter_at(table.group.axes[0].coordinates()), 0.0)
+    at = widths.reshape(-1, *[1] * (values.ndim - 1))
+    own = np.abs(stored.value(values, at))
+    few, kinds = np.zeros(values.shape), []
+    for axis, count in enumerate(values.shape):
+        order = min(count - 1, 4)
+        differences = np.abs(np.diff(values, order, axis)) / 2.0**order
+        sides = [((count - differences.shape[axis]) // 2, (count - differences.shape[axis] + 1) // 2)]
+        pads = [(0, 0)] * axis + sides + [(0, 0)] * (values.ndim - axis - 1)
+        there = np.pad(differences, pads, mode="edge")
+        if count <= FEW:
+            few += there
+        else:
+            kinds.append(there)
+    found = []
+    for kind in (*kinds, few):
+        moved = np.abs(stored.value(np.maximum(values, 0.0) + kind, at) - stored.value(np.maximum(values, 0.0), at))
+        measure = moved / np.maximum(own, 1e-300) if stored.is_relative else moved
+        found += [_largest(measure, 0), _largest(measure, 1)]
+    return np.array(found)
+
+
+def _largest(nodes: np.ndarray, beyond: int) -> np.ndarray:
+    """The largest value at the nodes of each cell, and of so many cells beside it along each axis."""
+    for axis in range(nodes.ndim):
+        wide = np.pad(nodes, [(beyond, beyond) if k == axis else (0, 0) for k in range(nodes.ndim)], mode="edge")
+        nodes = sliding_window_view(wide, 2 + 2 * beyond, axis=axis).max(axis=-1)
+    return nodes
+
+
+def places_among(unit: np.ndarray, count: int) -> np.ndarray:
+    """The parts, of `count` equal ones, in which units of an axis lie."""
+    return np.minimum((unit * count).astype(int), count - 1)
 
 
 def main() -> None:

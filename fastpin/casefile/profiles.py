@@ -1,7 +1,7 @@
 """The profiles along the rim in a case file: ``friction`` in [contact], ``hole`` and ``pin`` in [gap].
 
-A profile is a number, the name of a CSV file, a table for a term, or a list of these, which are added. Angles are in
-degrees from the bottom of the hole, counter-clockwise.
+A profile is a number, the name of a CSV file, a table for a term or a file, or a list of these, which are added. Tables
+may have a filter. Angles are in degrees from the bottom of the hole, counter-clockwise.
 """
 
 from __future__ import annotations
@@ -115,7 +115,10 @@ WORDS = {
 }
 """The kinds of terms by their first keys."""
 
-WORD_KEYS = tuple(dict.fromkeys(key for word in WORDS.values() for key in word.keys))
+FILE, FILTER = "file", "harmonics"
+"""Keys of the table of a CSV file, and of the filter that any table may have."""
+
+WORD_KEYS = (*dict.fromkeys(key for word in WORDS.values() for key in word.keys), FILE, FILTER)
 """All keys of the tables of terms."""
 
 
@@ -150,11 +153,23 @@ class _Reader:
             if _is_file(value):
                 return self._from_csv(key, name, value)
             if isinstance(value, dict):
-                return _from_table(name, value)
+                return self._from_table(key, name, value)
             return Profile.of(name, number(name, value))
         except InputError as error:
             self._section.report(str(error), key)
             return None
+
+    def _from_table(self, key: str, name: str, table: Mapping[str, Any]) -> Profile | None:
+        """The profile of a table: of a term, or of a file; perhaps filtered."""
+        plain = {word: value for word, value in table.items() if word != FILTER}
+        is_file = list(plain) == [FILE]
+        found = self._from_csv(key, f"{name}.{FILE}", plain[FILE]) if is_file else _from_table(name, plain)
+        if found is None or FILTER not in table:
+            return found
+        try:
+            return found.filtered(table[FILTER])
+        except InputError as error:
+            raise InputError(f"{name}.{FILTER}", error.reason) from None
 
     def _from_csv(self, key: str, name: str, file: str) -> Profile | None:
         try:
@@ -176,7 +191,7 @@ def _from_table(name: str, table: Mapping[str, Any]) -> Profile:
     if not kinds:
         hint = next((found for word in table if (found := closest(str(word), tuple(WORDS)))), "")
         given = f", not {', '.join(map(str, table))}" if table else ""
-        raise InputError(name, f"must be a table with one of {', '.join(WORDS)}{given}{hint}")
+        raise InputError(name, f"must be a table with one of {', '.join((*WORDS, FILE))}{given}{hint}")
     if len(kinds) > 1:
         raise InputError(name, f"{kinds[1]} can't be given together with {kinds[0]}; write a list of tables")
     keys, optional, make = WORDS[kinds[0]]

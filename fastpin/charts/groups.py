@@ -40,7 +40,7 @@ class TableAxis(NamedTuple):
     least, most : float
         First and last coordinate.
     nodes, regions : int
-        Numbers of nodes, and of regions with an error bound of their own.
+        Numbers of nodes, and of regions that limit the error bounds in them by the largest error seen there.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The tables of the charts: values at nodes, interpolation between them, and error bounds by region."""
+"""The tables of the charts: values at nodes, interpolation between them, and an error bound in each cell."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fastpin.errors import InputError
 DATA = Path(__file__).parent / "charts.npz"
 """The data of the package."""
 
-VERSION = 3
+VERSION = 4
 """Version of the data: of the axes, the quantities and their scales."""
 
 FEW = 4
@@ -76,21 +76,20 @@ class ChartTable:
         What :data:`STORED` makes of the values at the nodes.
     orders : sequence of int
         Nodes that the interpolation of each quantity takes along an axis of many nodes: 2 or 4.
-    bounds : ndarray, shape (*group.regions, quantities)
-        Error bounds of the regions, in parts of the value or in its unit.
+    bounds : ndarray, shape (nodes - 1 of each axis, quantities)
+        Error bounds of the cells between the nodes, in parts of the value or in its unit.
     """
 
     def __init__(self, group: ChartGroup, values: np.ndarray, orders: Sequence[int], bounds: np.ndarray) -> None:
         self.group, self.bounds = group, bounds
         self.values = {name: np.ascontiguousarray(values[..., k], float) for k, name in enumerate(group.quantities)}
         self.orders = dict(zip(group.quantities, map(int, orders), strict=True))
-        self._counts = [(axis.nodes, axis.regions) for axis in group.axes]
         self._bounds = {name: np.ascontiguousarray(bounds[..., k]) for k, name in enumerate(group.quantities)}
 
     def stored_at(self, quantity: str, units: Sequence[Any]) -> Any:
         """The interpolated table at places in units of the axes, 0 to 1: floats, or arrays of one shape."""
         values, order = self.values[quantity], self.orders[quantity]
-        found = [_stencil(unit, nodes, order) for unit, (nodes, _) in zip(units, self._counts, strict=True)]
+        found = [_stencil(unit, nodes, order) for unit, nodes in zip(units, self.group.shape, strict=True)]
         if isinstance(units[0], float):
             values = values[tuple(slice(first, first + len(weights)) for first, weights in found)]
             for _, weights in found:
@@ -111,22 +110,19 @@ class ChartTable:
     def value_at(self, quantity: str, units: Sequence[Any], load_parameter: Any) -> tuple[Any, Any]:
         """The value and its error bound, in the unit of the value, at places as for :meth:`stored_at`."""
         value = STORED[quantity].value(self.stored_at(quantity, units), load_parameter)
-        bound = self._bounds[quantity][self.region(units)]
+        bound = self._bounds[quantity][self.cell(units)]
         if isinstance(value, float):
             value, bound = max(value, 0.0), float(bound)
         else:
             value = np.maximum(value, 0.0)  # a cubic beside a kink may pass below 0
         return value, bound * abs(value) if STORED[quantity].is_relative else bound
 
-    def region(self, units: Sequence[Any]) -> tuple[Any, ...]:
-        """The indices of the region of bounds at places in units of the axes."""
+    def cell(self, units: Sequence[Any]) -> tuple[Any, ...]:
+        """The indices of the cell at places in units of the axes."""
+        found = zip(units, self.group.shape, strict=True)
         if isinstance(units[0], float):
-            found = zip(units, self._counts, strict=True)
-            return tuple(min(int(unit * regions), regions - 1) for unit, (_, regions) in found)
-        return tuple(
-            np.minimum((unit * regions).astype(int), regions - 1)
-            for unit, (_, regions) in zip(units, self._counts, strict=True)
-        )
+            return tuple(min(int(unit * (nodes - 1)), nodes - 2) for unit, nodes in found)
+        return tuple(np.minimum((unit * (nodes - 1)).astype(int), nodes - 2) for unit, nodes in found)
 
 
 def _stencil(unit: Any, nodes: int, order: int) -> tuple[Any, Sequence[Any]]:
@@ -173,10 +169,11 @@ def read_tables(path: Path) -> dict[str, ChartTable]:
         found = {}
         for name, group in GROUPS.items():
             values, orders, bounds = (content[f"{name}_{part}"] for part in ("values", "orders", "bounds"))
-            shapes = [(*group.shape, len(group.quantities)), (*group.regions, len(group.quantities))]
+            cells = tuple(nodes - 1 for nodes in group.shape)
+            shapes = [(*group.shape, len(group.quantities)), (*cells, len(group.quantities))]
             if [values.shape, bounds.shape] != shapes:
                 raise ValueError(name)
-            found[name] = ChartTable(group, values, orders.tolist(), bounds)
+            found[name] = ChartTable(group, values, orders.tolist(), bounds.astype(float))
     except InputError:
         raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
@@ -190,5 +187,5 @@ def write_tables(path: Path, found: dict[str, ChartTable]) -> None:
     for name, table in found.items():
         content[f"{name}_values"] = np.stack([*table.values.values()], axis=-1).astype(np.float32)
         content[f"{name}_orders"] = np.array([*table.orders.values()], dtype=np.int8)
-        content[f"{name}_bounds"] = table.bounds.astype(np.float64)
+        content[f"{name}_bounds"] = table.bounds.astype(np.float32)
     np.savez_compressed(path, **content)

@@ -397,6 +397,8 @@ def add_sweep(commands: Any) -> None:
     )
     sweep.add_argument("--x", metavar="FIELD", help="field along the figure's x axis")
     sweep.add_argument("--y", metavar="FIELD", help="field along the figure's y axis (for a map)")
+    words = "fix a field of the figure, such as contact.friction=0.3; may be given several times"
+    sweep.add_argument("--where", metavar="FIELD=VALUE", action="append", help=words)
     words = "plot bearing over bypass stress at failure; the value is an outcome strength = factor"
     sweep.add_argument("--envelope", action="store_true", default=None, help=words)
 

@@ -72,7 +72,7 @@ def _plot(options: argparse.Namespace) -> figures.sheet.Plot:
     }
     if options.after is not None:
         given["after"] = options.after
-    progress_bar = Bar(1.0, "of the damage of the spectrum")
+    progress_bar = Bar(1.0, "damage of the spectrum")
     if options.interface == "seat":
         subject: figures.subjects.Subject = figures.subjects.InMemory(load_seat(options.result))
     else:

@@ -353,7 +353,7 @@ class RunReport:
         if self.case.fatigue is None:
             return None
         from_file = self.part is not None and self.path is not None and self.result is not None
-        with Bar(1.0, "of the damage of the spectrum") as progress_bar:
+        with Bar(1.0, "damage of the spectrum") as progress_bar:
             whole = storage.load(self.path) if from_file and self.path is not None else self.result
             return report.assessment.assess(self.case, whole, progress_to(progress_bar))
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from fastpin import figures, report, solver, studies
-from fastpin.cli.options import DEFAULT_KEY_FIGURE
+from fastpin.cli.options import DEFAULT_KEY_FIGURE, literal
 from fastpin.cli.progress import READ_POINTS, Bar, note_duration, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say
 from fastpin.errors import InputError
@@ -29,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
     """Run all cases of a plan that are not finished, then write tables and figures."""
     shard = _shard(options.shard)
     check_combination(options)
-    for name in ("value", "x", "y", "envelope"):
+    for name in ("value", "x", "y", "where", "envelope"):
         if getattr(options, name) is not None and options.plot is None:
             raise InputError(f"--{name}", "says what a figure shows; --plot FILE is missing")
     with Bar(1, READ_POINTS) as progress_bar:
@@ -129,6 +129,7 @@ def check_combination(options: argparse.Namespace) -> None:
 def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None:
     """Check before the work that the table and the figure can be made and written."""
     check_outputs({"--table": options.table, "--plot": options.plot})
+    plan = _shown(options, plan)
     if options.envelope and (options.x or options.y or len(_values(options, plan)) > 1):
         raise InputError("--envelope", "has axes of its own, and shows one value: leave out --x, --y and other values")
     if options.plot is not None:
@@ -140,6 +141,24 @@ def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None
                 report.sweep.check_axes(plan, value, options.x, options.y)
         except InputError as error:
             raise InputError(f"--{error.field}", error.reason) from None
+
+
+def _where(options: argparse.Namespace) -> dict[str, Any]:
+    """Return the fields that a figure fixes, and their values."""
+    pairs = [text.partition("=") for text in options.where or []]
+    for field, sign, value in pairs:
+        if not (field and sign and value):
+            given = f"{field}{sign}{value}"
+            raise InputError("--where", f'must be FIELD=VALUE, such as contact.friction=0.3, not "{given}"')
+    return {field.strip(): literal(value.strip()) for field, _, value in pairs}
+
+
+def _shown(options: argparse.Namespace, plan: studies.plan.Plan) -> studies.plan.Plan:
+    """Return the part of a plan that a figure shows."""
+    try:
+        return report.sweep.restricted(plan, _where(options))
+    except InputError as error:
+        raise InputError("--where", error.reason) from None
 
 
 def _values(options: argparse.Namespace, plan: studies.plan.Plan) -> list[str]:
@@ -182,22 +201,31 @@ def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Pa
     rows = studies.sweep.rows(plan, directory)
     if options.table not in (None, "-"):
         report.sweep.write_csv(plan, rows, Path(options.table))
-    if options.plot is not None and options.envelope:
-        found = report.envelope.envelopes(plan, rows, _values(options, plan)[0])
+    if options.plot is not None:
+        _draw(options, plan, directory)
+    return rows
+
+
+def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path) -> None:
+    """Draw the figure of a plan, or of the points with the values of ``--where``."""
+    values, where, plan = _values(options, plan), _where(options), _shown(options, plan)
+    rows = studies.sweep.rows(plan, directory)
+    fixed = [figures.sweep.shown_label(words) for words in report.sweep.where_words(plan, rows, where)]
+    title = ", ".join(filter(None, [plan.title, *fixed]))
+    if options.envelope:
+        found = report.envelope.envelopes(plan, rows, values[0])
         if found:
-            figures.envelope.plot_envelope(found, options.plot, plan.title)
+            figures.envelope.plot_envelope(found, options.plot, title)
         missing = len(rows) - sum(curve[report.envelope.BYPASS].size for curve in found)
         if missing:
             say(f"note: {missing} of {len(rows)} points have no value in the figure", file=sys.stderr)
-    elif options.plot is not None:
-        values = _values(options, plan)
-        charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]
-        figures.plot_sweep(charts if len(charts) > 1 else charts[0], options.plot)
-        for value, chart in zip(values, charts, strict=True):
-            if chart.missing:
-                part = f" of {value}" if len(charts) > 1 else ""
-                say(f"note: {chart.missing} of {len(rows)} points have no value{part} in the figure", file=sys.stderr)
-    return rows
+        return
+    charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]
+    figures.plot_sweep(charts if len(charts) > 1 else charts[0], options.plot, title)
+    for value, chart in zip(values, charts, strict=True):
+        if chart.missing:
+            part = f" of {value}" if len(charts) > 1 else ""
+            say(f"note: {chart.missing} of {len(rows)} points have no value{part} in the figure", file=sys.stderr)
 
 
 def merge(options: argparse.Namespace) -> int:

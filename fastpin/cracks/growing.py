@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from fastpin.cracks.fates import CrackFate
 from fastpin.cracks.intensity import Crack, CrackedBody, CrackedEdge, Residual, histories, sliding_doubt
+from fastpin.cracks.lengths import drawn, refined, spline_of, step_cycles
 from fastpin.errors import InputError, InputWarning
 from fastpin.kernels.reversals import closed_cycles
 from fastpin.model.angles import from_bottom, near_bottom
@@ -23,13 +24,12 @@ from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.ties import is_top, top_angle
 from fastpin.model.units import units
-from fastpin.runtime.extensions import interpolate
 from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
 COMPUTED, DRAWN = 8, 100
-"""Lengths a decade at which K is computed, and lengths a decade of a result: lives are exact to 1e-5."""
+"""Least lengths a decade at which K is computed, and of a result: :mod:`fastpin.cracks.lengths` adds more."""
 
 MOST_REFINED = 500
 """Most states of a planned spectrum whose tractions are refined: each takes 0.03 s."""
@@ -51,7 +51,7 @@ class Growth(ReadOnly):
     crack : Crack
     law : GrowthLaw
     length : ndarray
-        From the first to the last length, m, equal steps of its logarithm.
+        From the first to the last length, m: at least 100 a decade, more where the rate bends or the crack stops.
     K_max, K_min : ndarray
         Largest and smallest K_I of the cycle, Pa sqrt(m). A negative one counts faces that overlap.
     K_II : ndarray
@@ -62,6 +62,9 @@ class Growth(ReadOnly):
         The loads at these load points, by name.
     doubts : tuple of InputWarning
         Reasons to doubt the numbers.
+    error : float
+        Estimated relative error of the life by the lengths at which K was computed; of the arrest if the crack stops.
+        NaN if it is not known. The error of K itself comes on top.
     """
 
     problem: Problem
@@ -74,6 +77,7 @@ class Growth(ReadOnly):
     largest_at: np.ndarray
     loads: Mapping[float, Mapping[str, float]]
     doubts: tuple[InputWarning, ...] = ()
+    error: float = math.nan
 
     per: ClassVar[str] = "cycle"
     """What is repeated: a cycle, or a spectrum."""
@@ -102,8 +106,7 @@ class Growth(ReadOnly):
         """Cycles from the first length on; infinite where the crack never comes."""
         with np.errstate(divide="ignore"):
             pace = self.length / self.rate
-        steps = 0.5 * (pace[1:] + pace[:-1]) * np.diff(np.log(self.length))
-        return np.append(0.0, np.cumsum(steps))
+        return np.append(0.0, np.cumsum(step_cycles(np.log(self.length), pace)))
 
     @property
     def life(self) -> float:
@@ -113,7 +116,8 @@ class Growth(ReadOnly):
     @property
     def arrest(self) -> float:
         """The first length at which the range is at most the threshold, m; NaN if the crack grows to the last one."""
-        return self._first(self.threshold - self.delta_K)
+        found = self._first(self.threshold - self.delta_K)
+        return math.nan if self._fracture < found else found
 
     @property
     def reached(self) -> int:
@@ -125,9 +129,12 @@ class Growth(ReadOnly):
     @property
     def fracture(self) -> float:
         """The first length at which the largest K_I reaches the toughness, m; NaN without one, or after an arrest."""
+        return self._fracture if math.isnan(self.arrest) else math.nan
+
+    @property
+    def _fracture(self) -> float:
         toughness = self.law.fracture_toughness
-        found = self._first(self.K_max - toughness) if math.isfinite(toughness) else math.nan
-        return math.nan if found >= self.arrest else found
+        return self._first(self.K_max - toughness) if math.isfinite(toughness) else math.nan
 
     def _first(self, excess: np.ndarray) -> float:
         """The first length with an excess of at least 0, read between the lengths; NaN without one."""
@@ -245,7 +252,8 @@ class EdgeGrowth(ReadOnly):
     theta : ndarray, shape (p,)
         Angles of the mouths, rad.
     life : ndarray, shape (p,)
-        Cycles from the first to the last length; infinite where the crack stops.
+        Cycles from the first to the last length; infinite where the crack stops. With K at eight lengths a decade its
+        error is some 1e-4. The fastest growth alone has more lengths.
     arrest : ndarray, shape (p,)
         Length at which it stops, m; NaN where it does not.
     fastest : Growth
@@ -394,17 +402,22 @@ class _Following(NamedTuple):
         edge = CrackedEdge.of(stops[0].problem, crack.body)
         return cls(stops, edge, checked_law(law), _lengths(edge, crack, *ends), residual, counted, straight)
 
-    def intensities(self, crack: Crack, turns: np.ndarray) -> np.ndarray:
-        """K at the computed lengths, shape (states, turns, lengths, 2)."""
-        rows = [self.edge.lines([crack], length) for length in self.lengths]
+    def intensities(self, crack: Crack, turns: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+        """K at lengths, m, shape (states, turns, lengths, 2)."""
+        rows = [self.edge.lines([crack], length) for length in lengths]
         return histories(self.stops, self.edge, rows, turns, self.residual, self.straight)[:, :, :, 0]
 
-    def grown(self, crack: Crack) -> Growth:
-        """The growth of one crack."""
-        K = self.intensities(crack, np.zeros(1))[:, 0]
-        found = self.doubts(crack, K)
+    def grown(self, crack: Crack, K: np.ndarray | None = None) -> Growth:
+        """The growth of one crack. `K` is known at the first lengths already, if it is given."""
+
+        def compute(lengths: np.ndarray) -> np.ndarray:
+            return self.intensities(crack, np.zeros(1), lengths)[:, 0]
+
+        known = compute(self.lengths) if K is None else K
+        lengths, K, error = refined(self.lengths, known, compute, lambda a, K: self.pace(a, K)[0])
+        found = self.doubts(crack, known)
         warn_of(found, 3)
-        return self.read(crack, K, found)
+        return self.read(crack, lengths, K, found, error)
 
     def along(self, crack: Crack, theta: ArrayLike | None, progress: GrowthProgress | None) -> EdgeGrowth:
         """The growth of one crack at many places, by default at each degree."""
@@ -416,16 +429,16 @@ class _Following(NamedTuple):
             raise InputError("theta", "must be at least one angle")
         grown: list[Growth] = []
         for part in np.array_split(every, max(1, every.size // 40)):  # 40 places need some 30,000 points in each state
-            K = self.intensities(crack, part)
+            K = self.intensities(crack, part, self.lengths)
             for k, place in enumerate(part.tolist()):
-                there = Crack(place, crack.angle, crack.body)
-                grown.append(self.read(there, K[:, k], self.doubts(there, K[:, k])))
+                grown.append(self.read(Crack(place, crack.angle, crack.body), self.lengths, K[:, k]))
                 if progress is not None:
                     progress(len(grown), every.size)
         life, arrest = np.array([one.life for one in grown]), np.array([one.arrest for one in grown])
         farthest = np.flatnonzero(is_top(np.where(np.isnan(arrest), np.inf, arrest)))
-        fastest = grown[farthest[top_angle(-life[farthest], every[farthest])]]
-        warn_of(fastest.doubts, 3)
+        at = int(farthest[top_angle(-life[farthest], every[farthest])])
+        fastest = self.grown(grown[at].crack)
+        life[at], arrest[at] = fastest.life, fastest.arrest
         return EdgeGrowth(every, life, arrest, fastest)
 
     def doubts(self, crack: Crack, K: np.ndarray) -> tuple[InputWarning, ...]:
@@ -434,25 +447,55 @@ class _Following(NamedTuple):
         sliding = sliding_doubt("last", self.edge.problem, self.lengths, K)
         return (*self.edge.doubts("last", crack, longest), *sliding)
 
-    def read(self, crack: Crack, K: np.ndarray, doubts: tuple[InputWarning, ...]) -> Growth:
-        """The growth from K at the lengths, shape (states, lengths, 2). K/sqrt(a) is smooth over ln a."""
-        lengths = self.lengths
-        count = max(math.ceil(DRAWN * math.log10(lengths[-1] / lengths[0])) + 1, 20)
-        fine = np.geomspace(lengths[0], lengths[-1], count)
-        spline = interpolate.CubicSpline(np.log(lengths), K / np.sqrt(lengths)[:, None], axis=1)
-        opening, sliding = np.moveaxis(spline(np.log(fine)) * np.sqrt(fine)[:, None], -1, 0)
-        top = np.argmax(is_top(opening.T), axis=1)  # of equal ones the first
-        K_II = np.take_along_axis(sliding, top[None], axis=0)[0]
+    def pace(self, lengths: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+        """The pace of :data:`fastpin.cracks.lengths.CrackPace` from K at lengths, and the sums of a spectrum."""
+        opening = K[..., 0]
+        sums: tuple[np.ndarray, ...] = ()
+        top, bottom = opening.max(axis=0), opening.min(axis=0)
+        if self.counted:
+            sums = _sums(self.law, lengths, opening)
+            rate, margin = sums[0], sums[1] - sums[2]
+        else:
+            rate = self.law.rate(top, bottom, lengths)
+            margin = self.law.range(top, bottom) - self.law.threshold(top, bottom, lengths)
+        with np.errstate(divide="ignore"):
+            return np.array([lengths / rate, margin, self.law.fracture_toughness - top]), sums
+
+    def read(
+        self,
+        crack: Crack,
+        lengths: np.ndarray,
+        K: np.ndarray,
+        doubts: tuple[InputWarning, ...] = (),
+        error: float = math.nan,
+    ) -> Growth:
+        """The growth from K, shape (states, lengths, 2), and the error of these. Without it no step is halved."""
+        between = spline_of(lengths, K)
+
+        def row(a: np.ndarray) -> np.ndarray:
+            there = between(a)
+            opening, (pace, sums) = there[..., 0], self.pace(a, there)
+            top = np.argmax(is_top(opening.T), axis=1)  # of equal ones the first
+            K_II = np.take_along_axis(there[..., 1], top[None], axis=0)[0]
+            return np.array([*pace, opening.max(axis=0), opening.min(axis=0), K_II, top, *sums])
+
+        count = max(math.ceil(DRAWN * math.log10(lengths[-1] / lengths[0])) // 2, 10)
+        fine = np.geomspace(lengths[0], lengths[-1], 2 * count + 1)
+        if math.isnan(error):
+            rows = row(fine)
+        else:
+            fine, rows, by_steps = drawn(fine[::2], row)
+            error += by_steps
+        top = rows[6].astype(int)
         at = np.array([load_point(self.stops[place]) for place in top.tolist()])
         loads = {load_point(state): state.load for state in (self.stops[place] for place in np.unique(top).tolist())}
         known = (
-            self.edge.problem, crack, self.law, fine, opening.max(axis=0), opening.min(axis=0), K_II, at, loads, doubts
+            self.edge.problem, crack, self.law, fine, *rows[3:6], at, loads, doubts, error
         )  # fmt: skip
         if not self.counted:
             return Growth(*known)
-        sums = _sums(self.law, fine, opening)
         return SpectrumGrowth(
-            *known, growth_in_pass=sums[0], largest_range=sums[1], its_threshold=sums[2], counted=sums[3]
+            *known, growth_in_pass=rows[7], largest_range=rows[8], its_threshold=rows[9], counted=rows[10].astype(int)
         )
 
 

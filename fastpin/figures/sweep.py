@@ -26,7 +26,7 @@ from fastpin.errors import InputError
 from fastpin.figures.class_map import class_patches, draw_classes
 from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
-from fastpin.figures.words import caption, shown_unit
+from fastpin.figures.words import caption, shown_unit, wrapped
 from fastpin.model.checks import instance, instances
 from fastpin.report.sweep import Axis, Chart
 
@@ -41,6 +41,9 @@ MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 
 LEVELS = 7
 """Most contour lines of a map."""
+
+BESIDE, BETWEEN = 1.2, 0.2
+"""Inches beside all panels, for the bar of colours, and between the titles of two panels."""
 
 DECADES = 1.7
 """Decades of an axis up to which its numbers stand at 1, 2 and 5 times powers of ten.
@@ -123,10 +126,18 @@ def _draw_beside(look: Look, charts: Sequence[Chart]) -> Sheet:
         for panel, chart in zip(sheet.axes.flat, charts, strict=False):
             draw_chart = _draw_curves if chart.y is None else _draw_maps
             draw_chart(Look(ax=panel), replace(chart, problem=None, title="", label=""))
-            above = [shown_label(chart.label), panel.get_title()]
-            panel.set_title("\n".join(filter(None, above)), fontsize=8.0, parse_math=False)
+            _set_title(sheet, panel, "\n".join(filter(None, [chart.label, panel.get_title()])))
     sheet.head(look.title, caption=_fixed_parameters(charts[0]))
     return sheet
+
+
+def _set_title(sheet: Sheet, panel: Axes, text: str) -> None:
+    """Write the title of a panel in lines that end before its neighbours."""
+    figure, host = sheet.figure, sheet.host
+    width = figure.get_figwidth() if host is None else host.get_window_extent().width / figure.dpi
+    inches = (width - BESIDE) / sheet.axes.shape[1] - BETWEEN
+    lines = [row for line in shown_label(text).split("\n") for row in wrapped(line, inches, 8.0)]
+    panel.set_title("\n".join(lines), fontsize=8.0, parse_math=False)
 
 
 def _over(chart: Chart) -> str:
@@ -174,7 +185,7 @@ def _draw_maps(look: Look, chart: Chart) -> Sheet:
         labels.append(_draw_contours(panel, chart, numbers, levels))
         _dot_cells(panel, chart, unsure)
         _scale_axes(panel, chart)
-        panel.set_title(shown_label(name), fontsize=8.0, parse_math=False)
+        _set_title(sheet, panel, name)
     _label_panels(sheet, chart)
     bar = sheet.figure.colorbar(mesh, ax=list(sheet.axes.flat), aspect=30, pad=0.02)
     bar.set_label(shown_label(chart.label), parse_math=False)
@@ -196,7 +207,7 @@ def _draw_class_maps(sheet: Sheet, chart: Chart, title: str) -> Sheet:
         _draw_empty_cells(panel, x, y, numbers, failed)
         _dot_cells(panel, chart, unsure)
         _scale_axes(panel, chart)
-        panel.set_title(shown_label(name), fontsize=8.0, parse_math=False)
+        _set_title(sheet, panel, name)
     _label_panels(sheet, chart)
     sheet.head(title, shown_label(chart.label), _bar_line(chart), caption=_fixed_parameters(chart))
     _explain(sheet, chart)

@@ -21,6 +21,7 @@ import numpy as np
 
 from fastpin.errors import InputWarning
 from fastpin.model.angles import meant_degrees
+from fastpin.model.grid import Grid
 from fastpin.model.growth import KnownLaw, Nasgro
 from fastpin.model.history import LoadHistory
 from fastpin.model.laminate import Laminate
@@ -29,6 +30,7 @@ from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import owner_of
 from fastpin.model.problem import LOOKED_AT, Problem
+from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import MOST_ANGLE
 from fastpin.model.units import units
 from fastpin.model.wear import Wear
@@ -63,10 +65,26 @@ MOST_STRAIN = 0.1
 LARGE_STRAIN = 0.05
 """Contact strain, pressure times beta*, above which linear elasticity fails."""
 
-LEAST_STRAIN = 6e-5
-"""Strain below which forces in N/m may be forces in N: those are 100 to 1,000 times smaller.
+LEAST_BEARING, LEAST_FORCE_BEARING = 3e6, 1e6
+"""Bearing stress F/(2 R), Pa, below which a force per thickness may be a force in N, and one in N a force in kN.
 
-It is a nominal bearing stress of 0.7 MPa in aluminium and 1.7 MPa in steel. Joints carry 10 MPa to 500 MPa.
+Joints carry 10 to 500 MPa. In plates of 1 to 20 mm a force in N has 1 to 20 thousandths of its bearing stress, mostly
+below 3 MPa; a force in kN has one thousandth.
+"""
+
+LEAST_STRAIN = 3e-4
+"""Strain from which no bearing stress is small: soft plastics and rubber carry 1 MPa and less."""
+
+FORM = 15
+"""Waves round the hole by which a roundness tester gives the form of a hole, without its roughness."""
+
+NODES_A_WAVE = 8
+"""Nodes that a wave of a profile needs: its pressure is right to 3 % then."""
+
+LEAST_ROUGHNESS = 0.03
+"""Pressure by waves that the nodes do not resolve, in parts of the bearing stress, from which it is worth a word.
+
+A wave with n periods round the hole and the amplitude A presses with 2 n A/(R beta*), up and down, where it is closed.
 """
 
 LEAST_STRESS = 2e3
@@ -120,9 +138,12 @@ _GIVEN: ContextVar[bool] = ContextVar("given", default=False)
 
 
 def doubts(
-    problem: Problem, history: LoadHistory | None = None, options: SolveOptions | None = None
+    problem: Problem,
+    history: LoadHistory | None = None,
+    options: SolveOptions | None = None,
+    grid: Grid | None = None,
 ) -> list[InputWarning]:
-    """Return a warning for each doubtful value of a problem, its loads and the options of the solver."""
+    """Return a warning for each doubtful value of a problem, its loads and the options of the solver, or its grid."""
     found, has_units = [*_of_contact(problem), *_of_slip(problem)], _has_units(problem)
     for name, material in problem.joint.materials.items():
         found += _of_material(name, material, has_units)
@@ -132,6 +153,8 @@ def doubts(
         angle = max(options.arc, key=abs)
         if abs(angle) > MOST_ANGLE:
             found.append(InputWarning("arc", f"{angle:g} rad is more than two turns; angles are in rad"))
+    if history is not None and options is not None and problem.gap:
+        found += _of_roughness(problem, history, options, grid)
     if has_units:
         by_sizes = [*_of_sizes(problem)]
         found += by_sizes
@@ -278,6 +301,29 @@ def _of_contact(problem: Problem) -> Iterator[InputWarning]:
             "clearance",
             f"{_short(problem.clearance)} is more than half of the hole radius {_short(problem.hole_radius)}; "
             "clearance is the hole radius minus the pin radius",
+        )
+
+
+def _of_roughness(
+    problem: Problem, history: LoadHistory, options: SolveOptions, grid: Grid | None
+) -> Iterator[InputWarning]:
+    """A doubt about waves of the gap that the nodes do not resolve. Without an arc they lie on half of the rim."""
+    first, last = options.arc or (0.0, math.pi)
+    spacing = (last - first) / (options.nodes - 1) if grid is None else float(np.diff(grid.theta).min())
+    most, pressed = int(2.0 * math.pi / (NODES_A_WAVE * spacing) + 1e-9), 0.0
+    for profile in problem.gap.given.values():
+        waves = Profile(tuple(term for term in profile.terms if not term.needs_lengths))
+        amplitudes = np.abs(waves.amplitudes(problem.hole_radius))[most + 1 :]
+        slopes = amplitudes * np.arange(most + 1, most + 1 + amplitudes.size) / problem.hole_radius
+        pressed += 2.0 * float((slopes**2).sum())  # the mean square
+    strain = max(_strains(problem, history.largest).values(), default=0.0)
+    if strain and math.sqrt(pressed) > LEAST_ROUGHNESS * strain:
+        nodes = options.nodes if grid is None else grid.theta.size
+        yield InputWarning(
+            "gap",
+            f"has waves shorter than {360.0 / max(most, 1):.2g} degrees, {most} round the hole, the shortest that "
+            f"{nodes} nodes resolve; they press with {math.sqrt(pressed) / strain:.2g} times the bearing stress, and "
+            f"results follow the nodes; harmonics = {max(min(most, FORM), 1)} in the profile filters them",
         )
 
 
@@ -464,21 +510,23 @@ def _too_small(problem: Problem, largest: dict[str, float], strains: dict[str, f
     name = max(strains, key=lambda name: strains[name])
     alone = all(LOAD_KIND[other] == "force" for other, load in largest.items() if load)
     force = abs(largest[name])
+    bearing = force / (2.0 * radius)
     if (
         alone
         and 0.0 < strains[name] < LEAST_STRAIN
+        and bearing < (LEAST_BEARING if problem.thickness is None else LEAST_FORCE_BEARING)
         and not problem.is_gripped
         and radius <= LARGEST_HOLE
         and force != 1.0
     ):
-        unit, bearing = units(problem)["force"], _mega(force / (2.0 * radius))
+        unit = units(problem)["force"]
         hint = (
             "forces are per thickness, in N/m: 1 N/mm is 1e3; divide a force in N by the thickness in m, or give the "
             "thickness"
         )
         yield InputWarning(
             name,
-            f"{_short(unit.factor * largest[name])} {unit.name} is a bearing stress of {bearing} only; "
+            f"{_short(unit.factor * largest[name])} {unit.name} is a bearing stress of {_mega(bearing)} only; "
             + (hint if problem.thickness is None else "forces are in N: 1 kN is 1e3"),
         )
     for name in ("sxx", "syy", "sxy"):

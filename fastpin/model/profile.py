@@ -43,8 +43,11 @@ from fastpin.model.profile_terms import (
 )
 from fastpin.model.synonyms import explains_keywords
 
-MOST_TERMS = 100
+MOST_TERMS = 512
 """Most terms of a profile."""
+
+MOST_HARMONICS = 500
+"""Most waves round the hole that a filter keeps: the finest filter of roundness testers has 500."""
 
 CALLED = 1440
 """Samples of a function round the hole: four a degree."""
@@ -130,18 +133,25 @@ class Profile:
         return cls((Zone(value, start, stop),))
 
     @classmethod
-    def samples(cls, angles: Sequence[float] | np.ndarray, values: Sequence[float] | np.ndarray) -> Profile:
+    def samples(
+        cls,
+        angles: Sequence[float] | np.ndarray,
+        values: Sequence[float] | np.ndarray,
+        harmonics: int | None = None,
+    ) -> Profile:
         """Values at increasing angles within a turn, shape (n,), joined by a periodic cubic spline.
 
-        Neighbours are at most 120 degrees apart. A last angle a turn beyond the first one repeats the first value.
+        Neighbours are at most 120 degrees apart. A last angle a turn beyond the first one repeats the first value. With
+        `harmonics` only so many waves round the hole are kept, see :meth:`filtered`.
         """
         try:
-            return cls((Samples(angles, values),))
+            found = cls((Samples(angles, values),))
         except InputError as error:
             raise InputError("values" if error.field == "heights" else error.field, error.reason) from None
+        return found if harmonics is None else found.filtered(harmonics)
 
     @classmethod
-    def from_csv(cls, path: str | Path, quantity: str = "gap") -> Profile:
+    def from_csv(cls, path: str | Path, quantity: str = "gap", harmonics: int | None = None) -> Profile:
         """Samples from a CSV file with two columns: the angle from the bottom of the hole, and the value there.
 
         The first line names the columns, each perhaps with a unit: ``angle [deg]``, ``gap [um]``. Without units angles
@@ -152,6 +162,8 @@ class Profile:
         path : str or Path
         quantity : {"gap", "friction", "wear"}
             What the values are. Friction has no unit. Wear coefficients are in 1/Pa.
+        harmonics : int, optional
+            The waves round the hole that are kept, see :meth:`filtered`. Without it all of them are kept.
 
         Raises
         ------
@@ -161,7 +173,7 @@ class Profile:
             If the samples do not go round the hole, see :meth:`samples`.
         """
         kind = choice("quantity", quantity, get_args(ProfileKind))
-        return cls.samples(*read_samples(path, kind))  # type: ignore[arg-type]
+        return cls.samples(*read_samples(path, kind), harmonics)  # type: ignore[arg-type]
 
     @classmethod
     def of(cls, place: str, value: ProfileLike) -> Profile:
@@ -210,6 +222,9 @@ class Profile:
     def words(self, text: ValueInWords) -> str:
         """Words that describe it. `text` words a value."""
         check_callable("text", text, 1)
+        orders = [term.wave[0] for term in self.terms if term.wave is not None]
+        if len(orders) == len(self.terms) > MOST_DESCRIBED:
+            return f"{len(orders):,} waves, with up to {max(orders)} round the hole"
         described = [term.words(text) for term in self.terms[:MOST_DESCRIBED]]
         if len(self.terms) > MOST_DESCRIBED:
             described.append(f"and {len(self.terms) - MOST_DESCRIBED} more terms")
@@ -224,6 +239,30 @@ class Profile:
         """The same profile with its values multiplied by a factor. A flat takes a positive one."""
         factor = number("factor", factor)
         return Profile(tuple(term.scaled(factor) for term in self.terms))
+
+    def filtered(self, harmonics: int) -> Profile:
+        """The sum of the waves of this profile with at most `harmonics` round the hole, 1 to :data:`MOST_HARMONICS`.
+
+        A roundness tester gives the form of a hole by 15 waves, and by more with the roughness.
+
+        Raises
+        ------
+        InputError
+            If `harmonics` is out of range, or the profile has a flat.
+        """
+        most = whole_number("harmonics", harmonics, 1, MOST_HARMONICS)
+        if self.needs_lengths:
+            raise InputError("harmonics", "can't filter a flat: its shape depends on the radius")
+        found = self.amplitudes(1.0)[: most + 1].tolist()
+        return Profile(tuple(Harmonic(n, A.real, -A.imag if n else 0.0) for n, A in enumerate(found)))
+
+    def amplitudes(self, radius: float) -> np.ndarray:
+        """The amplitudes A of its waves Re A exp(i n theta), n = 0, 1, 2 and so on; `radius` of the hole, m."""
+        samples = max((len(term.angles) for term in self.terms if isinstance(term, Samples)), default=0)
+        count = max(8192, 4 * samples)  # of a function too, which has many waves
+        found = np.fft.rfft(self.at(np.arange(count) * (2.0 * math.pi / count), radius)) * (2.0 / count)
+        found[0] *= 0.5
+        return np.asarray(found)
 
     @property
     def has_jumps(self) -> bool:

@@ -25,7 +25,7 @@ def tables_of(chart: ChartQuantity) -> list[ChartTable]:
 
 
 def bounds_of(table: ChartTable, chart: ChartQuantity) -> tuple[float, float]:
-    """The middle and the largest bound of the regions of a table: parts of the value, or its unit."""
+    """The middle and the largest bound of the cells of a table: parts of the value, or its unit."""
     bounds = table.bounds[..., table.group.quantities.index(chart.name)]
     return float(np.median(bounds)), float(bounds.max())
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fastpin import cracks, damage
+from fastpin.cracks import CrackFate
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
@@ -52,7 +53,14 @@ def growth_curve(growth: cracks.Growth) -> Curve:
 def growth_line(growth: cracks.Growth) -> str:
     """Return a line of text: the place of a crack, and what becomes of it."""
     where = " in the plate round the bush" if growth.crack.body == "seat" else ""
-    return f"crack{where} at {from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}"
+    line = f"crack{where} at {from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}"
+    if growth.fate == CrackFate.NONE or math.isnan(growth.error):
+        return line
+    of = "length" if growth.fate == CrackFate.STOPS else "life"
+    if not growth.error < 1.0:
+        return f"{line}; the error of this {of} is not known"
+    power = math.floor(math.log10(max(growth.error, 1e-9)))
+    return f"{line}; numerical error of this {of} below {math.ceil(growth.error / 10.0**power):g}e{power:03d}"
 
 
 def spectrum_stops(states: Sequence[State], corners: int) -> list[State]:
@@ -103,6 +111,7 @@ def document(growth: cracks.Growth) -> dict[str, Any]:
         "repeated": growth.per,
         "fate": growth.fate.words,
         "life": growth.life,
+        "error": growth.error,
         **{name: length * float(value) for name, value in values.items()},
         "words": growth.words,
         "doubts": [str(doubt) for doubt in growth.doubts],
@@ -112,7 +121,8 @@ def document(growth: cracks.Growth) -> dict[str, Any]:
 def growth_table(growth: cracks.Growth) -> str:
     """Return some lengths of a crack with its stress intensities, threshold, rate and cycles, as text."""
     unit = units(growth.problem)
-    at = np.unique(np.linspace(0, growth.length.size - 1, ROWS).round().astype(int))
+    rows = np.geomspace(growth.length[0], growth.length[-1], ROWS)
+    at = np.unique(np.abs(np.log(growth.length[:, None] / rows)).argmin(axis=0))
     columns = [
         ("length", "length", growth.length),
         ("K_I largest", "stress intensity", growth.K_max),

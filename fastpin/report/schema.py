@@ -150,6 +150,7 @@ def _crack() -> Schema:
             "repeated": {"enum": ["cycle", "spectrum"]},
             "fate": {"enum": list(CRACK_FATES.values())},
             "life": _UNKNOWN | {"description": "cycles or spectra; null: no end"},
+            "error": _UNKNOWN | {"description": "numerical, in parts of the life or of the arrest; null: unknown"},
             **lengths,
             "words": _TEXT,
             "doubts": _list_of(_TEXT),

@@ -218,8 +218,47 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
     parts = len(_different([[point.values.get(name) for name in others] for point in plan.points]))
     most, what = (20, "curves") if y is None else (12, "maps")
     if parts > most:
-        raise InputError("plot", f"the figure would have {parts} {what}, at most {most} fit; choose other axes")
+        ways = f"choose other axes, or fix a field, such as --where {others[0]}={brief(values[others[0]][0])}"
+        raise InputError("plot", f"the figure would have {parts} {what}, at most {most} fit; {ways}")
     return x, y, others
+
+
+def restricted(plan: Plan, where: Mapping[str, Any]) -> Plan:
+    """Return a plan with the points alone at which fields have given values, in the units of the plan.
+
+    Figures of such a plan have less maps or curves. Its rows are those of :func:`fastpin.studies.sweep.rows`.
+
+    Raises
+    ------
+    InputError
+        The field is "where". The plan does not vary a field, has no such value, or no point with all of the values.
+    """
+    points = plan.points
+    for name, value in where.items():
+        if name not in plan.fields:
+            hint = closest(name, tuple(plan.fields)) or f"; there are {', '.join(plan.fields)}"
+            raise InputError("where", f"the plan does not vary {as_toml(name)}{hint}")
+        known = _different([point.values.get(name) for point in plan.points])
+        if not any(_is_same(value, each) for each in known):
+            listed = ", ".join(brief(each) for each in known[:6]) + ", ..." * (len(known) > 6)
+            raise InputError("where", f"the plan has no {name} = {as_toml(value)}; it has {listed}")
+        points = [point for point in points if _is_same(value, point.values.get(name))]
+    if not points:
+        raise InputError("where", "no point of the plan has all of these values")
+    return replace(plan, points=points)
+
+
+def where_words(plan: Plan, rows: Sequence[TableRow], where: Mapping[str, Any]) -> list[str]:
+    """Return words for the fields that are fixed in a restricted plan, with the units of its figures."""
+    unit = printed_rows(plan, rows)[1]
+    return [value_words(plan, rows, name, unit)(rows[0][name]) for name in where]
+
+
+def _is_same(value: Any, known: Any) -> bool:
+    """Whether two values of a field are equal, numbers up to the rounding of their text."""
+    if _is_number(value) and _is_number(known):
+        return math.isclose(value, known, rel_tol=1e-9)
+    return bool(value == known)
 
 
 def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None, y: str | None = None) -> Chart:

@@ -121,7 +121,7 @@ def solve(
     task = Task(problem, as_history(history), options, grid, progress)
     if error_bars:
         check_halves(task, start)
-    warn_of(doubts(problem, task.history, options), USER)
+    warn_of(doubts(problem, task.history, options, grid), USER)
     result = _follow_task(task, start)
     warn_of(pressure_doubts(problem, task.history, (state.pressure for state in result.states)), USER)
     warn_of(yield_doubts_of(problem, task.history, result.states), USER)

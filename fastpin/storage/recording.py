@@ -129,7 +129,7 @@ def record(
     task = Task(problem, history, solve_options, grid, progress, save_corners)
     if solve_options.error_bars:
         check_halves(task, start)
-    warn_of(doubts(problem, task.history, solve_options), 2)
+    warn_of(doubts(problem, task.history, solve_options, grid), 2)
     beside = checked_beside(problem, {"fatigue": fatigue, "crack": crack, "strength": strength})
     writer = FileRecorder(path, task, title, about, beside)
     writer.overwrite = overwrite

@@ -130,7 +130,7 @@ GAPS: dict[str, str] = {
     "hole = { ellipse = 5e-3 }": "hole: is too large for small strains: must lie within 0.001, a tenth of the hole "
     "radius, not 0.005",
     "hole = { oval = 1e-6 }": "hole: must be a table with one of constant, ellipse, lobes, harmonic, flat, crown, "
-    'zone, angles, not oval, did you mean "ellipse"?',
+    'zone, angles, file, not oval, did you mean "ellipse"?',
     "hole = { ellipse = 1e-6, axes = 3 }": 'hole: unknown key "axes" beside ellipse, did you mean "axis"?',
     "hole = [1e-6, { ellipse = true }]": "hole.2.ellipse: must be a number, not true",
     "pin = { lobes = 2.5, size = 1e-6 }": "pin.lobes: must be a whole number from 1 to 1000, not 2.5",

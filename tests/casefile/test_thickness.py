@@ -239,9 +239,27 @@ def test_doubts_speak_of_newtons() -> None:
         return [str(doubt) for doubt in doubts(problem, fastpin.LoadHistory([{"P": load}]).per_thickness(thickness))]
 
     assert doubted(12.1e3) == []
+    assert doubted(120.0) == []  # 1.2 MPa
     assert doubted(12.1) == ["P: 12.1 N is a bearing stress of 0.121 MPa only; forces are in N: 1 kN is 1e3"]
     assert doubted(2.42e6) == ["P: 2.42e6 N strains the bodies by 2, far beyond linear elasticity; forces are in N"]
     assert doubted(12.1e6, 5.0)[0] == "thickness: 5 m is more than 50 hole radii; lengths are in m: 5 mm is 5e-3"
+
+
+@pytest.mark.parametrize(("force", "is_doubted"), [(20e3, True), (40e3, True), (80e3, False)])
+@pytest.mark.parametrize("body", [fastpin.Material(70e9, 0.33), fastpin.Material(210e9, 0.3)])
+def test_forces_without_a_thickness_are_doubted_below_3_MPa(
+    body: fastpin.Material, force: float, is_doubted: bool
+) -> None:
+    """20 kN in a hole of 16 mm, meant as N, is 1.25 MPa. Nobody designs a metal joint for that."""
+    problem = fastpin.Problem(fastpin.MaterialPair(body, body), 8e-3, 2e-5, 0.4)
+    found = doubts(problem, fastpin.LoadHistory([{"P": force}]))
+    assert [doubt.field for doubt in found] == (["P"] if is_doubted else [])
+
+
+def test_a_soft_joint_carries_small_forces() -> None:
+    rubber = fastpin.Material(5e6, 0.45)
+    problem = fastpin.Problem(fastpin.MaterialPair(rubber, rubber), 8e-3, 2e-5, 0.4)
+    assert doubts(problem, fastpin.LoadHistory([{"P": 2e2}])) == []
 
 
 def test_errors_speak_of_newtons(titanium_in_aluminium: fastpin.MaterialPair) -> None:

@@ -1,4 +1,4 @@
-"""The tables: interpolation, regions, the file."""
+"""The tables: interpolation, error bounds, the file."""
 
 from pathlib import Path
 
@@ -8,6 +8,7 @@ import pytest
 from fastpin.charts.groups import GROUPS, load_parameter_at, width_coordinate
 from fastpin.charts.tables import DATA, STORED, VERSION, ChartTable, read_tables, write_tables
 from fastpin.errors import InputError
+from scripts.charts_data import cell_bounds
 
 MOST_BYTES = 2_000_000
 
@@ -17,8 +18,8 @@ def polynomial_table(name: str, order: int) -> ChartTable:
     group = GROUPS[name]
     units = np.meshgrid(*(np.linspace(0.0, 1.0, nodes) for nodes in group.shape), indexing="ij")
     values = np.stack([polynomial(units, order) + k for k in range(len(group.quantities))], axis=-1)
-    regions = np.arange(np.prod(group.regions)).reshape(group.regions)
-    bounds = np.stack([regions + 1.0] * len(group.quantities), axis=-1)
+    cells = [nodes - 1 for nodes in group.shape]
+    bounds = np.stack([np.arange(np.prod(cells)).reshape(cells) + 1.0] * len(group.quantities), axis=-1)
     return ChartTable(group, values, [order] * len(group.quantities), bounds)
 
 
@@ -47,12 +48,40 @@ def test_nodes_and_ends_of_the_axes_are_exact() -> None:
         assert table.stored_at(quantity, place) == pytest.approx(expected, rel=1e-12)
 
 
-def test_each_region_has_its_own_bound() -> None:
+def test_each_cell_has_its_own_bound() -> None:
     table = polynomial_table("held", 4)
-    assert table.region([0.0] * 4) == (0, 0, 0, 0)
-    assert table.region([1.0] * 4) == (5, 4, 0, 3)
+    assert table.cell([0.0] * 4) == (0, 0, 0, 0)
+    assert table.cell([1.0] * 4) == (10, 7, 1, 8)
     units = [np.array([0.0, 1.0]) for _ in range(4)]
-    assert [index.tolist() for index in table.region(units)] == [[0, 5], [0, 4], [0, 0], [0, 3]]
+    assert [index.tolist() for index in table.cell(units)] == [[0, 10], [0, 7], [0, 1], [0, 8]]
+    assert table.value_at("cycle_energy", [0.0] * 4, 0.02)[1] == 1.0
+    assert table.value_at("cycle_energy", [1.0] * 4, 3.0)[1] == 11 * 8 * 2 * 9
+
+
+def kinked_table() -> ChartTable:
+    """A table of Kt that is smooth but for a kink across the first axis, in a cell and its neighbours."""
+    group = GROUPS["like_body"]
+    x, y, _ = np.meshgrid(*(np.linspace(0.0, 1.0, nodes) for nodes in group.shape), indexing="ij")
+    kt = 2.0 + 0.1 * np.sin(x + y) + np.abs(x - 0.512)
+    none = np.zeros((*(nodes - 1 for nodes in group.shape), len(group.quantities)))
+    return ChartTable(group, np.stack([kt] * len(group.quantities), axis=-1), [4] * len(group.quantities), none)
+
+
+def test_bounds_are_large_beside_a_kink_only() -> None:
+    table = kinked_table()
+    draw = np.random.default_rng(1)
+    low, high = np.array([(axis.least, axis.most) for axis in table.group.axes]).T
+    units = draw.random((400, 3))
+    near = np.abs(units[:, 0] - 0.512) < 1.0 / 40.0
+    errors = np.where(near, 4e-3, 1e-5) * draw.random(400)
+    most = np.full(table.group.regions, 16e-3)
+    bounds = cell_bounds(table, "kt_bearing", low + (high - low) * units, errors, most)
+    assert bounds.shape == (40, 32, 2)
+    assert 4e-3 < bounds[20].min() <= bounds.max() < 20e-3
+    assert bounds[:15].max() < 1e-4
+    assert (bounds[tuple(table.cell(list(units.T)))] >= errors).all()
+    jumping = cell_bounds(table, "peak_hoop_angle", low + (high - low) * units, errors, most)
+    assert 16e-3 <= jumping.min() <= jumping.max() < 17e-3
 
 
 def test_scales_and_coordinates_have_their_inverses() -> None:

@@ -1,8 +1,10 @@
 """Notes of long work, and progress in whole load points."""
 
+import contextlib
 import io
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -54,3 +56,49 @@ def test_progress_counts_whole_load_points(monkeypatch: pytest.MonkeyPatch) -> N
         bar.update(1234.9)
         bar._shown.refresh()
     assert "| 1,234 of 2,000 load points, " in terminal.getvalue()
+
+
+def lines_of(seconds: int, monkeypatch: pytest.MonkeyPatch, stored: int = 0) -> list[str]:
+    """The lines on standard error of a run of 1,000 load points in so many seconds, one after the other."""
+    clock = [0.0]
+    monkeypatch.setattr(progress, "time", SimpleNamespace(time=lambda: clock[0]))
+    monkeypatch.setattr(progress, "FIRST_LINE", 5.0)
+    log = io.StringIO()
+    monkeypatch.setattr(sys, "stderr", log)
+    with Bar(1000 + stored, LOAD_POINTS) as bar:
+        bar.update(stored)
+        for _ in range(1000):
+            clock[0] += seconds / 1000
+            bar.update(1)
+    return log.getvalue().splitlines()
+
+
+def test_a_log_has_few_lines_with_the_time_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert lines_of(4, monkeypatch) == []
+    assert lines_of(142, monkeypatch) == [
+        "fastpin: 4%: 36 of 1,000 load points, about 2 minutes left",
+        "fastpin: 7%: 73 of 1,000 load points, about 2 minutes left",
+        "fastpin: 15%: 147 of 1,000 load points, about 2 minutes left",
+        "fastpin: 29%: 294 of 1,000 load points, about 2 minutes left",
+        "fastpin: 59%: 589 of 1,000 load points, about 59 seconds left",
+        "fastpin: 100%: 1,000 of 1,000 load points, done in 2 minutes",
+    ]
+    assert len(lines_of(86400, monkeypatch)) == 11
+
+
+def test_stored_work_does_not_make_the_time_left_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert (
+        lines_of(142, monkeypatch, stored=9000)[0] == "fastpin: 90%: 9,036 of 10,000 load points, about 2 minutes left"
+    )
+
+
+def test_a_failure_ends_without_a_last_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock, log = [0.0], io.StringIO()
+    monkeypatch.setattr(progress, "time", SimpleNamespace(time=lambda: clock[0]))
+    monkeypatch.setattr(progress, "FIRST_LINE", 5.0)
+    monkeypatch.setattr(sys, "stderr", log)
+    with contextlib.suppress(KeyboardInterrupt), Bar(4, LOAD_POINTS) as bar:
+        clock[0] = 8.0
+        bar.update(1)
+        raise KeyboardInterrupt
+    assert log.getvalue() == "fastpin: 25%: 1 of 4 load points, about 24 seconds left\n"

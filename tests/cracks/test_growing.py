@@ -68,8 +68,9 @@ def test_the_fastest_growth_of_an_edge(cycle):
     at = int(np.argmin(found.life))
     assert found.fastest.life == found.life[at]
     assert found.fastest.crack.theta == found.theta[at]
-    hot = growth(cycle("Q"), Crack(math.radians(-8.0)), walker(3.0), 1e-4, 3e-3)
-    assert found.life[46] == pytest.approx(hot.life, rel=1e-9)
+    hot, fastest = (growth(cycle("Q"), Crack(at), walker(3.0), 1e-4, 3e-3) for at in found.theta[[46, at]])
+    assert found.life[46] == pytest.approx(hot.life, rel=2e-4)  # by less lengths
+    assert found.fastest.life == fastest.life
     assert found.fastest.life < 0.2 * hot.life
     assert np.all(np.isnan(found.arrest) == np.isfinite(found.life))
     assert "fastest <Growth of a crack at" in repr(found)
@@ -81,7 +82,7 @@ def test_life_of_a_crack_in_a_tension(small_states):
     """K = s sqrt(pi a) gives (a1^(1-m/2) - a0^(1-m/2))/(C (s sqrt pi)^m (1 - m/2))."""
     found = made(small_states, paris(1e-10, 3.0), lambda a: 100.0 * M * np.sqrt(math.pi * a))
     exact = (1e-2**-0.5 - 1e-4**-0.5) / (1e-10 * (100.0 * math.sqrt(math.pi)) ** 3 * -0.5)
-    assert found.life == pytest.approx(exact, rel=1e-4)
+    assert found.life == pytest.approx(exact, rel=1e-12)
     assert found.words == f"grows from 100 um to 10 mm in {exact:.3g} cycles"
 
 

@@ -244,6 +244,17 @@ def test_labels_of_contour_lines_do_not_overlap() -> None:
     assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
 
 
+@pytest.mark.gate
+def test_titles_of_maps_do_not_run_into_one_another() -> None:
+    axes = [Axis(name, np.arange(2.0), False) for name in "xy"]
+    name = "amplitude of the cyclic force across the lug = 2 kN\nforce of the first load along its axis = 10 kN"
+    part = name, np.arange(4.0).reshape(2, 2), np.zeros((2, 2), bool)
+    figure = plot_sweep(Chart("", "value", *axes, [part] * 3, 0))
+    figure.draw_without_rendering()
+    boxes = [panel.title.get_window_extent() for panel in figure.axes]
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+
+
 # -- error bars --------------------------------------------------------------------------------------------------
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from fastpin.errors import InputError
 from fastpin.figures.sweep import plot_sweep
-from fastpin.report.sweep import chart, check_axes, text, write_csv
+from fastpin.report.sweep import chart, check_axes, restricted, text, where_words, write_csv
 from fastpin.solver.result import Result
 from fastpin.studies import sweep
 from fastpin.studies.field_words import field_words
@@ -52,6 +52,35 @@ def test_axes_are_chosen(plan: Plan) -> None:
 def test_figures_that_can_not_be(written: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
         check_axes(parse_plan(written), "dx", None, None)
+
+
+def test_a_restricted_plan_has_the_points_with_given_values(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    part = restricted(plan, {"contact.friction": 0.4 * (1.0 + 1e-12), "pin.material": "steel"})
+    assert {point.values["contact.friction"] for point in part.points} == {0.4}
+    assert len(part.points) == 3
+    kept = [row for row in rows if row["contact.friction"] == 0.4 and row["pin.material"] == "steel"]
+    found = chart(part, kept, "peak_pressure")
+    assert (found.x.label, found.y) == ("clearance (um)", None)
+    assert found.parts[0][1] == pytest.approx([40.0, 41.0, 42.0])
+    assert where_words(plan, kept, {"contact.friction": 0.4}) == ["friction coefficient = 0.4"]
+    assert restricted(plan, {}) == plan
+
+
+@pytest.mark.parametrize(
+    ("where", "words"),
+    [
+        (
+            {"contact.friktion": 0.4},
+            'where: the plan does not vary "contact.friktion", did you mean "contact.friction"?',
+        ),
+        ({"contact.friction": 0.3}, "where: the plan has no contact.friction = 0.3; it has 0.2, 0.4"),
+        ({"pin.material": "steel", "pin.E": 100e9}, "where: no point of the plan has all of these values"),
+    ],
+)
+def test_a_plan_is_restricted_to_its_values_only(where: dict[str, Any], words: str, plan: Plan) -> None:
+    with pytest.raises(InputError) as raised:
+        restricted(plan, where)
+    assert str(raised.value) == words
 
 
 def test_numbers_of_a_map(plan: Plan, rows: list[dict[str, Any]]) -> None:

@@ -394,6 +394,7 @@ class Valid:
             "failure_load.distance": 1e-3,
             "failure_load.history": [{"P": 1e5}],
             "failure_load.nodes": NODES,
+            "filtered.harmonics": 15,
             "characteristic_radius.theta": [0.0, 0.5],
             "characteristic_radius.tension": 0.1,
             "characteristic_radius.compression": 0.2,
