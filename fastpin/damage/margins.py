@@ -21,6 +21,7 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.margins import Margin
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
+from fastpin.states.walking import walk_margins
 
 MOST_STOPS = 100
 """Most states of a cycle whose fatigue is printed unasked: some tenths of a second."""
@@ -66,13 +67,16 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
 
 
 def last_cycle_margins(problem: Problem, states: Sequence[State], cycles: Sequence[Cycle]) -> list[Margin]:
-    """Return the margins of fatigue over the last of the cycles that are known; none if finding them takes long."""
+    """Return the margins over the last of the cycles that are known: of a bush that may walk, and of fatigue.
+
+    None of fatigue is found if that takes long.
+    """
     try:
         stops = cycle_states(states, cycles[-1]) if cycles else []
     except InputError:  # a corner of the cycle was not kept
         return []
     rows = fatigue_margins(problem, [], stops) if len(stops) <= MOST_STOPS else []
-    return [row for row in rows if not math.isnan(row.margin)]
+    return walk_margins(stops) + [row for row in rows if not math.isnan(row.margin)]
 
 
 def reserve_margins(reserves: Sequence[StressReserve], how: FatigueAssessment) -> list[Margin]:

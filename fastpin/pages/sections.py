@@ -48,7 +48,7 @@ from fastpin.report.crack_growth import growth_line
 from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
 from fastpin.report.margins import HEADS, margin_rows
 from fastpin.report.notes import note_lines, solver_line, way_on
-from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_line, state_columns
+from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_lines, state_columns
 from fastpin.report.strength import strength_lines
 from fastpin.report.table import MAX_ROWS, Column
 from fastpin.report.wear import wear_input
@@ -58,6 +58,7 @@ from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.margins import static_margins
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
 from fastpin.states.state import State
+from fastpin.states.walking import walk_doubts, walk_margins
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical, run_id
 
@@ -111,7 +112,7 @@ def overview(page: PageParts) -> PageSection:
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
         sentences = [f"largest contact pressure in all kept states: {pressure}, load point {point}"]
         sentences += [hoop_line(problem, source.peaks, body) for body in EDGES]
-        sentences += [*bush_line(problem, source.peaks).splitlines(), _seat_line(source)]
+        sentences += [*bush_line(problem, source.peaks).splitlines(), *_seat_lines(source)]
         lines = cycle_lines(problem, source.result.cycles, source.peaks)
         many = f"{len(lines):,} blocks of cycles: see hysteresis and slip"
         sentences += lines if len(lines) <= MOST_BLOCKS else [many]
@@ -131,6 +132,7 @@ def warnings_and_notes(source: Source) -> list[Text]:
     warnings = [*doubts(problem, history, source.case.options)]
     warnings += pressure_doubts(problem, history, [np.array([source.pressure])])
     warnings += yield_doubts(problem, history, lambda: source.found, source.read)
+    warnings += [] if source.cycle is None else walk_doubts(source.cycle.states, source.result.cycles)
     warnings += [] if source.life is None else source.life.doubts
     notes = note_lines(source.case, source.result)
     return [Text(f"Warning: {each}.", "note") for each in warnings] + [Text(f"Note: {each}.", "note") for each in notes]
@@ -162,6 +164,7 @@ def margins(page: PageParts) -> PageSection:
     source, problem = page.source, page.source.case.problem
     found = static_margins(problem, source.found, source.read)
     cycle = [] if source.cycle is None else source.cycle.states
+    found += walk_margins(cycle)
     judged = {edge_body(problem, one.body) for one in source.assessed.reserves} if source.assessed else set()
     found += [
         row
@@ -380,7 +383,7 @@ def seat(page: PageParts) -> PageSection:
         "Here the bush is the pin, and its seat in the plate the hole: the motion is that of the bush over the plate."
     )
     words += " Work is that of the whole joint."
-    parts: list[SectionPart] = [Text(sentence(_seat_line(source))), Text(words)]
+    parts: list[SectionPart] = [*(Text(sentence(line)) for line in _seat_lines(source)), Text(words)]
     parts += drawn_or_reason(lambda: page.album.figure(tractions_plot(InMemory(drawn))))
     if len(mapped) > 1:
         parts += drawn_or_reason(lambda: page.album.figure(stick_slip_plot(InMemory(mapped))))
@@ -393,10 +396,9 @@ def seat(page: PageParts) -> PageSection:
     return PageSection("seat", "Seat of the bush", parts)
 
 
-def _seat_line(source: Source) -> str:
-    ends = () if source.cycle is None else (source.cycle.states[0], source.cycle.states[-1])
+def _seat_lines(source: Source) -> list[str]:
     (last,) = source.read([source.points.size - 1])
-    return seat_line(source.case.problem, source.peaks, last, ends)
+    return seat_lines(source.case.problem, source.peaks, last, () if source.cycle is None else source.cycle.states)
 
 
 def hysteresis(page: PageParts) -> PageSection:

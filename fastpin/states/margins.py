@@ -23,6 +23,7 @@ MARGINS = {
     "yield": "yield strength over the von Mises stress",
     "ultimate": "ultimate strength over the von Mises stress",
     "rotation": "friction of a bonded bush in its seat over the friction needed",
+    "walk": "no turn of a bush in its seat over the turn of the last cycle",
     "opening": "pressure of the press fit over the pressure needed to close the seat",
     "findley": "fatigue limit over Findley's parameter in the last cycle",
     "fatigue": "factor on all stresses until the goal of [fatigue] is missed",
@@ -81,7 +82,7 @@ def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[i
     Parameters
     ----------
     problem : Problem
-    extremes : dict
+    extremes : Found
         The extremes of all states, see :func:`fastpin.states.extremes.marked_extremes`; empty without states.
     read : callable
         ``read(places)`` gives the states at these places.
@@ -101,7 +102,8 @@ def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[i
             elif strength is None:
                 rows.append(row._replace(remark="not known: no yield strength given"))
             elif extreme is None or state is None:
-                rows.append(row._replace(kind="traction", allowable=strength, remark="not known: there is no state"))
+                why = str(extremes.unread.get(PREFIX + owner, "there is no state"))
+                rows.append(row._replace(kind="traction", allowable=strength, remark=f"not known: {why}"))
             else:
                 place = place_words(problem, von_mises_peak(state, owner))
                 known = "traction", extreme.value, strength, extreme.load_point, place, state.load, name, owner
@@ -126,7 +128,8 @@ def _of_bush(problem: Problem, extremes: Found, read: Callable[[Sequence[int]], 
         turning = Margin("bush: slip in its seat", owner="bush")
     least, slipping = extremes.get(("bush_open_margin", "smallest")), extremes.get(("bush_least_friction", "largest"))
     if least is None or slipping is None:
-        none = "not known: there is no state"
+        errors = (extremes.unread.get(name) for name in ("bush_open_margin", "bush_least_friction"))
+        none = f"not known: {next(filter(None, errors), 'there is no state')}"
         return [turning._replace(remark=none), opening._replace(remark=none)]
     (state,), pressure = read([least.place]), units(problem)["traction"].text(least.value, 4)
     fit = state.bush_fit()
