@@ -87,6 +87,7 @@ def _summary() -> Schema:
             "states": _list_of(_state(seat=_state())),
             "extremes": _object(dict.fromkeys(READINGS, sides), required=()),
             "margins": _margins(),
+            "unread": _map_of(_TEXT, "why a quantity could not be read from the states, by quantity"),
             "cycles": _list_of(_object(of_cycle)),
             "cycle": _or_null(_last_cycle()),
             "fatigue": _or_null(_fatigue()),

@@ -15,7 +15,7 @@ from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.report import summary
 from fastpin.report.margins import margin_lines, margin_rows
-from fastpin.states.extremes import KeptStates, marked_extremes
+from fastpin.states.extremes import Found, KeptStates, marked_extremes
 from fastpin.states.margins import Margin, smallest_margin, static_margins
 from fastpin.states.yielding import von_mises_peak
 
@@ -75,7 +75,7 @@ def test_what_is_not_known_says_why() -> None:
         assert math.isnan(rows[subject].margin)
     shown = {row[0]: row for row in margin_rows(result.problem, list(rows.values()))}
     assert shown["pin: yield, von Mises"][1:5] == ("-", "-", "not known", "-")
-    none = {row.subject: row for row in static_margins(result.problem, {}, lambda places: [])}
+    none = {row.subject: row for row in static_margins(result.problem, Found(), lambda places: [])}
     for subject in ("bush: yield, von Mises", OPENING):
         assert none[subject].remark == "not known: there is no state"
 
