@@ -18,7 +18,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.strength import StrengthAssessment
 from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import Margin
+from fastpin.states.margins import Margin, part_of
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 from fastpin.states.walking import walk_margins
@@ -52,7 +52,7 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
             value = limited.hot_spot.parameter
             owner = owner_of(problem, body)
             row = Margin(f"{subject}, Findley", "traction", value, limit, remark=place, name="findley", owner=owner)
-            rows.append(row)
+            rows.append(row._replace(part=part_of(problem, owner)))
         elif one is None:
             why = known.rstrip(".") if isinstance(known, str) else "no constants of fatigue given"
             rows.append(Margin(subject, remark=f"not known: {why[0].lower()}{why[1:]}"))
@@ -88,7 +88,7 @@ def reserve_margins(reserves: Sequence[StressReserve], how: FatigueAssessment) -
         Margin(
             f"{edge_body(one.problem, one.body)}: {one.criterion}, factor on all stresses",
             "ratio", 1.0, one.factor, one.largest, _remark(one, how), one.loads, "fatigue",
-            owner_of(one.problem, one.body),
+            owner_of(one.problem, one.body), part_of(one.problem, owner_of(one.problem, one.body)),
         )
         for one in reserves
     ]  # fmt: skip

@@ -179,6 +179,11 @@ def margins(page: PageParts) -> PageSection:
     words = f"Margins of safety over {states}{run}: allowable/value - 1"
     remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
     remarks += "down to a third of the hole's radius below them; fastpin is elastic."
+    if any(row.part for row in found):
+        remarks += (
+            " Of the plate only the edge of its hole is looked at: its other edges, and points below them, may fail "
+        )
+        remarks += "first."
     rows = margin_rows(problem, found)
     return PageSection("margins", "Margins", [Facts(words, rows, HEADS), Text(remarks)])
 

@@ -21,7 +21,10 @@ HEADS = ("subject", "value", "allowable", "margin", "load point", "loads", "rema
 
 
 def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
-    """Return lines of text on the margins that are known, the smallest one marked; none if no margin is known."""
+    """Return lines of text on the margins that are known; none if no margin is known.
+
+    The smallest one is marked, unless only a part of its body was looked at.
+    """
     known = [row for row in rows if math.isfinite(row.margin)]
     if not known:
         return []
@@ -40,7 +43,9 @@ def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, 
         if math.isnan(row.margin):
             return "not known"
         words = "none needed" if math.isinf(row.margin) else f"{row.margin:+.2f}"
-        return f"{words}, the smallest" if row is least else words
+        if row is not least or row.part:  # the smallest of a part says nothing of the whole
+            return words
+        return f"{words}, the smallest{' known' if any(each.part for each in margins) else ''}"
 
     def shown(row: Margin, value: float) -> str:
         if math.isnan(value):
@@ -57,7 +62,7 @@ def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, 
             verdict(row),
             "-" if math.isnan(row.load_point) else point_name(row.load_point),
             named_loads(problem, row.loads) if row.loads else "-",
-            row.remark,
+            "; ".join(filter(None, (row.remark, row.part))),
         )
         for row in margins
     ]
@@ -76,7 +81,8 @@ def document(problem: Problem, margins: Sequence[Margin]) -> list[dict[str, Any]
             "allowable": factors[row.kind] * row.allowable,
             "unit": "" if row.kind == "ratio" else unit[row.kind].name,
             "margin": row.margin,
-            "smallest": row is least,
+            "smallest": row is least and not row.part,
+            "part": row.part,
             "loads": printed_loads(problem, row.loads),
             "load_point": row.load_point,
             "remark": row.remark,

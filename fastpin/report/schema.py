@@ -120,7 +120,10 @@ def _strength() -> Schema:
 
 
 def _margins() -> Schema:
-    texts, numbers = ("subject", "name", "body", "unit", "remark"), ("value", "allowable", "margin", "load_point")
+    texts, numbers = (
+        ("subject", "name", "body", "unit", "remark", "part"),
+        ("value", "allowable", "margin", "load_point"),
+    )
     governing = {"smallest": _TRUTH, "loads": _map_of(_NUMBER, "loads of the state that governs")}
     return _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing))
 

@@ -53,6 +53,8 @@ class Margin(NamedTuple):
         One of :data:`MARGINS`.
     owner : str
         The body: "plate", "pin" or "bush".
+    part : str
+        Where alone the body was looked at, if not everywhere: the margin of the whole body may be smaller.
     """
 
     subject: str
@@ -64,6 +66,7 @@ class Margin(NamedTuple):
     loads: Mapping[str, float] = MappingProxyType({})
     name: str = ""
     owner: str = ""
+    part: str = ""
 
     @property
     def margin(self) -> float:
@@ -71,6 +74,11 @@ class Margin(NamedTuple):
         if self.value <= 0.0:
             return math.inf
         return self.allowable / self.value - 1.0
+
+
+def part_of(problem: Problem, owner: str) -> str:
+    """Where alone a body is looked at; empty if that is everywhere. A compliance knows the edge of its hole only."""
+    return "edge of the hole only" if owner == "plate" and problem.plate_body.lug.edge_only else ""
 
 
 def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
@@ -96,7 +104,7 @@ def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[i
         if (ultimate := material_of(problem, circle.body).ultimate_strength) is not None:
             strengths["ultimate"] = ultimate
         for name, strength in strengths.items():
-            row = Margin(f"{owner}: {name}, von Mises", name=name, owner=owner)
+            row = Margin(f"{owner}: {name}, von Mises", name=name, owner=owner, part=part_of(problem, owner))
             if problem.dimensionless:
                 rows.append(row._replace(remark="not known: the problem has no dimensions"))
             elif strength is None:
@@ -107,7 +115,7 @@ def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[i
             else:
                 place = place_words(problem, von_mises_peak(state, owner))
                 known = "traction", extreme.value, strength, extreme.load_point, place, state.load, name, owner
-                rows.append(Margin(row.subject, *known))
+                rows.append(Margin(row.subject, *known, row.part))
     return rows + (_of_bush(problem, extremes, read) if "seat" in bodies_of(problem) else [])
 
 

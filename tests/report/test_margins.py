@@ -18,6 +18,7 @@ from fastpin.report.margins import margin_lines, margin_rows
 from fastpin.states.extremes import Found, KeptStates, marked_extremes
 from fastpin.states.margins import Margin, smallest_margin, static_margins
 from fastpin.states.yielding import von_mises_peak
+from tests.support.bodies import softer_hole
 
 STEEL, BRONZE = Material(210e9, 0.3), Material(103e9, 0.34, yield_strength=300e6)
 LIMITS = FatigueConstants(bending_limit=150e6, torsion_limit=90e6)
@@ -60,6 +61,44 @@ def test_margins_are_allowable_over_value_of_the_governing_state(result: Result)
     least = min(fits, key=lambda fit: fit.open_margin)
     assert opening.margin == pytest.approx(least.press_fit_pressure / least.pressure_to_close - 1.0)
     assert opening.load_point == fits.index(least) + 1
+
+
+def margins_of(part: str, plate: float, pin: float) -> list[Margin]:
+    of_plate = Margin(
+        "plate: yield, von Mises", "traction", 1e8, (1.0 + plate) * 1e8, name="yield", owner="plate", part=part
+    )
+    return [of_plate, Margin("pin: yield, von Mises", "traction", 1e8, (1.0 + pin) * 1e8, name="yield", owner="pin")]
+
+
+@pytest.mark.parametrize(
+    ("part", "plate", "pin", "verdicts"),
+    [
+        ("", 0.5, 7.0, ["+0.50, the smallest", "+7.00"]),
+        ("edge of the hole only", 0.5, 7.0, ["+0.50", "+7.00"]),
+        ("edge of the hole only", 0.5, 0.1, ["+0.50", "+0.10, the smallest known"]),
+    ],
+)
+def test_the_margin_of_a_part_is_never_called_the_smallest(
+    part: str, plate: float, pin: float, verdicts: list[str]
+) -> None:
+    rows = margins_of(part, plate, pin)
+    problem = Problem(MaterialPair(STEEL, ALUMINIUM), 10e-3, 30e-6, 0.3)
+    assert [row[3] for row in margin_rows(problem, rows)] == verdicts
+    assert margin_rows(problem, rows)[0][-1] == part
+    assert [row["part"] for row in summary.margins_document(problem, rows)] == [part, ""]
+    assert [row["smallest"] for row in summary.margins_document(problem, rows)] == [
+        "smallest" in each for each in verdicts
+    ]
+
+
+@pytest.mark.parametrize("bushed", [True, False])
+def test_a_lug_of_any_outline_is_looked_at_on_the_edge_of_its_hole_only(bushed: bool) -> None:
+    lug = softer_hole(12.5e-3 if bushed else 10e-3, ALUMINIUM.nu, "strain")
+    problem = Problem(
+        MaterialPair(STEEL, ALUMINIUM), 10e-3, 30e-6, 0.3, plate_body=replace(LUG, inside=lug) if bushed else lug
+    )
+    parts = {row.owner: row.part for row in static_margins(problem, Found(), lambda places: [])}
+    assert parts == {"plate": "edge of the hole only", "pin": "", **({"bush": ""} if bushed else {})}
 
 
 @pytest.mark.gate
