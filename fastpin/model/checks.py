@@ -101,6 +101,14 @@ def whole_number(field: str, value: object, least: int, most: int | None = None)
     return int(value)  # type: ignore[call-overload]
 
 
+def count(field: str, value: object, most: float) -> int:
+    """Check a count from 1 to `most` that may be written as 1e6, and return it."""
+    found = number(field, value, 1, most)
+    if found != int(found):
+        raise InputError(field, f"must be a whole number, not {found:g}")
+    return int(found)
+
+
 def is_whole(value: object) -> bool:
     """Whether a value is a whole number of Python or NumPy, and no truth value or duration."""
     return isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.timedelta64))

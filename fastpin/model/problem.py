@@ -33,7 +33,7 @@ from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
 from fastpin.model.profile import NO_GAP, InitialGap, Profile, ProfileLike, is_pair
 from fastpin.model.profile_terms import Term
 from fastpin.model.room import widest_place
-from fastpin.model.synonyms import explains_keywords
+from fastpin.model.synonyms import explains_attributes, explains_keywords
 
 Rotation = Literal["free", "fixed", "spring"]
 """Kinds of pin rotation."""
@@ -67,6 +67,7 @@ DriveKind = Literal["force", "ux", "uy", "both"]
 
 
 @explains_keywords
+@explains_attributes()
 @dataclass(frozen=True, repr=False)
 class Problem:
     """An elastic pin in the hole of an elastic plate, with Coulomb friction.
