@@ -57,7 +57,9 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
             why = known.rstrip(".") if isinstance(known, str) else "no constants of fatigue given"
             rows.append(Margin(subject, remark=f"not known: {why[0].lower()}{why[1:]}"))
         else:
-            remark = f"not known: no bending_limit and torsion_limit of the {owner_of(problem, body)} given"
+            remark = (
+                f"not known: a margin needs Findley's bending_limit and torsion_limit of the {owner_of(problem, body)}"
+            )
             life = one.hot_spot.life
             if not math.isnan(life):
                 remark += f"; life {life:.3g} cycles" if math.isfinite(life) else "; infinite life"

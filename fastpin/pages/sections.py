@@ -46,7 +46,7 @@ from fastpin.report.case import ROUNDING, case_rows, corner_columns
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.crack_growth import growth_line
 from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
-from fastpin.report.margins import HEADS, margin_rows
+from fastpin.report.margins import HEADS, in_order, margin_rows, verdict
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_lines, state_columns
 from fastpin.report.strength import strength_lines
@@ -55,7 +55,7 @@ from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.extremes import READINGS, yield_doubts
 from fastpin.states.load_cycle import LoadCycle
-from fastpin.states.margins import static_margins
+from fastpin.states.margins import Margin, static_margins
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
 from fastpin.states.state import State
 from fastpin.states.walking import walk_doubts, walk_margins
@@ -107,6 +107,8 @@ def overview(page: PageParts) -> PageSection:
     source, problem = page.source, page.source.case.problem
     cycle = source.cycle
     parts: list[SectionPart] = [_status(source), *warnings_and_notes(source)]
+    if source.points.size and not problem.dimensionless:
+        parts.append(Text(f"Verdict: {verdict(all_margins(page))}."))
     if source.peaks:
         largest = source.peaks[top([state.peak_pressure for state in source.peaks])]
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
@@ -159,8 +161,8 @@ def _count(source: Source) -> str:
     return "1 state is kept" if source.points.size == 1 else f"{source.points.size:,} states are kept"
 
 
-def margins(page: PageParts) -> PageSection:
-    """Return the margins of yield, bush, fatigue, crack and plies, each with the state that governs it."""
+def all_margins(page: PageParts) -> list[Margin]:
+    """Return the margins of yield, bush, fatigue, crack and plies, the smallest one first."""
     source, problem = page.source, page.source.case.problem
     found = static_margins(problem, source.found, source.read)
     cycle = [] if source.cycle is None else source.cycle.states
@@ -174,6 +176,12 @@ def margins(page: PageParts) -> PageSection:
     found += [] if source.assessed is None else reserve_margins(source.assessed.reserves, source.assessed.how)
     found += [] if isinstance(source.crack, str) else crack_margins(source.crack)
     found += [] if isinstance(source.strength, str) else strength_margins(*source.strength.worst)
+    return in_order(found)
+
+
+def margins(page: PageParts) -> PageSection:
+    """Return the margins, each with the state that governs it, and the lines of those who answer for the report."""
+    source, found = page.source, all_margins(page)
     run = "" if source.result.complete else " of an unfinished run"
     states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
     words = f"Margins of safety over {states}{run}: allowable/value - 1"
@@ -184,8 +192,18 @@ def margins(page: PageParts) -> PageSection:
             " Of the plate only the edge of its hole is looked at: its other edges, and points below them, may fail "
         )
         remarks += "first."
-    rows = margin_rows(problem, found)
-    return PageSection("margins", "Margins", [Facts(words, rows, HEADS), Text(remarks)])
+    rows, author = margin_rows(source.case.problem, found), source.case.about.author
+    signed = [("prepared", author, "", ""), ("checked", "", "", ""), ("approved", "", "", "")]
+    return PageSection(
+        "margins",
+        "Margins",
+        [
+            Text(sentence(verdict(found))),
+            Facts(words, rows, HEADS),
+            Text(remarks),
+            Facts("Signatures", signed, ("", "name", "date", "signature"), tall=True),
+        ],
+    )
 
 
 def case(page: PageParts) -> PageSection:

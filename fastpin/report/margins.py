@@ -35,6 +35,25 @@ def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
     return ["margins of safety over all kept states, allowable/value - 1:", *aligned(cells, "lrrll")]
 
 
+def in_order(margins: Sequence[Margin]) -> list[Margin]:
+    """Margins from the smallest one on; then those of parts that need nothing, then those that are not known."""
+    return sorted(margins, key=lambda row: (math.isnan(row.margin), row.margin))
+
+
+def verdict(margins: Sequence[Margin]) -> str:
+    """Return a sentence on the margin that governs, and on what is not known; without its full stop."""
+    least, unknown = smallest_margin(margins), [row.subject for row in margins if math.isnan(row.margin)]
+    words = "no margin is known"
+    if least is not None:
+        fails = (
+            "the joint fails by" if least.margin < 0.0 else "all known margins are positive; the smallest is that of"
+        )
+        where = "" if math.isnan(least.load_point) else f", load point {point_name(least.load_point)}"
+        words = f"{fails} {least.subject}: {least.margin:+.2f}{where}"
+        words += f", {least.part}" if least.part else ""
+    return words + (f"; not known: {len(unknown)} of {len(margins)}, see their remarks" if unknown else "")
+
+
 def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, ...]]:
     """Return rows of text under :data:`HEADS`."""
     unit, least = units(problem), smallest_margin(margins)

@@ -14,7 +14,7 @@ from fastpin.model import FatigueConstants
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.report import summary
-from fastpin.report.margins import margin_lines, margin_rows
+from fastpin.report.margins import in_order, margin_lines, margin_rows, verdict
 from fastpin.states.extremes import Found, KeptStates, marked_extremes
 from fastpin.states.margins import Margin, smallest_margin, static_margins
 from fastpin.states.yielding import von_mises_peak
@@ -156,7 +156,7 @@ def test_fatigue_is_of_the_last_cycle_and_says_so(result: Result) -> None:
     known = [fatigue(states, "smith-watson-topper", body) for body in ("plate", "seat")]
     bore, seat = fatigue_margins(result.problem, known, states)
     assert (bore.subject[:15], seat.subject[:15]) == ("last cycle only", "last cycle only")
-    assert "not known: no bending_limit and torsion_limit of the bush given" in bore.remark
+    assert "not known: a margin needs Findley's bending_limit and torsion_limit of the bush" in bore.remark
     findley = fatigue(states, "findley", "seat")
     assert seat.subject.endswith("Findley")
     assert seat.margin == pytest.approx(findley.limit / findley.hot_spot.parameter - 1.0)
@@ -226,3 +226,23 @@ def test_the_smallest_margin_is_marked(result: Result) -> None:
         "b 4 MPa of 3 MPa -0.25, the smallest load point 2.5: P = 2 kN/m at 1 deg",
     ]
     assert margin_lines(problem, rows[2:]) == []
+
+
+def test_the_verdict_names_the_row_that_governs() -> None:
+    problem = Problem(MaterialPair(STEEL, ALUMINIUM), 10e-3, 30e-6, 0.3)
+    plate, pin = (row._replace(load_point=2.0) for row in margins_of("", 0.5, 0.2))
+    unknown = Margin("bush: slip in its seat", remark="no limit of the slip is known")
+    needless = Margin("bush: opening, press fit needed", "traction", 0.0, 1e7)
+    assert [row.subject for row in in_order([unknown, needless, plate, pin])] == [
+        pin.subject, plate.subject, needless.subject, unknown.subject
+    ]  # fmt: skip
+    known = "all known margins are positive; the smallest is that of pin: yield, von Mises: +0.20, load point 2"
+    assert verdict([plate, pin]) == known
+    assert verdict([plate, pin, unknown]) == f"{known}; not known: 1 of 3, see their remarks"
+    failed = plate._replace(allowable=0.9e8, part="edge of the hole only")
+    assert (
+        verdict([failed, pin])
+        == "the joint fails by plate: yield, von Mises: -0.10, load point 2, edge of the hole only"
+    )
+    assert verdict([unknown]) == "no margin is known; not known: 1 of 1, see their remarks"
+    assert len(margin_rows(problem, in_order([unknown, plate]))) == 2
