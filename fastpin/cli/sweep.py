@@ -185,7 +185,8 @@ def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Pa
     if options.plot is not None and options.envelope:
         found = report.envelope.envelopes(plan, rows, _values(options, plan)[0])
         if found:
-            figures.envelope.plot_envelope(found, options.plot, plan.title)
+            problem = plan.case(plan.points[0]).problem
+            figures.envelope.plot_envelope(found, options.plot, plan.title, problem=problem, varied=plan.fields)
         missing = len(rows) - sum(curve[report.envelope.BYPASS].size for curve in found)
         if missing:
             say(f"note: {missing} of {len(rows)} points have no value in the figure", file=sys.stderr)

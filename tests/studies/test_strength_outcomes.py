@@ -67,7 +67,13 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path) -> None
     assert {*np.round(curve[BYPASS])} == {round(row["factor"] * row["load.1.syy"]) for row in rows}
     assert curve[BEARING].max() == pytest.approx(max(row["factor"] for row in rows[2:]) * 1e6 / 6e-3)
     assert np.all(np.diff(np.arctan2(curve[BYPASS], curve[BEARING])) > 0.0)
-    assert "bypass stress (MPa)" in Path("one.svg").read_text()
+    drawn = Path("one.svg").read_text()
+    for words in (
+        "bypass stress (MPa)",
+        "failure of the first ply by yamada-sun 500 µm from the edge",
+        "friction coefficient",
+    ):
+        assert words in drawn
 
 
 @pytest.mark.gate
