@@ -87,7 +87,7 @@ def test_an_envelope_follows_the_force_and_the_other_fields(folder: Path) -> Non
     plan = read_plan("plan.toml")
     rows = sweep.rows(plan, "plan")
     for curve, row, layup in zip(envelopes(plan, rows, "f"), rows, ("[0/90]4s", "[0/45/-45/90]2s"), strict=True):
-        assert curve.parameters == {"criterion": "yamada-sun", "case": f"layup = {layup}"}
+        assert curve.parameters == {"criterion": "yamada-sun 500 um from the edge", "case": f"layup = {layup}"}
         assert curve[BYPASS] == pytest.approx([row["f"] * 50e6])
         assert curve[BEARING] == pytest.approx([row["f"] * 1e6 / 6e-3])
 
