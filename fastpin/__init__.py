@@ -20,7 +20,10 @@ dimensionless problem (R = F = beta* = 1). All arrays of a state have one entry 
 
 import lazy_loader
 
-from fastpin.moved import with_moved
+from fastpin.moved import with_homes, with_moved
 
 _face, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
-__getattr__ = with_moved(_face, lambda: _face("figures"), ("plot_convergence",))
+__getattr__ = with_homes(
+    with_moved(_face, lambda: _face("figures"), ("plot_convergence",)),
+    ("bodies", "model", "solver", "states", "damage", "cracks", "storage", "studies", "figures", "report"),
+)

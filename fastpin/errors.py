@@ -5,6 +5,9 @@ The errors of a run stand in :mod:`fastpin.solver.errors`. They derive from :cla
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
+
 
 class FastpinError(Exception):
     """Base class of all errors raised by fastpin."""
@@ -74,6 +77,35 @@ class OutputError(FieldMessage, FastpinError):
     reason : str
         The message without the file.
     """
+
+
+class ReadingError(FieldMessage, FastpinError):
+    """A quantity that could not be read from states. The states themselves are right, and are kept.
+
+    Attributes
+    ----------
+    field : str
+        The quantity, or the part of an output.
+    reason : str
+        The message without it.
+    """
+
+
+@contextlib.contextmanager
+def reading(name: str, *others: str) -> Iterator[None]:
+    """Turn every error of the block, which reads a quantity from states, into :class:`ReadingError` with its name.
+
+    :class:`InputError` stays as it is if its field is one of the `others`, such as a file that is damaged.
+    """
+    try:
+        yield
+    except (ReadingError, OutputError, OSError, MemoryError):
+        raise
+    except Exception as error:  # NumPy raises errors of many kinds.
+        if isinstance(error, InputError) and error.field in others:
+            raise
+        words = str(error) if isinstance(error, FastpinError) else f"{type(error).__name__}: {error}"
+        raise ReadingError(name, f"can't be read: {words}") from error
 
 
 class CaseFileError(InputError):

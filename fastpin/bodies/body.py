@@ -19,6 +19,7 @@ from fastpin.bodies.walls import Amplitudes, Displacements, Other, PlateWalls, W
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.kernels.harmonics import FREE, HELD, First
+from fastpin.model.checks import is_between
 from fastpin.model.laminate import Laminate
 from fastpin.model.materials import Material, MaterialPair, Plane
 
@@ -534,6 +535,6 @@ class PlateBody(BodyBase):
 def check_outer(outer: float, inner: float, name: str, thinnest: float) -> None:
     """Check the outer radius of a body round a circle of radius `inner`, m, that is called `name`."""
     least, most = inner / (1.0 - thinnest), WIDEST * inner
-    if not least <= outer <= most:
+    if not is_between(least, outer, most):
         limits = f"must lie between {least:g} and {most:g} for the {name} {inner:g}"
         raise InputError("outer_radius", f"{limits}, not {outer:g}")

@@ -13,7 +13,7 @@ from fastpin.bodies.body import WIDEST, InWords, PlateBody, Remote, Rim, Table
 from fastpin.bodies.walls import UNIT_STRESS, Amplitudes, Displacements, Other, force_on
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
-from fastpin.model.checks import number
+from fastpin.model.checks import is_between, number
 from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.synonyms import explains_keywords
 
@@ -59,7 +59,7 @@ class Plate(PlateBody):
         return table.build(cls, {"reaction": table.value("reaction")}, {"reaction": None})
 
     def check(self, radius: float, dimensionless: bool = False, name: str = "hole radius") -> None:
-        if self.reaction is not None and not NEAREST * radius <= math.hypot(*self.reaction) <= WIDEST * radius:
+        if self.reaction is not None and not is_between(NEAREST * radius, math.hypot(*self.reaction), WIDEST * radius):
             limits = f"must be a point from {NEAREST * radius:g} to {WIDEST * radius:g} from the centre"
             raise InputError("reaction", f"{limits}, not {math.hypot(*self.reaction):g}")
 

@@ -13,7 +13,7 @@ from fastpin.bodies.walls import UNIT_STRESS, Amplitudes, Displacements, Other, 
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.kernels.harmonics import Layer
-from fastpin.model.checks import choice, positive
+from fastpin.model.checks import choice, is_above, positive
 from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.materials import Material
 from fastpin.model.synonyms import explains_keywords
@@ -77,8 +77,8 @@ class Ring(PlateBody):
         check_outer(self.outer_radius, radius, name, THINNEST)
 
     def without_gauge(self, radius: float) -> str:
-        fits = radius <= (1.0 + 1e-9) * self.outer_radius
-        return "" if fits else f"must be at most the outer radius {self.outer_radius:g}, not {radius:g}"
+        large = is_above(radius, self.outer_radius)
+        return "" if not large else f"must be at most the outer radius {self.outer_radius:g}, not {radius:g}"
 
     def check_remote(self, name: str) -> None:
         if self.held:

@@ -12,7 +12,7 @@ from fastpin.bodies.body import THINNEST, Control, Harmonics, InWords, PinBody, 
 from fastpin.bodies.walls import Amplitudes, Wall, first_change, free_at_contact
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
-from fastpin.model.checks import choice, positive
+from fastpin.model.checks import choice, is_above, positive
 from fastpin.model.synonyms import explains_keywords
 
 TubeLoad = Literal["uniform", "normal", "shear", "held", "body"]
@@ -64,7 +64,7 @@ class Tube(PinBody):
         return None if bore is None or load is None else cls(bore, load)
 
     def check(self, radius: float) -> None:
-        if not self.bore_radius <= (1.0 - THINNEST) * radius:
+        if is_above(self.bore_radius, (1.0 - THINNEST) * radius):
             limit = f"must be at most {(1.0 - THINNEST) * radius:g}, {1.0 - THINNEST:g} of the hole radius"
             raise InputError("bore_radius", f"{limit}, not {self.bore_radius:g}")
 
@@ -74,7 +74,7 @@ class Tube(PinBody):
             raise InputError("pin_load", words)
 
     def check_hub(self, radius: float) -> None:
-        if radius < (1.0 - 1e-9) * self.bore_radius:
+        if is_above(self.bore_radius, radius):
             raise InputError("hub_radius", f"must be at least the bore radius {self.bore_radius:g}, not {radius:g}")
 
     def change(self, rim: Rim, order: np.ndarray) -> np.ndarray:

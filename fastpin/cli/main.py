@@ -18,8 +18,8 @@ from typing import Any
 
 from fastpin.cli.options import read_options
 from fastpin.cli.signals import stopped_by_signals
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, fail, say
-from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning, printable
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, EXIT_READING, fail, say
+from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning, ReadingError, printable
 from fastpin.model.inputs import remembered_inputs
 
 
@@ -31,6 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code. 0: success. 1: the loads could not be followed to their end, a run of a sweep or a check of the
         installation has failed, a file could not be written, or memory did not suffice. 2: input that can't be used.
+        3: a quantity could not be read from the states, which are shown and kept.
         130: interrupted by Ctrl-C, SIGTERM or SIGHUP. 141: the reader of the output has closed it.
     """
     gc.set_threshold(50_000)  # Imports make no garbage, and Python's threshold of 700 new objects costs them 30 ms.
@@ -50,6 +51,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_INPUT
     except InputError as error:
         return fail(str(error), EXIT_INPUT)
+    except ReadingError as error:
+        return fail(str(error), EXIT_READING)
     except FastpinError as error:
         return fail(str(error), EXIT_FAILED)
     except KeyboardInterrupt:

@@ -11,8 +11,8 @@ from typing import Any
 from fastpin import casefile, pages, solver, studies
 from fastpin.cli.progress import LOAD_POINTS, READ_POINTS, Bar, progress_to
 from fastpin.cli.run import note_run
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail, flag, say
-from fastpin.errors import CaseFileError, InputError
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, EXIT_READING, fail, flag, say
+from fastpin.errors import CaseFileError, InputError, ReadingError
 from fastpin.model.case import About, Case
 from fastpin.pages.result import merged, write_source
 from fastpin.pages.source import Source
@@ -41,6 +41,8 @@ def run(options: argparse.Namespace) -> int:
     except InputError as error:
         named = error.field in ("title", "case", "plan", "error_bars", *ABOUT)
         raise InputError(flag(error.field), error.reason) if named else error from None
+    except ReadingError as error:  # the page says it, too
+        code = fail(str(error), EXIT_READING)
     say(f"wrote {page}")
     return code
 

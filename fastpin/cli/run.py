@@ -7,7 +7,7 @@ import contextlib
 import dataclasses
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,6 +24,7 @@ from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
     EXIT_OK,
+    Readings,
     check_outputs,
     fail,
     flag,
@@ -31,7 +32,7 @@ from fastpin.cli.terminal import (
     write_files,
     write_text,
 )
-from fastpin.errors import InputError
+from fastpin.errors import InputError, ReadingError
 from fastpin.kernels import first
 from fastpin.model.beside import beside_of
 from fastpin.model.case import Case, check_keep
@@ -46,21 +47,22 @@ from fastpin.report.states import (
     bush_line,
     cycle_lines,
     hoop_line,
-    seat_line,
+    seat_lines,
     state_table,
     stored_rows,
     table_rows,
 )
 from fastpin.report.strength import StrengthFound, assess_strength, strength_lines
 from fastpin.runtime import beside
-from fastpin.states.choice import check_choice, span_of
+from fastpin.states.choice import check_choice, last_cycle_states, span_of
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
-from fastpin.states.margins import over_yield, static_margins
-from fastpin.states.quantities import load_point
+from fastpin.states.margins import Margin, over_yield, static_margins
+from fastpin.states.walking import walk_doubts
 
 if TYPE_CHECKING:  # they import compiled code
     from fastpin.report.assessment import Assessed
     from fastpin.states.load_cycle import LoadCycle
+    from fastpin.states.state import State
 
 
 def run(options: argparse.Namespace) -> int:
@@ -276,20 +278,28 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     extremes = storage.marked_extremes(path)
     peaks = marked_places(extremes)
     rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(path, places).states, peaks)
-    places, ends = {*rows.printed, *peaks}, [*range(points.size)[-1:]]
+    places = {*rows.printed, *peaks}
     if cycles:
         last = range(points.size)[storage.places_between(path, *span_of(cycles[-1]))]
-        if len(last) <= report.cycle.MOST_STOPS:
-            places |= set(last)  # the fatigue over the last cycle is printed
-        ends = [*ends, *last[:1], *last[-1:]]
+        if len(last) <= report.cycle.MOST_STOPS or case.problem.seat is not None:
+            places |= set(last)  # the fatigue over the last cycle is printed, and whether a bush walks
     elif _is_spectrum(case) and points.size <= report.cycle.MOST_STOPS:
         places |= set(range(points.size))  # the fatigue over the whole history is printed
     if case.problem.seat is not None:
-        places |= set(ends)
+        places |= set(range(points.size)[-1:])
     if options.record is not None:
         places |= set(live.recorded_places(points.size))
     part = ShownPart(rows, sorted(places), extremes)
     return RunReport(case, path, storage.load(path, states=sorted(places)), ended, part).write(options)
+
+
+class Judged(NamedTuple):
+    """What is read from the states beside the table: None where the case does not ask for it, or it is not known."""
+
+    cycle: LoadCycle | None
+    fatigue: Assessed | None
+    crack: cracks.Growth | None
+    strength: StrengthFound | None
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -319,16 +329,17 @@ class RunReport:
         """Write the files, then print the states, and return the exit code."""
         case, result = self.case, self.result
         code, error = self._report_end()
-        self._warn()
+        read = Readings()
+        read("warnings", self._warn, None)
         cycle = None
         with contextlib.suppress(InputError):
             cycle = self._last_cycle() if case.options.slip_sums else None
-        fatigue, grown, strength = self._assessed(), self._crack(), self._strength()
-        if fatigue is not None and fatigue.reason and result is not None and result.complete:
-            code = fail(f"fatigue: {fatigue.reason}", EXIT_FAILED)
+        judged = Judged(cycle, read("fatigue", self._assessed, None), self._crack(), self._strength())
+        if judged.fatigue is not None and judged.fatigue.reason and result is not None and result.complete:
+            code = fail(f"fatigue: {judged.fatigue.reason}", EXIT_FAILED)
         document = None
         if options.json is not None:
-            document = report.summary.document(case, result, error, cycle, fatigue, grown, strength)
+            document = report.summary.document(case, result, error, *judged)
         text = json.dumps(document, indent=2, allow_nan=False) + "\n"
         writers: list[tuple[Any, Callable[[Path], object]]] = []
         if options.json != "-":
@@ -345,8 +356,11 @@ class RunReport:
         if options.json == "-":  # last: the reader of the output may close it early
             sys.stdout.write(text)
         else:
-            self._print_states(cycle, fatigue, grown, strength)
-        return code
+            self._print_states(read, judged)
+        if document is not None:
+            for name, reason in document["unread"].items():
+                read.add(ReadingError(name, reason))
+        return code or read.code
 
     def _assessed(self) -> Assessed | None:
         """Assess the fatigue of all states, if the case has a section for it."""
@@ -376,10 +390,12 @@ class RunReport:
         if self.result is None or self.path is None:
             warn_of(pressure_doubts(problem, history, (state.pressure for state in states)), 2)
             warn_of(yield_doubts_of(problem, history, states), 2)
+            warn_of(walk_doubts(states, () if self.result is None else self.result.cycles), 2)
         else:
             largest = np.array([storage.largest_pressure(self.path)])
             warn_of(pressure_doubts(problem, history, [largest]), 2)
             warn_of(storage.stored_yield_doubts(self.path, problem, history), 2)
+            warn_of(storage.stored_walk_doubts(self.path, problem), 2)
 
     def _last_cycle(self) -> LoadCycle:
         """Return the last cycle. :class:`InputError` says why there is none."""
@@ -431,13 +447,7 @@ class RunReport:
         if drawn.note:
             say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)
 
-    def _print_states(
-        self,
-        cycle: LoadCycle | None,
-        fatigue: Assessed | None,
-        grown: cracks.Growth | None,
-        strength: StrengthFound | None,
-    ) -> None:
+    def _print_states(self, read: Readings, judged: Judged) -> None:
         case, result = self.case, self.result
         if case.title:
             say(case.title)
@@ -453,35 +463,52 @@ class RunReport:
             found = dict(zip(self.part.places, result.states, strict=True))
             rows, _, extremes = self.part
         say(*state_table(case.problem, [found[place] for place in rows.printed], rows).split("\n"))
-        peaks = [found[place] for place in marked_places(extremes)]
-        lines = [hoop_line(case.problem, peaks, body) for body in EDGES]
-        lines += bush_line(case.problem, peaks).splitlines()
-        ends = span_of(result.cycles[-1]) if result.cycles else ()
-        turning = [state for state in result.states if load_point(state) in ends]
-        lines.append(seat_line(case.problem, peaks, result.states[-1], turning))
-        say(*(line for line in lines if line))
-        say(*cycle_lines(case.problem, result.cycles, peaks))
-        if cycle is not None:
-            say(report.cycle.cycle_line(cycle))
-        states = result.states if cycle is None else cycle.states
-        margins = static_margins(case.problem, extremes, lambda places: [found[place] for place in places])
-        if result.cycles or any(each is not None for each in (fatigue, grown, strength)):
-            margins += report.fatigue.life_margins(case.problem, states, result.cycles, fatigue, grown, strength)
-        say(*margin_lines(case.problem, margins))
-        over = over_yield(margins)
-        if fatigue is not None:
-            say(*report.assessment.assessment_lines(fatigue, over))
-        elif result.cycles:
-            say(*report.cycle.fatigue_lines(states, result.cycles[-1], over))
-        elif _is_spectrum(case):
-            damages = report.cycle.spectrum_damages(result.states, len(case.history))
-            say(*(report.cycle.spectrum_line(one, over) for one in damages))
-        if grown is not None:
-            say(growth_line(grown))
-        if strength is not None:
-            say(*strength_lines(strength))
+        for error in extremes.unread.values():
+            read.add(error)
+        for name, lines in self._paragraphs(result, found, extremes, judged).items():
+            told: list[str] = read(name, lines, [])
+            say(*(line for line in told if line))
         say(*(f"note: {note}" for note in note_lines(case, result)))
         say(solver_line(result))
+
+    def _paragraphs(
+        self, result: solver.Result, found: Mapping[int, State], extremes: Found, judged: Judged
+    ) -> dict[str, Callable[[], list[str]]]:
+        """The lines below the table, each with the name of what is read for them."""
+        case, problem = self.case, self.case.problem
+        peaks = [found[place] for place in marked_places(extremes)]
+        states = result.states if judged.cycle is None else judged.cycle.states
+
+        def seat() -> list[str]:
+            turning = [] if problem.seat is None else last_cycle_states(result.states, result.cycles)
+            return seat_lines(problem, peaks, result.states[-1], turning)
+
+        def margins() -> list[Margin]:
+            rows = static_margins(problem, extremes, lambda places: [found[place] for place in places])
+            if result.cycles or any(each is not None for each in judged[1:]):
+                rows += report.fatigue.life_margins(problem, states, result.cycles, *judged[1:])
+            return rows
+
+        def lives() -> list[str]:
+            over = over_yield(margins())
+            if judged.fatigue is not None:
+                return report.assessment.assessment_lines(judged.fatigue, over)
+            if result.cycles:
+                return report.cycle.fatigue_lines(states, result.cycles[-1], over)
+            damages = report.cycle.spectrum_damages(result.states, len(case.history)) if _is_spectrum(case) else []
+            return [report.cycle.spectrum_line(one, over) for one in damages]
+
+        return {
+            "largest hoop stress": lambda: [hoop_line(problem, peaks, body) for body in EDGES],
+            "bush": lambda: bush_line(problem, peaks).splitlines(),
+            "seat": seat,
+            "cycles": lambda: cycle_lines(problem, result.cycles, peaks),
+            "last cycle": lambda: [] if judged.cycle is None else [report.cycle.cycle_line(judged.cycle)],
+            "margins": lambda: margin_lines(problem, margins()),
+            "fatigue": lives,
+            "crack": lambda: [] if judged.crack is None else [growth_line(judged.crack)],
+            "strength": lambda: [] if judged.strength is None else strength_lines(judged.strength),
+        }
 
 
 def _is_spectrum(case: Case) -> bool:

@@ -215,7 +215,8 @@ def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path)
     if options.envelope:
         found = report.envelope.envelopes(plan, rows, values[0])
         if found:
-            figures.envelope.plot_envelope(found, options.plot, title)
+            problem = plan.case(plan.points[0]).problem
+            figures.envelope.plot_envelope(found, options.plot, title, problem=problem, varied=plan.fields)
         missing = len(rows) - sum(curve[report.envelope.BYPASS].size for curve in found)
         if missing:
             say(f"note: {missing} of {len(rows)} points have no value in the figure", file=sys.stderr)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
-from typing import TextIO
+from typing import TextIO, TypeVar
 
-from fastpin.errors import InputError, OutputError, printable
+from fastpin.errors import InputError, OutputError, ReadingError, printable, reading
 from fastpin.storage.files import check_writable, no_figure, replacing
 
-EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
+T = TypeVar("T")
+
+EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_READING, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 3, 130, 141
 
 
 def say(*lines: str, file: TextIO | None = None) -> None:
@@ -27,6 +29,36 @@ def fail(message: str, code: int) -> int:
     """Print an error message, and return the exit code."""
     say(f"fastpin: {message}", file=sys.stderr)
     return code
+
+
+class Readings:
+    """Readings of states for an output. One that fails is named, and hides nothing else.
+
+    Attributes
+    ----------
+    code : int
+        Exit code.
+    """
+
+    def __init__(self) -> None:
+        self.code = EXIT_OK
+        self._told: set[str] = set()
+
+    def __call__(self, name: str, read: Callable[[], T], otherwise: T) -> T:
+        """What ``read()`` gives, or `otherwise` after a message that names the reading."""
+        try:
+            with reading(name):
+                return read()
+        except ReadingError as error:
+            self.add(error)
+            return otherwise
+
+    def add(self, error: ReadingError) -> None:
+        """Print the message of a reading that has failed, once."""
+        self.code = EXIT_READING
+        if str(error) not in self._told:
+            self._told.add(str(error))
+            fail(str(error), EXIT_READING)
 
 
 def flag(name: str) -> str:

@@ -17,12 +17,11 @@ from numpy.typing import ArrayLike
 from fastpin.damage.criteria import Criterion
 from fastpin.damage.histories import stress_history
 from fastpin.damage.hot_spots import NO_CRACK, Fatigue, evaluated, fatigue
-from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.model.assessment import checked_distance
 from fastpin.model.checks import choice, instance, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.points import Body, Points, material_of, near_rim, owner_of
+from fastpin.model.points import Body, Points, is_beyond_bush, material_of, near_rim, owner_of
 from fastpin.model.problem import Problem
 from fastpin.reading.stress import check_body
 from fastpin.states.choice import stops_of_one_problem

@@ -13,13 +13,12 @@ from numpy.typing import ArrayLike
 from fastpin.damage import lives
 from fastpin.damage.criteria import FATIGUE_CRITERIA, Criterion, CriterionValues
 from fastpin.damage.histories import stress_history
-from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.model.angles import near_bottom
 from fastpin.model.checks import choice, instance, instances, items, whole_number
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
-from fastpin.model.points import CRITERION, Body, Points, isotropic_material, owner_of
+from fastpin.model.points import CRITERION, Body, Points, is_beyond_bush, isotropic_material, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.ties import top_angle

@@ -18,9 +18,10 @@ from fastpin.model.problem import Problem
 from fastpin.model.strength import StrengthAssessment
 from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import Margin
+from fastpin.states.margins import Margin, part_of
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
+from fastpin.states.walking import walk_margins
 
 MOST_STOPS = 100
 """Most states of a cycle whose fatigue is printed unasked: some tenths of a second."""
@@ -51,12 +52,14 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
             value = limited.hot_spot.parameter
             owner = owner_of(problem, body)
             row = Margin(f"{subject}, Findley", "traction", value, limit, remark=place, name="findley", owner=owner)
-            rows.append(row)
+            rows.append(row._replace(part=part_of(problem, owner)))
         elif one is None:
             why = known.rstrip(".") if isinstance(known, str) else "no constants of fatigue given"
             rows.append(Margin(subject, remark=f"not known: {why[0].lower()}{why[1:]}"))
         else:
-            remark = f"not known: no bending_limit and torsion_limit of the {owner_of(problem, body)} given"
+            remark = (
+                f"not known: a margin needs Findley's bending_limit and torsion_limit of the {owner_of(problem, body)}"
+            )
             life = one.hot_spot.life
             if not math.isnan(life):
                 remark += f"; life {life:.3g} cycles" if math.isfinite(life) else "; infinite life"
@@ -67,13 +70,16 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
 
 
 def last_cycle_margins(problem: Problem, states: Sequence[State], cycles: Sequence[Cycle]) -> list[Margin]:
-    """Return the margins of fatigue over the last of the cycles that are known; none if finding them takes long."""
+    """Return the margins over the last of the cycles that are known: of a bush that may walk, and of fatigue.
+
+    None of fatigue is found if that takes long.
+    """
     try:
         stops = cycle_states(states, cycles[-1]) if cycles else []
     except InputError:  # a corner of the cycle was not kept
         return []
     rows = fatigue_margins(problem, [], stops) if len(stops) <= MOST_STOPS else []
-    return [row for row in rows if not math.isnan(row.margin)]
+    return walk_margins(stops) + [row for row in rows if not math.isnan(row.margin)]
 
 
 def reserve_margins(reserves: Sequence[StressReserve], how: FatigueAssessment) -> list[Margin]:
@@ -85,7 +91,7 @@ def reserve_margins(reserves: Sequence[StressReserve], how: FatigueAssessment) -
         Margin(
             f"{edge_body(one.problem, one.body)}: {one.criterion}, factor on all stresses",
             "ratio", 1.0, one.factor, one.largest, _remark(one, how), one.loads, "fatigue",
-            owner_of(one.problem, one.body),
+            owner_of(one.problem, one.body), part_of(one.problem, owner_of(one.problem, one.body)),
         )
         for one in reserves
     ]  # fmt: skip

@@ -16,7 +16,7 @@ from fastpin.bodies.walls import PlateWalls, Wall
 from fastpin.elasticity.laminate_stress import laminate_stress
 from fastpin.elasticity.tractions import CHUNK, Tractions, cauchy_integrals
 from fastpin.kernels import fourier, laurent
-from fastpin.model.points import ROUNDING
+from fastpin.model.points import is_beyond_bush
 from fastpin.model.problem import Problem
 from fastpin.runtime.threads import in_chunks
 
@@ -83,12 +83,6 @@ def seat_stress(
     if joint.plate_body.lug.is_infinite:
         found += hole_stress(joint.pair.plate_kolosov, Tractions(()), remote, theta, below)
     return found
-
-
-def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:
-    """Whether points of the plate at these depths, in units of R, lie beyond the bush; False without a bush."""
-    bush = problem.joint.bush
-    return np.zeros(depth.shape, dtype=bool) if bush is None else 1.0 + depth > bush * (1.0 + ROUNDING)
 
 
 def hole_stress(

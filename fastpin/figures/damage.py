@@ -16,6 +16,7 @@ from fastpin.figures.scar import MARGIN, cycles_axis, life_caption
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import COLOURS, MAX_NAMED, Line, angle_axis, draw_grid, line
 from fastpin.figures.subjects import Subject, with_stored_cycles
+from fastpin.figures.sweep import round_numbers
 from fastpin.figures.words import ANGLE, quantity
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import Body, edge_body
@@ -124,6 +125,7 @@ def _draw_growth(panel: Axes, found: WornFatigue) -> None:
     if positive.size and found.cycles[-1] > MAX_NAMED:
         panel.set_yscale("log")
         panel.set_ylim(max(0.5 * float(positive.min()), top * 10.0**-DECADES), 3.0 * highest)
+        round_numbers(panel.yaxis, np.array(panel.get_ylim()))
         left, ever = (np.where(values > 0.0, values, np.nan) for values in (left, ever))
     else:
         panel.set_ylim(0.0, 1.08 * highest or 1.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -13,9 +13,10 @@ from matplotlib.figure import Figure
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, line
-from fastpin.figures.sweep import MARKERS, shown_label
+from fastpin.figures.sweep import MARKERS, fixed_parameters, shown_label
 from fastpin.figures.words import quantity
 from fastpin.model.checks import instances
+from fastpin.model.problem import Problem
 from fastpin.model.units import PASCAL
 from fastpin.report.curves import Curve, write_csv
 from fastpin.report.envelope import BEARING, BYPASS
@@ -28,30 +29,33 @@ def plot_envelope(
     width: float = 5.8,
     dpi: float = 300.0,
     *,
+    problem: Problem | None = None,
+    varied: Collection[str] = (),
     ax: Axes | None = None,
 ) -> Figure:
     """Draw the envelopes of :func:`fastpin.report.envelope.envelopes`: no ply fails below a line.
 
-    See :func:`fastpin.plot_tractions` for the other arguments.
+    The caption has the parameters of a `problem` without the `varied` fields of the sweep. See
+    :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(envelope_of(found))
+    return Look(path, title, width, dpi, ax).drawn(envelope_of(found, problem, varied))
 
 
-def envelope_of(found: Sequence[Curve]) -> Plot:
+def envelope_of(found: Sequence[Curve], problem: Problem | None = None, varied: Collection[str] = ()) -> Plot:
     """Return envelopes of a sweep, see :func:`plot_envelope`."""
     each = instances("found", found, Curve, "a list of envelopes")
     if not 1 <= len(each) <= MAX_NAMED:
         raise InputError("found", f"must be 1 to {MAX_NAMED} envelopes, not {len(each)}")
     words = "bearing stress over the bypass stress at which the first ply fails"
     return Plot(
-        lambda look: _draw(look, each),
+        lambda look: _draw(look, each, "" if problem is None else fixed_parameters(problem, varied)),
         partial(write_csv, each),
         f"Line chart of the {words}.",
         f"{words[0].upper()}{words[1:]}.",
     )
 
 
-def _draw(look: Look, curves: Sequence[Curve]) -> Sheet:
+def _draw(look: Look, curves: Sequence[Curve], parameters: str) -> Sheet:
     sheet = look.sheet([0.6 * look.width], extra=0.8)
     (panel,) = sheet.axes[0]
     largest = [float(np.abs(curve[name]).max()) for curve in curves for name in (BYPASS, BEARING)]
@@ -69,6 +73,7 @@ def _draw(look: Look, curves: Sequence[Curve]) -> Sheet:
     panel.set_ylabel(quantity("bearing stress", label))
     if any("case" in curve.parameters for curve in curves):
         sheet.legend(handles, 2)
-    sheet.head(look.title, f"failure of the first ply by {curves[0].parameters['criterion']}")
+    criterion = str(curves[0].parameters["criterion"]).replace(" um", " µm")
+    sheet.head(look.title, f"failure of the first ply by {criterion}", caption=parameters)
     sheet.grid()
     return sheet

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.damage.hole_strength import JointStrength, joint_strength, laminate_of
+from fastpin.damage.laminates import MODES
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.states import DrawnStates, name_states, state_lines
 from fastpin.figures.style import angle_axis, line
@@ -31,6 +32,9 @@ from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
+
+LEAST_APART = 10.0
+"""Degrees between the names of two branches of a curve of strength."""
 
 MOST_RATIO = 5.0
 """Largest strength ratio that is shown, in parts of the least one: beyond, plies are far from failure."""
@@ -181,6 +185,27 @@ def _strength_curve(strength: JointStrength) -> Curve:
     return Curve({}, {name: values[order] for name, values in columns.items()})
 
 
+def _name_branches(panel: Axes, strength: JointStrength) -> None:
+    """Write above the lowest point of each branch of the curve which ply fails there, and how."""
+    angle, top = np.degrees(strength.theta) + 90.0, panel.get_ylim()[1]
+    order = np.argsort(np.remainder(angle + 180.0, 360.0))
+    kind = np.stack([np.array([each for _, each in strength.laminate.plies])[strength.ply], strength.mode])[:, order]
+    borders = np.flatnonzero(np.any(np.diff(kind, axis=1) != 0.0, axis=0)) + 1
+    lowest = [part[np.argmin(strength.ratio[part])] for part in np.split(order, borders) if part.size > 1]
+    named: list[float] = []
+    for place in sorted(lowest, key=lambda each: strength.ratio[each]):
+        at = from_bottom(float(strength.theta[place]))
+        if strength.ratio[place] > 0.6 * top or any(abs(at - other) < LEAST_APART for other in named):
+            continue
+        named.append(at)
+        ply = strength.laminate.plies[int(strength.ply[place])][1]
+        words = f"{ply:g}° {MODES[int(strength.mode[place])]}".replace("-", "−")
+        panel.annotate(
+            words, (at, strength.ratio[place]), (0.0, 7.0), textcoords="offset points", rotation=90.0, ha="center",
+            va="bottom", fontsize=6.5, color="0.3",
+        )  # fmt: skip
+
+
 def _draw_strength(
     look: Look, states: DrawnStates, strengths: Sequence[JointStrength], curves: Sequence[Curve], words: str
 ) -> Sheet:
@@ -191,6 +216,7 @@ def _draw_strength(
     least = min(each.least_ratio for each in strengths)
     if math.isfinite(least):
         panel.set_ylim(0.0, MOST_RATIO * max(least, 0.2))
+        _name_branches(panel, min(strengths, key=lambda each: each.least_ratio))
     panel.axhline(1.0, color="0.4", linewidth=0.8, linestyle=(0, (4.0, 2.0)))
     angle_axis(panel)
     panel.set_xlabel(ANGLE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
 from fastpin.figures.words import caption, shown_unit, wrapped
 from fastpin.model.checks import instance, instances
+from fastpin.model.problem import Problem
 from fastpin.report.sweep import Axis, Chart
 
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
@@ -394,15 +395,17 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
 
 
 def _fixed_parameters(chart: Chart) -> str:
-    """The parameters of the joint that do not vary, as text."""
-    if chart.problem is None:
-        return ""
-    parts = re.split("(?<=[,;]) ", caption(chart.problem))
+    return "" if chart.problem is None else fixed_parameters(chart.problem, chart.varied)
+
+
+def fixed_parameters(problem: Problem, varied: Collection[str]) -> str:
+    """The parameters of a joint without the `varied` fields of a sweep, as text."""
+    parts = re.split("(?<=[,;]) ", caption(problem))
     of_bodies = ("pin", "plate", "dundurs", "pin_body", "plate_body")
-    if any(field.split(".")[0] in of_bodies or field == "contact.pin_load" for field in chart.varied):
+    if any(field.split(".")[0] in of_bodies or field == "contact.pin_load" for field in varied):
         parts = parts[next(k for k, part in enumerate(parts) if part.startswith("plane ")) :]
     for field, words in CAPTION_WORDS.items():
-        if any(name == field or name.startswith(f"{field}.") for name in chart.varied):
+        if any(name == field or name.startswith(f"{field}.") for name in varied):
             parts = [part for part in parts if not part.startswith(words)]
     return " ".join(parts).rstrip(",;")
 

@@ -33,6 +33,9 @@ MOST_PARAMETER = 1e50
 LONGEST_TEXT = 60
 """Most characters of a value that a message repeats."""
 
+SAME_LENGTH = 1e-9
+"""Relative difference of a length and a computed limit up to which they are equal: files have few digits."""
+
 _NUMBER_KINDS = "iuf"
 """Kinds of NumPy arrays and scalars that hold numbers: no truth values, complex numbers, times, texts or objects."""
 
@@ -54,6 +57,16 @@ def point(field: str, value: object) -> complex:
     if isinstance(value, (complex, np.complexfloating)):
         return complex(number(field, float(value.real)), number(field, float(value.imag)))
     return complex(number(field, value))
+
+
+def is_above(length: float, limit: float) -> bool:
+    """Whether a length lies above a computed limit by more than rounding: 9 mm is not above 0.9 times 10 mm."""
+    return length > limit + SAME_LENGTH * abs(limit)
+
+
+def is_between(least: float, length: float, most: float) -> bool:
+    """Whether a length lies between two computed limits, which may be rounded."""
+    return not is_above(least, length) and not is_above(length, most)
 
 
 def positive(field: str, value: object) -> float:
@@ -86,6 +99,14 @@ def whole_number(field: str, value: object, least: int, most: int | None = None)
         limits = f"of at least {least}" if most is None else f"from {least} to {most}"
         raise InputError(field, f"must be a whole number {limits}, not {as_toml(value)}")
     return int(value)  # type: ignore[call-overload]
+
+
+def count(field: str, value: object, most: float) -> int:
+    """Check a count from 1 to `most` that may be written as 1e6, and return it."""
+    found = number(field, value, 1, most)
+    if found != int(found):
+        raise InputError(field, f"must be a whole number, not {found:g}")
+    return int(found)
 
 
 def is_whole(value: object) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import DEGREE, angle_at, degrees_at, degrees_of
-from fastpin.model.checks import as_toml, choice, items, number, numbers, positive
+from fastpin.model.checks import as_toml, choice, is_above, items, number, numbers, positive
 from fastpin.model.growth import KnownLaw, known_law, law_entries, law_from
 from fastpin.model.points import EDGES, MOST_ANGLE, far_rim, isotropic_material, material_of, near_rim, owner_of
 from fastpin.model.problem import Problem
@@ -129,9 +129,9 @@ def check_length(field: str, problem: Problem, body: str, angle: float, longest:
     length = units(problem)["length"]
     radius = problem.hole_radius * near_rim(problem, edge_of(body))
     wall = wall_of(problem, body)
-    if longest > LONGEST * radius:
+    if is_above(longest, LONGEST * radius):
         raise InputError(field, f"must be at most {LONGEST:g} radii of the hole, not {length.text(longest)}")
-    if depth_of(angle, longest / radius) > MOST_OF_WALL * wall:
+    if is_above(depth_of(angle, longest / radius), MOST_OF_WALL * wall):
         words = f"must end within {MOST_OF_WALL:g} of the wall of {length.text(wall * radius)}"
         raise InputError(field, f"{words}, not be {length.text(longest)}")
 

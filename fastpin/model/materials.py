@@ -309,7 +309,7 @@ class MaterialPair:
     def __post_init__(self) -> None:
         object.__setattr__(self, "plane", choice("plane", self.plane, PLANES))
         for field, body in (("pin", self.pin), ("plate", self.plate)):
-            instance(field, body, Material, "a Material")
+            instance(field, body, Material, 'a Material, such as MATERIALS["steel"]')
         if not self.pin.is_isotropic:
             raise InputError("pin", "must be isotropic: a laminate can only be the material of the plate")
         if self.pin.is_rigid and self.plate.is_rigid:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, InputWarning
 from fastpin.model.checks import choice, in_one_shape, instance, numbers
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
@@ -24,6 +25,9 @@ ROUNDING = 1e-14
 
 MOST_ANGLE = 1e6
 """Largest size of an angle, rad. Beyond, a turn has too few digits."""
+
+MOST_TURNS = 4.0 * math.pi
+"""Largest angle that is not in doubt, rad: two turns. A larger one is probably in degrees."""
 
 BODIES = ("plate", "pin", "seat")
 """Bodies with an edge: the plate with its hole, the pin, and the plate round a bush, whose edge is the bush's seat.
@@ -69,6 +73,10 @@ class Points(ReadOnly):
         assert given is not None
         turned = numbers("theta", self.theta, -MOST_ANGLE, MOST_ANGLE)
         values, angles = in_one_shape(name, numbers(name, given, 0.0), turned)
+        largest = float(np.abs(angles).max(initial=0.0))
+        if largest > MOST_TURNS:
+            words = f"{largest:g} rad is {math.degrees(largest):,.4g} degrees; angles are in rad"
+            warnings.warn(InputWarning("theta", words), stacklevel=4)
         for field, array in ((name, values), ("theta", angles)):
             array.setflags(write=False)
             object.__setattr__(self, field, array)
@@ -121,10 +129,25 @@ class Points(ReadOnly):
             if far is not None and np.any(depth > wall + ROUNDING * max(1.0, wall)):
                 rim = "at least the bore" if body == "pin" else "at most the outer"
                 raise InputError("radius", f"must be {rim} radius of {far * radius:g} in the {body}")
-        known = problem.joint.bush - 1.0 if body == "plate" and problem.joint.bush else 0.0
-        if body != "pin" and problem.plate_body.lug.edge_only and np.any(depth > known):
+        if body != "pin" and problem.plate_body.lug.edge_only and np.any(_is_in_compliance(problem, body, depth)):
             raise InputError("points", "a compliance gives the stress on the edge of the hole only")
         return np.minimum(depth, wall)
+
+
+def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:
+    """Whether points of the plate at these depths, in units of the hole's radius, lie beyond the bush.
+
+    False without a bush. The rim of the bush belongs to it, also where rounding makes its depth larger.
+    """
+    bush = problem.joint.bush
+    return np.zeros(depth.shape, dtype=bool) if bush is None else 1.0 + depth > bush * (1.0 + ROUNDING)
+
+
+def _is_in_compliance(problem: Problem, body: Body, depth: np.ndarray) -> np.ndarray:
+    """Whether points of "plate" or "seat" lie inside a plate that only a compliance describes, and not on its edge."""
+    if body == "plate" and problem.joint.bush is not None:
+        return is_beyond_bush(problem, depth)
+    return depth > 0.0
 
 
 def bodies_of(problem: Problem) -> tuple[Body, ...]:

@@ -19,6 +19,8 @@ from fastpin.model.checks import (
     as_toml,
     choice,
     instance,
+    is_above,
+    is_between,
     not_negative,
     number,
     number_array,
@@ -31,7 +33,7 @@ from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
 from fastpin.model.profile import NO_GAP, InitialGap, Profile, ProfileLike, is_pair
 from fastpin.model.profile_terms import Term
 from fastpin.model.room import widest_place
-from fastpin.model.synonyms import explains_keywords
+from fastpin.model.synonyms import explains_attributes, explains_keywords
 
 Rotation = Literal["free", "fixed", "spring"]
 """Kinds of pin rotation."""
@@ -65,6 +67,7 @@ DriveKind = Literal["force", "ux", "uy", "both"]
 
 
 @explains_keywords
+@explains_attributes()
 @dataclass(frozen=True, repr=False)
 class Problem:
     """An elastic pin in the hole of an elastic plate, with Coulomb friction.
@@ -218,11 +221,11 @@ class Problem:
                 raise InputError("hub_radius", 'only a pin with rotation = "fixed" or "spring" is held at a hub')
             if self.pin_load == "body":
                 raise InputError("hub_radius", "the displacement of a body-loaded pin is its mean: leave the hub out")
-            if not LEAST_HUB * radius <= (1.0 + 1e-9) * hub or hub > radius:  # LEAST_HUB * radius is rounded
+            if not is_between(LEAST_HUB * radius, hub, radius):
                 limits = f"{LEAST_HUB * radius:g} and the hole radius {radius:g}"
                 raise InputError("hub_radius", f"must lie between {limits}, not {hub:g}")
             self.pin_body.check_hub(hub)
-            object.__setattr__(self, "hub_radius", hub)
+            object.__setattr__(self, "hub_radius", min(hub, radius))
         if self.hub_stiffness is not None:
             stiffness = number("hub_stiffness", self.hub_stiffness)
             if self.rotation != "spring":
@@ -245,13 +248,15 @@ class Problem:
             gauge = number("gauge_radius", self.gauge_radius)
             if self.drive == "force":
                 raise InputError("gauge_radius", 'only a displacement has a gauge: drive = "ux" or "uy" or "both"')
-            if gauge < radius:
+            if is_above(radius, gauge):
                 raise InputError("gauge_radius", f"must be at least the hole radius {radius:g}, not {gauge:g}")
-            number("gauge_radius", gauge, radius, MOST_GAUGE * radius)
+            gauge = number("gauge_radius", max(gauge, radius), radius, MOST_GAUGE * radius)
             if why := self.plate_body.lug.without_gauge(gauge):
                 raise InputError("gauge_radius", why)
-            if not self.pair.plate.is_isotropic and gauge > radius:
-                raise InputError("gauge_radius", f"must be the hole radius {radius:g} in a laminate, not {gauge:g}")
+            if not self.pair.plate.is_isotropic:
+                if is_above(gauge, radius):
+                    raise InputError("gauge_radius", f"must be the hole radius {radius:g} in a laminate, not {gauge:g}")
+                gauge = radius
             object.__setattr__(self, "gauge_radius", gauge)
 
     def __repr__(self) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, not_negative, true_or_false
+from fastpin.model.checks import choice, is_above, not_negative, true_or_false
 from fastpin.model.ply import CRITERION_NAMES, PlyCriterion
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
@@ -90,6 +90,6 @@ def check_strength(problem: Problem, how: StrengthAssessment) -> None:
     if plate is None or not plate.plies or any(ply.strengths is None for ply, _ in plate.plies):
         raise InputError("strength", "belongs to a plate that is a laminate whose plies have strengths")
     for name, value in how.lengths.items():
-        if value > MOST_DISTANCE * problem.hole_radius:
+        if is_above(value, MOST_DISTANCE * problem.hole_radius):
             words = units(problem)["length"].text(value)
             raise InputError(name, f"must be at most {MOST_DISTANCE:g} radii of the hole, not {words}")

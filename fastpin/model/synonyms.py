@@ -92,8 +92,14 @@ _SYNONYMS: dict[str, str] = {
     "pin_body": "tube hollow_pin",
     "title": "name description",
     "materials": "material_file materials_file library",
+    # attributes of results and states
+    "peak_pressure": "max_pressure maximum_pressure p_max pmax contact_pressure",
+    "peak_shear": "max_shear maximum_shear q_max",
+    "peak_hoop_stress": "hoop hoop_stress max_hoop peak_hoop kt",
+    "dissipation": "dissipated energy_loss friction_work",
     # options of the command line
     "workers": "jobs n_jobs processes threads cores",
+    "run": "solve calculate compute execute simulate start",
     "output": "out save to",
     "plot": "figure fig picture",
     "table": "results",
@@ -133,6 +139,11 @@ _VALUES: dict[str, str] = {
     "centre": "center point concentrated",
     "body": "body_force distributed",
     "held": "fixed clamped rigid core",
+    "smith-watson-topper": "swt smith_watson_topper",
+    "fatemi-socie": "fs fatemi_socie",
+    "plate": "lug sheet",
+    "pin": "bolt rivet shaft fastener",
+    "bush": "bushing sleeve liner",
     "aluminium": "aluminum al alu",
     "Ti-6Al-4V": "titanium titan ti64 ti6al4v ti_6_4 grade_5",
     "2024-T3": "2024 al2024 aa2024",
@@ -171,11 +182,18 @@ def closest(word: str, known: Iterable[str], spelling: bool = True) -> str:
     written = _plain(word)
     if written in _NOTES and _NOTES[written][0] in names:
         return f"; {_NOTES[written][1]}"
-    lower = {name.lower(): name for name in names}
-    found = lower.get(word.lower()) or next((name for name in _MEANT.get(written, ()) if name in names), None)
+    found = meant_name(word, names, spelling)
+    return "" if found is None else f', did you mean "{found}"?'
+
+
+def meant_name(word: str, known: Iterable[str], spelling: bool = True) -> str | None:
+    """Return the known name that `word` means, or None. A name that is spelt nearly so counts only with `spelling`."""
+    lower = {name.lower(): name for name in known}
+    names = lower.values()
+    found = lower.get(word.lower()) or next((name for name in _MEANT.get(_plain(word), ()) if name in names), None)
     if found is None and spelling:
         found = next((lower[near] for near in difflib.get_close_matches(word.lower(), lower, n=1)), None)
-    return "" if found is None else f', did you mean "{found}"?'
+    return found
 
 
 def meant(word: str) -> list[str]:
@@ -206,6 +224,37 @@ def explains_keywords(made: T) -> T:
         setattr(made, "__init__", _explaining(made.__name__, getattr(made, "__init__")))  # noqa: B009, B010 - for mypy
         return made
     return _explaining(made.__name__, made)  # type: ignore[attr-defined, arg-type, return-value]
+
+
+def explains_attributes(of: str = "", others: Callable[[], type] | None = None) -> Callable[[type[T]], type[T]]:
+    """Make a class name the meant attribute in the :class:`AttributeError` of an unknown one.
+
+    Parameters
+    ----------
+    of : str
+        How an object of another class is had, whose attributes users may look for here, such as ``result[-1]``.
+    others : callable
+        ``others()`` gives this class.
+    """
+
+    def public(made: type) -> list[str]:
+        names = {*dir(made), *getattr(made, "__dataclass_fields__", ())}
+        return sorted(name for name in names if not name.startswith("_"))
+
+    def explained(made: type[T]) -> type[T]:
+        def missing(self: T, name: str) -> Any:
+            words = f"{made.__name__!r} object has no attribute {name!r}"
+            if name.startswith("_"):
+                raise AttributeError(words)
+            found, owner = meant_name(name, public(made)), ""
+            if found is None and others is not None:
+                found, owner = meant_name(name, public(others())), f"{of}."
+            raise AttributeError(words if found is None else f"{words}, did you mean {owner}{found}?")
+
+        made.__getattr__ = missing  # type: ignore[attr-defined]
+        return made
+
+    return explained
 
 
 def _explaining(name: str, function: Callable[..., Any]) -> Callable[..., Any]:

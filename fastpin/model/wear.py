@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, items, not_negative, number, numbers, whole_number
+from fastpin.model.checks import choice, count, items, not_negative, number, numbers
 from fastpin.model.profile import Profile, ProfileLike
 
 MOST_CYCLES = 10**12
@@ -59,10 +59,7 @@ class Wear:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "law", choice("law", self.law, ("archard", "energy")))
-        cycles = number("cycles", self.cycles, 1, MOST_CYCLES)  # 1e5 is a whole number too
-        if cycles != int(cycles):
-            raise InputError("cycles", f"must be a whole number, not {cycles:g}")
-        object.__setattr__(self, "cycles", int(cycles))
+        object.__setattr__(self, "cycles", count("cycles", self.cycles, MOST_CYCLES))
         object.__setattr__(self, "tolerance", number("tolerance", self.tolerance, 0.0, 0.1))
         if self.coefficient is None and self.pin is None and self.plate is None:
             raise InputError("coefficient", "give the wear coefficient, or those of pin and plate")
@@ -75,7 +72,7 @@ class Wear:
                 not_negative(name, float(profile.at(four_a_degree, 1.0).min()))
                 object.__setattr__(self, name, profile)
         if self.at is not None:
-            chosen = [whole_number("at", each, 1, self.cycles) for each in items("at", self.at, "a list of cycles")]
+            chosen = [count("at", each, self.cycles) for each in items("at", self.at, "a list of cycles")]
             if len(chosen) > MOST_CHOSEN or chosen != sorted(set(chosen)):
                 raise InputError("at", f"must be at most {MOST_CHOSEN:,} increasing numbers of cycles")
             object.__setattr__(self, "at", tuple(chosen))

@@ -54,11 +54,14 @@ class Facts:
         Name, value, and perhaps a remark.
     heads : sequence of str
         The headings of the columns.
+    tall : bool
+        Whether the rows leave room to write.
     """
 
     caption: str
     rows: Sequence[tuple[str, ...]]
     heads: Sequence[str] = ("", "")
+    tall: bool = False
     kind: str = field(default="facts", init=False)
 
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 from fastpin.casefile.reader import parse_case
 from fastpin.casefile.toml_text import read_text
-from fastpin.errors import CaseFileError, InputError
+from fastpin.errors import CaseFileError, InputError, ReadingError, reading
 from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.album import Album
-from fastpin.pages.content import Page
+from fastpin.pages.content import Page, PageSection, Text
 from fastpin.pages.sections import SECTIONS, PageParts, crack, seat, strength
 from fastpin.pages.source import Source, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
@@ -70,6 +70,8 @@ def write_report(
         can't be written.
     CaseFileError
         If the case file has faults.
+    ReadingError
+        If a section could not be made. The page is written, and its section says why.
     """
     target = check_page("path", path)
     check_callable("progress", progress)
@@ -105,7 +107,10 @@ def write_source(
     convergence: Convergence | None = None,
     progress: PageProgress | None = None,
 ) -> None:
-    """Write the page of a source, see :func:`write_report`."""
+    """Write the page of a source, see :func:`write_report`.
+
+    A section that can't be made says why. :class:`ReadingError` is raised when the page is written.
+    """
     report = progress or (lambda done, total: None)
     page, sections = PageParts(source, Album(), convergence), []
     makers = WEAR_SECTIONS
@@ -114,15 +119,24 @@ def write_source(
         left_out += [crack] if source.case.crack is None else []
         left_out += [strength] if source.case.strength is None else []
         makers = [make for make in SECTIONS if make not in left_out]
+    unread: list[ReadingError] = []
     for number, make in enumerate(makers):
         report(number, len(makers))
-        sections.append(make(page))
+        name = make.__name__
+        try:
+            with reading(name, *({str(source.path)} if source.path is not None else ())):
+                sections.append(make(page))
+        except ReadingError as error:
+            unread.append(error)
+            sections.append(PageSection(name, name.capitalize(), [Text(f"Not known: {error.reason}.", "missing")]))
     report(len(makers), len(makers))
     what = "Frictional contact" if source.life is None else "Wear in the frictional contact"
     lead = f"{what} of an elastic pin in the hole of an elastic plate."
     made = f"Made by fastpin {__version__} on {now()}."
     title = source.case.title or ("Report of a result" if source.life is None else "Report of a life of wear")
     write_page(Page(title, lead, sections, made, source.case.about), path)
+    if unread:
+        raise unread[0]
 
 
 def merged(stored: About, given: About | None) -> About:

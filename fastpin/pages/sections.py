@@ -46,17 +46,19 @@ from fastpin.report.case import ROUNDING, case_rows, corner_columns
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.crack_growth import growth_line
 from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
-from fastpin.report.margins import HEADS, margin_rows
+from fastpin.report.margins import HEADS, in_order, margin_rows, verdict
 from fastpin.report.notes import note_lines, solver_line, way_on
-from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_line, state_columns
+from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_lines, state_columns
 from fastpin.report.strength import strength_lines
 from fastpin.report.table import MAX_ROWS, Column
 from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.extremes import READINGS, yield_doubts
 from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.margins import Margin
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
 from fastpin.states.state import State
+from fastpin.states.walking import walk_doubts, walk_margins
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical, run_id
 
@@ -105,12 +107,14 @@ def overview(page: PageParts) -> PageSection:
     source, problem = page.source, page.source.case.problem
     cycle = source.cycle
     parts: list[SectionPart] = [_status(source), *warnings_and_notes(source)]
+    if source.points.size and not problem.dimensionless:
+        parts.append(Text(f"Verdict: {verdict(all_margins(page))}."))
     if source.peaks:
         largest = source.peaks[top([state.peak_pressure for state in source.peaks])]
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
         sentences = [f"largest contact pressure in all kept states: {pressure}, load point {point}"]
         sentences += [hoop_line(problem, source.peaks, body) for body in EDGES]
-        sentences += [*bush_line(problem, source.peaks).splitlines(), _seat_line(source)]
+        sentences += [*bush_line(problem, source.peaks).splitlines(), *_seat_lines(source)]
         lines = cycle_lines(problem, source.result.cycles, source.peaks)
         many = f"{len(lines):,} blocks of cycles: see hysteresis and slip"
         sentences += lines if len(lines) <= MOST_BLOCKS else [many]
@@ -130,6 +134,7 @@ def warnings_and_notes(source: Source) -> list[Text]:
     warnings = [*doubts(problem, history, source.case.options)]
     warnings += pressure_doubts(problem, history, [np.array([source.pressure])])
     warnings += yield_doubts(problem, history, lambda: source.found, source.read)
+    warnings += [] if source.cycle is None else walk_doubts(source.cycle.states, source.result.cycles)
     warnings += [] if source.life is None else source.life.doubts
     notes = note_lines(source.case, source.result)
     return [Text(f"Warning: {each}.", "note") for each in warnings] + [Text(f"Note: {each}.", "note") for each in notes]
@@ -156,11 +161,12 @@ def _count(source: Source) -> str:
     return "1 state is kept" if source.points.size == 1 else f"{source.points.size:,} states are kept"
 
 
-def margins(page: PageParts) -> PageSection:
-    """Return the margins of yield, bush, fatigue, crack and plies, each with the state that governs it."""
+def all_margins(page: PageParts) -> list[Margin]:
+    """Return the margins of yield, bush, fatigue, crack and plies, the smallest one first."""
     source, problem = page.source, page.source.case.problem
     found = list(source.static_margins)
     cycle = [] if source.cycle is None else source.cycle.states
+    found += walk_margins(cycle)
     judged = {edge_body(problem, one.body) for one in source.assessed.reserves} if source.assessed else set()
     found += [
         row
@@ -170,13 +176,34 @@ def margins(page: PageParts) -> PageSection:
     found += [] if source.assessed is None else reserve_margins(source.assessed.reserves, source.assessed.how)
     found += [] if isinstance(source.crack, str) else crack_margins(source.crack)
     found += [] if isinstance(source.strength, str) else strength_margins(*source.strength.worst)
+    return in_order(found)
+
+
+def margins(page: PageParts) -> PageSection:
+    """Return the margins, each with the state that governs it, and the lines of those who answer for the report."""
+    source, found = page.source, all_margins(page)
     run = "" if source.result.complete else " of an unfinished run"
     states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
     words = f"Margins of safety over {states}{run}: allowable/value - 1"
     remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
     remarks += "down to a third of the hole's radius below them; fastpin is elastic."
-    rows = margin_rows(problem, found)
-    return PageSection("margins", "Margins", [Facts(words, rows, HEADS), Text(remarks)])
+    if any(row.part for row in found):
+        remarks += (
+            " Of the plate only the edge of its hole is looked at: its other edges, and points below them, may fail "
+        )
+        remarks += "first."
+    rows, author = margin_rows(source.case.problem, found), source.case.about.author
+    signed = [("prepared", author, "", ""), ("checked", "", "", ""), ("approved", "", "", "")]
+    return PageSection(
+        "margins",
+        "Margins",
+        [
+            Text(sentence(verdict(found))),
+            Facts(words, rows, HEADS),
+            Text(remarks),
+            Facts("Signatures", signed, ("", "name", "date", "signature"), tall=True),
+        ],
+    )
 
 
 def case(page: PageParts) -> PageSection:
@@ -379,7 +406,7 @@ def seat(page: PageParts) -> PageSection:
         "Here the bush is the pin, and its seat in the plate the hole: the motion is that of the bush over the plate."
     )
     words += " Work is that of the whole joint."
-    parts: list[SectionPart] = [Text(sentence(_seat_line(source))), Text(words)]
+    parts: list[SectionPart] = [*(Text(sentence(line)) for line in _seat_lines(source)), Text(words)]
     parts += drawn_or_reason(lambda: page.album.figure(tractions_plot(InMemory(drawn))))
     if len(mapped) > 1:
         parts += drawn_or_reason(lambda: page.album.figure(stick_slip_plot(InMemory(mapped))))
@@ -392,10 +419,9 @@ def seat(page: PageParts) -> PageSection:
     return PageSection("seat", "Seat of the bush", parts)
 
 
-def _seat_line(source: Source) -> str:
-    ends = () if source.cycle is None else (source.cycle.states[0], source.cycle.states[-1])
+def _seat_lines(source: Source) -> list[str]:
     (last,) = source.read([source.points.size - 1])
-    return seat_line(source.case.problem, source.peaks, last, ends)
+    return seat_lines(source.case.problem, source.peaks, last, () if source.cycle is None else source.cycle.states)
 
 
 def hysteresis(page: PageParts) -> PageSection:

@@ -167,7 +167,7 @@ class Source:
         points = np.array([load_point(state) for state in result])
 
         def extremes() -> Found:
-            return marked_extremes(KeptStates(result.states)) if result.states else {}
+            return marked_extremes(KeptStates(result.states)) if result.states else Found()
 
         return cls(case, result, points, read, extremes, origin, residuals, pressure, error, knows_options=known)
 

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from fastpin.elasticity.bush_stress import bush_stress
-from fastpin.elasticity.stress import is_beyond_bush, pin_stress, plate_stress, seat_stress
+from fastpin.elasticity.stress import pin_stress, plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN
@@ -18,7 +18,7 @@ from fastpin.model.checks import instance
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import Material
-from fastpin.model.points import ROUNDING, Body, Points, material_of, near_rim
+from fastpin.model.points import ROUNDING, Body, Points, is_beyond_bush, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.reading.zones import runs, unrolled
 

@@ -11,6 +11,8 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.loads import LOADS
+from fastpin.model.strength import StrengthAssessment
+from fastpin.report.case import strength_words
 from fastpin.report.curves import Curve
 from fastpin.report.sweep import TableRow, printed_rows, value_words
 from fastpin.studies.plan import Plan
@@ -50,12 +52,12 @@ def envelopes(plan: Plan, rows: Sequence[TableRow], value: str) -> list[Curve]:
         if row.get(value) is not None:
             words = ", ".join(words_of(row[name]) for name, words_of in others.items())
             found.setdefault(words, []).append(_stresses(plan.case(point), row[value]))
-    criterion = json.loads(plan.outcomes[value].definition)["how"]["criterion"]
+    how = StrengthAssessment(**json.loads(plan.outcomes[value].definition)["how"])
+    fixed = {"criterion": strength_words(plan.case(plan.points[0]).problem, how)}
     curves = []
     for words, points in found.items():
         bypass, bearing = np.array(sorted(points, key=lambda point: math.atan2(*point))).T
-        parameters = {"criterion": criterion} | ({"case": words} if words else {})
-        curves.append(Curve(parameters, {BYPASS: bypass, BEARING: bearing}))
+        curves.append(Curve(fixed | ({"case": words} if words else {}), {BYPASS: bypass, BEARING: bearing}))
     return curves
 
 

@@ -21,7 +21,10 @@ HEADS = ("subject", "value", "allowable", "margin", "load point", "loads", "rema
 
 
 def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
-    """Return lines of text on the margins that are known, the smallest one marked; none if no margin is known."""
+    """Return lines of text on the margins that are known; none if no margin is known.
+
+    The smallest one is marked, unless only a part of its body was looked at.
+    """
     known = [row for row in rows if math.isfinite(row.margin)]
     if not known:
         return []
@@ -32,6 +35,25 @@ def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
     return ["margins of safety over all kept states, allowable/value - 1:", *aligned(cells, "lrrll")]
 
 
+def in_order(margins: Sequence[Margin]) -> list[Margin]:
+    """Margins from the smallest one on; then those of parts that need nothing, then those that are not known."""
+    return sorted(margins, key=lambda row: (math.isnan(row.margin), row.margin))
+
+
+def verdict(margins: Sequence[Margin]) -> str:
+    """Return a sentence on the margin that governs, and on what is not known; without its full stop."""
+    least, unknown = smallest_margin(margins), [row.subject for row in margins if math.isnan(row.margin)]
+    words = "no margin is known"
+    if least is not None:
+        fails = (
+            "the joint fails by" if least.margin < 0.0 else "all known margins are positive; the smallest is that of"
+        )
+        where = "" if math.isnan(least.load_point) else f", load point {point_name(least.load_point)}"
+        words = f"{fails} {least.subject}: {least.margin:+.2f}{where}"
+        words += f", {least.part}" if least.part else ""
+    return words + (f"; not known: {len(unknown)} of {len(margins)}, see their remarks" if unknown else "")
+
+
 def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, ...]]:
     """Return rows of text under :data:`HEADS`. A margin of stresses above yield is marked."""
     unit, least, over = units(problem), smallest_margin(margins), over_yield(margins)
@@ -40,7 +62,9 @@ def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, 
         if math.isnan(row.margin):
             return "not known"
         words = "none needed" if math.isinf(row.margin) else f"{row.margin:+.2f}"
-        return f"{words}, the smallest" if row is least else words
+        if row is not least or row.part:  # the smallest of a part says nothing of the whole
+            return words
+        return f"{words}, the smallest{' known' if any(each.part for each in margins) else ''}"
 
     def shown(row: Margin, value: float) -> str:
         if math.isnan(value):
@@ -57,7 +81,8 @@ def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, 
             verdict(row),
             "-" if math.isnan(row.load_point) else point_name(row.load_point),
             named_loads(problem, row.loads) if row.loads else "-",
-            row.remark + (over_yield_words(over, row.owner) if over_yield_of(row, over) else ""),
+            "; ".join(filter(None, (row.remark, row.part)))
+            + (over_yield_words(over, row.owner) if over_yield_of(row, over) else ""),
         )
         for row in margins
     ]
@@ -76,7 +101,8 @@ def document(problem: Problem, margins: Sequence[Margin]) -> list[dict[str, Any]
             "allowable": factors[row.kind] * row.allowable,
             "unit": "" if row.kind == "ratio" else unit[row.kind].name,
             "margin": row.margin,
-            "smallest": row is least,
+            "smallest": row is least and not row.part,
+            "part": row.part,
             "over_yield": over_yield_of(row, over),
             "loads": printed_loads(problem, row.loads),
             "load_point": row.load_point,

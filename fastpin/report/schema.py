@@ -87,6 +87,7 @@ def _summary() -> Schema:
             "states": _list_of(_state(seat=_state())),
             "extremes": _object(dict.fromkeys(READINGS, sides), required=()),
             "margins": _margins(),
+            "unread": _map_of(_TEXT, "why a quantity could not be read from the states, by quantity"),
             "cycles": _list_of(_object(of_cycle)),
             "cycle": _or_null(_last_cycle()),
             "fatigue": _or_null(_fatigue()),
@@ -119,7 +120,10 @@ def _strength() -> Schema:
 
 
 def _margins() -> Schema:
-    texts, numbers = ("subject", "name", "body", "unit", "remark"), ("value", "allowable", "margin", "load_point")
+    texts, numbers = (
+        ("subject", "name", "body", "unit", "remark", "part"),
+        ("value", "allowable", "margin", "load_point"),
+    )
     governing = {"smallest": _TRUTH, "loads": _map_of(_NUMBER, "loads of the state that governs")}
     governing["over_yield"] = _UNKNOWN | {"description": "stress over the yield strength where it is above 1"}
     return _list_of(_object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN) | governing))

@@ -38,6 +38,7 @@ from fastpin.states.error_bars import known_bar
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, sizes
 from fastpin.states.regimes import Regime
 from fastpin.states.state import State
+from fastpin.states.walking import walk_words
 
 LOAD_POINT = "load point"
 """Heading of the first column."""
@@ -333,7 +334,7 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     """Return a line of text: whether the press fit holds the bush in all kept states; empty without a bush or contact.
 
     `states` are all kept states, or those of their extremes. Of a bush that slips it is the smallest pressure only:
-    see :func:`seat_line`.
+    see :func:`seat_lines`.
     """
     if problem.joint.bush is None or not any(state.in_contact for state in states):
         return ""
@@ -356,8 +357,10 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     return f"{text}; the bush sticks with a friction of {needed:.3g} or more"
 
 
-def seat_line(problem: Problem, states: Sequence[State], last: State, cycle: Sequence[State] = ()) -> str:
-    """Return a line of text on a bush that slips: its zones, largest slip, rotation and dissipation; empty without one.
+def seat_lines(problem: Problem, states: Sequence[State], last: State, cycle: Sequence[State] = ()) -> list[str]:
+    """Return lines of text on a bush that slips, none without one.
+
+    The first line has its zones, largest slip, rotation and dissipation. The second one says whether it walks.
 
     Parameters
     ----------
@@ -367,12 +370,12 @@ def seat_line(problem: Problem, states: Sequence[State], last: State, cycle: Seq
     last : State
         The last kept state.
     cycle : sequence of State
-        The states at the two ends of the last cycle; fewer if they are not known.
+        The states of the last cycle; none if they are not known.
     """
     seats = [state.seat for state in states if state.seat is not None]
     seat, unit = last.seat, units(problem)
     if seat is None or not seats or not problem.bush_slips:
-        return ""
+        return []
     most = seats[top([abs(each.peak_slip) for each in seats])]
     natural = sizes(seat)
 
@@ -386,9 +389,11 @@ def seat_line(problem: Problem, states: Sequence[State], last: State, cycle: Seq
         f"turned {shown('rotation', seat.rotation, 4)} so far"
     )
     turned = [state.seat.rotation for state in cycle if state.seat is not None]
-    if len(turned) == 2:
-        text += f", {shown('rotation', turned[1] - turned[0], 3)} in the last cycle"
-    return f"{text}; dissipated {shown('energy', seat.dissipation, 4)} of {shown('energy', last.dissipation, 4)}"
+    if turned:
+        text += f", {shown('rotation', turned[-1] - turned[0], 3)} in the last cycle"
+    text += f"; dissipated {shown('energy', seat.dissipation, 4)} of {shown('energy', last.dissipation, 4)}"
+    words = walk_words(cycle)
+    return [text, *([f"bush in its seat: {words}"] if words else [])]
 
 
 def cycle_lines(problem: Problem, cycles: Sequence[Cycle], states: Sequence[State] = ()) -> list[str]:
@@ -420,16 +425,18 @@ def _block_line(problem: Problem, cycles: list[Cycle], natural: Mapping[str, flo
     unit = units(problem)
     dissipation = _first_and_last([cycle.dissipation for cycle in cycles], unit["energy"], 4, natural["energy"])
     turned = _first_and_last([cycle.rotation_change for cycle in cycles], unit["rotation"], 3, natural["rotation"])
+    who = "bush" if problem.pin_body.is_bush else "pin"
     state = f"periodic from cycle {steady.number} on" if steady else "not yet periodic"
     corners = f"{last.length} corner{'s' if last.length > 1 else ''}"
     where = f"to corner {last.corner + 1:,}"
     text = f"{where}, {last.number:,} cycle{'s' if last.number > 1 else ''} of {corners}: {state}"
     if len(cycles) == 1:
-        return f"{text}; dissipated {dissipation[0]}, turned {turned[0]}"
+        return f"{text}; dissipated {dissipation[0]}, {who} turned {turned[0]}"
     changes = [f"{max(cycle.pressure_change, cycle.shear_change):.2g}" for cycle in (first, last)]
     return (
         f"{text}; first cycle: tractions changed by {changes[0]} of the peak pressure, dissipated {dissipation[0]}, "
-        f"turned {turned[0]}; last: changed by {changes[1]}, dissipated {dissipation[1]}, turned {turned[1]}"
+        f"{who} turned {turned[0]}; last: changed by {changes[1]}, dissipated {dissipation[1]}, "
+        f"{who} turned {turned[1]}"
     )
 
 

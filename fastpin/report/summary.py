@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 
 from fastpin import cracks
 from fastpin.bodies.body import BodyBase
 from fastpin.cracks.margins import crack_margins
+from fastpin.errors import ReadingError, reading
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
@@ -27,12 +29,14 @@ from fastpin.report.fatigue import life_margins
 from fastpin.report.margins import document as margins_document
 from fastpin.report.strength import StrengthFound
 from fastpin.solver.result import Result
-from fastpin.states.extremes import READINGS, KeptStates, marked_extremes
+from fastpin.states.extremes import READINGS, Found, KeptStates, marked_extremes
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
 from fastpin.states.state import State
 from fastpin.version import __version__
+
+T = TypeVar("T")
 
 
 def document(
@@ -59,8 +63,11 @@ def document(
         The crack of the entry ``crack``.
     strength : StrengthFound, optional
         The strength of the entry ``strength``.
+
+    The entry ``unread`` says which quantities could not be read from the states, and why. They are None.
     """
     problem, pair = case.problem, case.problem.pair
+    unread: dict[str, str] = {}
     alpha, beta = problem.surfaces.dundurs()
     unit = units(problem)
     margins = [] if result is None else _margins(result, fatigue, crack, strength)
@@ -86,9 +93,10 @@ def document(
         "history": _history_summary(case),
         "solver": case.options.keywords(),
         "statistics": {} if result is None else result.statistics,
-        "states": [] if result is None else [_state_summary(state) for state in result],
-        "extremes": {} if result is None else _extremes_summary(result),
+        "states": [] if result is None else [_state_summary(state, unread) for state in result],
+        "extremes": {} if result is None else _extremes_summary(result, unread),
         "margins": margins_document(problem, margins),
+        "unread": unread,
         "cycles": [
             row._asdict() | {"dissipation": unit["energy"].factor * row.dissipation}
             for row in (() if result is None else result.cycles)
@@ -141,9 +149,17 @@ def _body_summary(body: BodyBase) -> dict[str, Any]:
     return body.as_json(_material_summary) | body.summary()
 
 
-def _state_summary(state: State) -> dict[str, Any]:
+def _state_summary(state: State, unread: dict[str, str]) -> dict[str, Any]:
     resultants, bars, plate = state.resultants, state.error_bars, state.problem.surfaces.plate
     unit = units(state.problem)
+
+    def known(name: str, read: Callable[[], T]) -> T | None:
+        try:
+            with reading(name):
+                return read()
+        except ReadingError as error:
+            unread[error.field] = error.reason
+            return None
 
     def shown(name: str) -> float | str:
         """A quantity: angles and widths in degrees, a class in words."""
@@ -156,9 +172,11 @@ def _state_summary(state: State) -> dict[str, Any]:
         "fraction": state.fraction,
         "load": printed_loads(state.problem, state.load),
         "in_contact": state.in_contact,
-        **{name: shown(name) for name in QUANTITIES if name not in resultants},
-        "unresolved": [name for name, each in QUANTITIES.items() if not each.is_resolved(state)],
-        "peak_hoop_resolved": None if plate.is_rigid else state.peak_hoop_stress().resolved,
+        **{name: known(name, partial(shown, name)) for name in QUANTITIES if name not in resultants},
+        "unresolved": [
+            name for name, each in QUANTITIES.items() if known(name, partial(each.is_resolved, state)) is False
+        ],
+        "peak_hoop_resolved": None if plate.is_rigid else known("peak_hoop", lambda: state.peak_hoop_stress().resolved),
         "contact": [interval_from_bottom(*interval) for interval in state.contact],
         "stick": [interval_from_bottom(*interval) for interval in state.stick],
         "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
@@ -166,7 +184,7 @@ def _state_summary(state: State) -> dict[str, Any]:
         "resultants": printed_loads(state.problem, resultants),
         "residuals": state.residuals,
         "error_bars": bars and {name: _in_units(unit, name, bar_in_degrees(name, bar)) for name, bar in bars.items()},
-        **({} if state.seat is None else {"seat": _state_summary(state.seat)}),
+        **({} if state.seat is None else {"seat": _state_summary(state.seat, unread)}),
     }
 
 
@@ -176,16 +194,21 @@ def _in_units(unit: Mapping[str, Unit], name: str, value: float) -> float:
     return unit.get(kind, DEGREE).factor * value
 
 
-def _extremes_summary(result: Result) -> dict[str, Any]:
+def _extremes_summary(result: Result, unread: dict[str, str]) -> dict[str, Any]:
     """Return the extremes of all quantities over all states, with the units of the states."""
     unit = units(result.problem)
+    try:
+        extremes = result.extremes()
+    except ReadingError as error:
+        unread[error.field] = error.reason
+        return {}
 
     def shown(name: str, value: float) -> float:
         return _in_units(unit, name, in_degrees(name, value) if name in QUANTITIES else value)
 
     return {
         name: {side: each._asdict() | {"value": shown(name, each.value)} for side, each in pair._asdict().items()}
-        for name, pair in result.extremes().items()
+        for name, pair in extremes.items()
     }
 
 
@@ -197,7 +220,7 @@ def _margins(
         kept = KeptStates(result.states)
         rows = static_margins(result.problem, marked_extremes(kept), kept.read)
     else:
-        rows = static_margins(result.problem, {}, lambda places: [])
+        rows = static_margins(result.problem, Found(), lambda places: [])
     return rows + life_margins(result.problem, result.states, result.cycles, fatigue, crack, strength)
 
 

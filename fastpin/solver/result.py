@@ -20,6 +20,7 @@ from fastpin.model.history import CycleKey, LoadHistory
 from fastpin.model.points import Body
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.synonyms import explains_attributes
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
@@ -85,6 +86,7 @@ class Restart(ReadOnly):
         return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={}, slip_tally=NOT_COUNTED)
 
 
+@explains_attributes("result[-1]", lambda: State)
 @dataclass(eq=False, repr=False)
 class Result(Sequence[State]):
     """The states of one solution, in the order of the history: a sequence of :class:`State`.

@@ -29,6 +29,7 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.error_bars import check_nodes
 from fastpin.states.extremes import yield_doubts_of
 from fastpin.states.state import SlipFields, State, state_again
+from fastpin.states.walking import walk_doubts
 
 DEFAULTS = SolveOptions()
 """The default options of :func:`solve`."""
@@ -125,6 +126,7 @@ def solve(
     result = _follow_task(task, start)
     warn_of(pressure_doubts(problem, task.history, (state.pressure for state in result.states)), USER)
     warn_of(yield_doubts_of(problem, task.history, result.states), USER)
+    warn_of(walk_doubts(result.states, result.cycles), USER)
     return _with_coarse(task, start, result) if error_bars else result
 
 

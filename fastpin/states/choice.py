@@ -84,6 +84,15 @@ def missing_corners(states: Sequence[State], first: int, last: int) -> list[int]
     return [corner for corner in range(first, last + 1) if corner not in kept]
 
 
+def last_cycle_states(states: Sequence[State], cycles: Sequence[Cycle]) -> list[State]:
+    """The states of the last cycle that has ended. There are none if the state at a corner of it was not kept."""
+    if not cycles:
+        return []
+    first, last = span_of(cycles[-1])
+    within = states_between(states, first, last)
+    return [] if missing_corners(within, first, last) else within
+
+
 def chosen_places(points: np.ndarray, cycles: Sequence[Cycle], chosen: StateChoice) -> list[int]:
     """The places of the chosen states, in the order of the choice.
 

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 
-from fastpin.errors import InputWarning
+from fastpin.errors import InputWarning, ReadingError, reading
 from fastpin.model.doubts import are_given, are_loads_plausible, yield_doubt
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
@@ -106,8 +106,18 @@ class Extremes(NamedTuple):
     largest: Extreme
 
 
-Found = dict[tuple[str, Side], Extreme]
-"""Extremes by quantity and side."""
+class Found(dict[tuple[str, Side], Extreme]):
+    """Extremes by quantity and side.
+
+    Attributes
+    ----------
+    unread : dict of str to ReadingError
+        Why the other quantities could not be read, by quantity.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.unread: dict[str, ReadingError] = {}
 
 
 class Kept(Protocol):
@@ -172,6 +182,8 @@ def all_extremes(kept: Kept) -> dict[str, Extremes]:
     """Find the extremes of all quantities that the states have; see :meth:`fastpin.Result.extremes`."""
     sides: tuple[Side, Side] = ("smallest", "largest")
     found = find_extremes(kept, [(name, side) for name in READINGS for side in sides])
+    for error in found.unread.values():
+        raise error
     names = [name for name in READINGS if (name, "largest") in found]
     return {name: Extremes(*(found[name, side] for side in sides)) for name in names}
 
@@ -189,14 +201,14 @@ def yield_extremes(kept: Kept) -> Found:
     """
     owners = yielding_owners(kept.problem)
     if not owners:
-        return {}
+        return Found()
     columns = []
     for block in kept.blocks():
         tractions = [part for each in (block, block.seat or block) for part in (each.pressure, each.shear)]
         remote = np.abs(block.loads[:, list(REMOTE)])
         columns.append(np.column_stack([remote, *(np.abs(part).max(axis=1) for part in tractions)]))
     if not columns:  # the run was stopped before its first state
-        return {}
+        return Found()
     places = {int(np.argmax(column)) for column in np.concatenate(columns).T if column.any()}
     states = kept.read(sorted(places))
     near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]
@@ -209,7 +221,8 @@ def _is_near_yield(state: State, owner: str) -> bool:
     Only the edges are looked at. Below an edge the stress by a pressure is at most the pressure (the half-plane), and
     other loads bend a body most at its edges.
     """
-    peak = von_mises_peak(state, owner, edges_only=True)
+    with reading(PREFIX + owner):
+        peak = von_mises_peak(state, owner, edges_only=True)
     strength = strength_of(state.problem, peak.circle)
     rims = (state,) if state.seat is None else (state, state.seat)
     largest = max(peak.value, *(float(rim.pressure.max()) for rim in rims))
@@ -240,7 +253,11 @@ def yield_doubts(
     owners = yielding_owners(problem)
     if not owners or are_given() or not are_loads_plausible(problem, history):
         return []
-    found, doubts = extremes(), []
+    try:
+        found = extremes()
+    except ReadingError as error:
+        return [InputWarning(error.field, error.reason)]
+    doubts: list[InputWarning | None] = [InputWarning(error.field, error.reason) for error in found.unread.values()]
     for owner in owners:
         extreme = found.get((PREFIX + owner, "largest"))
         if extreme is not None:
@@ -261,14 +278,24 @@ def yield_doubts_of(problem: Problem, history: LoadHistory, states: Sequence[Sta
 def find_extremes(kept: Kept, wanted: Iterable[tuple[str, Side]]) -> Found:
     """Find extremes by quantity and side. Those that the problem does not have are left out.
 
+    A quantity that can't be read does not hide the others.
+
     A place that has the same tractions and loads as an earlier one is not read.
     """
     wanted, found = [pair for pair in wanted if exists(kept.problem, pair[0])], Found()
     if not wanted or not kept.points.size:
         return found
-    different = Different(kept, {name for name, _ in wanted})
+    try:
+        different = Different(kept, {name for name, _ in wanted})
+    except ReadingError as error:
+        found.unread = {name: error for name, _ in wanted}
+        return found
     for name, side in wanted:
-        extreme = different.extreme(name, side)
+        try:
+            extreme = different.extreme(name, side)
+        except ReadingError as error:
+            found.unread[name] = error
+            continue
         if extreme is not None:
             found[name, side] = extreme
     return found
@@ -286,7 +313,7 @@ def exists(problem: Problem, name: str) -> bool:
     return edge is None or edge in elastic_bodies(problem)
 
 
-def marked_places(extremes: Found) -> dict[int, str]:
+def marked_places(extremes: Mapping[tuple[str, Side], Extreme]) -> dict[int, str]:
     """Return the places of the extremes of :data:`MARKS` with words on each, in order."""
     words: dict[int, list[str]] = {}
     for pair, extreme in extremes.items():
@@ -311,7 +338,8 @@ class Different:
         bounds, begin = Bounds(kept.problem, kept.grid, names), 0
         for block in kept.blocks():
             rows = [row for row, key in enumerate(_keys(block)) if first.setdefault(key, begin + row) == begin + row]
-            bounds.add(block, rows)
+            with reading("extremes"):
+                bounds.add(block, rows)
             for name, parts in numbers.items():
                 parts.append(block.numbers[name])
             begin += len(block.pressure)
@@ -331,17 +359,22 @@ class Different:
         begin, size = 0, 1
         while begin < order.size and (not read or most[order[begin]] > best):
             chosen = sorted(places[order[begin : begin + size]].tolist())
-            readings = {at: READINGS[name].of(state) for at, state in zip(chosen, self._kept.read(chosen), strict=True)}
+            readings = {at: _read(name, state) for at, state in zip(chosen, self._kept.read(chosen), strict=True)}
             read |= {at: reading for at, reading in readings.items() if not math.isnan(reading)}
             best = max((float(value(reading)) for reading in read.values()), default=best)
             begin, size = begin + size, min(2 * size, AT_ONCE)
         least = least_equal(np.array(best))
         for place in sorted(places[most >= least].tolist()) if read else ():
             if place not in read:
-                read[place] = READINGS[name].of(self._kept.read([place])[0])
+                read[place] = _read(name, self._kept.read([place])[0])
             if value(read[place]) >= least:
                 return Extreme(read[place], place, float(self._kept.points[place]))
         return None
+
+
+def _read(name: str, state: State) -> float:
+    with reading(name):
+        return READINGS[name].of(state)
 
 
 def _keys(block: StateBlock) -> Iterator[bytes]:

@@ -23,6 +23,7 @@ MARGINS = {
     "yield": "yield strength over the von Mises stress",
     "ultimate": "ultimate strength over the von Mises stress",
     "rotation": "friction of a bonded bush in its seat over the friction needed",
+    "walk": "no turn of a bush in its seat over the turn of the last cycle",
     "opening": "pressure of the press fit over the pressure needed to close the seat",
     "findley": "fatigue limit over Findley's parameter in the last cycle",
     "fatigue": "factor on all stresses until the goal of [fatigue] is missed",
@@ -52,6 +53,8 @@ class Margin(NamedTuple):
         One of :data:`MARGINS`.
     owner : str
         The body: "plate", "pin" or "bush".
+    part : str
+        Where alone the body was looked at, if not everywhere: the margin of the whole body may be smaller.
     """
 
     subject: str
@@ -63,6 +66,7 @@ class Margin(NamedTuple):
     loads: Mapping[str, float] = MappingProxyType({})
     name: str = ""
     owner: str = ""
+    part: str = ""
 
     @property
     def margin(self) -> float:
@@ -70,6 +74,11 @@ class Margin(NamedTuple):
         if self.value <= 0.0:
             return math.inf
         return self.allowable / self.value - 1.0
+
+
+def part_of(problem: Problem, owner: str) -> str:
+    """Where alone a body is looked at; empty if that is everywhere. A compliance knows the edge of its hole only."""
+    return "edge of the hole only" if owner == "plate" and problem.plate_body.lug.edge_only else ""
 
 
 def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
@@ -81,7 +90,7 @@ def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[i
     Parameters
     ----------
     problem : Problem
-    extremes : dict
+    extremes : Found
         The extremes of all states, see :func:`fastpin.states.extremes.marked_extremes`; empty without states.
     read : callable
         ``read(places)`` gives the states at these places.
@@ -95,17 +104,18 @@ def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[i
         if (ultimate := material_of(problem, circle.body).ultimate_strength) is not None:
             strengths["ultimate"] = ultimate
         for name, strength in strengths.items():
-            row = Margin(f"{owner}: {name}, von Mises", name=name, owner=owner)
+            row = Margin(f"{owner}: {name}, von Mises", name=name, owner=owner, part=part_of(problem, owner))
             if problem.dimensionless:
                 rows.append(row._replace(remark="not known: the problem has no dimensions"))
             elif strength is None:
                 rows.append(row._replace(remark="not known: no yield strength given"))
             elif extreme is None or state is None:
-                rows.append(row._replace(kind="traction", allowable=strength, remark="not known: there is no state"))
+                why = str(extremes.unread.get(PREFIX + owner, "there is no state"))
+                rows.append(row._replace(kind="traction", allowable=strength, remark=f"not known: {why}"))
             else:
                 place = place_words(problem, von_mises_peak(state, owner))
                 known = "traction", extreme.value, strength, extreme.load_point, place, state.load, name, owner
-                rows.append(Margin(row.subject, *known))
+                rows.append(Margin(row.subject, *known, row.part))
     return rows + (_of_bush(problem, extremes, read) if "seat" in bodies_of(problem) else [])
 
 
@@ -144,7 +154,8 @@ def _of_bush(problem: Problem, extremes: Found, read: Callable[[Sequence[int]], 
         turning = Margin("bush: slip in its seat", owner="bush")
     least, slipping = extremes.get(("bush_open_margin", "smallest")), extremes.get(("bush_least_friction", "largest"))
     if least is None or slipping is None:
-        none = "not known: there is no state"
+        errors = (extremes.unread.get(name) for name in ("bush_open_margin", "bush_least_friction"))
+        none = f"not known: {next(filter(None, errors), 'there is no state')}"
         return [turning._replace(remark=none), opening._replace(remark=none)]
     (state,), pressure = read([least.place]), units(problem)["traction"].text(least.value, 4)
     fit = state.bush_fit()

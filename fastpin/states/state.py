@@ -19,6 +19,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.synonyms import explains_attributes
 from fastpin.model.units import named_loads, units
 from fastpin.reading import peaks, zones
 from fastpin.reading.cusps import ShearNodes
@@ -47,6 +48,7 @@ class SlipFields(TypedDict, total=False):
     slip_highest: np.ndarray
 
 
+@explains_attributes()
 @dataclass(frozen=True, eq=False, repr=False)
 class State(ReadOnly):
     """The contact at one load.

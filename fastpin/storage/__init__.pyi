@@ -6,6 +6,7 @@ from .origin import largest_pressure as largest_pressure
 from .origin import largest_residuals as largest_residuals
 from .origin import marked_extremes as marked_extremes
 from .origin import provenance as provenance
+from .origin import stored_walk_doubts as stored_walk_doubts
 from .origin import stored_yield_doubts as stored_yield_doubts
 from .recording import lacks_error_bars as lacks_error_bars
 from .recording import record as record

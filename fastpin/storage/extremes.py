@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 import h5py
 import numpy as np
 
+from fastpin.errors import ReadingError
 from fastpin.reading.peaks import peak_slips
 from fastpin.states import extremes
 from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Kept
@@ -94,7 +95,10 @@ def write_extremes(file: h5py.File, kept: Kept | None = None) -> None:
     size = count(file["states"])
     if size < LEAST_STORED:
         return
-    found = extremes.marked_extremes(StoredStates(hdf5.Group(file)) if kept is None else kept)
+    try:
+        found = extremes.marked_extremes(StoredStates(hdf5.Group(file)) if kept is None else kept)
+    except ReadingError:  # who asks for the extremes is told
+        return
     group = file.create_group("extremes")
     group.attrs["states"] = size
     group.attrs["names"] = [" ".join(pair) for pair in found]

@@ -10,11 +10,13 @@ from fastpin.errors import InputWarning
 from fastpin.model.checks import file_path, instance
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
+from fastpin.states.choice import span_of
 from fastpin.states.extremes import Found, yield_doubts, yield_extremes
+from fastpin.states.walking import walk_doubts
 from fastpin.storage.damage import text_of
 from fastpin.storage.extremes import read_extremes
 from fastpin.storage.layout import RESIDUALS
-from fastpin.storage.store import load, open_result
+from fastpin.storage.store import load, open_result, places_between
 
 STATES_AT_ONCE = 1_000
 """States whose pressures are in memory at once."""
@@ -77,6 +79,20 @@ def marked_extremes(path: str | Path) -> Found:
     """
     with open_result(file_path("path", path)) as file:
         return read_extremes(file)
+
+
+def stored_walk_doubts(path: str | Path, problem: Problem) -> list[InputWarning]:
+    """Return the warnings of :func:`fastpin.states.walking.walk_doubts` for the last cycle of the file of a run.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    if problem.seat is None or not (cycles := load(path, states=[]).cycles):
+        return []
+    states = load(path, states=places_between(path, *span_of(cycles[-1]))).states
+    return walk_doubts(states, cycles)
 
 
 def stored_yield_doubts(path: str | Path, problem: Problem, history: LoadHistory) -> list[InputWarning]:

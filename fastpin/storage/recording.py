@@ -47,7 +47,7 @@ from fastpin.storage.layout import (
     read_options,
     read_problem,
 )
-from fastpin.storage.origin import largest_pressure, provenance, stored_yield_doubts
+from fastpin.storage.origin import largest_pressure, provenance, stored_walk_doubts, stored_yield_doubts
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
 
@@ -289,4 +289,4 @@ def stored_case(path: str | Path) -> Case:
 def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:
     """The doubts about the largest pressure and the largest stresses of the run that has been written to a file."""
     found = pressure_doubts(task.problem, task.history, [np.array([largest_pressure(path)])])
-    return found + stored_yield_doubts(path, task.problem, task.history)
+    return found + stored_yield_doubts(path, task.problem, task.history) + stored_walk_doubts(path, task.problem)

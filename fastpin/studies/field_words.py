@@ -14,7 +14,6 @@ _KEYS = {
     "nu": "Poisson's ratio",
     **{name: field.words for name, field in FIELDS.items() if field.words},
     "reaction": "distance of the reaction",
-    "interference": "interference of the bush",
     "nodes": "number of nodes",
     "axis": "axis (deg)",
     **{name: f"modulus {name}" for name in ("E1", "E2", "G12")},
@@ -22,6 +21,15 @@ _KEYS = {
 }
 """Words for keys whose names are no words."""
 
+
+_OF_BUSHES = {
+    "plate_body.friction": "friction coefficient of the seat",
+    "plate_body.interference": "interference of the bush",
+    "plate_body.E": "modulus of the bush",
+    "plate_body.nu": "Poisson's ratio of the bush",
+    "plate_body.ring_outer_radius": "outer radius of the lug",
+}
+"""Words for fields that only a plate with a bush has."""
 
 _KIND = {
     **{f"contact.{name}": field.kind for name, field in FIELDS.items()},
@@ -55,6 +63,8 @@ def field_words(field: str) -> str:
     if field in FACTORS:
         _, _, load = field.partition(".")
         return f"factor of the {LOAD[load].short}" if load else "factor of all loads"
+    if field in _OF_BUSHES:
+        return _OF_BUSHES[field]
     section, *between, key = field.split(".")
     if between and section in ("gap", "contact"):
         owner = "friction" if section == "contact" else between[0]

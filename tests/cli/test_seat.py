@@ -13,7 +13,7 @@ from fastpin.figures.kinds import KINDS
 from fastpin.model.angles import from_bottom
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.report.states import bush_line, seat_line
+from fastpin.report.states import bush_line, seat_lines
 from tests.support.commands import printed, refused, said
 from tests.support.faults import fault_of
 from tests.support.seats import BONDED, LOADS, SLIPS, TEXT, sample_case, sample_seat, stored_sample
@@ -40,8 +40,8 @@ def test_run_and_show_say_the_same_of_the_seat(stored: Path) -> None:
         assert "would slip" not in out
         assert "bonded bush" not in out
         lines += [line for line in out.splitlines() if line.startswith("bush in its seat")]
-    line, again = lines
-    assert line == again
+    (line, walk), again = lines[:2], lines[2:]
+    assert [line, walk] == again
     result = sample_seat()
     seats = result.seat.states
     most = max(seats, key=lambda seat: abs(seat.peak_slip))
@@ -65,7 +65,7 @@ def test_a_bush_that_opens_says_where() -> None:
 def test_without_a_seat_there_is_no_line() -> None:
     problem = parse_case(BONDED + LOADS).problem
     (state,) = solve(problem, [{"P": 2e6}], nodes=48).states
-    assert seat_line(problem, [state], state) == ""
+    assert seat_lines(problem, [state], state) == []
     assert "the bush sticks with a friction of" in bush_line(problem, [state])
 
 
@@ -85,7 +85,7 @@ def test_show_prints_the_table_of_the_seat(stored: Path) -> None:
     assert last[3:5] == [f"{seat[-1].peak_pressure / 1e6:.5g}", f"{from_bottom(seat[-1].peak_pressure_angle):.2f}"]
     turned = next(line for line in out if line.startswith("to corner 10"))
     walked = units(seat.problem)["rotation"].text(seat.cycles[-1].rotation_change, 3)
-    assert turned.endswith(f"turned {walked}")
+    assert turned.endswith(f"bush turned {walked}")
     document = json.loads(Path("seat.json").read_text(encoding="utf-8"))
     assert document["states"][-1]["rotation"] == seat[-1].rotation
     assert "seat" not in document["states"][-1]

@@ -56,6 +56,12 @@ def test_strength_round_the_hole() -> None:
         assert ratio.min() == pytest.approx(found.least_ratio)
         assert math.radians(angle[np.argmin(ratio)] - 90.0) == pytest.approx(found.angle)
     assert "first ply by tsai-wu, 500\xa0µm from the edge" in panel.get_title() + panel.figure.get_suptitle()
+    worst = min(
+        (joint_strength(state, "tsai-wu", distance=0.5e-3) for state in result()), key=lambda each: each.least_ratio
+    )
+    words = f"{worst.ply_angle:g}° {worst.ply_mode}".replace("-", "−")
+    (there,) = (text.xy for text in panel.texts if text.get_text() == words and text.xy[1] == worst.least_ratio)
+    assert math.radians(there[0] - 90.0) == pytest.approx(worst.angle)
 
 
 def test_directions_of_the_plies_in_the_hole() -> None:

@@ -51,7 +51,7 @@ WRONG = {
     "tolerance: must lie between 0 and 0.1, not 0.5": {"pin": 1, "tolerance": 0.5},
     'law: must be "archard" or "energy"': {"pin": 1, "law": "linear"},
     "at: must be at most 10,000 increasing numbers of cycles": {"pin": 1, "cycles": 9, "at": [3, 2]},
-    "at: must be": {"pin": 1, "cycles": 9, "at": [10]},
+    "at: must lie between": {"pin": 1, "cycles": 9, "at": [10]},
 }
 
 

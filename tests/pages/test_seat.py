@@ -6,7 +6,7 @@ import pypdf
 import pytest
 
 from fastpin.pages import write_report
-from fastpin.report.states import seat_line
+from fastpin.report.states import seat_lines
 from fastpin.states.extremes import KeptStates, marked_extremes, marked_places
 from tests.support.html import Page
 from tests.support.seats import sample_seat, stored_sample
@@ -16,7 +16,7 @@ def sentence() -> str:
     """The sentence on the seat, as the page has it."""
     result = sample_seat()
     places = marked_places(marked_extremes(KeptStates(result.states)))
-    line = seat_line(result.problem, [result[place] for place in places], result[-1], (result[-4], result[-1]))
+    line, _ = seat_lines(result.problem, [result[place] for place in places], result[-1], result[-4:])
     return f"{line[0].upper()}{line[1:]}."
 
 

@@ -32,8 +32,9 @@ def test_the_versions_of_formats_are_those_of_the_code() -> None:
 
 
 def test_the_exit_codes_are_those_of_the_command_line() -> None:
-    failed, refused, interrupted = terminal.EXIT_FAILED, terminal.EXIT_INPUT, terminal.EXIT_INTERRUPTED
-    words = f"{failed} is a run or a check that failed. {refused} is input that can't be used. {interrupted} follows"
+    failed, refused, unread = terminal.EXIT_FAILED, terminal.EXIT_INPUT, terminal.EXIT_READING
+    words = f"{failed} is a run or a check that failed. {refused} is input that can't be used. {unread} is a quantity"
+    assert f" {terminal.EXIT_INTERRUPTED} follows Ctrl-C" in " ".join(POLICIES.split())
     assert words in " ".join(POLICIES.split())
 
 

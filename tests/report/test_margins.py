@@ -14,10 +14,11 @@ from fastpin.model import FatigueConstants
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.report import summary
-from fastpin.report.margins import margin_lines, margin_rows
-from fastpin.states.extremes import KeptStates, marked_extremes
+from fastpin.report.margins import in_order, margin_lines, margin_rows, verdict
+from fastpin.states.extremes import Found, KeptStates, marked_extremes
 from fastpin.states.margins import Margin, smallest_margin, static_margins
 from fastpin.states.yielding import von_mises_peak
+from tests.support.bodies import softer_hole
 
 STEEL, BRONZE = Material(210e9, 0.3), Material(103e9, 0.34, yield_strength=300e6)
 LIMITS = FatigueConstants(bending_limit=150e6, torsion_limit=90e6)
@@ -62,6 +63,44 @@ def test_margins_are_allowable_over_value_of_the_governing_state(result: Result)
     assert opening.load_point == fits.index(least) + 1
 
 
+def margins_of(part: str, plate: float, pin: float) -> list[Margin]:
+    of_plate = Margin(
+        "plate: yield, von Mises", "traction", 1e8, (1.0 + plate) * 1e8, name="yield", owner="plate", part=part
+    )
+    return [of_plate, Margin("pin: yield, von Mises", "traction", 1e8, (1.0 + pin) * 1e8, name="yield", owner="pin")]
+
+
+@pytest.mark.parametrize(
+    ("part", "plate", "pin", "verdicts"),
+    [
+        ("", 0.5, 7.0, ["+0.50, the smallest", "+7.00"]),
+        ("edge of the hole only", 0.5, 7.0, ["+0.50", "+7.00"]),
+        ("edge of the hole only", 0.5, 0.1, ["+0.50", "+0.10, the smallest known"]),
+    ],
+)
+def test_the_margin_of_a_part_is_never_called_the_smallest(
+    part: str, plate: float, pin: float, verdicts: list[str]
+) -> None:
+    rows = margins_of(part, plate, pin)
+    problem = Problem(MaterialPair(STEEL, ALUMINIUM), 10e-3, 30e-6, 0.3)
+    assert [row[3] for row in margin_rows(problem, rows)] == verdicts
+    assert margin_rows(problem, rows)[0][-1] == part
+    assert [row["part"] for row in summary.margins_document(problem, rows)] == [part, ""]
+    assert [row["smallest"] for row in summary.margins_document(problem, rows)] == [
+        "smallest" in each for each in verdicts
+    ]
+
+
+@pytest.mark.parametrize("bushed", [True, False])
+def test_a_lug_of_any_outline_is_looked_at_on_the_edge_of_its_hole_only(bushed: bool) -> None:
+    lug = softer_hole(12.5e-3 if bushed else 10e-3, ALUMINIUM.nu, "strain")
+    problem = Problem(
+        MaterialPair(STEEL, ALUMINIUM), 10e-3, 30e-6, 0.3, plate_body=replace(LUG, inside=lug) if bushed else lug
+    )
+    parts = {row.owner: row.part for row in static_margins(problem, Found(), lambda places: [])}
+    assert parts == {"plate": "edge of the hole only", "pin": "", **({"bush": ""} if bushed else {})}
+
+
 @pytest.mark.gate
 def test_what_is_not_known_says_why() -> None:
     result = solved(pair=MaterialPair(STEEL, replace(ALUMINIUM, yield_strength=None)))
@@ -75,7 +114,7 @@ def test_what_is_not_known_says_why() -> None:
         assert math.isnan(rows[subject].margin)
     shown = {row[0]: row for row in margin_rows(result.problem, list(rows.values()))}
     assert shown["pin: yield, von Mises"][1:5] == ("-", "-", "not known", "-")
-    none = {row.subject: row for row in static_margins(result.problem, {}, lambda places: [])}
+    none = {row.subject: row for row in static_margins(result.problem, Found(), lambda places: [])}
     for subject in ("bush: yield, von Mises", OPENING):
         assert none[subject].remark == "not known: there is no state"
 
@@ -117,7 +156,7 @@ def test_fatigue_is_of_the_last_cycle_and_says_so(result: Result) -> None:
     known = [fatigue(states, "smith-watson-topper", body) for body in ("plate", "seat")]
     bore, seat = fatigue_margins(result.problem, known, states)
     assert (bore.subject[:15], seat.subject[:15]) == ("last cycle only", "last cycle only")
-    assert "not known: no bending_limit and torsion_limit of the bush given" in bore.remark
+    assert "not known: a margin needs Findley's bending_limit and torsion_limit of the bush" in bore.remark
     findley = fatigue(states, "findley", "seat")
     assert seat.subject.endswith("Findley")
     assert seat.margin == pytest.approx(findley.limit / findley.hot_spot.parameter - 1.0)
@@ -187,3 +226,23 @@ def test_the_smallest_margin_is_marked(result: Result) -> None:
         "b 4 MPa of 3 MPa -0.25, the smallest load point 2.5: P = 2 kN/m at 1 deg",
     ]
     assert margin_lines(problem, rows[2:]) == []
+
+
+def test_the_verdict_names_the_row_that_governs() -> None:
+    problem = Problem(MaterialPair(STEEL, ALUMINIUM), 10e-3, 30e-6, 0.3)
+    plate, pin = (row._replace(load_point=2.0) for row in margins_of("", 0.5, 0.2))
+    unknown = Margin("bush: slip in its seat", remark="no limit of the slip is known")
+    needless = Margin("bush: opening, press fit needed", "traction", 0.0, 1e7)
+    assert [row.subject for row in in_order([unknown, needless, plate, pin])] == [
+        pin.subject, plate.subject, needless.subject, unknown.subject
+    ]  # fmt: skip
+    known = "all known margins are positive; the smallest is that of pin: yield, von Mises: +0.20, load point 2"
+    assert verdict([plate, pin]) == known
+    assert verdict([plate, pin, unknown]) == f"{known}; not known: 1 of 3, see their remarks"
+    failed = plate._replace(allowable=0.9e8, part="edge of the hole only")
+    assert (
+        verdict([failed, pin])
+        == "the joint fails by plate: yield, von Mises: -0.10, load point 2, edge of the hole only"
+    )
+    assert verdict([unknown]) == "no margin is known; not known: 1 of 1, see their remarks"
+    assert len(margin_rows(problem, in_order([unknown, plate]))) == 2

@@ -135,6 +135,8 @@ def test_rounding_is_no_number_of_a_figure(plan: Plan, rows: list[dict[str, Any]
         ("contact.hole_radius", "hole radius"),
         ("pin.nu", "Poisson's ratio of the pin"),
         ("plate_body.outer_radius", "outer radius of the plate"),
+        ("plate_body.friction", "friction coefficient of the seat"),
+        ("plate_body.interference", "interference of the bush"),
         ("load.2.Q", "force Q in load 2"),
         ("load.1.amplitude.sxx", "amplitude of the remote stress sxx in load 1"),
         ("load.2.rotation", "rotation of the pin in load 2"),

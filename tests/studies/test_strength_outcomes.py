@@ -67,7 +67,13 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path) -> None
     assert {*np.round(curve[BYPASS])} == {round(row["factor"] * row["load.1.syy"]) for row in rows}
     assert curve[BEARING].max() == pytest.approx(max(row["factor"] for row in rows[2:]) * 1e6 / 6e-3)
     assert np.all(np.diff(np.arctan2(curve[BYPASS], curve[BEARING])) > 0.0)
-    assert "bypass stress (MPa)" in Path("one.svg").read_text()
+    drawn = Path("one.svg").read_text()
+    for words in (
+        "bypass stress (MPa)",
+        "failure of the first ply by yamada-sun 500 µm from the edge",
+        "friction coefficient",
+    ):
+        assert words in drawn
 
 
 @pytest.mark.gate
@@ -81,7 +87,7 @@ def test_an_envelope_follows_the_force_and_the_other_fields(folder: Path) -> Non
     plan = read_plan("plan.toml")
     rows = sweep.rows(plan, "plan")
     for curve, row, layup in zip(envelopes(plan, rows, "f"), rows, ("[0/90]4s", "[0/45/-45/90]2s"), strict=True):
-        assert curve.parameters == {"criterion": "yamada-sun", "case": f"layup = {layup}"}
+        assert curve.parameters == {"criterion": "yamada-sun 500 um from the edge", "case": f"layup = {layup}"}
         assert curve[BYPASS] == pytest.approx([row["f"] * 50e6])
         assert curve[BEARING] == pytest.approx([row["f"] * 1e6 / 6e-3])
 

@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
-from fastpin.bodies import Bushing, Plate, Ring, Tube
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
+import numpy as np
+
+from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
+from fastpin.model.materials import MATERIALS, Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
 from fastpin.verification.body_cases import BRONZE, ring_compliance
 
@@ -44,3 +46,10 @@ def joint_problem(name: str, load_parameter: float, friction: float, **options: 
         return replace(ring, plate_body=ring_compliance(ring, 20))
     pair, bodies = JOINTS[name]
     return Problem.from_load_parameter(pair, load_parameter, friction, **bodies, **options)
+
+
+def softer_hole(radius: float, nu: float, plane: Plane) -> Compliance:
+    """A plate that widens more than the infinite one under pressure, and is round otherwise."""
+    matrix = np.zeros((26, 26))
+    matrix[0, 0] = 0.1
+    return Compliance(nu, plane, radius, matrix)

@@ -1,0 +1,101 @@
+"""Whether a bush that slips in its seat walks: whether it turns on with each cycle, or rests.
+
+A node of the seat that sticks throughout the cycle holds the bush; docs/bush.md has the evidence. Between the kept
+states nothing is known, unless slip sums are counted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from fastpin.errors import InputWarning
+from fastpin.model.doubts import are_given
+from fastpin.model.units import units
+from fastpin.states.choice import last_cycle_states
+from fastpin.states.cycles import Cycle
+from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
+from fastpin.states.margins import Margin
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+
+LEAST_WALK = 1e-3
+"""Least turn of a cycle, in parts of the largest rotation of the bush within it, that is no error of the nodes."""
+
+
+class Walk(NamedTuple):
+    """How a bush turns in its seat over a cycle.
+
+    Attributes
+    ----------
+    turn : float
+        Rotation of the bush from the beginning of the cycle to its end, rad.
+    swing : float
+        Largest rotation less the smallest one within the cycle, rad.
+    sticking : float
+        The part of the seat that sticks at all kept states of the cycle.
+    """
+
+    turn: float
+    swing: float
+    sticking: float
+
+    @classmethod
+    def of(cls, states: Sequence[State]) -> Walk | None:
+        """The walk over the states of a cycle. None without a bush that slips, or with fewer than two states."""
+        seats = tuple(state.seat for state in states if state.seat is not None)
+        if len(seats) < 2:
+            return None
+        rotations = np.array([seat.rotation for seat in seats])
+        sticks = LoadCycle(seats).behaviour == NodeBehaviour.STICKS
+        part = float(seats[0].grid.weights @ sticks) / (2.0 * math.pi)
+        return cls(float(rotations[-1] - rotations[0]), float(np.ptp(rotations)), part)
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether the bush walks: no node sticks throughout, and the cycle has turned it."""
+        return self.sticking == 0.0 and abs(self.turn) > LEAST_WALK * self.swing
+
+    @property
+    def cycles_of_a_turn(self) -> float:
+        """Cycles until a bush that walks has turned once."""
+        return 2.0 * math.pi / abs(self.turn)
+
+    def words(self, turn: str) -> str:
+        """What the bush does, with its `turn` in a cycle as text."""
+        if self.goes_on:
+            return f"it walks {turn} a cycle, {self.cycles_of_a_turn:,.4g} cycles for a full turn"
+        if self.sticking:
+            return f"it rests: {100.0 * self.sticking:.3g} % of its seat sticks throughout the last cycle"
+        return "it slips to and fro: no part of its seat sticks throughout the last cycle"
+
+
+def walk_words(states: Sequence[State]) -> str:
+    """What a bush does in its seat over the states of a cycle; empty if that is not known."""
+    walk = Walk.of(states)
+    return "" if walk is None else walk.words(units(states[0].problem)["rotation"].text(abs(walk.turn), 3))
+
+
+def walk_margins(states: Sequence[State]) -> list[Margin]:
+    """Return the margin of a bush against walking over the states of a cycle; none if that is not known.
+
+    No turn is allowed: the margin of a bush that walks is -1, and one that rests needs none.
+    """
+    walk = Walk.of(states)
+    if walk is None:
+        return []
+    turn = abs(walk.turn) if walk.goes_on else 0.0
+    words = walk_words(states).removeprefix("it ")
+    return [Margin("bush: walks in its seat", "rotation", turn, 0.0, load_point(states[-1]), words, {}, "walk", "bush")]
+
+
+def walk_doubts(states: Sequence[State], cycles: Sequence[Cycle]) -> list[InputWarning]:
+    """Return a warning if the bush walks over the last cycle. A study has none: its plan asks for the walk."""
+    if are_given() or not states or states[-1].seat is None:
+        return []
+    within = last_cycle_states(states, cycles)
+    walk = Walk.of(within)
+    return [InputWarning("bush", walk_words(within))] if walk is not None and walk.goes_on else []
