@@ -8,7 +8,7 @@ import dataclasses
 import json
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -483,6 +483,7 @@ class RunReport:
             turning = [] if problem.seat is None else last_cycle_states(result.states, result.cycles)
             return seat_lines(problem, peaks, result.states[-1], turning)
 
+        @cache
         def margins() -> list[Margin]:
             rows = static_margins(problem, extremes, lambda places: [found[place] for place in places])
             if result.cycles or any(each is not None for each in judged[1:]):
