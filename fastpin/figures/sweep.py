@@ -36,6 +36,7 @@ _UNSURE: Any = {
     "marker": "o", "markersize": 4.5, "markerfacecolor": "white", "markeredgecolor": "black", "markeredgewidth": 0.9,
     "linestyle": "none",
 }  # fmt: skip
+_ENDLESS: Any = {"marker": r"$\uparrow$", "markersize": 7.0, "linestyle": "none", "clip_on": False}
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
 MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 """Marks of the computed values, as many as colours. Crosses mark failed runs."""
@@ -188,12 +189,15 @@ def _draw_maps(look: Look, chart: Chart) -> Sheet:
         _scale_axes(panel, chart)
         _set_title(sheet, panel, name)
     _label_panels(sheet, chart)
-    bar = sheet.figure.colorbar(mesh, ax=list(sheet.axes.flat), aspect=30, pad=0.02)
-    bar.set_label(shown_label(chart.label), parse_math=False)
-    bar.outline.set_linewidth(0.5)
-    if isinstance(scale, LogNorm):
-        round_numbers(bar.ax.yaxis, known)
-    sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
+    if any(np.isfinite(numbers).any() for _, numbers, _ in chart.parts):
+        bar = sheet.figure.colorbar(mesh, ax=list(sheet.axes.flat), aspect=30, pad=0.02)
+        bar.set_label(shown_label(chart.label), parse_math=False)
+        bar.outline.set_linewidth(0.5)
+        if isinstance(scale, LogNorm):
+            round_numbers(bar.ax.yaxis, known)
+        sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
+    else:
+        sheet.head(look.title, shown_label(chart.label), caption=_fixed_parameters(chart))
     _explain(sheet, chart)
     _thin_out(sheet, [label for part in labels for label in part])
     return sheet
@@ -371,6 +375,8 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
             unknown = np.isinf(chart.bars[part]) & np.isfinite(numbers)
             panel.plot(chart.x.values[unknown], numbers[unknown], **_UNSURE)
             any_unknown = any_unknown or bool(unknown.any())
+        if chart.endless:
+            _mark_endless(panel, chart.x.values[chart.endless[part]], index)
         _mark_failed(panel, chart.x.values[failed], index)
         any_failed = any_failed or bool(failed.any())
         if name:
@@ -380,10 +386,13 @@ def _draw_curves(look: Look, chart: Chart) -> Sheet:
     if chart.classes:
         panel.set_yticks(list(chart.classes), list(chart.classes.values()))
         panel.set_ylim(min(chart.classes) - 0.5, max(chart.classes) + 0.5)
-    elif _spans_decades(_known_values(chart)):
+    elif _spans_decades(_known_values(chart)) or (chart.endless and _known_values(chart).min() > 0.0):
         panel.set_yscale("log")
-        round_numbers(panel.yaxis, _known_values(chart))
+        round_numbers(panel.yaxis, np.array(panel.get_ylim()))
+    panel.set_xlim(*_with_margin(chart.x))
     _label_panels(sheet, chart)
+    if any(ends.any() for ends in chart.endless):
+        handles.append(Line2D([], [], label="life does not end", color="0.3", **_ENDLESS))
     if any_unknown:
         handles.append(Line2D([], [], label="error not known", **_UNSURE))
     if any_failed:
@@ -416,6 +425,22 @@ def _add_legend(sheet: Sheet, handles: Sequence[Any], columns: int, title: str =
     blank = Line2D([], [], linestyle="none", label=" ")
     filled = [*handles, *[blank] * (-len(handles) % columns)] if len(handles) > columns else list(handles)
     sheet.legend([filled[k] for first in range(columns) for k in range(first, len(filled), columns)], columns, title)
+
+
+def _mark_endless(panel: Axes, x: np.ndarray, index: int) -> None:
+    """Mark the runs of a curve whose life does not end, by arrows at the upper edge of the panel."""
+    there = np.full(len(x), 0.97 - 0.04 * index)
+    panel.plot(x, there, transform=panel.get_xaxis_transform(), color=line(index)["color"], **_ENDLESS)
+
+
+def _with_margin(axis: Axis) -> tuple[float, float]:
+    """The ends of an axis of curves: all its values, with or without a number."""
+    low, high = float(axis.values.min()), float(axis.values.max())
+    if axis.log:
+        part = (high / low) ** 0.04 if high > low else 2.0
+        return low / part, high * part
+    margin = 0.04 * (high - low) or 0.5 * (abs(high) or 1.0)
+    return low - margin, high + margin
 
 
 def _mark_failed(panel: Axes, x: np.ndarray, index: int) -> None:

@@ -167,6 +167,8 @@ class Chart:
     bars : list of ndarray
         The error bars of each entry of `parts`, in the label's unit. NaN where there is none, inf where nothing is
         known. Bars of a class are 0, or larger if the coarse grid finds another class. Empty without error bars.
+    endless : list of ndarray of bool
+        For each entry of `parts` where a life was looked for, and did not end; empty if the number is no life.
     """
 
     title: str
@@ -179,6 +181,7 @@ class Chart:
     varied: tuple[str, ...] = ()
     classes: Mapping[int, str] = field(default_factory=dict)
     bars: list[np.ndarray] = field(default_factory=list)
+    endless: list[np.ndarray] = field(default_factory=list)
 
 
 def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[str, str | None, list[str]]:
@@ -293,12 +296,15 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
     shape = tuple(len(axis.values) for axis, _ in axes)
     parts: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     bars: dict[str, np.ndarray] = {}
+    endless: dict[str, np.ndarray] = {}
     for row in rows:
         name = "\n".join(others_words[other](row[other]) for other in others if row[other] is not None)
         numbers, failed = parts.setdefault(name, (np.full(shape, np.nan), np.zeros(shape, dtype=bool)))
         bars.setdefault(name, np.full(shape, np.nan))
+        endless.setdefault(name, np.zeros(shape, dtype=bool))
         place = tuple(places[row[field]] for (_, places), field in zip(axes, (y, x) if y else (x,), strict=True))
         failed[place] = row["status"] == FAILED
+        endless[name][place] = value in row.get("endless", ())
         if row["status"] == DONE and row.get(value) is not None:
             numbers[place] = factor * row[value] if abs(row[value]) > least else 0.0
             bars[name][place] = factor * row.get(bar_column(value), math.nan)
@@ -313,6 +319,7 @@ def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None
         tuple(name for name in plan.fields if len(_different([point.values.get(name) for point in plan.points])) > 1),
         plan.outcomes[value].classes if value in plan.outcomes else {},
         [*bars.values()] if any(bar_column(value) in row for row in rows) else [],
+        [*endless.values()] if value in plan.outcomes and plan.outcomes[value].is_life else [],
     )
 
 

@@ -189,6 +189,11 @@ class StudyOutcome:
     wear: Wear | None = None
     has_strengths: bool = False
 
+    @property
+    def is_life(self) -> bool:
+        """Whether the number is a life. One that does not end has no value."""
+        return self.kind == "life" or "spectra" in self.unit
+
     def reported(self, value: float) -> float:
         """A value in the units of reports: angles in degrees from the bottom of the hole, widths in degrees."""
         if self.kind == "angle" and math.isfinite(value):

@@ -219,6 +219,7 @@ def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
 
     The outcomes are those of the plan; None stands for a value that is not known. The row of a point that is not in the
     index has only its status "waiting", reason, id, fields and outcomes. Only values that are known have error bars.
+    The key "endless" names the lives that were looked for, and did not end.
 
     Raises
     ------
@@ -241,6 +242,7 @@ def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
         fields = dict.fromkeys(plan.fields) | point.values
         known_bars = bars.get(point.id, {}) if row["status"] == DONE else {}
         shown = {bar_column(name): bar for name, bar in known_bars.items() if name in KEY_FIGURES or name in chosen}
+        row["endless"] = [name for name in chosen if plan.outcomes[name].is_life and values[name][1:3] == (None, None)]
         found.append({**row, "id": point.id, **fields, **dict.fromkeys(plan.outcomes), **chosen, **shown})
     return found
 

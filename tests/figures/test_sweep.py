@@ -367,3 +367,26 @@ def test_what_does_not_fit_side_by_side_is_told(smooth: Chart, plan: Plan, rows:
 def test_round_numbers_are_written_in_full_or_all_as_powers_of_ten(values: list[float], written: list[str]) -> None:
     words = sweep_figure._in_round_numbers(np.array(values))
     assert [words(value) for value in values] == written
+
+
+def test_lives_that_do_not_end_are_arrows_on_the_whole_axis() -> None:
+    """The axis has all values, and lives have a logarithmic scale."""
+    x, lives = Axis("amplitude (µm)", np.array([12.0, 16.0, 20.0, 24.0, 28.0]), False), np.array([1, 3, 2, 1, 1]) * 1e6
+    lives[:2] = np.nan
+    ends, failed = np.array([True, False, False, False, False]), np.array([False, True, False, False, False])
+    (panel,) = (
+        figure := plot_sweep(Chart("", "life (cycles)", x, None, [("", lives, failed)], 2, endless=[ends]))
+    ).axes
+    arrows = next(each for each in panel.lines if "arrow" in str(each.get_marker()))
+    assert arrows.get_xdata() == pytest.approx([12.0])
+    assert panel.get_yscale() == "log"
+    assert panel.get_xlim()[0] < 12.0 < 28.0 < panel.get_xlim()[1]
+    assert legend_words(figure) == ["life does not end", "failed run"]
+
+
+def test_a_map_without_any_value_has_no_bar_of_colours() -> None:
+    axes = Axis("x", np.arange(3.0), False), Axis("y", np.arange(2.0), False)
+    none = np.full((2, 3), np.nan)
+    figure = plot_sweep(Chart("", "life (cycles)", *axes, [("", none, np.zeros((2, 3), dtype=bool))], 6))
+    assert len(figure.axes) == 1
+    assert legend_words(figure) == ["no value"]
