@@ -16,8 +16,8 @@ from fastpin.states.yielding import circles
 from tests.support.bodies import softer_hole
 
 INCH = 25.4
-BORES = [0.5 * k for k in range(8, 42)], [INCH / 16 * k for k in range(2, 16)]
-WALLS = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0], [INCH / 32 * k for k in range(2, 5)]
+BORES = [0.5 * k for k in range(8, 50)], [INCH / 16 * k for k in range(2, 16)]
+WALLS = [0.25 * k for k in range(4, 14)], [INCH / 32 * k for k in range(2, 8)]
 PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["7075-T6"], "stress")
 
 
