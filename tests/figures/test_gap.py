@@ -58,7 +58,7 @@ def test_captions_hold_the_profiles() -> None:
     assert "friction coefficient 0.1 to 0.4 along the rim: 0.4 and -0.3 more from -28.65 to 57.3 deg" in text
     assert "initial gap of the hole: oval of 4 µm, largest at 90 deg and 5 lobes of 1 µm, one at" in text
     assert "initial gap of the pin: crown of −2 µm at 0 deg, half width 28.65 deg" in text
-    many = Profile.constant(1e-6)
+    many = Profile.crown(0.0, 0.5, 1e-6)
     for k in range(1, 6):
         many = many + Profile.lobes(k, 1e-7)
     assert " and 2 more terms" in caption(replace(ROUND, gap=InitialGap(many)))

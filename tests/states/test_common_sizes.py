@@ -1,42 +1,22 @@
 """Radii, walls and depths of common sizes, in mm and inches: rounding of their ratios refuses none of them."""
 
 import itertools
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
 
-from fastpin import MATERIALS, Points, Problem
-from fastpin.bodies import Bushing, Ring, Tube
+from fastpin import Points, Problem
+from fastpin.bodies import Ring
 from fastpin.errors import InputError
 from fastpin.model.checks import is_above, is_between
 from fastpin.model.crack import MOST_OF_WALL, check_length
-from fastpin.model.materials import MaterialPair
 from fastpin.states.yielding import circles
-from tests.support.bodies import softer_hole
-
-INCH = 25.4
-BORES = [0.5 * k for k in range(8, 50)], [INCH / 16 * k for k in range(2, 16)]
-WALLS = [0.25 * k for k in range(4, 14)], [INCH / 32 * k for k in range(2, 8)]
-PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["7075-T6"], "stress")
-
-
-def sizes() -> Iterator[tuple[float, float]]:
-    """Radii of the bore and of the bush, m, as a person writes them."""
-    for bores, walls in zip(BORES, WALLS, strict=True):
-        for bore, wall in itertools.product(bores, walls):
-            yield float(f"{bore:.6g}e-3"), float(f"{bore + wall:.6g}e-3")
-
-
-def bushed(radius: float, outer: float, any_outline: bool) -> Problem:
-    around = softer_hole(outer, PAIR.plate.nu, "stress") if any_outline else Ring(3.0 * outer)
-    bush = Bushing(MATERIALS["C93200"], outer, interference=1e-5, inside=around)
-    return Problem(PAIR, radius, 2e-5, 0.2, plate_body=bush, pin_body=Tube(0.4 * radius))
+from tests.support.common_sizes import PAIR, bushed, sizes
 
 
 @pytest.mark.parametrize("any_outline", [True, False])
 def test_every_circle_lies_in_its_body(any_outline: bool) -> None:
-    for radius, outer in itertools.islice(sizes(), 0, None, 3):
+    for radius, outer in itertools.islice(sizes(), 0, None, 7):
         problem = bushed(radius, outer, any_outline)
         for circle in circles(problem):
             there = Points.at_depth(circle.depth * radius, [0.0]).depths(problem, circle.body)

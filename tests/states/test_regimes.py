@@ -47,7 +47,7 @@ def test_the_regime_of_a_state_is_a_quantity_in_words():
     for regime, state in states_of_each_regime().items():
         assert state.regime is regime
         assert QUANTITIES["regime"].of(state) == float(regime)
-        assert _state_summary(state)["regime"] == regime.words
+        assert _state_summary(state, {})["regime"] == regime.words
         assert "regime" not in values(state)  # a class has no error bar and no order
 
 

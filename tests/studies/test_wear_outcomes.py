@@ -215,15 +215,16 @@ def test_worker_processes_read_the_same_numbers(plan: Plan, tmp_path: Path) -> N
     assert all(volume > 0.0 for volume, _ in one)
 
 
+@pytest.mark.gate
 def test_a_life_that_does_not_end_is_told_apart_from_one_that_could_not_be_read(tmp_path: Path) -> None:
-    """The first run has no crack within 20 cycles. The second one wears too much."""
+    """No crack within 20 cycles; and a pin without constants."""
     (tmp_path / "case.toml").write_text(CASE)
-    outcomes = (
-        PLAN.partition("[outcomes]")[0] + '[outcomes]\nlife = { wear = "life", cycles = 20, coefficient = 1e-10 }\n'
+    plan = parse_plan(
+        'case = "case.toml"\n[grid]\nload.2.rotation = [[2e-2, -2e-2]]\n[outcomes]\n'
+        'life = { wear = "life", cycles = 20, coefficient = 1e-16 }\n'
+        'lost = { wear = "life", cycles = 20, coefficient = 1e-16, body = "pin" }\n',
+        folder=tmp_path,
     )
-    plan = parse_plan(outcomes, folder=tmp_path)
     sweep.run(plan, tmp_path / "out", Inline())
-    assert [(row["life"], row["endless"]) for row in sweep.rows(plan, tmp_path / "out")] == [
-        (None, ["life"]),
-        (None, []),
-    ]
+    (row,) = sweep.rows(plan, tmp_path / "out")
+    assert (row["life"], row["lost"], row["endless"]) == (None, None, ["life"])

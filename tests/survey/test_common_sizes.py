@@ -8,8 +8,8 @@ import pytest
 
 import fastpin
 from fastpin.model.points import bodies_of
-from tests.states.test_common_sizes import bushed, sizes
 from tests.support.commands import printed, said
+from tests.support.common_sizes import bushed, sizes
 
 pytestmark = pytest.mark.survey
 

@@ -20,6 +20,7 @@ from fastpin.cli.options import parser
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model import synonyms
 from fastpin.model.doubts import doubts, pressure_doubts
+from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.ply import PlyStrengths
 from fastpin.studies.plan import parse_plan, read_plan
@@ -210,7 +211,8 @@ def test_every_name_with_synonyms_is_a_name_of_fastpin() -> None:
     allowed = {*KEYS, *(key for keys in KEYS.values() for key in keys), *LUG_KEYS, "title"}
     allowed |= set(parser().format_help().split()) | {"workers", "output", "plot", "table"}
     allowed |= {"fatigue_strength", "fatigue_ductility", "strength_exponent", "ductility_exponent", "yield_strength"}
-    allowed |= {"path", "increment", "spring", "fixed", "free", "centre", "body", "held"}
+    allowed |= {"path", "increment", "spring", "fixed", "free", "centre", "body", "held", "bush"}
+    allowed |= {*LIFE_CONSTANTS, *dir(fastpin.State), *(each.name for each in dataclasses.fields(fastpin.State))}
     allowed |= {*fastpin.MATERIALS, "materials", *WORD_KEYS, *(each.name for each in dataclasses.fields(PlyStrengths))}
     names = {name for word in synonyms.words() for name in synonyms.meant(word)}
     assert names - allowed == {"thickness"} - allowed
