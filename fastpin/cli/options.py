@@ -15,17 +15,14 @@ from typing import Any, NoReturn
 
 from fastpin.cli.chart_options import add_chart_options
 from fastpin.errors import printable
-from fastpin.figures.kinds import KIND_OPTIONS, KINDS, STATES_HELP
+from fastpin.figures.kinds import DEFAULT_KEY_FIGURE, KIND_OPTIONS, KINDS, STATES_HELP
 from fastpin.model.synonyms import closest, meant
 from fastpin.version import __version__
 
 EXIT_CODES = (
     "Exit codes: 0 for success; 1 if loads could not be followed to their end, a run or a check failed, or a file "
-    "could not be written; 2 for wrong input; 130 after Ctrl-C."
+    "could not be written; 2 for wrong input; 3 if a quantity could not be read from the states; 130 after Ctrl-C."
 )
-
-DEFAULT_KEY_FIGURE = "peak_pressure"
-"""The key figure in the figure of a sweep without outcomes, unless another one is chosen."""
 
 SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""

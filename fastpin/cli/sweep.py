@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from fastpin import figures, report, solver, studies
-from fastpin.cli.options import DEFAULT_KEY_FIGURE, literal
+from fastpin.cli.options import literal
 from fastpin.cli.progress import READ_POINTS, Bar, note_duration, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say
 from fastpin.errors import InputError
+from fastpin.figures.kinds import DEFAULT_KEY_FIGURE
 from fastpin.runtime.threads import cores
 
 MOST_REASONS = 20

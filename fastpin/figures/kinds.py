@@ -26,6 +26,9 @@ class KindOption(NamedTuple):
     type: str = "text"
 
 
+DEFAULT_KEY_FIGURE = "peak_pressure"
+"""The key figure in the figure of a sweep without outcomes, unless another one is chosen."""
+
 STATES_HELP = "last, cycle (the last one), all, load points such as 2,3.5, or ranges such as 1-9,20-"
 """Help on the choice of states."""
 

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from fastpin.cracks.margins import crack_margins
-from fastpin.damage.margins import fatigue_margins, reserve_margins, strength_margins
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
 from fastpin.figures.crack_growth import crack_growth_of
@@ -37,8 +33,8 @@ from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES, edge_body
 from fastpin.model.ties import top
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
-from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
+from fastpin.pages.margins import PageParts, all_margins, margins, sentence
 from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
 from fastpin.report.assessment import Assessed, assessment_lines
@@ -46,7 +42,7 @@ from fastpin.report.case import ROUNDING, case_rows, corner_columns
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.crack_growth import growth_line
 from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
-from fastpin.report.margins import HEADS, in_order, margin_rows, verdict
+from fastpin.report.margins import verdict
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_lines, state_columns
 from fastpin.report.strength import strength_lines
@@ -55,11 +51,9 @@ from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.extremes import READINGS, yield_doubts
 from fastpin.states.load_cycle import LoadCycle
-from fastpin.states.margins import Margin
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
 from fastpin.states.state import State
-from fastpin.states.walking import walk_doubts, walk_margins
-from fastpin.studies.convergence import Convergence
+from fastpin.states.walking import walk_doubts
 from fastpin.studies.identity import canonical, run_id
 
 RESIDUAL_WORDS = {
@@ -84,22 +78,6 @@ ANGLES = "Angles are in degrees from the bottom of the hole, counter-clockwise p
 
 NO_STATE = "There is no state: the run ended before its first corner, or its states were not kept."
 """In place of a section that needs states."""
-
-
-@dataclass(frozen=True)
-class PageParts:
-    """What the sections of one page share.
-
-    Attributes
-    ----------
-    source : Source
-    album : Album
-    convergence : Convergence or None
-    """
-
-    source: Source
-    album: Album
-    convergence: Convergence | None = None
 
 
 def overview(page: PageParts) -> PageSection:
@@ -140,11 +118,6 @@ def warnings_and_notes(source: Source) -> list[Text]:
     return [Text(f"Warning: {each}.", "note") for each in warnings] + [Text(f"Note: {each}.", "note") for each in notes]
 
 
-def sentence(line: str) -> str:
-    """Return a line of a report as a sentence."""
-    return f"{line[0].upper()}{line[1:]}."
-
-
 def _status(source: Source) -> Text:
     """Say whether the result is complete, and why not."""
     corners = len(source.case.history)
@@ -159,51 +132,6 @@ def _status(source: Source) -> Text:
 
 def _count(source: Source) -> str:
     return "1 state is kept" if source.points.size == 1 else f"{source.points.size:,} states are kept"
-
-
-def all_margins(page: PageParts) -> list[Margin]:
-    """Return the margins of yield, bush, fatigue, crack and plies, the smallest one first."""
-    source, problem = page.source, page.source.case.problem
-    found = list(source.static_margins)
-    cycle = [] if source.cycle is None else source.cycle.states
-    found += walk_margins(cycle)
-    judged = {edge_body(problem, one.body) for one in source.assessed.reserves} if source.assessed else set()
-    found += [
-        row
-        for row in fatigue_margins(problem, source.fatigue, cycle)
-        if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
-    ]
-    found += [] if source.assessed is None else reserve_margins(source.assessed.reserves, source.assessed.how)
-    found += [] if isinstance(source.crack, str) else crack_margins(source.crack)
-    found += [] if isinstance(source.strength, str) else strength_margins(*source.strength.worst)
-    return in_order(found)
-
-
-def margins(page: PageParts) -> PageSection:
-    """Return the margins, each with the state that governs it, and the lines of those who answer for the report."""
-    source, found = page.source, all_margins(page)
-    run = "" if source.result.complete else " of an unfinished run"
-    states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
-    words = f"Margins of safety over {states}{run}: allowable/value - 1"
-    remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
-    remarks += "down to a third of the hole's radius below them; fastpin is elastic."
-    if any(row.part for row in found):
-        remarks += (
-            " Of the plate only the edge of its hole is looked at: its other edges, and points below them, may fail "
-        )
-        remarks += "first."
-    rows, author = margin_rows(source.case.problem, found), source.case.about.author
-    signed = [("prepared", author, "", ""), ("checked", "", "", ""), ("approved", "", "", "")]
-    return PageSection(
-        "margins",
-        "Margins",
-        [
-            Text(sentence(verdict(found))),
-            Facts(words, rows, HEADS),
-            Text(remarks),
-            Facts("Signatures", signed, ("", "name", "date", "signature"), tall=True),
-        ],
-    )
 
 
 def case(page: PageParts) -> PageSection:

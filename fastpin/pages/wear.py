@@ -17,16 +17,14 @@ from fastpin.model.ties import top, top_angle
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
 from fastpin.pages.content import Facts, Items, PageSection, SectionPart, Table, Text
+from fastpin.pages.margins import PageParts, margins, sentence
 from fastpin.pages.sections import (
     ANGLES,
-    PageParts,
     case,
     checks,
     loads,
-    margins,
     materials,
     provenance,
-    sentence,
     slip_parts,
     stresses,
     tractions,

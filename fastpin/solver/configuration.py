@@ -19,6 +19,9 @@ from fastpin.solver.unknowns import SINGULAR, DenseUnknowns
 MAX_RESIDUAL = 1e-9
 """Largest relative violation of the contact conditions in a returned state."""
 
+ROUNDED_MOMENT = 1e-12
+"""Moment that holds a pin, in parts of that of the absolute shear, which is rounding: its contact is symmetric."""
+
 
 NODAL = ("pressure", "shear", "gap", "slip", "status", "rest_gap", "rest_slip")
 """Arrays of a configuration with one number for each node."""
@@ -374,6 +377,19 @@ def marks_left(before: Configuration, now: Configuration, interface: Interface, 
     return found
 
 
+def marked(system: System, before: Configuration, now: Configuration) -> Configuration:
+    """A corner with marks at its borders, beside the old borders that are left since the corner `before`."""
+    found: dict[str, Any] = {}
+    friction = system.under(now.load).friction
+    for name, each in zip(MARKS, system.interfaces, strict=False):
+        marks, nodes = marks_left(before, now, each, name), each.nodes
+        if not each.problem.frictionless:
+            tractions = now.pressure[nodes], now.shear[nodes]
+            marks = marks.with_borders(each.problem, each.grid, friction[nodes], tractions, now.status[nodes])
+        found[name] = marks
+    return replace(now, **found)
+
+
 def worst_residual(system: System, configuration: Configuration) -> float:
     """The largest of the residuals of :func:`contact_residuals`."""
     return float(
@@ -393,6 +409,14 @@ def unbalanced(system: System, configuration: Configuration) -> float:
     moment = passed[0, 2] if system.problem.held else configuration.load[M]
     left = np.abs(passed - [*system.drive.force(configuration.motion, configuration.load), moment])
     return float(left.max() / max(float((np.abs(rows) @ np.abs(tractions)).sum()), conditions.SMALLEST))
+
+
+def moment_that_holds(system: System, configuration: Configuration) -> float:
+    """The moment that holds the rotation of the pin; 0 where it is rounding of the shear (dimensionless)."""
+    nodes = system.interfaces[0].nodes
+    levers, shear = system.levers[nodes], configuration.shear[nodes]
+    moment = -float(levers @ shear)
+    return moment if abs(moment) > ROUNDED_MOMENT * float(levers @ np.abs(shear)) else 0.0
 
 
 def contact_residuals(system: System, configuration: Configuration, elastic: np.ndarray) -> dict[str, float]:

@@ -13,7 +13,7 @@ from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
-from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION, UX, UY, M, P, Q
+from fastpin.model.loads import FRICTION_CHANGE, REMOTE, UX, UY, M, P, Q
 from fastpin.reading.zones import runs
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import (
@@ -32,11 +32,10 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import CUT_OFF, NARROW, ArcError, NoEquilibriumError, ResolutionError
-from fastpin.solver.increment import implicit_step
+from fastpin.solver.finite_step import one_step, shearless_step
 from fastpin.solver.interfaces import PinView, part_of, with_part
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import bend, hole_gap, place_between, put_at_rest, release, rest_position
-from fastpin.solver.settling import FiniteStep
 from fastpin.solver.step import is_pushed, presses
 from fastpin.solver.window import SecondPlaceError, Window
 
@@ -57,9 +56,6 @@ BESIDE_END = 3
 
 GROWN_FIT = np.arange(4, 7)
 """Distances, in nodes from the first node, of the nodes whose slip tells the slip of the nodes between."""
-
-UNPRESSED = 1e-9
-"""Largest pressure, in parts of the peak, of a node that counts as open in the first contact. It must not stick."""
 
 CONFORMING = 1e-9
 """Largest differences of the gap round a pin that touches all round, in parts of the clearance."""
@@ -295,7 +291,7 @@ def _both_at_once(
     resting.status[joint.interfaces[SEAT].nodes] = seat_status
     for _ in range(MOST_TRIALS):
         load = before + part * (after - before)
-        step = _one_step(joint, resting, load)
+        step = one_step(joint, resting, load)
         if step is not None and worst_residual(joint, step) <= MAX_RESIDUAL:
             return _begun(joint, resting, step, None), part
         part *= 0.7
@@ -395,7 +391,7 @@ def _first_patch(system: System, resting: Configuration, way: Way, most_part: fl
         load = before + fraction * (after - before)
         pinched = not driven and not is_pushed(load)
         rough = self_similar or pinched or (system.problem.rotation == "free" and load[M] != 0.0)
-        found = _one_step(system, resting, load, self_similar) if rough else _shearless_step(system, resting, load)
+        found = one_step(system, resting, load, self_similar) if rough else shearless_step(system, resting, load)
         if by_hertz and (found is None or found.closed.sum() != wanted):  # it is another contact: come from a wider one
             by_hertz, part = False, wide
             continue
@@ -456,38 +452,6 @@ def _is_self_similar(system: System, resting: Configuration, way: Way) -> bool:
     return is_neat and not presses(before) and bool(before[FRICTION_CHANGE] == after[FRICTION_CHANGE])
 
 
-def _one_step(
-    system: System, resting: Configuration, load: np.ndarray, everywhere: bool = False
-) -> Configuration | None:
-    """The implicit increment from rest; by Lemke's method where its iteration fails, see :class:`FiniteStep`.
-
-    If neither finds it, and all nodes may close, both begin once more with the nodes that are closed without friction.
-    """
-    found = implicit_step(system, resting, load) or FiniteStep(system, resting, everywhere).to(load)
-    is_right = found is not None and (not everywhere or worst_residual(system, found) <= MAX_RESIDUAL)
-    if is_right or not (everywhere and system.has_friction):
-        return found
-    smooth = _shearless_step(system, resting, load)
-    if smooth is None:
-        return None
-    start = replace(resting, status=smooth.status)
-    return implicit_step(system, start, load) or FiniteStep(system, start, everywhere).to(load)
-
-
-def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
-    """The implicit increment without friction. After it the closed nodes stick where they are."""
-    smooth, start, held_load = system.without_friction(), resting.copy(), load.copy()
-    start.status[start.closed] = resting_status(smooth)[start.closed]
-    if system.problem.rotation == "free":
-        held_load[ROTATION] = resting.motion[2]
-    found = _one_step(smooth, start, held_load)
-    if found is not None:
-        pressed = found.pressure > UNPRESSED * found.pressure.max()
-        found.status[:] = np.where(found.closed & pressed, resting_status(system), OPEN)
-        found.load = load
-    return found
-
-
 def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) -> Configuration | None:
     """The first patch with the slip that its nodes would have if the contact had grown to them from a point.
 
@@ -500,7 +464,7 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
     nodes = _young_nodes(system, patch)
     young, small = (system, patch) if nodes is None else (system.part(nodes), patch.part(nodes))
     slip = _grown_slip(young, small, begin)
-    step = None if slip is None else _one_step(young, replace(small, slip=slip), patch.load)
+    step = None if slip is None else one_step(young, replace(small, slip=slip), patch.load)
     if step is None or nodes is None:
         return step if step is None or worst_residual(system, step) <= MAX_RESIDUAL else None
     status, held = np.full(system.grid.size, OPEN, dtype=np.int8), patch.slip.copy()

@@ -21,7 +21,6 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnlyDict
 from fastpin.model.units import named_loads
-from fastpin.reading.zones import runs
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import (
     MARKS,
@@ -29,23 +28,34 @@ from fastpin.solver.configuration import (
     Configuration,
     contact_residuals,
     elastic_energy,
+    marked,
     marks_left,
+    moment_that_holds,
     slip_tally_with,
     unbalanced,
 )
 from fastpin.solver.drift import DriftingSystem
-from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
+from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, SolveError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.growth import OutsideGap
-from fastpin.solver.increment_stepper import IncrementStepper
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.place import system_with_friction
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import follow_floating, release
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, RunningTally, SlipTally
-from fastpin.solver.step import Piece, Position, Stepper, check_bond, force_of, force_on_pin, is_pushed, pieces, presses
-from fastpin.solver.window import WindowStepper
+from fastpin.solver.step import (
+    Piece,
+    Position,
+    check_bond,
+    check_resolution,
+    check_turning,
+    force_of,
+    is_pushed,
+    pieces,
+    presses,
+)
+from fastpin.solver.window import stepper_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 
@@ -57,20 +67,11 @@ RunProgress = Callable[[float, int], None]
 COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated", "resettled", "jumps", "released")
 """Counts in the statistics of a run."""
 
-LEAST_CLOSED = 3
-"""Nodes of a contact at a corner, at least. With fewer the pressure is anything."""
-
-NEXT_TO_NOTHING = 1e-6
-"""Force of a contact that may have fewer nodes, in parts of the reference force."""
-
 UNLOADED_PRESSURE = 1e-9
 """Largest pressure of a pin after a complete unloading, in parts of the force before (dimensionless)."""
 
 LAST_PART = 1e-7
 """Last part of a piece in which the contact of a nearly neat fit vanishes. Its tractions are rounding there."""
-
-ROUNDED_MOMENT = 1e-12
-"""Moment that holds a pin, in parts of that of the absolute shear, which is rounding: its contact is symmetric."""
 
 MOST_FIRST = 12
 """First contacts that are tried while the friction changes, at most. The load of the second is that of the third."""
@@ -182,7 +183,7 @@ class Run:
         counts = (options.slip_sums or self.wears) and recorder is not None
         self._no_slip = SlipTally.empty(system.grid.size, self.wears) if counts else NOT_COUNTED
         self.statistics = dict.fromkeys(COUNTED, 0.0)
-        self.stepper = _stepper(system, options, self.statistics, strict)
+        self.stepper = stepper_of(system, options, self.statistics, strict)
         # Round a hole that is not round, or the bore of a bush that its seat bends, the pin may touch anywhere.
         may_touch = bool(system.problem.gap) or self.wears or isinstance(system, JointSystem)
         self._outside = OutsideGap(system) if may_touch and bool(system.ends.any()) else None
@@ -338,13 +339,13 @@ class Run:
         try:
             for piece in pieces(before, target, self.system.is_nearly_neat):
                 self._follow_piece(piece, step)
-            if not inside:
-                self._check_resolution()
+            if not inside and self.recorder is not None:
+                check_resolution(self.system, self.now)
             if self._outside is not None and self._outside.is_closed(self.system, self.now):
                 raise ArcError(BEYOND)
             known = None
             if not self.wears and not self.is_coarse:
-                self._mark_borders()
+                self.position.now = marked(self.system, self.last_corner, self.now)
             if self._may_repeat:
                 known = self.repeats.recall(self.now, ends_cycle, step)
             if known is not None:
@@ -362,44 +363,14 @@ class Run:
             raise
         return known
 
-    def _mark_borders(self) -> None:
-        """Mark the borders at a corner, beside the old borders that are left."""
-        now = self.now
-        found: dict[str, Any] = {}
-        friction = self.system.under(now.load).friction
-        for name, each in zip(MARKS, self.system.interfaces, strict=False):
-            marks, nodes = marks_left(self.last_corner, now, each, name), each.nodes
-            if not each.problem.frictionless:
-                tractions = now.pressure[nodes], now.shear[nodes]
-                marks = marks.with_borders(each.problem, each.grid, friction[nodes], tractions, now.status[nodes])
-            found[name] = marks
-        self.position.now = replace(now, **found)
-
-    def _check_resolution(self) -> None:
-        """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
-        closed = self._pin_closed
-        if self.recorder is None or np.any(closed[:-2] & closed[1:-1] & closed[2:]):  # three neighbours
-            return
-        if force_on_pin(self.system, self.now) <= NEXT_TO_NOTHING:
-            return
-        most = max((patch.size for patch in runs(self.system.interfaces[0].grid, closed)), default=LEAST_CLOSED)
-        if most < LEAST_CLOSED:
-            raise ResolutionError(f"the contact is narrower than the nodes can resolve: it has {most}; use more nodes")
-
     def _follow_piece(self, piece: Piece, step: int) -> None:
         """Follow one straight piece of a step, from stop to stop."""
-        position, problem = self.position, self.system.problem
+        position = self.position
         self.stepper.begin_piece()
         kept = {stop for stop in self.fractions.tolist() if piece.begin < stop <= piece.end}
         for stop in sorted({*kept, piece.end}):
             load = piece.load_at(stop)
-            if problem.rotation == "free" and load[M] != 0.0:
-                if problem.frictionless:
-                    raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
-                if any(each.problem.frictionless for each in self.system.interfaces):
-                    raise NoEquilibriumError(
-                        "without friction in its seat nothing holds the bush against a moment: it spins with the pin"
-                    )
+            check_turning(self.system, load)
             vanishes = self.system.is_nearly_neat and not presses(load)
             until = max(stop - LAST_PART * (piece.end - piece.begin), position.reached) if vanishes else stop
             aim = piece.load_at(until)
@@ -563,7 +534,7 @@ class Run:
         load = drive.with_reactions(now.motion, now.load)
         if system.problem.held:
             load = load.copy()
-            load[M] = self._moment_that_holds()
+            load[M] = moment_that_holds(self.system, now)
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
         is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
         common = {
@@ -581,13 +552,6 @@ class Run:
             seat = self._state_of(place, common, turned, seat)
         assert seat is not None
         return seat
-
-    def _moment_that_holds(self) -> float:
-        """The moment that holds the rotation of the pin; 0 where it is rounding of the shear (dimensionless)."""
-        nodes = self.system.interfaces[0].nodes
-        levers, shear = self.system.levers[nodes], self.now.shear[nodes]
-        moment = -float(levers @ shear)
-        return moment if abs(moment) > ROUNDED_MOMENT * float(levers @ np.abs(shear)) else 0.0
 
     def _state_of(self, place: int, common: dict[str, Any], moved: np.ndarray, seat: State | None) -> State:
         """The state of the interface `place`, with that of the `seat` inside it; `moved` is (dx, dy, rotation)."""
@@ -620,13 +584,3 @@ class Run:
             dissipation=(dissipated[0] + dissipated[1]) * scales.energy, problem=each.problem, grid=each.grid,
             marks=marks, seat=seat,
         )  # fmt: skip
-
-
-def _stepper(system: System, options: SolveOptions, statistics: dict[str, float], strict: bool) -> Stepper:
-    """The solver of the method that the options name."""
-    if options.method == "increment":
-        assert options.increments is not None
-        return IncrementStepper(system, options.increments, statistics)
-    if isinstance(system, LargeSystem):
-        return WindowStepper(system, statistics, strict)
-    return PathStepper(system, statistics, strict)

@@ -16,8 +16,9 @@ from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
 from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION, UX, UY, M, P, Q
 from fastpin.model.problem import Problem
+from fastpin.reading.zones import runs
 from fastpin.solver.configuration import Configuration
-from fastpin.solver.errors import OPENED, NoEquilibriumError
+from fastpin.solver.errors import OPENED, NoEquilibriumError, ResolutionError
 
 StepReport = Callable[[float], None]
 """Called with the fraction of the step that is done."""
@@ -28,6 +29,12 @@ SCALING = [P, Q, M, *REMOTE, UX, UY]
 
 OPPOSITE = 1e-12
 """Difference of two directions that is rounding of the loads at two corners."""
+
+LEAST_CLOSED = 3
+"""Nodes of a contact at a corner, at least. With fewer the pressure is anything."""
+
+NEXT_TO_NOTHING = 1e-6
+"""Force of a contact that may have fewer nodes, in parts of the reference force."""
 
 
 @dataclass(frozen=True)
@@ -156,6 +163,28 @@ class Stepper(Protocol):
 
     def leave(self, position: Position) -> None:
         """End the present piece: note the nodes that it touched, and update the statistics."""
+
+
+def check_resolution(system: System, now: Configuration) -> None:
+    """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
+    pin = system.interfaces[0]
+    closed = now.closed[pin.nodes]
+    if np.any(closed[:-2] & closed[1:-1] & closed[2:]) or force_on_pin(system, now) <= NEXT_TO_NOTHING:
+        return
+    most = max((patch.size for patch in runs(pin.grid, closed)), default=LEAST_CLOSED)
+    if most < LEAST_CLOSED:
+        raise ResolutionError(f"the contact is narrower than the nodes can resolve: it has {most}; use more nodes")
+
+
+def check_turning(system: System, load: np.ndarray) -> None:
+    """Raise :class:`NoEquilibriumError` if a moment acts on a pin, or on the bush round it, that nothing holds."""
+    if system.problem.rotation != "free" or load[M] == 0.0:
+        return
+    if system.problem.frictionless:
+        raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
+    if any(each.problem.frictionless for each in system.interfaces):
+        words = "without friction in its seat nothing holds the bush against a moment: it spins with the pin"
+        raise NoEquilibriumError(words)
 
 
 def check_bond(system: System, now: Configuration) -> None:

@@ -34,8 +34,9 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.rest import bend, climb_angle, lowest_angle, release
 from fastpin.solver.result import Restart
-from fastpin.solver.run import LEAST_CLOSED, Run, RunProgress
+from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.settling import FiniteStep
+from fastpin.solver.step import LEAST_CLOSED
 
 log = logging.getLogger(__name__)
 

@@ -10,11 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from fastpin.elasticity.large import LargeSystem
+from fastpin.elasticity.system import System
+from fastpin.model.options import SolveOptions
 from fastpin.solver.configuration import Configuration, embedded
 from fastpin.solver.errors import ArcError, ResolutionError
+from fastpin.solver.increment_stepper import IncrementStepper
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.rest import release
-from fastpin.solver.step import Piece, Position, StepReport
+from fastpin.solver.step import Piece, Position, Stepper, StepReport
 
 MARGIN = 48
 """Open nodes of a window on either side of the contact, at least; more for a contact of more nodes."""
@@ -169,3 +172,13 @@ class WindowStepper:
         assert self._inside is not None
         position.now = self._window.paste(self._inside.now, position.now)
         position.reached, position.fresh = self._inside.reached, self._inside.fresh
+
+
+def stepper_of(system: System, options: SolveOptions, statistics: dict[str, float], strict: bool) -> Stepper:
+    """The solver of the method that the options name."""
+    if options.method == "increment":
+        assert options.increments is not None
+        return IncrementStepper(system, options.increments, statistics)
+    if isinstance(system, LargeSystem):
+        return WindowStepper(system, statistics, strict)
+    return PathStepper(system, statistics, strict)

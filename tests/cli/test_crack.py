@@ -12,6 +12,7 @@ import fastpin
 from fastpin import cracks, damage
 from fastpin.casefile import case_text
 from fastpin.report import json_schema
+from fastpin.report.crack_growth import growth_line
 from tests.support.commands import printed, refused, said
 
 jsonschema = pytest.importorskip("jsonschema")
@@ -40,7 +41,7 @@ def test_a_crack_at_a_place(stored):
     states = damage.cycle_states(result, result.cycles[-1])
     crack = cracks.Crack(math.radians(-24.0), math.radians(5.0))
     found = cracks.growth(states, crack, cracks.Walker(1e-10, 3.0, 0.5), 1e-4, 3e-3)
-    assert lines[0] == f"crack at 66.00 deg from the bottom: {found.words}"
+    assert lines[0] == growth_line(found)
     assert " ".join(lines[2].split()) == "length K_I largest smallest K_II range threshold growth cycles"
     assert lines[3].split() == ["mm", *["MPa", "sqrt(m)"] * 5, "nm/cycle"]
     assert lines[4].split()[:2] == ["0.1", f"{found.K_max[0] / 1e6:.4g}"]
@@ -154,7 +155,7 @@ def test_options_and_another_case_replace_the_crack_of_a_result():
     nasgro += ["--threshold-range", "1e6", "--toughness", "3e7", "--last", "2e-3"]
     expected = planned(replace(case, crack=replace(other, theta=case.crack.theta)))
     for words in (nasgro, ["--case", "other.toml", "--at", "66"]):
-        line = f"crack at 66.00 deg from the bottom: {expected.words}\n"
+        line = f"{growth_line(expected)}\n"
         assert printed("crack", "case.h5", *words).startswith(line)
     Path("none.toml").write_text(CASE[: CASE.index("[crack]")])
     assert "--case: none.toml has no section [crack]" in refused("crack", "case.h5", "--case", "none.toml")
@@ -164,9 +165,9 @@ def test_options_and_another_case_replace_the_crack_of_a_result():
 def test_a_history_without_cycles_is_a_spectrum():
     Path("case.toml").write_text(CASE.replace("P = [3e6, 3e5]\nrepeat = 2", "P = [3e6, 3e5, 1.5e6, 3e5, 1.5e6, 3e5]"))
     found = planned(fastpin.read_case("case.toml"), spectrum=True)
-    assert f"crack at 66.00 deg from the bottom: {found.words}\n" in printed("run", "case.toml", "-o", "case.h5")
+    assert f"{growth_line(found)}\n" in printed("run", "case.toml", "-o", "case.h5")
     shown = printed("crack", "case.h5", "-o", "figure.svg")
-    assert shown.startswith(f"crack at 66.00 deg from the bottom: {found.words}\n")
+    assert shown.startswith(f"{growth_line(found)}\n")
     assert shown.splitlines()[2].endswith("spectra")
     assert "m/spectrum" in Path("figure.svg").read_text()
 

@@ -42,7 +42,7 @@ def test_each_command_announces_long_work(command, monkeypatch):
     Path("case.toml").write_text(EXAMPLE)
     Path("plan.toml").write_text('case = "case.toml"\n[grid]\nsolve.nodes = [51, 61]\n')
     more = ", with 101 nodes; half as many take a fifth of the time" if "run" in command else ""
-    assert said(*command.split()).err == f"fastpin: note: this will take about 1 minute{more}\n"
+    assert said(*command.split()).err == f"fastpin: note: this will take about 1 second{more}\n"
     if "sweep" in command:  # nothing is left to do
         assert said(*command.split()).err == ""
 

@@ -136,7 +136,7 @@ def test_a_node_without_pressure_does_not_stick_in_the_first_contact(titanium_in
     resting.status[:2] = STICK
     resting.gap = system.rest_clearance * (1.0 + np.sin(system.grid.theta))
     resting.rest_gap = resting.gap.copy()
-    found = first_contact._shearless_step(system, resting, 1e-9 * load)
+    found = first_contact.shearless_step(system, resting, 1e-9 * load)
     assert np.array_equal(np.flatnonzero(found.closed), [0])
     assert np.all(found.pressure[found.closed] > 0.0)
 
@@ -216,8 +216,8 @@ def test_the_friction_where_the_pin_touches_limits_a_moment(titanium_in_aluminiu
 def test_a_neat_fit_that_no_arc_can_hold_is_tried_once_at_each_grid(monkeypatch):
     """In a neat fit smaller loads have the same statuses. Under compression the pin touches at both sides."""
     tried = []
-    one_step = first_contact._one_step
-    monkeypatch.setattr(first_contact, "_one_step", lambda *given: (tried.append(given), one_step(*given))[1])
+    one_step = first_contact.one_step
+    monkeypatch.setattr(first_contact, "one_step", lambda *given: (tried.append(given), one_step(*given))[1])
     pair = MaterialPair(MATERIALS["Ti-6Al-4V"], Material(54e9, 0.31), "stress")
     problem = Problem(pair, 3e-3, 0.0, 0.2)
     state = solve(problem, [{"P": 0.75e6, "syy": -97e6}, {"P": 1.5e6, "syy": -195e6}], nodes=61)[-1]
