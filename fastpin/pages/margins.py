@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 from fastpin.cracks.margins import crack_margins
 from fastpin.damage.margins import fatigue_margins, reserve_margins, strength_margins
@@ -32,33 +33,33 @@ class PageParts:
     album: Album
     convergence: Convergence | None = None
 
+    @cached_property
+    def margins(self) -> list[Margin]:
+        """The margins of yield, bush, fatigue, crack and plies, the smallest one first."""
+        source, problem = self.source, self.source.case.problem
+        found = list(source.static_margins)
+        cycle = [] if source.cycle is None else source.cycle.states
+        found += walk_margins(cycle)
+        judged = {edge_body(problem, one.body) for one in source.assessed.reserves} if source.assessed else set()
+        found += [
+            row
+            for row in fatigue_margins(problem, source.fatigue, cycle)
+            if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
+        ]
+        found += [] if source.assessed is None else reserve_margins(source.assessed.reserves, source.assessed.how)
+        found += [] if isinstance(source.crack, str) else crack_margins(source.crack)
+        found += [] if isinstance(source.strength, str) else strength_margins(*source.strength.worst)
+        return in_order(found)
+
 
 def sentence(line: str) -> str:
     """Return a line of a report as a sentence."""
     return f"{line[0].upper()}{line[1:]}."
 
 
-def all_margins(page: PageParts) -> list[Margin]:
-    """Return the margins of yield, bush, fatigue, crack and plies, the smallest one first."""
-    source, problem = page.source, page.source.case.problem
-    found = list(source.static_margins)
-    cycle = [] if source.cycle is None else source.cycle.states
-    found += walk_margins(cycle)
-    judged = {edge_body(problem, one.body) for one in source.assessed.reserves} if source.assessed else set()
-    found += [
-        row
-        for row in fatigue_margins(problem, source.fatigue, cycle)
-        if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
-    ]
-    found += [] if source.assessed is None else reserve_margins(source.assessed.reserves, source.assessed.how)
-    found += [] if isinstance(source.crack, str) else crack_margins(source.crack)
-    found += [] if isinstance(source.strength, str) else strength_margins(*source.strength.worst)
-    return in_order(found)
-
-
 def margins(page: PageParts) -> PageSection:
     """Return the margins, each with the state that governs it, and the lines of those who answer for the report."""
-    source, found = page.source, all_margins(page)
+    source, found = page.source, page.margins
     run = "" if source.result.complete else " of an unfinished run"
     states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
     words = f"Margins of safety over {states}{run}: allowable/value - 1"

@@ -34,7 +34,7 @@ from fastpin.model.points import EDGES, edge_body
 from fastpin.model.ties import top
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
-from fastpin.pages.margins import PageParts, all_margins, margins, sentence
+from fastpin.pages.margins import PageParts, margins, sentence
 from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
 from fastpin.report.assessment import Assessed, assessment_lines
@@ -86,7 +86,7 @@ def overview(page: PageParts) -> PageSection:
     cycle = source.cycle
     parts: list[SectionPart] = [_status(source), *warnings_and_notes(source)]
     if source.points.size and not problem.dimensionless:
-        parts.append(Text(f"Verdict: {verdict(all_margins(page))}."))
+        parts.append(Text(f"Verdict: {verdict(page.margins)}."))
     if source.peaks:
         largest = source.peaks[top([state.peak_pressure for state in source.peaks])]
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))

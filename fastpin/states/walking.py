@@ -14,6 +14,7 @@ import numpy as np
 
 from fastpin.errors import InputWarning
 from fastpin.model.doubts import are_given
+from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.choice import last_cycle_states
 from fastpin.states.cycles import Cycle
@@ -64,9 +65,10 @@ class Walk(NamedTuple):
         """Cycles until a bush that walks has turned once."""
         return 2.0 * math.pi / abs(self.turn)
 
-    def words(self, turn: str) -> str:
-        """What the bush does, with its `turn` in a cycle as text."""
+    def words(self, problem: Problem) -> str:
+        """What the bush of a joint does, with its turn in a cycle."""
         if self.goes_on:
+            turn = units(problem)["rotation"].text(abs(self.turn), 3)
             return f"it walks {turn} a cycle, {self.cycles_of_a_turn:,.4g} cycles for a full turn"
         if self.sticking:
             return f"it rests: {100.0 * self.sticking:.3g} % of its seat sticks throughout the last cycle"
@@ -76,7 +78,7 @@ class Walk(NamedTuple):
 def walk_words(states: Sequence[State]) -> str:
     """What a bush does in its seat over the states of a cycle; empty if that is not known."""
     walk = Walk.of(states)
-    return "" if walk is None else walk.words(units(states[0].problem)["rotation"].text(abs(walk.turn), 3))
+    return "" if walk is None else walk.words(states[0].problem)
 
 
 def walk_margins(states: Sequence[State]) -> list[Margin]:
@@ -88,7 +90,7 @@ def walk_margins(states: Sequence[State]) -> list[Margin]:
     if walk is None:
         return []
     turn = abs(walk.turn) if walk.goes_on else 0.0
-    words = walk_words(states).removeprefix("it ")
+    words = walk.words(states[0].problem).removeprefix("it ")
     return [Margin("bush: walks in its seat", "rotation", turn, 0.0, load_point(states[-1]), words, {}, "walk", "bush")]
 
 
@@ -96,6 +98,5 @@ def walk_doubts(states: Sequence[State], cycles: Sequence[Cycle]) -> list[InputW
     """Return a warning if the bush walks over the last cycle. A study has none: its plan asks for the walk."""
     if are_given() or not states or states[-1].seat is None:
         return []
-    within = last_cycle_states(states, cycles)
-    walk = Walk.of(within)
-    return [InputWarning("bush", walk_words(within))] if walk is not None and walk.goes_on else []
+    walk = Walk.of(last_cycle_states(states, cycles))
+    return [InputWarning("bush", walk.words(states[-1].problem))] if walk is not None and walk.goes_on else []
