@@ -59,7 +59,7 @@ def test_each_cell_has_its_own_bound() -> None:
 
 
 def kinked_table() -> ChartTable:
-    """A table of Kt that is smooth but for a kink across the first axis, in a cell and its neighbours."""
+    """A table of Kt is smooth, but has a kink across the first axis. It bends one cell and its neighbours."""
     group = GROUPS["like_body"]
     x, y, _ = np.meshgrid(*(np.linspace(0.0, 1.0, nodes) for nodes in group.shape), indexing="ij")
     kt = 2.0 + 0.1 * np.sin(x + y) + np.abs(x - 0.512)

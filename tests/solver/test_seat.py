@@ -467,7 +467,7 @@ def test_a_bonded_bush_sits_in_a_lug_of_any_outline():
     [(0.1, "body", {}), (0.3, "centre", {}), (0.1, "body", {"method": "increment", "increments": 20})],
 )
 def test_a_bonded_bush_must_be_held_by_its_press_fit(interference, pin_load, method):
-    """The history ends where the seat opens, at the same load with any number of nodes, and goes on with friction."""
+    """The history ends where the seat opens, for any number of nodes at one load. With friction it goes on."""
     problem = _bonded(joint(0.28, interference, pin_load=pin_load, inside=lug(0.33, "strain")))
     words = (
         r"^step 2, at \d.* \(P = .*: the press fit does not hold the bonded bush, it opens in its seat; to go on, give"
