@@ -218,16 +218,15 @@ def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path)
         if found:
             problem = plan.case(plan.points[0]).problem
             figures.envelope.plot_envelope(found, options.plot, title, problem=problem, varied=plan.fields)
-        missing = len(rows) - sum(curve[report.envelope.BYPASS].size for curve in found)
-        if missing:
-            say(f"note: {missing} of {len(rows)} points have no value in the figure", file=sys.stderr)
-        return
-    charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]
-    figures.plot_sweep(charts if len(charts) > 1 else charts[0], options.plot, title)
-    for value, chart in zip(values, charts, strict=True):
-        if chart.missing:
-            part = f" of {value}" if len(charts) > 1 else ""
-            say(f"note: {chart.missing} of {len(rows)} points have no value{part} in the figure", file=sys.stderr)
+        missing = {"": len(rows) - sum(curve[report.envelope.BYPASS].size for curve in found)}
+    else:
+        charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]
+        figures.plot_sweep(charts if len(charts) > 1 else charts[0], options.plot, title)
+        parts = [f" of {value}" if len(charts) > 1 else "" for value in values]
+        missing = {part: chart.missing for part, chart in zip(parts, charts, strict=True)}
+    for part, count in missing.items():
+        if count:
+            say(f"note: {count} of {len(rows)} points have no value{part} in the figure", file=sys.stderr)
 
 
 def merge(options: argparse.Namespace) -> int:

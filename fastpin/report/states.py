@@ -377,10 +377,9 @@ def seat_lines(problem: Problem, states: Sequence[State], last: State, cycle: Se
     if seat is None or not seats or not problem.bush_slips:
         return []
     most = seats[top([abs(each.peak_slip) for each in seats])]
-    natural = sizes(seat)
 
     def shown(kind: str, value: float, digits: int) -> str:
-        return unit[kind].text(0.0 if abs(value) <= ROUNDING * natural[kind] else value, digits)
+        return unit[kind].text(0.0 if abs(value) <= ROUNDING * sizes(seat)[kind] else value, digits)
 
     text = (
         f"bush in its seat at load point {_point(last)}: contact {_intervals(seat, 'contact')}, "
