@@ -13,7 +13,7 @@ import numpy as np
 from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.model.angles import angle_between
-from fastpin.model.grid import Grid
+from fastpin.model.grid import LEAST_NODES, Grid
 from fastpin.model.loads import REMOTE
 from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration, embedded
@@ -172,7 +172,7 @@ class OutsideGap:
         grid = system.grid
         n, ends = grid.size, (grid.theta[-1], grid.theta[0] + 2.0 * math.pi)
         count = min(math.ceil((ends[1] - ends[0]) / _spacing(grid)) - 1, MOST_OUTSIDE)
-        self._theta = np.linspace(*ends, max(count, 1) + 2)[1:-1]
+        self._theta = np.linspace(*ends, max(count, LEAST_NODES) + 2)[1:-1]
         around = System.build(system.problem, Grid(np.r_[grid.theta, self._theta], closed=True), system.scales.force)
         rows, nodes = np.arange(n, around.grid.size), np.arange(n)
         self._operator = around.operator.entries(rows, np.r_[nodes, around.grid.size + nodes])

@@ -154,13 +154,12 @@ def put_at_rest(
         rest_gap - (system.loads - system.drive.columns)[:n, :ACTING] @ load[:ACTING]
     )  # prescribed displacements are loads
     configuration.rest, configuration.rest_gap = rest, rest_gap
-    held = system.problem.held
-    turned = load[ROTATION] if held else configuration.motion[2]
+    turned = load[ROTATION] if system.motion_rows[TURN, TURN] else configuration.motion[TURN]  # held, or frictionless
     configuration.motion = np.zeros_like(configuration.motion)
-    configuration.motion[2] = turned
+    configuration.motion[TURN] = turned
     free = system.load_displacement(load)
     configuration.gap = np.maximum(rest_gap + free[:n], 0.0)
-    configuration.slip = free[n:] + configuration.motion[2]
+    configuration.slip = free[n:] + turned
     configuration.rest_slip = configuration.slip.copy()
 
 

@@ -9,7 +9,7 @@ import pytest
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, M, P, Q
+from fastpin.model.loads import LOADS, SXX, UY, M, P, Q
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import first_contact, path
@@ -211,6 +211,22 @@ def test_the_friction_where_the_pin_touches_limits_a_moment(titanium_in_aluminiu
         return
     now, _ = first_contact.first_contact(system, nothing, 0.0 * after, after)
     assert np.cos(system.grid.theta[now.closed]).max() < 0.0
+
+
+def test_the_first_contact_of_a_driven_pin_does_not_depend_on_the_start_of_its_step():
+    """The hole may change by the same curvature while the first nodes close, however long the pin was on its way."""
+    problem = Problem.from_load_parameter(
+        MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3), "strain"), 0.3, 0.3, "centre", drive="uy"
+    )
+    system = System.build(problem, Grid.arc(BOTTOM - 1.2, BOTTOM + 1.2, 41), 1.0)
+    load = np.zeros(len(LOADS))
+    load[[UY, SXX]] = -0.31, 1.0
+    loads = []
+    for begin in (0.0, 0.5):
+        now, part = first_contact.first_contact(system, unloaded_configuration(system), begin * load, load)
+        loads.append(begin + part * (1.0 - begin))
+        assert now.load == pytest.approx(loads[-1] * load)
+    assert loads[0] == pytest.approx(loads[1], rel=1e-12)
 
 
 def test_a_neat_fit_that_no_arc_can_hold_is_tried_once_at_each_grid(monkeypatch):

@@ -68,8 +68,11 @@ def test_a_step_is_cut_where_all_that_presses_vanishes():
 
 @pytest.mark.gate
 def test_a_first_contact_in_two_places_under_a_force_and_stress_is_found():
-    """The iteration that begins at the lowest place finds none of the proportional contacts here, nor does Lemke's."""
-    for seed in (1062, 1510, 1670):
+    """The iteration that begins at the lowest place finds none of the proportional contacts here, nor does Lemke's.
+
+    The last one is found by its statuses on fewer nodes.
+    """
+    for seed in (1062, 1510, 1670, 1165):
         case = generate("neat", seed)
         assert len(solve(case.problem, case.history, **case.options)) == len(case.history), seed
 

@@ -154,6 +154,22 @@ def test_a_held_pin_passes_no_moment_to_a_bush_without_friction_in_its_seat(rota
     assert abs(without[1].seat.rotation - without[0].seat.rotation) == pytest.approx(0.3, rel=1e-6)
 
 
+def test_a_held_pin_without_friction_turns_alone_in_a_bush_without_friction():
+    """The rotation is given when the contact begins, and goes on when it is lost."""
+    problem = replace(joint(0.28, 0.26, friction=0.0, pin_load="centre", seat_friction=0.0), rotation="fixed")
+    corners = [{"P": 1.0, "Q": -0.3, "rotation": 0.1}, {"P": 0.0, "Q": 0.0, "rotation": 0.3}, {"P": -1.0}]
+    states = solve(problem, corners, nodes=48)
+    assert [state.in_contact for state in states] == [True, False, True]
+    assert [state.rotation for state in states] == pytest.approx([0.1, 0.3, 0.3])
+    assert [state.seat.rotation for state in states] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+
+
+def test_few_nodes_on_nearly_the_whole_bore_of_a_bush_are_no_fault():
+    """The bore beyond the arc is looked at in at least as many places as a grid has nodes."""
+    problem, corners = random_bush(792)
+    assert len(solve(problem, corners, nodes=32)) == len(corners)
+
+
 def test_nothing_holds_a_bush_without_friction_in_its_seat_against_a_moment():
     with pytest.raises(NoEquilibriumError, match="without friction in its seat nothing holds the bush"):
         solve(joint(0.28, 0.26, pin_load="centre", seat_friction=0.0), [{"P": 1.0}, {"M": 0.1}], nodes=32)
