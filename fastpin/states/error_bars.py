@@ -16,7 +16,7 @@ import numpy as np
 from fastpin import reading
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between
-from fastpin.model.ties import top_angle
+from fastpin.model.ties import is_top, top_angle
 from fastpin.states.quantities import QUANTITIES, intervals, matching_values, quantity, size, sizes, values, width
 from fastpin.states.state import State
 
@@ -73,7 +73,7 @@ def bars(state: State, coarse: State) -> dict[str, float]:
     """Error bars of all quantities of a state, in their units, angles in rad.
 
     The true value is the limit on ever finer grids. It lies within the bar in some 95 of 100 cases. If the traction is
-    as high as the peak at another place, to within the bar of the peak, the bar of the angle reaches to that place.
+    nearly as high as the peak at another place, to within the bar of the peak, the bar of the angle reaches to there.
 
     Parameters
     ----------
@@ -222,12 +222,15 @@ def _closed(state: State) -> int:
 
 
 def _as_high(state: State, traction: np.ndarray, bar: float) -> np.ndarray:
-    """Indices of nodes with a local maximum of `traction` within twice the bar of the largest value."""
+    """Indices of nodes with a local maximum of `traction` below the largest value, but within twice its bar.
+
+    Of equal largest values a rule takes one: they do not count.
+    """
     before, after = np.roll(traction, 1), np.roll(traction, -1)
     if not state.grid.closed:
         before[0] = after[-1] = 0.0
     highest = (traction > 0.0) & (traction >= before) & (traction >= after)
-    return np.flatnonzero(highest & (traction >= traction.max() - 2.0 * bar))
+    return np.flatnonzero(highest & ~is_top(traction) & (traction >= traction.max() - 2.0 * bar))
 
 
 SAFETY = 1.25

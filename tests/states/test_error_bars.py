@@ -205,10 +205,13 @@ def test_a_coarse_grid_that_loses_the_load_leaves_the_result(problem: Problem, m
 
 
 def test_a_peak_that_may_be_elsewhere_has_a_wide_angle(problem: Problem) -> None:
-    state = solve(problem, CORNERS[:1], nodes=101, error_bars=True)[-1]  # as much shear on the left as on the right
-    apart = 2.0 * abs(state.peak_shear_angle - BOTTOM)
-    assert state.error_bars["peak_shear_angle"] == pytest.approx(apart, rel=0.1)
-    assert state.error_bars["peak_pressure_angle"] < 0.1 * apart
+    """After a little force to one side the shear is nearly as high on the left as on the right."""
+    states = solve(problem, [{"P": 1.0}, {"Q": 1e-4}], nodes=101, error_bars=True)
+    for state, is_wide in zip(states, (False, True), strict=True):
+        apart = 2.0 * abs(state.peak_shear_angle - BOTTOM)
+        bar = state.error_bars["peak_shear_angle"]
+        assert bar == pytest.approx(apart, rel=0.1) if is_wide else bar < 0.1 * apart
+        assert state.error_bars["peak_pressure_angle"] < 0.1 * apart
 
 
 @pytest.mark.gate
