@@ -273,7 +273,7 @@ class LoadCycle:
 
         Over a closed cycle of a settled contact, the sum of their works is the dissipation, up to the discretisation.
         """
-        states, problem = self.states, self.states[0].problem
+        states, problem = self.states, self.states[0].problem.interfaces[0]
         _, columns = load_columns(problem, self.theta, body_terms(problem))
         weights = np.r_[states[0].grid.weights, states[0].grid.weights]
         tractions = np.array([np.r_[state.pressure, state.shear] for state in states])
@@ -291,7 +291,13 @@ class LoadCycle:
                 found[name] = Loop(load, motion[name] + moved[:, place])
             elif kind == "traction" and load.any():
                 found[name] = Loop(load, problem.hole_radius * moved[:, place])
-        return found
+        seats = tuple(state.seat for state in states if state.seat is not None)
+        if not seats:
+            return found
+        # The loads act across both interfaces, remote stresses on the plate alone.
+        across = LoadCycle(seats).loops
+        ways = {name: found[name].displacement if name in motion else 0.0 for name in across}
+        return {name: Loop(found[name].load, ways[name] + loop.displacement) for name, loop in across.items()}
 
     # -- output --------------------------------------------------------------------------------------------------
 

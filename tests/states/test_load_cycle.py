@@ -17,6 +17,7 @@ from fastpin.solver.solving import solve
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.storage.recording import record
 from fastpin.storage.store import load, places_between
+from tests.support.joints import joint
 
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 LIKE = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
@@ -141,6 +142,25 @@ def test_the_loops_enclose_the_work_of_the_loads(name: str) -> None:
         errors.append(abs(work - exact) / size)
     assert errors[1] < 4e-5
     assert errors[1] < 0.02 * errors[0] or errors[0] < 1e-6
+
+
+SEATED = {
+    "forces": ("free", [{"P": 1.0}, {"Q": 0.4}, {"Q": -0.4}, {"Q": 0.4}]),
+    "moment": ("free", [{"P": 1.0}, {"M": 0.05}, {"M": -0.05}, {"M": 0.05}]),
+    "rotation": ("fixed", [{"P": 1.0}, {"rotation": 0.2}, {"rotation": -0.2}, {"rotation": 0.2}]),
+    "remote stress": ("free", [{"P": 1.0}, {"sxx": 0.2, "Q": 0.1}, {"sxx": -0.2, "Q": -0.1}, {"sxx": 0.2, "Q": 0.1}]),
+}
+
+
+@pytest.mark.gate
+@pytest.mark.parametrize("name", SEATED)
+def test_loops_reach_across_a_bush_that_slips(name: str) -> None:
+    """The work is that of pin and seat together: without the seat some loops have a negative area."""
+    rotation, corners = SEATED[name]
+    problem = replace(joint(0.28, 0.26, pin_load="centre"), rotation=rotation)
+    cycle = solve(problem, corners, nodes=96, between=40).cycle(first=2, last=4)
+    work = sum(loop.work for loop in cycle.loops.values())
+    assert work == pytest.approx(cycle.states[-1].work - cycle.states[0].work, rel=2e-3)
 
 
 def test_a_loop_is_exact_where_no_status_changes() -> None:
