@@ -128,6 +128,10 @@ class Shape(NamedTuple):
     part: str
 
 
+MOST_DRY = 1.2
+"""Right end of the sliders of friction: dry metals hardly have more. The field beside a slider takes any friction."""
+
+
 class Control(NamedTuple):
     """A control of the live page: a slider from `least` to `most`, a chooser among `choices`, or those of a material.
 

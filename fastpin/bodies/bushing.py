@@ -11,6 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from fastpin.bodies.body import (
+    MOST_DRY,
     THINNEST,
     Control,
     Harmonics,
@@ -80,7 +81,7 @@ class Bushing(PlateBody):
         *MATERIAL_KEYS, "outer_radius", "interference", "bonded", "friction", "ring_outer_radius", "support",
         "reaction", "lug_file",
     )  # fmt: skip
-    controlled = ("outer_radius", "interference")
+    controlled = ("outer_radius", "interference", "seat_friction")
     title = "plate with a bush"
 
     material: Material
@@ -398,11 +399,16 @@ class Bushing(PlateBody):
     def page_controls(self, radius: float, clearance: float, dimensionless: bool) -> list[Control]:
         most = max(2.0 * abs(self.interference), abs(clearance), 1e-3 * radius * (not dimensionless))
         found = super().page_controls(radius, clearance, dimensionless)
-        return [
-            *found,
-            Control("interference", self.interference, "displacement", 0.0 if self.bonded else -most, most),
+        least = 0.0 if self.bonded else -most
+        found += [
+            Control("interference", self.interference, "displacement", least, most),
             Control("bush", self.material),
         ]
+        return found if self.bonded else [*found, Control("seat_friction", self.friction, "ratio", 0.0, MOST_DRY)]
+
+    def changed(self, values: Mapping[str, Any]) -> Self:
+        names = {"seat_friction": "friction"}  # on the page, where the friction is that of the pin
+        return super().changed({names.get(name, name): value for name, value in values.items()})
 
 
 @lru_cache(maxsize=16)

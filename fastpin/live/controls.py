@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
-from fastpin.bodies.body import Control, PlateBody
+from fastpin.bodies.body import MOST_DRY, Control, PlateBody
 from fastpin.bodies.kinds import PIN_CONTROLS, PLATE_CONTROLS, SOLID_PIN, TITLES, changed_pin, changed_plate
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at, degrees_from_bottom
@@ -217,8 +217,7 @@ def _friction(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:
     """The controls of the friction: its coefficient, or the largest one and whether it varies along the rim."""
     varies = isinstance(problem.friction, Profile)
     name = "most_friction" if varies else "friction"
-    # Dry metals hardly have more than 1.2. The field beside the slider takes any friction.
-    found = [_slider("contact", name, problem.most_friction, NUMBER, 0.0, 1.2)]
+    found = [_slider("contact", name, problem.most_friction, NUMBER, 0.0, MOST_DRY)]
     if scales.has_varying_friction:
         found.append(_chooser("contact", "friction_along", "case" if varies else "uniform", FRICTION_ALONG))
     return found

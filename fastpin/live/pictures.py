@@ -70,7 +70,7 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         the load, and the displacement on which it does work. The entry "rounding" has a value for each kind of
         quantity: smaller ones are shown as 0, as in tables. The entry "curves" has the tractions as figures draw them,
         with NaN between two contact zones; "pressure" and "shear" are those of the nodes. The entry "hoop" has the part
-        of the assembly, too, if something is pressed before any load.
+        of the assembly, too, if something is pressed before any load, and the stress at the seat of a bush.
     """
     curves = one_turn([thinned(points, CURVE_ERROR * state.peak_pressure) for points in traction_patches(state)]).T
     hoop = None
@@ -80,6 +80,8 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         hoop = {"degrees": packed(degrees), "stress": packed(state.hoop_stress("plate", theta))}
         if state.problem.is_pressed:
             hoop["assembly"] = packed(state.assembly_stress(Points.at_depth(0.0, theta)).hoop)
+        if state.problem.plate_body.bush is not None:
+            hoop["seat"] = packed(state.hoop_stress("seat", theta))
     return {
         "serial": serial,
         "gesture": gesture,

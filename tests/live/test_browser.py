@@ -258,7 +258,7 @@ def test_charts_show_the_tractions_of_solve(tab: Tab) -> None:
     assert np.allclose(shear, 1e-6 * np.interp(angle, degrees, shears), **close)
     assert np.allclose(upper, 0.4 * pressure)
     assert np.array_equal(lower, -upper)
-    where, _, hoop = tab.curve("hoop")
+    where, *_, hoop = tab.curve("hoop")
     assert f"{hoop.max():#.4g} MPa" in tab.text("numbers")
     assert np.allclose(hoop, 1e-6 * state.hoop_stress("plate", np.radians(where - 90.0)), rtol=1e-5, atol=1e-4)
     (shown,) = re.findall(r"peak pressure([\d.]+) MPa", tab.text("numbers"))

@@ -159,6 +159,7 @@ def test_bodies_and_materials_can_be_changed() -> None:
     page.tell("change", changes={"plate_body": "bushing"})
     page.tell("change", changes={"bush_material": "steel"})
     page.tell("change", changes={"interference": 1e-5})
+    assert page.tell("change", changes={"seat_friction": 0.3})["kind"] == "refused"  # a bonded bush does not slip
     bush = page.live.session.problem.plate_body
     assert isinstance(bush, Bushing)
     assert (bush.material.E, bush.interference) == (210e9, 1e-5)

@@ -59,7 +59,8 @@ def test_undo_and_redo_lead_back_to_the_same_seat(page: Page) -> None:
     ("changes", "slips"),
     [
         ({"friction": 0.3}, True), ({"outer_radius": 0.013}, True), ({"interference": 1e-5}, True),
-        ({"bush_E": 9e10}, True), ({"rotation": "fixed"}, True), ({"plate_body": "plate"}, False),
+        ({"bush_E": 9e10}, True), ({"seat_friction": 0.3}, True), ({"rotation": "fixed"}, True),
+        ({"plate_body": "plate"}, False),
     ],
 )  # fmt: skip
 def test_changes_of_the_problem_keep_the_bush_slipping(page: Page, changes: dict[str, object], slips: bool) -> None:

@@ -58,7 +58,7 @@ export function chart(element, options, data) {
 const CURVES = {
   pressure: [["reference", REFERENCE, 2], ["pressure", INK, 2]],
   shear: [["reference", REFERENCE, 2], ["upper", SOFT, 1, [5, 3]], ["lower", SOFT, 1, [5, 3]], ["shear", INK, 2]],
-  hoop: [["reference", REFERENCE, 2], ["hoop", INK, 2]],
+  hoop: [["reference", REFERENCE, 2], ["seat", SOFT, 2, [6, 4]], ["hoop", INK, 2]],
 };
 const DASHES = [[6, 4], [2, 3]]; // of the curves of bodies beside a line without
 
@@ -212,7 +212,8 @@ export class RoundCharts {
     const element = document.getElementById("hoop-chart").parentElement;
     element.style.display = known.length ? "" : "none";
     if (!known.length) return;
-    const high = Math.max(0, ...known.map((one) => Math.max(...one.hoop.stress))), low = Math.min(0, ...known.map((one) => Math.min(...one.hoop.stress)));
+    const ends = known.flatMap(({ hoop }) => [hoop.stress, hoop.seat ?? []]), high = Math.max(0, ...ends.map((one) => Math.max(...one)));
+    const low = Math.min(0, ...ends.map((one) => Math.min(...one)));
     this.peaks.high = peak(this.peaks.high, high);
     this.peaks.low = peak(this.peaks.low, -low);
     const scale = scaled(Math.max(this.peaks.high, this.peaks.low), unit);
@@ -220,7 +221,8 @@ export class RoundCharts {
     // The axis shows zero, and a little beyond it.
     this.ranges.hoop = [-Math.max(scale.factor * this.peaks.low, 0.05 * most), Math.max(scale.factor * this.peaks.high, 0.05 * most)];
     const { x, values } = together([shown, reference].map((one) => (one?.hoop ? partsOf(one.hoop) : [])), this.window);
-    this.put("hoop", x, [1, 0].map((number) => values(number, "stress").map((value) => (value === null ? null : scale.factor * value))));
+    const along = (number, name) => values(number, name).map((value) => (value === null ? null : scale.factor * value));
+    this.put("hoop", x, [along(1, "stress"), shown?.hoop?.seat ? along(0, "seat") : x.map(() => null), along(0, "stress")]);
     this.label("hoop", scale.unit);
   }
 

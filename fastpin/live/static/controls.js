@@ -9,7 +9,7 @@ const NAMES = {
   sxx: "σxx remote", syy: "σyy remote", sxy: "σxy remote", friction_change: "change of μ", friction: "friction μ",
   most_friction: "largest μ", friction_along: "μ along the rim", hole_lobes: "hole", pin_lobes: "pin", clearance: "clearance",
   plane: "plane", pin_load: "force acts", pin_bore: "bore radius", bore_load: "force in bore", plate_body: "plate",
-  outer_radius: "outer radius", support: "rim", interference: "press fit", plate_axis: "laminate axis",
+  outer_radius: "outer radius", support: "rim", interference: "press fit", seat_friction: "seat's friction μ", plate_axis: "laminate axis",
 };
 const LABELS = { material: "material", E: "modulus E", nu: "Poisson ν", amplitude: "amplitude", axis: "widest gap at" };
 const WORDS = { centre: "at its centre", body: "as body force", strain: "plane strain", stress: "plane stress" };

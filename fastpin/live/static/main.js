@@ -113,7 +113,7 @@ function news(answer) {
     const isNew = history.take(answer);
     drawing.lost = null;
     if (isNew) {
-      at("hoop-body").textContent = history.case.plate === "bushing" ? "bush" : "plate";
+      at("hoop-body").textContent = history.case.plate === "bushing" ? "bush round the hole, and of the plate round its seat (dashed)" : "plate round the hole";
       at("title").textContent = history.case.title ? `· ${history.case.title}` : "";
       document.title = `fastpin live${history.case.title ? ` · ${history.case.title}` : ""}`;
       at("profiles").textContent = history.case.profile_words.map(([name, words]) => `${name}: ${words}`).join("; ");

@@ -70,11 +70,12 @@ function seatCells({ rotation, dissipation, peak_slip, contact, stick }, unit) {
 }
 
 // The largest hoop stress, and its parts where something is pressed before any load.
-function hoopCells({ degrees: angles, stress, assembly }, unit) {
+function hoopCells({ degrees: angles, stress, assembly, seat }, unit) {
   const most = Math.max(...stress), place = stress.indexOf(most);
   const cells = [["largest hoop stress", unit("traction", most)], ["at", most === 0 ? degrees(null) : degrees(angles[place])]];
-  if (!assembly) return cells;
-  return [...cells, ["of the assembly", unit("traction", assembly[place])], ["of the loads", unit("traction", most - assembly[place])]];
+  if (assembly) cells.push(["of the assembly", unit("traction", assembly[place])], ["of the loads", unit("traction", most - assembly[place])]);
+  if (seat) cells.push(["largest round the seat", unit("traction", Math.max(...seat))]);
+  return cells;
 }
 
 function total(intervals) {
