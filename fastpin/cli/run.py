@@ -507,7 +507,7 @@ class RunReport:
             "last cycle": lambda: [] if judged.cycle is None else [report.cycle.cycle_line(judged.cycle)],
             "margins": lambda: margin_lines(problem, margins()),
             "fatigue": lives,
-            "crack": lambda: [] if judged.crack is None else [growth_line(judged.crack)],
+            "crack": lambda: [] if judged.crack is None else [growth_line(judged.crack, over_yield(margins()))],
             "strength": lambda: [] if judged.strength is None else strength_lines(judged.strength),
         }
 

@@ -217,15 +217,21 @@ def map_plot(
     curves = field_curves(state, component, body, extent)
     words = FIELDS[component]
     point = f"load point {point_name(load_point(state))}: {named_loads(state.problem, state.load)}"
+    doubt = " The force acts at a point in the pin's centre: stress round it is no margin." if _has_point(state) else ""
     return Plot(
         lambda look: _draw_field(look, state, curves, component),
         partial(write_csv, curves),
         f"Map of the {words} in {'plate' if component == UTILIZATION else 'pin and plate'} at {point}.",
-        f"{words[0].upper()}{words[1:]} at {point}. The thick line is the contact, white where it slips.",
+        f"{words[0].upper()}{words[1:]} at {point}. The thick line is the contact, white where it slips.{doubt}",
         drawn.notes,
         width=FIELD_WIDTH,
         bitmap=True,
     )
+
+
+def _has_point(state: State) -> bool:
+    """Whether the force acts at a point in the pin, where the stress is infinite."""
+    return not state.problem.pin_body.bore_radius and state.problem.pin_load == "centre"
 
 
 def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: str) -> Sheet:
@@ -234,7 +240,7 @@ def _draw_field(look: Look, state: State, curves: Sequence[Curve], component: st
     unit, radius = units(state.problem)["traction"], state.problem.hole_radius
     distance, angle, value = curves[0].columns
     # The infinite stress at a point force at the pin's centre does not set the colours.
-    nearest = 0.3 * radius if not state.problem.pin_body.bore_radius and state.problem.pin_load == "centre" else 0.0
+    nearest = 0.3 * radius if _has_point(state) else 0.0
     every = np.concatenate([curve[value][curve[distance] >= nearest] for curve in curves])
     low, high = np.quantile(every, [1.0 - FARTHEST, FARTHEST])
     factor, label = (1.0, "") if component == UTILIZATION else unit.scale([low, high])

@@ -449,7 +449,10 @@ def crack(page: PageParts) -> PageSection:
     found = page.source.crack
     if isinstance(found, str):
         return PageSection("crack", "Crack", [Text(found, "missing")])
-    parts: list[SectionPart] = [Text(sentence(growth_line(found))), page.album.figure(crack_growth_of(found))]
+    parts: list[SectionPart] = [
+        Text(sentence(growth_line(found, page.source.over_yield))),
+        page.album.figure(crack_growth_of(found)),
+    ]
     if isinstance(found.law, Walker | Nasgro):
         parts.append(Text(sentence(f"Law of growth: {law_words(found.law)}")))
     parts += [Text(sentence(f"Doubt: {doubt}")) for doubt in found.doubts]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,13 @@ from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
 from fastpin.model.growth import Nasgro, Walker, law_entries
+from fastpin.model.points import owner_of
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
 from fastpin.report.table import table
 from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle
+from fastpin.states.margins import over_yield_words
 from fastpin.states.state import State
 
 ROWS = 13
@@ -50,17 +52,21 @@ def growth_curve(growth: cracks.Growth) -> Curve:
     )
 
 
-def growth_line(growth: cracks.Growth) -> str:
-    """Return a line of text: the place of a crack, and what becomes of it."""
+def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) -> str:
+    """Return a line of text: the place of a crack, and what becomes of it.
+
+    `over` has the bodies that yield, see :func:`fastpin.states.margins.over_yield`: their lives are marked.
+    """
+    mark = over_yield_words(over or {}, owner_of(growth.problem, growth.crack.body))
     where = " in the plate round the bush" if growth.crack.body == "seat" else ""
     line = f"crack{where} at {from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}"
     if growth.fate == CrackFate.NONE or math.isnan(growth.error):
-        return line
+        return line + mark
     of = "length" if growth.fate == CrackFate.STOPS else "life"
     if not growth.error < 1.0:
-        return f"{line}; the error of this {of} is not known"
+        return f"{line}; the error of this {of} is not known{mark}"
     power = math.floor(math.log10(max(growth.error, 1e-9)))
-    return f"{line}; numerical error of this {of} below {math.ceil(growth.error / 10.0**power):g}e{power:03d}"
+    return f"{line}; numerical error of this {of} below {math.ceil(growth.error / 10.0**power):g}e{power:03d}{mark}"
 
 
 def spectrum_stops(states: Sequence[State], corners: int) -> list[State]:

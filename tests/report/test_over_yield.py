@@ -2,16 +2,21 @@
 
 import pytest
 
+from fastpin.cracks import planned_growth
+from fastpin.damage import cycle_states
 from fastpin.damage.margins import reserve_margins
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
+from fastpin.model.crack import CrackGrowth
 from fastpin.model.doubts import doubts_given
+from fastpin.model.growth import Walker
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.pages.source import Source
 from fastpin.report import assessment
+from fastpin.report.crack_growth import growth_line
 from fastpin.report.cycle import fatigue_lines, spectrum_damages, spectrum_line
 from fastpin.report.margins import document, margin_rows
 from fastpin.report.summary import document as summary
@@ -75,6 +80,15 @@ def test_lines_of_lives_are_marked(result: Result, assessed: assessment.Assessed
     assert len(lines) == 3
     assert all("life" in line and line.endswith(f"; {MARK}") for line in lines)
     assert MARK not in assessment.assessment_lines(assessed, {})[1]
+
+
+@pytest.mark.gate
+def test_the_line_of_a_crack_is_marked(result: Result) -> None:
+    how = CrackGrowth(0.1e-3, 0.5e-3, Walker(1e-11, 3.0), theta=0.0)
+    found = planned_growth(cycle_states(result, result.cycles[-1]), how)
+    mark = "; above yield: stresses reach 2 times the yield strength"
+    assert growth_line(found, {"plate": 2.0}) == growth_line(found) + mark
+    assert growth_line(found, {"pin": 2.0}) == growth_line(found)
 
 
 def test_json_has_the_mark(case: Case, result: Result, assessed: assessment.Assessed) -> None:
