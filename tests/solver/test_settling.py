@@ -10,7 +10,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels import complementarity, conditions, exchange
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
+from fastpin.model.loads import LOADS, P
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import path, settling
@@ -157,6 +157,19 @@ def test_statuses_that_are_left_alone_settle_without_lemke(met, titanium_in_alum
     result = solve(case, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=101)
     assert not met
     assert result.statistics["resettled"] == result.statistics["jumps"] == 0
+
+
+def test_each_settling_allows_a_step_its_rebuilds_once_more(titanium_in_aluminium):
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    system = System.build(case, Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 41), 1.0)
+    load = np.eye(len(LOADS))[P]
+    start, _ = first_contact(system, unloaded_configuration(system), 0.0 * load, load)
+    step = PathStep(system, start, load)
+    step.rebuilds, step.resettled = path.MOST_REBUILDS, 1
+    step._rebuild()
+    step.rebuilds = 2 * path.MOST_REBUILDS
+    with pytest.raises(path.StepLostError):
+        step._rebuild()
 
 
 @pytest.mark.gate
