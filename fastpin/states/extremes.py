@@ -358,11 +358,12 @@ class Different:
         order = np.lexsort((places, -most))
         begin, size = 0, 1
         while begin < order.size and (not read or most[order[begin]] > best):
-            chosen = sorted(places[order[begin : begin + size]].tolist())
+            some = order[begin : begin + size]
+            chosen = sorted(places[some[most[some] >= best]].tolist())
             readings = {at: _read(name, state) for at, state in zip(chosen, self._kept.read(chosen), strict=True)}
             read |= {at: reading for at, reading in readings.items() if not math.isnan(reading)}
             best = max((float(value(reading)) for reading in read.values()), default=best)
-            begin, size = begin + size, min(2 * size, AT_ONCE)
+            begin, size = begin + size, min(4 * size, AT_ONCE)
         least = least_equal(np.array(best))
         for place in sorted(places[most >= least].tolist()) if read else ():
             if place not in read:
