@@ -402,7 +402,9 @@ class JointBounds:
         self._seat = StressBounds(problem.interfaces[1], around, {StressBounds.HOOP})
         self._places = {name: Places.of(problem, grid, owner) for name, owner in owners.items() if name not in pin}
         self._rim = _around_hole(grid) if StressBounds.HOOP in names else np.zeros(0)
-        self._doubts = [HoopDoubts(each, nodes, self._rim) for each, nodes in zip(problem.interfaces, (grid, around), strict=True)]
+        self._doubts = [
+            HoopDoubts(each, nodes, self._rim) for each, nodes in zip(problem.interfaces, (grid, around), strict=True)
+        ]
         self._problem = problem
         self._map = StressMap(problem, (grid, around), self._stress)
         self.names = names & {StressBounds.HOOP, StressBounds.SEAT, *owners}
