@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -82,6 +82,9 @@ It was up to 0.002 in 138 random states of 23 bushes, with 61 to 201 nodes.
 
 Pair = tuple[np.ndarray, np.ndarray]
 """Lower and upper bounds, shape (k,) each."""
+
+Stresses = Callable[[Tractions, np.ndarray], np.ndarray]
+"""Gives stresses (srr, stt, srt) at points, shape (3, m), from tractions and a remote stress (sxx, syy, sxy)."""
 
 Nodal = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Pressure, shear and status of the nodes of an interface, shape (k, n) each."""
@@ -274,33 +277,6 @@ def _sticking(friction: np.ndarray, pressure: np.ndarray, shear: np.ndarray, sta
 # -- stresses ------------------------------------------------------------------------------------------------------
 
 
-class MisesBounds:
-    """Bounds of the largest von Mises stress of a body. They are as far apart as rounding: the reading is the same.
-
-    Parameters
-    ----------
-    problem : Problem
-    grid : Grid
-    owner : str
-        One of :data:`fastpin.states.yielding.OWNERS`.
-    hats : Hats
-
-    Attributes
-    ----------
-    stress : NodalStress
-    """
-
-    def __init__(self, problem: Problem, grid: Grid, owner: str, hats: Hats) -> None:
-        self._problem, self._places = problem, Places.of(problem, grid, owner)
-        self.stress = NodalStress(hats, lambda tractions, remote: self._places.stress(problem, tractions, remote))
-
-    def of(self, pressure: np.ndarray, shear: np.ndarray, remote: np.ndarray) -> Pair:
-        """Return the bounds for tractions (k, n) of nodes that are known, and remote stresses (k, 3)."""
-        every = slice(0, self._places.theta.size)
-        stress = np.array([self.stress.component(k, every, pressure, shear, remote) for k in range(3)])
-        return _mises_bounds(self._problem, self._places, stress)
-
-
 class StressBounds:
     """Bounds of the readings of the stress: hoop stress round the hole, von Mises stresses, the interface of a bush.
 
@@ -317,75 +293,51 @@ class StressBounds:
     BUSH = ("bush_open_margin", "bush_least_friction")
 
     def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
-        owners = {name: name.removeprefix(PREFIX) for name in sorted(names) if name.startswith(PREFIX)}
-        self.names = names & {self.HOOP, self.SEAT, *self.BUSH, *owners}
-        self._owners, self._hats = owners, Hats(problem, grid)
-        self._bush = problem.plate_body.bush
-        self._problem, self._grid = problem, grid
+        self._places = _mises_places(problem, grid, names)
+        self.names = names & {self.HOOP, self.SEAT, *self.BUSH, *self._places}
+        self._hats, self._problem, self._grid = Hats(problem, grid), problem, grid
 
     def of(self, interfaces: list[Nodal], remote: np.ndarray) -> dict[str, Pair]:
         """Return the bounds for tractions and status of the nodes of the pin, and remote stresses (k, 3)."""
         pressure, shear, _ = interfaces[0]
-        values = pressure, shear, remote
-        stresses = [bounds.stress for bounds in self._mises.values()]
-        plate = self._plate if self.names - self._owners.keys() else None
         for nodes, hats in self._hats.blocks(pressure, shear):
-            for stress in stresses if plate is None else [*stresses, plate]:
+            for stress in self._stresses.values():
                 stress.learn(nodes, hats)
-        found: dict[str, Pair] = {name: bounds.of(*values) for name, bounds in self._mises.items()}
-        if plate is None:
-            return found
+
+        def part(name: str, which: int) -> np.ndarray:
+            return self._stresses[name].component(which, pressure, shear, remote)
+
+        found = {
+            name: _mises_bounds(self._problem, places, np.array([part(name, which) for which in range(3)]))
+            for name, places in self._places.items()
+        }
         if self.HOOP in self.names:
-            hoop = plate.component(1, slice(0, self._rim), *values)
-            found[self.HOOP] = _hoop_bounds(hoop, [self._doubts.of(*interfaces[0])])
-        if self._bush is not None and self.names & {*self.BUSH}:
-            interface = slice(self._rim, self._rim + self._round)
-            normal, along = (plate.component(k, interface, *values) for k in (0, 2))
-            found |= zip(self.BUSH, _interface_bounds(-normal, along), strict=True)
+            found[self.HOOP] = _hoop_bounds(part(self.HOOP, 1), [self._doubts.of(*interfaces[0])])
         if self.SEAT in self.names:
-            hoop = plate.component(1, slice(self._rim + self._round, None), *values)
+            hoop = part(self.SEAT, 1)
             found[self.SEAT] = _seat_bounds(hoop) if self._is_thick else _unbounded(len(hoop))
+        if self.names & {*self.BUSH}:
+            found |= zip(self.BUSH, _interface_bounds(-part("bush", 0), part("bush", 2)), strict=True)
         return {name: found[name] for name in self.names}
 
     @cached_property
-    def _mises(self) -> dict[str, MisesBounds]:
-        return {name: MisesBounds(self._problem, self._grid, owner, self._hats) for name, owner in self._owners.items()}
-
-    @cached_property
-    def _plate(self) -> NodalStress:
-        """The stress round the hole and at the interface and the seat of a bush."""
-        return NodalStress(self._hats, self._of_plate(*self._points()))
-
-    def _of_plate(
-        self, theta: np.ndarray, depth: np.ndarray, seat: np.ndarray
-    ) -> Callable[[Tractions, np.ndarray], np.ndarray]:
-        """Return the stress at points of the plate, and at the angles of more points at the seat of a bush."""
-
-        def stress(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
-            found = plate_stress(self._problem, tractions, remote, theta, depth)
-            if not seat.size:
-                return found
-            return np.c_[found, seat_stress(self._problem, tractions, remote, seat, np.zeros(seat.size))]
-
-        return stress
-
-    def _points(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Angles and depths of the points round the hole and round the bush, and angles of the points of its seat."""
-        grid = self._grid
-        rim = _around_hole(grid)
-        self._doubts = HoopDoubts(self._problem, grid, rim)
-        rim = rim if self.HOOP in self.names else rim[:0]
-        self._rim, self._round = rim.size, 0
-        if self._bush is None:
-            return rim, np.zeros(rim.size), rim[:0]
-        wall = self._bush.outer_radius / self._problem.hole_radius - 1.0
-        self._is_thick = wall > SMOOTH * float(grid.weights.max())
-        theta = 2.0 * math.pi * np.arange(AROUND_BUSH) / AROUND_BUSH
-        theta = theta[:: COARSER if wall > THICK else 1]
-        seat = theta if self.SEAT in self.names else theta[:0]
-        interface = theta if self.names & {*self.BUSH} else theta[:0]
-        self._round = interface.size
-        return np.r_[rim, interface], np.r_[np.zeros(rim.size), np.full(interface.size, wall)], seat
+    def _stresses(self) -> dict[str, NodalStress]:
+        """The stresses at the points of each reading. Both readings of a bush have those at its interface."""
+        problem, grid = self._problem, self._grid
+        stresses: dict[str, Stresses] = {name: partial(places.stress, problem) for name, places in self._places.items()}
+        if self.HOOP in self.names:
+            rim = _around_hole(grid)
+            self._doubts = HoopDoubts(problem, grid, rim)
+            stresses[self.HOOP] = partial(plate_stress, problem, theta=rim, depth=np.zeros(rim.size))
+        if self.names & {self.SEAT, *self.BUSH} and problem.plate_body.bush is not None:
+            wall = problem.plate_body.bush.outer_radius / problem.hole_radius - 1.0
+            self._is_thick = wall > SMOOTH * float(grid.weights.max())
+            theta = (2.0 * math.pi * np.arange(AROUND_BUSH) / AROUND_BUSH)[:: COARSER if wall > THICK else 1]
+            if self.names & {*self.BUSH}:
+                stresses["bush"] = partial(plate_stress, problem, theta=theta, depth=np.full(theta.size, wall))
+            if self.SEAT in self.names:
+                stresses[self.SEAT] = partial(seat_stress, problem, theta=theta, depth=np.zeros(theta.size))
+        return {name: NodalStress(self._hats, stress) for name, stress in stresses.items()}
 
 
 class JointBounds:
@@ -396,11 +348,11 @@ class JointBounds:
 
     def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
         around = seat_grid(problem, grid)
-        owners = {name: name.removeprefix(PREFIX) for name in sorted(names) if name.startswith(PREFIX)}
-        pin = {name for name, owner in owners.items() if owner == "pin"}
+        owners = _mises_places(problem, grid, names)
+        pin = {PREFIX + "pin"} & owners.keys()
         self._pin = StressBounds(problem, grid, pin)
         self._seat = StressBounds(problem.interfaces[1], around, {StressBounds.HOOP})
-        self._places = {name: Places.of(problem, grid, owner) for name, owner in owners.items() if name not in pin}
+        self._places = {name: places for name, places in owners.items() if name not in pin}
         self._rim = _around_hole(grid) if StressBounds.HOOP in names else np.zeros(0)
         self._doubts = [
             HoopDoubts(each, nodes, self._rim) for each, nodes in zip(problem.interfaces, (grid, around), strict=True)
@@ -441,6 +393,11 @@ class JointBounds:
             found[name] = _mises_bounds(self._problem, places, stress[:, :, begin : begin + places.theta.size])
             begin += places.theta.size
         return found
+
+
+def _mises_places(problem: Problem, grid: Grid, names: set[str]) -> dict[str, Places]:
+    """The points of the von Mises stresses among some readings."""
+    return {name: Places.of(problem, grid, name[len(PREFIX) :]) for name in sorted(names) if name.startswith(PREFIX)}
 
 
 def _around_hole(grid: Grid) -> np.ndarray:

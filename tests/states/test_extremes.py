@@ -151,7 +151,7 @@ def test_stresses_of_hat_functions_add_up(result: Result) -> None:
     remote = np.zeros((6, 3))
     for nodes, block in hats.blocks(pressure, shear):
         stress.learn(nodes, block)
-    hoop = stress.component(1, slice(None), pressure, shear, remote)
+    hoop = stress.component(1, pressure, shear, remote)
     known = np.array([state.hoop_stress("plate", theta, straight=True) for state in result[:6]])
     if bushed:
         known = np.c_[known, [state.hoop_stress("seat", theta[:5], straight=True) for state in result[:6]]]
