@@ -28,15 +28,7 @@ from fastpin.reading.marks import Marks
 from fastpin.states.quantities import QUANTITIES, Quantity, load_point, of_bush, point_name
 from fastpin.states.reading_bounds import NUMBERS, Bounds, StateBlock
 from fastpin.states.state import State
-from fastpin.states.yielding import (
-    OWNERS,
-    PREFIX,
-    circles,
-    place_words,
-    strength_of,
-    von_mises_peak,
-    yielding_owners,
-)
+from fastpin.states.yielding import OWNERS, PREFIX, place_words, strength_of, von_mises_peak, yielding_owners
 
 Side = Literal["smallest", "largest", "largest magnitude"]
 """Which extreme of a quantity, as the ``take`` of an outcome."""
@@ -221,12 +213,9 @@ def yield_extremes(kept: Kept) -> Found:
         tractions = [part for each in (block, block.seat or block) for part in (each.pressure, each.shear)]
         remote = np.abs(block.loads[:, list(REMOTE)])
         columns.append(np.column_stack([remote, *(np.abs(part).max(axis=1) for part in tractions)]))
-    if not columns:  # the run was stopped before its first state
-        return Found()
-    rows = np.concatenate(columns)
-    if _are_plainly_elastic(kept.problem, rows.max(axis=0)):
-        return Found()
-    places = {int(np.argmax(column)) for column in rows.T if column.any()}
+    if not columns or _are_plainly_elastic(kept.problem, np.concatenate(columns).max(axis=0)):
+        return Found()  # also if the run was stopped before its first state
+    places = {int(np.argmax(column)) for column in np.concatenate(columns).T if column.any()}
     states = kept.read(sorted(places))
     near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]
     return find_extremes(kept, [(PREFIX + owner, "largest") for owner in near])
@@ -237,11 +226,10 @@ def _are_plainly_elastic(problem: Problem, most: np.ndarray) -> bool:
 
     `most` (7,) has the remote stresses (sxx, syy, sxy), and pressure and shear at the pin and in the seat.
     """
-    plate, known = problem.plate_body, (strength_of(problem, circle) for circle in circles(problem))
-    if problem.pin_body.bore_radius or plate.bush or plate.force_points or not plate.is_infinite:
-        return False
-    least = min(strength for strength in known if strength is not None)
-    return problem.pair.plate.is_isotropic and MOST_MISES * float(most[:5].sum() + most[2]) < least
+    plate, least = problem.plate_body, min(yielding_owners(problem).values())
+    is_plain = plate.is_infinite and not (plate.bush or plate.force_points or problem.pin_body.bore_radius)
+    is_plain = is_plain and problem.pair.plate.is_isotropic
+    return is_plain and MOST_MISES * float(most[:5].sum() + most[2]) < least
 
 
 def _is_near_yield(state: State, owner: str) -> bool:
