@@ -56,10 +56,10 @@ FADES, OF_PRESSURE, BETWEEN = 2.0, 0.25, 1.5
 count so much. Between two points the stress of straight lines rises by so much of their difference, at most.
 """
 
-CUSP_RISE = 1.5
+CUSP_RISE = 2.0
 """Bound of the height of a cusp of the shear of like bodies above its node, in parts of the smaller drop beside it.
 
-It was up to 1.12 in 250 random states of like bodies, and up to 0.88 in a history with 550 corners.
+It was up to 1.12 in 390 random states of like bodies, and up to 0.88 in a history with 550 corners.
 """
 
 MAPPED = 40
