@@ -1,7 +1,7 @@
 """Bounds of the readings of many states, from their nodal values at once.
 
 A reading lies between its bounds, whatever the fits between the nodes find. Pressure, shear and widths have bounds that
-follow from the way in which they are read. The bounds of the largest hoop stress, :data:`DOUBT`, and of the largest
+follow from the way in which they are read. The bounds of the hoop stress, :class:`HoopDoubts`, and of the largest
 shear of like bodies, :data:`CUSP_RISE`, were measured.
 """
 
@@ -41,19 +41,6 @@ CORNER = 1.0
 """Bound of the height of a corner above the largest nodal pressure, in parts of the larger drop beside it.
 
 It was up to 0.15 in 606 random states of unlike bodies.
-"""
-
-DOUBT, MILD_DOUBT, MILD = 0.9, 0.45, 0.15
-"""Bounds of the largest hoop stress beyond straight lines between the nodes, in parts of the bends of the tractions.
-
-The second one holds where exponents differ from 1/2 by :data:`MILD` at most and :data:`LEAST_NODES` nodes or more are
-closed. The hoop stress needed up to 0.43 and 0.23 in 1,100 random states of all classes of tests/survey/histories.py,
-with 61 to 201 nodes, and up to 0.19 in a history with 550 corners.
-"""
-
-FADES, OF_PRESSURE, BETWEEN = 2.0, 0.25, 1.5
-"""The bends at a node fade with 1/(1 + x) in the distance x over so many node distances, and those of the pressure
-count so much. Between two points the stress of straight lines rises by so much of their difference, at most.
 """
 
 CUSP_RISE = 2.0
@@ -416,7 +403,14 @@ def _mises_bounds(problem: Problem, places: Places, stress: np.ndarray) -> Pair:
 class HoopDoubts:
     """Bounds of the hoop stress beyond straight lines between the nodes, from the bends of the tractions at the nodes.
 
-    Power laws replace straight lines where the tractions bend, and change the stress there and less beside.
+    Power laws replace straight lines where the tractions bend, and change the stress there and less beside. So the
+    bends at a node, and :attr:`OF_PRESSURE` of those of the pressure, fade with 1/(1 + x/:attr:`FADES`) in the distance
+    x in node distances. Their sum counts :attr:`DOUBT`. It counts :attr:`MILD_DOUBT` where exponents differ from 1/2 by
+    :attr:`MILD` at most and :data:`LEAST_NODES` nodes or more are closed. Between two points the stress of straight
+    lines rises by :attr:`BETWEEN` of their difference at most.
+
+    These bounds were measured. The sum had to count up to 0.43 and 0.23 in 1,100 random states of all classes of
+    tests/survey/histories.py with 61 to 201 nodes, and up to 0.19 in a history with 550 corners.
 
     Parameters
     ----------
@@ -426,16 +420,19 @@ class HoopDoubts:
         Angles, rad.
     """
 
+    DOUBT, MILD_DOUBT, MILD = 0.9, 0.45, 0.15
+    FADES, OF_PRESSURE, BETWEEN = 2.0, 0.25, 1.5
+
     def __init__(self, problem: Problem, grid: Grid, theta: np.ndarray) -> None:
         away = np.abs(angle_between(theta, grid.theta[:, None])) / grid.weights[:, None]
-        self._weights = 1.0 / (1.0 + away / FADES)
-        self._is_mild = bool(np.abs(_coupling(problem, grid).tilt).max() <= MILD)
+        self._weights = 1.0 / (1.0 + away / self.FADES)
+        self._is_mild = bool(np.abs(_coupling(problem, grid).tilt).max() <= self.MILD)
 
     def of(self, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray) -> np.ndarray:
         """Return the bounds at the angles, shape (k, m), for tractions and status of the nodes (k, n)."""
         is_mild = ((status != OPEN).sum(axis=1) >= LEAST_NODES) & self._is_mild
-        doubt = np.where(is_mild, MILD_DOUBT, DOUBT)[:, None]
-        return np.asarray((doubt * (_bends(shear) + OF_PRESSURE * _bends(pressure))) @ self._weights)
+        doubt = np.where(is_mild, self.MILD_DOUBT, self.DOUBT)[:, None]
+        return np.asarray((doubt * (_bends(shear) + self.OF_PRESSURE * _bends(pressure))) @ self._weights)
 
 
 def _bends(values: np.ndarray) -> np.ndarray:
@@ -448,7 +445,7 @@ def _hoop_bounds(straight: np.ndarray, doubts: list[np.ndarray]) -> Pair:
     """Bounds of the largest hoop stress, from straight lines (k, m), and the doubts of each interface (k, m)."""
     drop = straight - np.minimum(np.roll(straight, 1, axis=1), np.roll(straight, -1, axis=1))
     slack = ROUNDING * np.abs(straight).max(axis=1)[:, None] + sum(doubts)
-    return (straight - slack).max(axis=1), (straight + BETWEEN * np.maximum(drop, 0.0) + slack).max(axis=1)
+    return (straight - slack).max(axis=1), (straight + HoopDoubts.BETWEEN * np.maximum(drop, 0.0) + slack).max(axis=1)
 
 
 def _seat_bounds(hoop: np.ndarray) -> Pair:
