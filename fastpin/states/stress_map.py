@@ -84,13 +84,11 @@ class NodalStress:
             found = (self._stress(hat, np.zeros(3)) - self._press_fit) / self._unit
             self._response[place // nodes.size, :, nodes[place % nodes.size]] = found
 
-    def component(
-        self, which: int, points: slice, pressure: np.ndarray, shear: np.ndarray, remote: np.ndarray
-    ) -> np.ndarray:
-        """Return a component at some points, shape (k, points)."""
+    def component(self, which: int, pressure: np.ndarray, shear: np.ndarray, remote: np.ndarray) -> np.ndarray:
+        """Return a component at the points, shape (k, m), of tractions (k, n) and remote stresses (k, 3)."""
         known, response = self._hats.known, self._response[:, which]
-        found = pressure[:, known] @ response[0, known, points] + shear[:, known] @ response[1, known, points]
-        return np.asarray(found + remote @ self._remote[:, which, points] + self._press_fit[which, points])
+        found = pressure[:, known] @ response[0, known] + shear[:, known] @ response[1, known]
+        return np.asarray(found + remote @ self._remote[:, which] + self._press_fit[which])
 
 
 class StressMap:
@@ -137,7 +135,7 @@ class StressMap:
     def component(self, which: int, tractions: Sequence[NodalTractions], remote: np.ndarray) -> np.ndarray:
         """Return a component, shape (k, m), of tractions that were learned, and remote stresses (k, 3)."""
         parts = zip(self._parts, tractions, strict=True)
-        return np.asarray(sum(part.component(which, slice(None), *values, remote) for part, values in parts))
+        return np.asarray(sum(part.component(which, *values, remote) for part, values in parts))
 
 
 def share_grids(states: Sequence[State]) -> bool:

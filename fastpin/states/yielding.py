@@ -173,12 +173,13 @@ def von_mises_peak(state: State, owner: str, edges_only: bool = False) -> MisesP
     return MisesPeak(float(found[top]), float(places.theta[top]), places.circle[top])
 
 
-def yielding_owners(problem: Problem) -> list[str]:
-    """The elastic bodies of :data:`OWNERS` whose yield strength is known. Stresses without dimensions have none."""
-    if problem.dimensionless:
-        return []
-    found = dict.fromkeys(each.owner for each in circles(problem) if strength_of(problem, each) is not None)
-    return list(found)
+def yielding_owners(problem: Problem) -> dict[str, float]:
+    """The elastic bodies of :data:`OWNERS` whose yield strength is known, with the strength, Pa.
+
+    Stresses without dimensions have none.
+    """
+    known = {each.owner: strength_of(problem, each) for each in circles(problem) if not problem.dimensionless}
+    return {owner: strength for owner, strength in known.items() if strength is not None}
 
 
 def strength_of(problem: Problem, circle: Circle) -> float | None:

@@ -55,17 +55,15 @@ class StoredStates:
         marks = [name for name in BORDER_FIELDS if name in node_fields(group)]
         names = ["pressure", "shear", "status", *marks, *NUMBERS]
         seated = [f"{SEATED[1]}{name}" for name in ("pressure", "shear", "status", "slip", *marks, *SEAT_NUMBERS)]
+        seated = seated if "seat" in group else []
         for begin in range(0, self.points.size, AT_ONCE):
-            some = slice(begin, begin + AT_ONCE)
-            rows = read_rows(group, [*names, "loads", *(seated if "seat" in group else ())], some)
-            for name in ("pressure", "shear", "loads", *NUMBERS):
-                check_finite(f"states/{name}", rows[name])
-            for name in seated if "seat" in group else ():
+            rows = read_rows(group, [*names, "loads", *seated], slice(begin, begin + AT_ONCE))
+            for name in ("pressure", "shear", "loads", *NUMBERS, *seated):
                 if not name.endswith(tuple(BORDER_FIELDS)):
                     check_finite(f"states/{name}", rows[name])
             loads = all_loads(rows["loads"], 0.0)
             block = _block_of(rows, loads, marks)
-            if "seat" in group:
+            if seated:
                 own = {name.removeprefix(SEATED[1]): rows[name] for name in seated}
                 block.numbers["seat_slip"] = peak_slips(own["slip"], own["status"], self.grid.theta)
                 block = block._replace(seat=_block_of({**rows, **own}, loads, marks))
@@ -78,10 +76,8 @@ class StoredStates:
 
 def _block_of(rows: Rows, loads: np.ndarray, marks: list[str]) -> StateBlock:
     """The nodal values of some states from their rows. `marks` are the names of the arrays of old borders."""
-    numbers = {name: rows[name] for name in NUMBERS}
-    return StateBlock(
-        rows["pressure"], rows["shear"], rows["status"], loads, tuple(rows[name] for name in marks), numbers
-    )
+    more = tuple(rows[name] for name in marks), {name: rows[name] for name in NUMBERS}
+    return StateBlock(rows["pressure"], rows["shear"], rows["status"], loads, *more)
 
 
 def read_extremes(file: h5py.File, find: Callable[[Kept], Found] = extremes.marked_extremes) -> Found:

@@ -71,9 +71,9 @@ def record(
 ) -> None:
     """Follow a load history as :func:`fastpin.solve`, and write the states to an HDF5 file.
 
-    A state is safe in the file 0.1 s after it is solved, or when the run reaches the next state or corner, if that is
-    later. A killed process does not lose a safe state. Memory does not grow with the history. :func:`resume` continues
-    a run that has ended early. :func:`fastpin.load` reads the file, also during the run.
+    A state is safe in the file after the next commit. Commits take about 1/20 of the run, and at most 64 states wait
+    for one. A killed process does not lose a safe state. Memory does not grow with the history. :func:`resume`
+    continues a run that has ended early. :func:`fastpin.load` reads the file, also during the run.
 
     Parameters
     ----------

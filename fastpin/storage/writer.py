@@ -63,8 +63,8 @@ log = logging.getLogger(__name__)
 MOST_PENDING = 64
 """Most states that wait for one commit."""
 
-LONGEST_WAIT = 0.1
-"""Longest time between two commits, s. After this time the next state or corner commits."""
+COMMIT_SHARE = 20.0
+"""Shortest time between two commits, in durations of a commit. After this time the next state or corner commits."""
 
 CHECKPOINT_EVERY = 2.0
 """Shortest time between two checkpoints, s."""
@@ -169,7 +169,7 @@ class FileRecorder:
         self._stored = [0, 0]  # in the file
         self._corner = [0, 0]  # received up to the last corner
         self._copied: Rows | None = None
-        self._committed = time.monotonic()
+        self._next_commit = 0.0
         self._next_checkpoint = 0.0
         self._seconds = 0.0
         self._began = time.monotonic()
@@ -267,7 +267,7 @@ class FileRecorder:
         if self._run.corner in self.task.stops and str(self._run.corner) not in self._h5["restart"]:
             self._write_restart(self._h5.create_group(f"restart/{self._run.corner}"))
             self._commit()
-        elif now - self._committed > LONGEST_WAIT:
+        elif now > self._next_commit:
             self._commit()
         if now > self._next_checkpoint:
             if self._next_checkpoint:
@@ -343,7 +343,7 @@ class FileRecorder:
         if size > known:
             self._states.append(rows)
             self._pending += size - known
-            if self._pending >= MOST_PENDING or time.monotonic() - self._committed > LONGEST_WAIT:
+            if self._pending >= MOST_PENDING or time.monotonic() > self._next_commit:
                 self._commit()
 
     def _put_again(self, rows: Rows, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
@@ -352,6 +352,7 @@ class FileRecorder:
     def _commit(self) -> None:
         """Write the waiting states and cycles, and end the transaction."""
         assert self._file is not None
+        began = time.monotonic()
         try:
             if self._states:
                 rows = {name: np.concatenate([part[name] for part in self._states]) for name in self._states[0]}
@@ -365,7 +366,8 @@ class FileRecorder:
             raise
         self._stored = [max(stored, at) for stored, at in zip(self._stored, self._at, strict=True)]
         self._states, self._cycles, self._pending = [], [], 0
-        self._committed = time.monotonic()
+        now = time.monotonic()
+        self._next_commit = now + COMMIT_SHARE * (now - began)
         log.debug("%d states in the file", self._stored[0])
 
     def _write_restart(self, group: h5py.Group) -> None:
