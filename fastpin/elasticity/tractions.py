@@ -8,7 +8,7 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from fastpin.kernels import cauchy
+from fastpin.kernels import cauchy, conjugate
 from fastpin.runtime.threads import in_chunks
 
 LEAF = 8
@@ -16,6 +16,13 @@ LEAF = 8
 
 GAUSS = 24
 """Gauss points a piece for the moments. Their integrands go up to the power 28, also where a leaf is one long piece."""
+
+GAUSS_LOW = 12
+"""Gauss points a piece for the first two Fourier coefficients: exact but for rounding, for a piece of any length."""
+
+RULES = {3: 0.024, 4: 0.11, 5: 0.27, 6: 0.49, 8: 1.0, 12: 2.0}
+"""Gauss points of a piece for the moments on the edge, and its length in parts of the half width of its block up to
+which their error is rounding, by the remainder of Gauss's rule for the powers up to 27."""
 
 ROUNDING = 1e-11
 """Moment of the shear that is rounding, in parts of the moment of its magnitude."""
@@ -51,7 +58,7 @@ class Tractions:
 
     def coefficients(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Fourier coefficients of N and T, (1/2 pi) int g exp(-i k xi) dxi, for k = 0 to `count`."""
-        points, weights = _gauss()
+        points, weights = _gauss(GAUSS if count > 1 else GAUSS_LOW)
         result = np.zeros((2, count + 1), dtype=complex)
         for patch in self.patches:
             theta, values = patch[:, 0, None], patch[:, 1:, None]
@@ -72,6 +79,33 @@ class Tractions:
     def tree(self) -> Tree:
         """The blocks of the linear pieces, for fast sums."""
         return Tree.of(self)
+
+    @property
+    def leaves(self) -> np.ndarray:
+        """First and last node of the leaves of :data:`LEAF` pieces, int, shape (l, 2). Nodes count through all patches."""
+        leaves, begin = [], 0
+        for patch in self.patches:
+            last = begin + len(patch) - 1
+            leaves += [(first, min(first + LEAF, last)) for first in range(begin, last, LEAF)]
+            begin = last + 1
+        return np.array(leaves).reshape(-1, 2)
+
+    @cached_property
+    def _edge_tree(self) -> tuple[np.ndarray | int, ...]:
+        """The blocks of the linear pieces for points on the edge, as :func:`fastpin.kernels.conjugate.edge` takes them."""
+        nodes, leaves = np.concatenate([np.zeros((0, 3)), *self.patches]), self.leaves
+        count = max(2 * len(leaves) - 1, 0)
+        tree, moments = np.full((count, 4), -1), np.zeros((count, conjugate.TERMS))
+        tree[: len(leaves), :2] = leaves
+        centres, reaches = np.empty((2, count))
+        conjugate.grow(nodes, len(leaves), *_rules(), tree, centres, reaches, moments)
+        return nodes, len(nodes) - 1 if self.all_round else -1, tree, centres, reaches, moments
+
+    def on_edge(self, theta: np.ndarray) -> np.ndarray:
+        """N, T and the conjugate of T, see :mod:`fastpin.kernels.conjugate`, at angles (m,) on the edge; shape (3, m)."""
+        out = np.empty((theta.size, 3))
+        conjugate.edge(theta, *self._edge_tree, out)
+        return out.T
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,11 +147,7 @@ class Tree:
             )  # fmt: skip
         nodes = np.concatenate(patches)
         turn = len(nodes) - 1 if tractions.all_round else 0
-        leaves, begin = [], 0
-        for patch in patches:
-            last = begin + len(patch) - 1
-            leaves += [(first, min(first + LEAF, last)) for first in range(begin, last, LEAF)]
-            begin = last + 1
+        leaves = tractions.leaves
         count = 2 * len(leaves) - 1
         blocks = np.full((count, 4), -1)
         blocks[: len(leaves), :2] = leaves
@@ -130,10 +160,19 @@ class Tree:
 
 
 @cache
-def _gauss() -> tuple[np.ndarray, np.ndarray]:
-    """Gauss points and weights on (0, 1)."""
-    points, weights = np.polynomial.legendre.leggauss(GAUSS)
+def _gauss(count: int = GAUSS) -> tuple[np.ndarray, np.ndarray]:
+    """So many Gauss points and weights on (0, 1)."""
+    points, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 * (points + 1.0), 0.5 * weights
+
+
+@cache
+def _rules() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The rules of Gauss on (0, 1), see :func:`fastpin.kernels.conjugate.grow`."""
+    points, weights = np.zeros((2, len(RULES), max(RULES)))
+    for rule, count in enumerate(RULES):
+        points[rule, :count], weights[rule, :count] = _gauss(count)
+    return np.array(list(RULES.values())), points, weights
 
 
 @cache

@@ -468,7 +468,9 @@ class State(ReadOnly):
             is_kept = "refined" in self.__dict__
             nodes = self.grid, self.status != OPEN, self.refined
             peak_of = partial(reading.hoop.hoop_peak, self.problem, self.load, self.resultants, *nodes, body)
-            hoop, before = partial(self.hoop_stress, body), partial(self.assembly_stress, body=body)
+            tractions, *seat = (each.refined.tractions for each in self._interfaces)
+            hoop = reading.stress.edge_hoop(self.problem, tractions, self.load, body, *seat)
+            before = partial(self.assembly_stress, body=body)
             self._hoop_peaks[body] = reading.hoop.peak_in_parts(peak_of, hoop, before, self._joint[0])
             if not is_kept:  # the refined tractions of many states would fill the memory
                 del self.__dict__["refined"]

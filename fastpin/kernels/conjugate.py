@@ -1,0 +1,170 @@
+"""The conjugate of a piecewise linear shear traction on the edge of the hole, exact and fast.
+
+On the edge the tractions are two of the three stresses. The hoop stress needs one integral more,
+
+    H(theta) = (1/4 pi) int T(xi) cot((theta - xi)/2) dxi = Im C[T],
+
+a principal value. Near pieces have a closed form: one Clausen function a node. Far pieces are summed by blocks. With the
+angle c of the middle of a block, b = cot((theta - c)/2) and u = tan((xi - c)/2), the cotangent is
+
+    (b + u)/(1 - b u) = b + (1 + b^2) (u + b u^2 + b^2 u^3 + ...).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fastpin.runtime.jit import compiled, inner
+
+TERMS = 28
+"""Moments of a block, of the powers 0 to 27 of u."""
+
+FAR = 0.3
+"""Largest product of b and the largest u of a block at which its moments are used. Its power 28 is 2e-15."""
+
+WIDEST = 1.2
+"""Largest half width of a block with moments, rad."""
+
+DEEPEST = 64
+"""Levels of the tree, at most."""
+
+SAME = 4e-15
+"""Distance of two angles that is rounding, rad."""
+
+_ZETA = [math.pi**2 / 6.0, math.pi**4 / 90.0, math.pi**6 / 945.0, math.pi**8 / 9450.0]
+_ZETA += [sum(float(n) ** (-2 * k) for n in range(40, 0, -1)) for k in range(5, 25)]
+_CLAUSEN = np.array([zeta / (k * (2 * k + 1) * (2.0 * math.pi) ** (2 * k)) for k, zeta in enumerate(_ZETA, start=1)])
+
+
+@inner
+def _clausen(x):
+    """Clausen's integral, the imaginary part of Li2(exp(i x)), for |x| <= pi."""
+    size, square = abs(x), x * x
+    if size == 0.0:
+        return 0.0
+    total = 0.0
+    for k in range(4 if size < 0.3 else (10 if size < 1.5 else 23), -1, -1):
+        total = total * square + _CLAUSEN[k]
+    return x * (1.0 - math.log(size) + square * total)
+
+
+@inner
+def _reduced(angle):
+    """An angle moved by whole turns into [-pi, pi]."""
+    return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
+
+
+@compiled
+def grow(nodes, leaves, longest, points, weights, tree, centres, reaches, moments):
+    """Build a tree of blocks from its leaves: pairs of neighbours become blocks, up to one root.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (k, 3)
+        Angle, N and T of the nodes, increasing from patch to patch. N and T are 0 between patches.
+    leaves : int
+        Number l of leaves, the first blocks of the tree.
+    longest : ndarray, shape (r,)
+        Longest piece, in parts of the half width of its block, for which each rule of Gauss is exact; increasing.
+    points, weights : ndarray, shape (r, q)
+        The rules on (0, 1). The weights behind the last point of a rule are 0.
+    tree : ndarray of int, shape (2l-1, 4)
+        First and last node of each leaf, and -1 elsewhere. The other blocks and all children are set.
+    centres, reaches : ndarray, shape (2l-1,)
+        Are set: the angle c of each block, and its largest u; infinite without moments.
+    moments : ndarray, shape (2l-1, TERMS)
+        Zeros. The integrals of T u^m are added.
+    """
+    level, size, count = np.arange(leaves), leaves, leaves
+    while size > 1:
+        for k in range(0, size - 1, 2):
+            tree[count, 0], tree[count, 1] = tree[level[k], 0], tree[level[k + 1], 1]
+            tree[count, 2], tree[count, 3] = level[k], level[k + 1]
+            level[k // 2] = count
+            count += 1
+        if size % 2:
+            level[size // 2] = level[size - 1]
+        size = (size + 1) // 2
+    for b in range(count):
+        first, last = tree[b, 0], tree[b, 1]
+        centre, half = 0.5 * (nodes[first, 0] + nodes[last, 0]), 0.5 * (nodes[last, 0] - nodes[first, 0])
+        centres[b], reaches[b] = centre, math.tan(0.5 * half) if half <= WIDEST else np.inf
+        for j in range(first, last if half <= WIDEST else first):
+            step, before, after = nodes[j + 1, 0] - nodes[j, 0], nodes[j, 2], nodes[j + 1, 2]
+            if before == 0.0 and after == 0.0:
+                continue
+            rule = 0
+            while rule < longest.size - 1 and step > longest[rule] * half:
+                rule += 1
+            for q in range(points.shape[1]):
+                if weights[rule, q] == 0.0:
+                    break
+                part = points[rule, q]
+                u = math.tan(0.5 * (nodes[j, 0] + part * step - centre))
+                power = weights[rule, q] * step * (before + part * (after - before))
+                for m in range(TERMS):
+                    moments[b, m] += power
+                    power *= u
+
+
+@inner
+def _near(theta, nodes, first, last, joined, found):
+    """4 pi H of the pieces from node `first` to node `last`. `found` gets N and T if `theta` lies in one of them.
+
+    `joined` is the last node of a patch all round, which is its first node once more; otherwise -1.
+    """
+    total, slope = 0.0, 0.0
+    for j in range(first, last + 1):
+        x = _reduced(theta - nodes[0 if j == joined else j, 0])
+        jump = -slope
+        if j < last:
+            step = nodes[j + 1, 0] - nodes[j, 0]
+            slope = (nodes[j + 1, 2] - nodes[j, 2]) / step if step > 0.0 else 0.0
+            jump += slope
+            if -SAME < x < step + SAME:
+                part = min(max(x / step, 0.0), 1.0) if step > 0.0 else 0.0
+                found[0] = nodes[j, 1] + part * (nodes[j + 1, 1] - nodes[j, 1])
+                found[1] = nodes[j, 2] + part * (nodes[j + 1, 2] - nodes[j, 2])
+        total -= jump * _clausen(x)
+        if j in (first, last) and nodes[j, 2] != 0.0 and x != 0.0:
+            log = math.log(abs(2.0 * math.sin(0.5 * x)))
+            total += nodes[j, 2] * log if j == first else -nodes[j, 2] * log
+    return 2.0 * total
+
+
+@compiled
+def edge(theta, nodes, joined, tree, centres, reaches, moments, out):
+    """N, T and H at points on the edge.
+
+    Parameters
+    ----------
+    theta : ndarray, shape (m,)
+    nodes, tree, centres, reaches, moments : ndarray
+        Those of :func:`grow`. The last block is the root.
+    joined : int
+        Last node of a patch all round; -1 without one.
+    out : ndarray, shape (m, 3)
+    """
+    stack = np.empty(2 * DEEPEST, dtype=np.int64)
+    for i in range(theta.size):
+        total, top = 0.0, 0
+        out[i] = 0.0
+        if tree.shape[0]:
+            stack[0], top = tree.shape[0] - 1, 1
+        while top:
+            top -= 1
+            b = stack[top]
+            tangent = math.tan(0.5 * (theta[i] - centres[b]))
+            if reaches[b] <= FAR * abs(tangent):
+                inverse, series = 1.0 / tangent, 0.0
+                for m in range(TERMS - 1, 0, -1):
+                    series = series * inverse + moments[b, m]
+                total += inverse * moments[b, 0] + (1.0 + inverse * inverse) * series
+            elif tree[b, 2] < 0:
+                total += _near(theta[i], nodes, tree[b, 0], tree[b, 1], joined, out[i])
+            else:
+                stack[top], stack[top + 1] = tree[b, 3], tree[b, 2]
+                top += 2
+        out[i, 2] = total / (4.0 * math.pi)
