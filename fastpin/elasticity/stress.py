@@ -100,12 +100,15 @@ def hole_stress(
     (pressure, shear), (sxx, syy, sxy) = tractions.low_coefficients, remote
     force = 2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1])  # int (N - iT) exp(i xi) dxi
     share = kolosov / (2.0 * math.pi * (1.0 + kolosov))
-    cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
-    along, across = (sxx - syy) * cos + 2.0 * sxy * sin, (sxx - syy) * sin - 2.0 * sxy * cos
+    along = across = np.zeros(1)
+    if sxx != syy or sxy != 0.0:
+        cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
+        along, across = (sxx - syy) * cos + 2.0 * sxy * sin, (sxx - syy) * sin - 2.0 * sxy * cos
     if not depth.any():  # on the edge the tractions are the stresses, and Re C[N] follows from N
         on_edge, srt, conjugate = tractions.on_edge(theta)
-        hoop = 2.0 * pressure[0].real - on_edge + 4.0 * conjugate + 4.0 * share * np.real(force * np.exp(-1j * theta))
-        return np.array([-on_edge, hoop + (sxx + syy) - 2.0 * along, srt])
+        pull = 4.0 * share * (force.real * np.cos(theta) + force.imag * np.sin(theta))
+        hoop = 2.0 * pressure[0].real - on_edge + 4.0 * conjugate + pull + ((sxx + syy) - 2.0 * along)
+        return np.array([-on_edge, hoop, srt])
     away = np.log1p(depth)
     whole, of_shear, slope = cauchy_integrals(tractions, theta, away, outside=True).T
     zeta, square = np.exp(away + 1j * theta), (1.0 + depth) ** -2.0  # square: (R/r)^2

@@ -224,7 +224,10 @@ def _interpolated(grid: Grid, values: np.ndarray, angle: float) -> float:
     if not np.all(values[nearest] > 0.0):
         nearest = np.array([np.flatnonzero(offsets < 0.0)[np.argmax(offsets[offsets < 0.0])],
                             np.flatnonzero(offsets >= 0.0)[np.argmin(offsets[offsets >= 0.0])]])  # fmt: skip
-    return float(np.polyval(np.polyfit(offsets[nearest], values[nearest], nearest.size - 1), 0.0))
+    x, total = offsets[nearest].tolist(), 0.0
+    for k, value in enumerate(values[nearest].tolist()):  # Lagrange's polynomials at 0
+        total += value * math.prod(x[j] / (x[j] - x[k]) for j in range(len(x)) if j != k)
+    return total
 
 
 def peak_slips(slip: np.ndarray, status: np.ndarray, theta: np.ndarray) -> np.ndarray:
