@@ -17,8 +17,8 @@ LEAF = 8
 GAUSS = 24
 """Gauss points a piece for the moments. Their integrands go up to the power 28, also where a leaf is one long piece."""
 
-GAUSS_LOW = 12
-"""Gauss points a piece for the first two Fourier coefficients: exact but for rounding, for a piece of any length."""
+SHORT, GAUSS_SHORT = 0.15, 4
+"""Pieces up to so many rad need so few Gauss points for the first two Fourier coefficients: the error is rounding."""
 
 RULES = {3: 0.024, 4: 0.11, 5: 0.27, 6: 0.49, 8: 1.0, 12: 2.0}
 """Gauss points of a piece for the moments on the edge, and its length in parts of the half width of its block up to
@@ -58,11 +58,11 @@ class Tractions:
 
     def coefficients(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Fourier coefficients of N and T, (1/2 pi) int g exp(-i k xi) dxi, for k = 0 to `count`."""
-        points, weights = _gauss(GAUSS if count > 1 else GAUSS_LOW)
         result = np.zeros((2, count + 1), dtype=complex)
         for patch in self.patches:
             theta, values = patch[:, 0, None], patch[:, 1:, None]
             steps = np.diff(theta, axis=0)
+            points, weights = _gauss(GAUSS if count > 1 or steps.max() > SHORT else GAUSS_SHORT)
             turn = np.exp(-1j * (theta[:-1] + steps * points))
             power = (values[:-1] + np.diff(values, axis=0) * points) * (steps * weights)[:, None] / (2.0 * math.pi)
             for k in range(count + 1):
