@@ -11,8 +11,8 @@ import numpy as np
 from fastpin.kernels import cauchy, conjugate
 from fastpin.runtime.threads import in_chunks
 
-LEAF = 8
-"""Linear pieces in a leaf of the tree of blocks."""
+LEAF, EDGE_LEAF = 8, 4
+"""Linear pieces in a leaf of the tree of blocks, and of the tree for points on the edge."""
 
 GAUSS = 24
 """Gauss points a piece for the moments. Their integrands go up to the power 28, also where a leaf is one long piece."""
@@ -80,24 +80,23 @@ class Tractions:
         """The blocks of the linear pieces, for fast sums."""
         return Tree.of(self)
 
-    @property
-    def leaves(self) -> np.ndarray:
-        """First and last node of the leaves of :data:`LEAF` pieces, int, shape (l, 2). Nodes count through all patches."""
+    def leaves(self, size: int) -> np.ndarray:
+        """First and last node of leaves of up to `size` pieces, int, shape (l, 2). Nodes count through all patches."""
         leaves, begin = [], 0
         for patch in self.patches:
             last = begin + len(patch) - 1
-            leaves += [(first, min(first + LEAF, last)) for first in range(begin, last, LEAF)]
+            leaves += [(first, min(first + size, last)) for first in range(begin, last, size)]
             begin = last + 1
         return np.array(leaves).reshape(-1, 2)
 
     @cached_property
     def _edge_tree(self) -> tuple[np.ndarray | int, ...]:
         """The blocks of the linear pieces for points on the edge, as :func:`fastpin.kernels.conjugate.edge` takes them."""
-        nodes, leaves = np.concatenate([np.zeros((0, 3)), *self.patches]), self.leaves
+        nodes, leaves = np.concatenate([np.zeros((0, 3)), *self.patches]), self.leaves(EDGE_LEAF)
         count = max(2 * len(leaves) - 1, 0)
         tree, moments = np.full((count, 4), -1), np.zeros((count, conjugate.TERMS))
         tree[: len(leaves), :2] = leaves
-        centres, reaches = np.empty((2, count))
+        centres, reaches = np.empty((count, 3)), np.empty(count)
         conjugate.grow(nodes, len(leaves), *_rules(), tree, centres, reaches, moments)
         return nodes, len(nodes) - 1 if self.all_round else -1, tree, centres, reaches, moments
 
@@ -147,7 +146,7 @@ class Tree:
             )  # fmt: skip
         nodes = np.concatenate(patches)
         turn = len(nodes) - 1 if tractions.all_round else 0
-        leaves = tractions.leaves
+        leaves = tractions.leaves(LEAF)
         count = 2 * len(leaves) - 1
         blocks = np.full((count, 4), -1)
         blocks[: len(leaves), :2] = leaves

@@ -30,6 +30,10 @@ FARTHER = 0.08
 WIDEST = 1.2
 """Largest half width of a block with moments, rad."""
 
+NEAR = 0.02
+"""Half distance from the middle of a block, rad, below which it is taken by itself. It would lose two digits of a sum.
+"""
+
 DEEPEST = 64
 """Levels of the tree, at most."""
 
@@ -75,8 +79,10 @@ def grow(nodes, leaves, longest, points, weights, tree, centres, reaches, moment
         The rules on (0, 1). The weights behind the last point of a rule are 0.
     tree : ndarray of int, shape (2l-1, 4)
         First and last node of each leaf, and -1 elsewhere. The other blocks and all children are set.
-    centres, reaches : ndarray, shape (2l-1,)
-        Are set: the angle c of each block, and its largest u; infinite without moments.
+    centres : ndarray, shape (2l-1, 3)
+        Is set: the angle c of each block, cos(c/2) and sin(c/2).
+    reaches : ndarray, shape (2l-1,)
+        Is set: the largest u of each block; infinite without moments.
     moments : ndarray, shape (2l-1, TERMS)
         Zeros. The integrals of T u^m are added.
     """
@@ -93,7 +99,8 @@ def grow(nodes, leaves, longest, points, weights, tree, centres, reaches, moment
     for b in range(count):
         first, last = tree[b, 0], tree[b, 1]
         centre, half = 0.5 * (nodes[first, 0] + nodes[last, 0]), 0.5 * (nodes[last, 0] - nodes[first, 0])
-        centres[b], reaches[b] = centre, math.tan(0.5 * half) if half <= WIDEST else np.inf
+        centres[b, 0], centres[b, 1], centres[b, 2] = centre, math.cos(0.5 * centre), math.sin(0.5 * centre)
+        reaches[b] = math.tan(0.5 * half) if half <= WIDEST else np.inf
         for j in range(first, last if half <= WIDEST else first):
             step, before, after = nodes[j + 1, 0] - nodes[j, 0], nodes[j, 2], nodes[j + 1, 2]
             if before == 0.0 and after == 0.0:
@@ -152,17 +159,19 @@ def edge(theta, nodes, joined, tree, centres, reaches, moments, out):
     """
     stack = np.empty(2 * DEEPEST, dtype=np.int64)
     for i in range(theta.size):
-        total, top = 0.0, 0
+        total, top, cos, sin = 0.0, 0, math.cos(0.5 * theta[i]), math.sin(0.5 * theta[i])
         out[i] = 0.0
         if tree.shape[0]:
             stack[0], top = tree.shape[0] - 1, 1
         while top:
             top -= 1
             b = stack[top]
-            tangent = math.tan(0.5 * (theta[i] - centres[b]))
-            if reaches[b] <= FAR * abs(tangent):
-                inverse = 1.0 / tangent
-                terms = TERMS if reaches[b] > FARTHER * abs(tangent) else TERMS // 2
+            across, along = sin * centres[b, 1] - cos * centres[b, 2], cos * centres[b, 1] + sin * centres[b, 2]
+            if abs(across) < NEAR:
+                across, along = math.sin(0.5 * (theta[i] - centres[b, 0])), math.cos(0.5 * (theta[i] - centres[b, 0]))
+            if reaches[b] * abs(along) <= FAR * abs(across):
+                inverse = along / across
+                terms = TERMS if reaches[b] * abs(inverse) > FARTHER else TERMS // 2
                 square, odd, even = inverse * inverse, moments[b, terms - 1], 0.0
                 for m in range(terms - 2, 0, -2):  # two sums side by side
                     odd, even = odd * square + moments[b, m - 1], even * square + moments[b, m]
