@@ -97,18 +97,11 @@ def hole_stress(
     tractions, remote, theta, depth
         See :func:`plate_stress`.
     """
-    (pressure, shear), (sxx, syy, sxy) = tractions.low_coefficients, remote
-    force = 2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1])  # int (N - iT) exp(i xi) dxi
+    (pressure, shear), (sxx, syy, sxy), force = tractions.low_coefficients, remote.tolist(), tractions.force
     share = kolosov / (2.0 * math.pi * (1.0 + kolosov))
-    along = across = np.zeros(1)
-    if sxx != syy or sxy != 0.0:
-        cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
-        along, across = (sxx - syy) * cos + 2.0 * sxy * sin, (sxx - syy) * sin - 2.0 * sxy * cos
-    if not depth.any():  # on the edge the tractions are the stresses, and Re C[N] follows from N
-        on_edge, srt, conjugate = tractions.on_edge(theta)
-        pull = 4.0 * share * (force.real * np.cos(theta) + force.imag * np.sin(theta))
-        hoop = 2.0 * pressure[0].real - on_edge + 4.0 * conjugate + pull + ((sxx + syy) - 2.0 * along)
-        return np.array([-on_edge, hoop, srt])
+    if not depth.any():  # the tractions are the stresses on the edge, and Re C[N] follows from N
+        mean, pull = 2.0 * float(pressure[0].real) + (sxx + syy), 4.0 * share * force
+        return tractions.on_edge(theta, mean, -1.0, 4.0, pull.real, pull.imag, -2.0 * (sxx - syy), -4.0 * sxy)
     away = np.log1p(depth)
     whole, of_shear, slope = cauchy_integrals(tractions, theta, away, outside=True).T
     zeta, square = np.exp(away + 1j * theta), (1.0 + depth) ** -2.0  # square: (R/r)^2
@@ -117,6 +110,8 @@ def hole_stress(
     radial = 2.0 * np.real(whole) - below * (slope - 2.0 * share * force / zeta)
     radial = radial + square * (2j * of_shear - np.conj(pressure[0] - 1j * shear[0]))
     srr, srt = np.real(radial), -np.imag(radial)
+    cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
+    along, across = (sxx - syy) * cos + 2.0 * sxy * sin, (sxx - syy) * sin - 2.0 * sxy * cos
     mean = mean + (sxx + syy) - 2.0 * square * along
     srr = srr + 0.5 * below * ((sxx + syy) + (1.0 - 3.0 * square) * along)
     srt = srt - 0.5 * below * (1.0 + 3.0 * square) * across
@@ -158,15 +153,15 @@ def disk_stress(
     tractions, theta, depth
         See :func:`pin_stress`.
     """
+    force = tractions.force
+    share = 1.0 / (math.pi * (1.0 + kolosov)) if pin_load == "centre" else 0.0
+    if not depth.any():  # as in the hole
+        pull = 2.0 * share * force
+        return tractions.on_edge(theta, 0.0, -1.0, -4.0, pull.real, pull.imag, 0.0, 0.0)
     radius = 1.0 - depth
     near = radius < 0.5
     pressure, shear = tractions.coefficients(SERIES) if near.any() else tractions.low_coefficients
     zeta = radius * np.exp(1j * theta)
-    force = 2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1])
-    share = 1.0 / (math.pi * (1.0 + kolosov)) if pin_load == "centre" else 0.0
-    if not depth.any():  # as in the hole
-        on_edge, srt, conjugate = tractions.on_edge(theta)
-        return np.array([-on_edge, 2.0 * share * np.real(force / zeta) - on_edge - 4.0 * conjugate, srt])
     if not tractions.has_moment:
         shear = np.r_[0.0, shear[1:]]
     whole, first = np.empty(theta.size, dtype=complex), np.empty(theta.size, dtype=complex)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -20,9 +21,9 @@ GAUSS = 24
 SHORT, GAUSS_SHORT = 0.15, 4
 """Pieces up to so many rad need so few Gauss points for the first two Fourier coefficients: the error is rounding."""
 
-RULES = {3: 0.024, 4: 0.11, 5: 0.27, 6: 0.49, 8: 1.0, 12: 2.0}
+RULES = {3: 0.016, 4: 0.08, 5: 0.19, 6: 0.35, 8: 0.7, 12: 1.4, 16: 2.0}
 """Gauss points of a piece for the moments on the edge, and its length in parts of the half width of its block up to
-which their error is rounding, by the remainder of Gauss's rule for the powers up to 27."""
+which their error is rounding."""
 
 ROUNDING = 1e-11
 """Moment of the shear that is rounding, in parts of the moment of its magnitude."""
@@ -80,19 +81,11 @@ class Tractions:
         """The blocks of the linear pieces, for fast sums."""
         return Tree.of(self)
 
-    def leaves(self, size: int) -> np.ndarray:
-        """First and last node of leaves of up to `size` pieces, int, shape (l, 2). Nodes count through all patches."""
-        leaves, begin = [], 0
-        for patch in self.patches:
-            last = begin + len(patch) - 1
-            leaves += [(first, min(first + size, last)) for first in range(begin, last, size)]
-            begin = last + 1
-        return np.array(leaves).reshape(-1, 2)
-
     @cached_property
     def _edge_tree(self) -> tuple[np.ndarray | int, ...]:
         """The blocks of the linear pieces for points on the edge, as :func:`fastpin.kernels.conjugate.edge` takes them."""
-        nodes, leaves = np.concatenate([np.zeros((0, 3)), *self.patches]), self.leaves(EDGE_LEAF)
+        patches = sorted(self.patches, key=lambda patch: float(patch[0, 0]))
+        nodes, leaves = np.concatenate([np.zeros((0, 3)), *patches]), _leaves(patches, EDGE_LEAF)
         count = max(2 * len(leaves) - 1, 0)
         tree, moments = np.full((count, 4), -1), np.zeros((count, conjugate.TERMS))
         tree[: len(leaves), :2] = leaves
@@ -100,11 +93,20 @@ class Tractions:
         conjugate.grow(nodes, len(leaves), *_rules(), tree, centres, reaches, moments)
         return nodes, len(nodes) - 1 if self.all_round else -1, tree, centres, reaches, moments
 
-    def on_edge(self, theta: np.ndarray) -> np.ndarray:
-        """N, T and the conjugate of T, see :mod:`fastpin.kernels.conjugate`, at angles (m,) on the edge; shape (3, m)."""
-        out = np.empty((theta.size, 3))
-        conjugate.edge(theta, *self._edge_tree, out)
-        return out.T
+    def on_edge(self, theta: np.ndarray, *field: float) -> np.ndarray:
+        """Stresses (srr, stt, srt) at angles (m,) on the edge, shape (3, m).
+
+        `field` has the parts of the hoop stress, see :func:`fastpin.kernels.conjugate.edge`.
+        """
+        out = np.empty((3, theta.size))
+        conjugate.edge(np.array(theta), np.array(field), *self._edge_tree, out)
+        return out
+
+    @cached_property
+    def force(self) -> complex:
+        """int (N - iT) exp(i xi) dxi."""
+        pressure, shear = self.low_coefficients
+        return complex(2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +148,7 @@ class Tree:
             )  # fmt: skip
         nodes = np.concatenate(patches)
         turn = len(nodes) - 1 if tractions.all_round else 0
-        leaves = tractions.leaves(LEAF)
+        leaves = _leaves(patches, LEAF)
         count = 2 * len(leaves) - 1
         blocks = np.full((count, 4), -1)
         blocks[: len(leaves), :2] = leaves
@@ -156,6 +158,16 @@ class Tree:
         if turn:
             nodes = np.concatenate([nodes[:-1], nodes + np.array([2.0 * math.pi, 0.0, 0.0])])
         return cls(nodes, turn, blocks, centres, radii, moments)
+
+
+def _leaves(patches: Sequence[np.ndarray], size: int) -> np.ndarray:
+    """First and last node of leaves of up to `size` pieces, int, shape (l, 2). Nodes count through all patches."""
+    leaves, begin = [], 0
+    for patch in patches:
+        last = begin + len(patch) - 1
+        leaves += [(first, min(first + size, last)) for first in range(begin, last, size)]
+        begin = last + 1
+    return np.array(leaves).reshape(-1, 2)
 
 
 @cache

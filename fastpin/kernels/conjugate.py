@@ -16,6 +16,7 @@ import math
 
 import numpy as np
 
+from fastpin.kernels.influence import AROUND_PI, AROUND_PI_TERMS, AROUND_ZERO, AROUND_ZERO_TERMS
 from fastpin.runtime.jit import compiled, inner
 
 TERMS = 28
@@ -40,21 +41,21 @@ DEEPEST = 64
 SAME = 4e-15
 """Distance of two angles that is rounding, rad."""
 
-_ZETA = [math.pi**2 / 6.0, math.pi**4 / 90.0, math.pi**6 / 945.0, math.pi**8 / 9450.0]
-_ZETA += [sum(float(n) ** (-2 * k) for n in range(40, 0, -1)) for k in range(5, 25)]
-_CLAUSEN = np.array([zeta / (k * (2 * k + 1) * (2.0 * math.pi) ** (2 * k)) for k, zeta in enumerate(_ZETA, start=1)])
-
 
 @inner
 def _clausen(x):
-    """Clausen's integral, the imaginary part of Li2(exp(i x)), for |x| <= pi."""
-    size, square = abs(x), x * x
+    """Clausen's function, see :func:`fastpin.kernels.influence.clausen`, for |x| <= pi. It takes few terms near 0."""
+    size, total = abs(x), 0.0
     if size == 0.0:
         return 0.0
-    total = 0.0
-    for k in range(4 if size < 0.3 else (10 if size < 1.5 else 23), -1, -1):
-        total = total * square + _CLAUSEN[k]
-    return x * (1.0 - math.log(size) + square * total)
+    if size < 2.0:
+        for k in range(5 if size < 0.3 else AROUND_ZERO_TERMS, 0, -1):
+            total = (total + AROUND_ZERO[k - 1]) * (size * size)
+        return x * (1.0 - math.log(size) + total)
+    y = math.pi - size
+    for k in range(AROUND_PI_TERMS, 0, -1):
+        total = (total + AROUND_PI[k - 1]) * (y * y)
+    return math.copysign(y * (math.log(2.0) - total), x)
 
 
 @inner
@@ -145,22 +146,24 @@ def _near(theta, nodes, first, last, joined, found):
 
 
 @compiled
-def edge(theta, nodes, joined, tree, centres, reaches, moments, out):
-    """N, T and H at points on the edge.
+def edge(theta, field, nodes, joined, tree, centres, reaches, moments, out):
+    """The stresses srr, stt and srt at points on the edge.
 
     Parameters
     ----------
     theta : ndarray, shape (m,)
+    field : ndarray, shape (7,)
+        The parts of 1, N, H, cos(theta), sin(theta), cos(2 theta) and sin(2 theta) in the hoop stress.
     nodes, tree, centres, reaches, moments : ndarray
         Those of :func:`grow`. The last block is the root.
     joined : int
         Last node of a patch all round; -1 without one.
-    out : ndarray, shape (m, 3)
+    out : ndarray, shape (3, m)
     """
-    stack = np.empty(2 * DEEPEST, dtype=np.int64)
+    stack, found = np.empty(2 * DEEPEST, dtype=np.int64), np.empty(2)
     for i in range(theta.size):
         total, top, cos, sin = 0.0, 0, math.cos(0.5 * theta[i]), math.sin(0.5 * theta[i])
-        out[i] = 0.0
+        found[:] = 0.0
         if tree.shape[0]:
             stack[0], top = tree.shape[0] - 1, 1
         while top:
@@ -169,7 +172,7 @@ def edge(theta, nodes, joined, tree, centres, reaches, moments, out):
             across, along = sin * centres[b, 1] - cos * centres[b, 2], cos * centres[b, 1] + sin * centres[b, 2]
             if abs(across) < NEAR:
                 across, along = math.sin(0.5 * (theta[i] - centres[b, 0])), math.cos(0.5 * (theta[i] - centres[b, 0]))
-            if reaches[b] * abs(along) <= FAR * abs(across):
+            if reaches[b] < np.inf and reaches[b] * abs(along) <= FAR * abs(across):
                 inverse = along / across
                 terms = TERMS if reaches[b] * abs(inverse) > FARTHER else TERMS // 2
                 square, odd, even = inverse * inverse, moments[b, terms - 1], 0.0
@@ -177,8 +180,12 @@ def edge(theta, nodes, joined, tree, centres, reaches, moments, out):
                     odd, even = odd * square + moments[b, m - 1], even * square + moments[b, m]
                 total += inverse * moments[b, 0] + (1.0 + square) * (odd + even * inverse)
             elif tree[b, 2] < 0:
-                total += _near(theta[i], nodes, tree[b, 0], tree[b, 1], joined, out[i])
+                total += _near(theta[i], nodes, tree[b, 0], tree[b, 1], joined, found)
             else:
                 stack[top], stack[top + 1] = tree[b, 3], tree[b, 2]
                 top += 2
-        out[i, 2] = total / (4.0 * math.pi)
+        first, second = cos * cos - sin * sin, 2.0 * cos * sin  # the cosine and the sine of theta
+        hoop = field[0] + field[1] * found[0] + field[2] * total / (4.0 * math.pi)
+        hoop += field[3] * first + field[4] * second
+        hoop += field[5] * (first * first - second * second) + field[6] * (2.0 * first * second)
+        out[0, i], out[1, i], out[2, i] = -found[0], hoop, found[1]

@@ -213,11 +213,6 @@ class End(NamedTuple):
     place: float | None = None
     parts: tuple[float, float] = (1.0, 0.0)
 
-    @property
-    def unknowns(self) -> int:
-        """Number of unknowns of the fit."""
-        return self.terms - (self.place is not None)
-
 
 class Try(NamedTuple):
     """A fit to try.
@@ -239,7 +234,8 @@ class Try(NamedTuple):
     @property
     def spare(self) -> int:
         """Number of nodes beyond the number of unknowns."""
-        return self.nodes - self.degree - 1 - sum(end.unknowns for end in self.ends)
+        unknown = sum([end.terms if end.place is None else end.terms - 1 for end in self.ends])
+        return self.nodes - self.degree - 1 - unknown
 
 
 class Tries:
