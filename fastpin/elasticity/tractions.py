@@ -12,8 +12,11 @@ import numpy as np
 from fastpin.kernels import cauchy, conjugate
 from fastpin.runtime.threads import in_chunks
 
-LEAF, EDGE_LEAF = 8, 4
-"""Linear pieces in a leaf of the tree of blocks, and of the tree for points on the edge."""
+LEAF, EDGE_LEAF = 8, 7
+"""Linear pieces in a leaf of the tree of blocks; and least number in a block for points on the edge.
+
+A point visits all blocks for the edge. With the root of the number of pieces, it visits about as many pieces.
+"""
 
 GAUSS = 24
 """Gauss points a piece for the moments. Their integrands go up to the power 28, also where a leaf is one long piece."""
@@ -82,16 +85,13 @@ class Tractions:
         return Tree.of(self)
 
     @cached_property
-    def _edge_tree(self) -> tuple[np.ndarray | int, ...]:
+    def _edge_blocks(self) -> tuple[np.ndarray | int, ...]:
         """The blocks of the linear pieces for points on the edge, as :func:`fastpin.kernels.conjugate.edge` takes them."""
-        patches = sorted(self.patches, key=lambda patch: float(patch[0, 0]))
-        nodes, leaves = np.concatenate([np.zeros((0, 3)), *patches]), _leaves(patches, EDGE_LEAF)
-        count = max(2 * len(leaves) - 1, 0)
-        tree, moments = np.full((count, 4), -1), np.zeros((count, conjugate.TERMS))
-        tree[: len(leaves), :2] = leaves
-        centres, reaches = np.empty((count, 3)), np.empty(count)
-        conjugate.grow(nodes, len(leaves), *_rules(), tree, centres, reaches, moments)
-        return nodes, len(nodes) - 1 if self.all_round else -1, tree, centres, reaches, moments
+        nodes = np.concatenate([np.zeros((0, 3)), *self.patches])
+        blocks = _leaves(self.patches, max(EDGE_LEAF, math.isqrt(len(nodes)) // 3))
+        centres, moments = np.empty((len(blocks), 4)), np.zeros((len(blocks), conjugate.TERMS))
+        conjugate.gather(nodes, blocks, *_rules(), centres, moments)
+        return nodes, len(nodes) - 1 if self.all_round else -1, blocks, centres, moments
 
     def on_edge(self, theta: np.ndarray, *field: float) -> np.ndarray:
         """Stresses (srr, stt, srt) at angles (m,) on the edge, shape (3, m).
@@ -99,7 +99,7 @@ class Tractions:
         `field` has the parts of the hoop stress, see :func:`fastpin.kernels.conjugate.edge`.
         """
         out = np.empty((3, theta.size))
-        conjugate.edge(np.array(theta), np.array(field), *self._edge_tree, out)
+        conjugate.edge(np.array(theta), np.array(field), *self._edge_blocks, out)
         return out
 
     @cached_property
@@ -167,7 +167,7 @@ def _leaves(patches: Sequence[np.ndarray], size: int) -> np.ndarray:
         last = begin + len(patch) - 1
         leaves += [(first, min(first + size, last)) for first in range(begin, last, size)]
         begin = last + 1
-    return np.array(leaves).reshape(-1, 2)
+    return np.array(leaves, dtype=np.int64).reshape(-1, 2)
 
 
 @cache
@@ -179,7 +179,7 @@ def _gauss(count: int = GAUSS) -> tuple[np.ndarray, np.ndarray]:
 
 @cache
 def _rules() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The rules of Gauss on (0, 1), see :func:`fastpin.kernels.conjugate.grow`."""
+    """The rules of Gauss on (0, 1), see :func:`fastpin.kernels.conjugate.gather`."""
     points, weights = np.zeros((2, len(RULES), max(RULES)))
     for rule, count in enumerate(RULES):
         points[rule, :count], weights[rule, :count] = _gauss(count)

@@ -35,9 +35,6 @@ NEAR = 0.02
 """Half distance from the middle of a block, rad, below which it is taken by itself. It would lose two digits of a sum.
 """
 
-DEEPEST = 64
-"""Levels of the tree, at most."""
-
 SAME = 4e-15
 """Distance of two angles that is rounding, rad."""
 
@@ -65,56 +62,38 @@ def _reduced(angle):
 
 
 @compiled
-def grow(nodes, leaves, longest, points, weights, tree, centres, reaches, moments):
-    """Build a tree of blocks from its leaves: pairs of neighbours become blocks, up to one root.
+def gather(nodes, blocks, longest, points, weights, centres, moments):
+    """Fill the moments of blocks of linear pieces.
 
     Parameters
     ----------
     nodes : ndarray, shape (k, 3)
-        Angle, N and T of the nodes, increasing from patch to patch. N and T are 0 between patches.
-    leaves : int
-        Number l of leaves, the first blocks of the tree.
+        Angle, N and T of the nodes, patch after patch.
+    blocks : ndarray of int, shape (b, 2)
+        First and last node of each block.
     longest : ndarray, shape (r,)
         Longest piece, in parts of the half width of its block, for which each rule of Gauss is exact; increasing.
     points, weights : ndarray, shape (r, q)
         The rules on (0, 1). The weights behind the last point of a rule are 0.
-    tree : ndarray of int, shape (2l-1, 4)
-        First and last node of each leaf, and -1 elsewhere. The other blocks and all children are set.
-    centres : ndarray, shape (2l-1, 3)
-        Is set: the angle c of each block, cos(c/2) and sin(c/2).
-    reaches : ndarray, shape (2l-1,)
-        Is set: the largest u of each block; infinite without moments.
-    moments : ndarray, shape (2l-1, TERMS)
+    centres : ndarray, shape (b, 4)
+        Output: the angle c of each block, cos(c/2), sin(c/2), and its largest u; infinite without moments.
+    moments : ndarray, shape (b, TERMS)
         Zeros. The integrals of T u^m are added.
     """
-    level, size, count = np.arange(leaves), leaves, leaves
-    while size > 1:
-        for k in range(0, size - 1, 2):
-            tree[count, 0], tree[count, 1] = tree[level[k], 0], tree[level[k + 1], 1]
-            tree[count, 2], tree[count, 3] = level[k], level[k + 1]
-            level[k // 2] = count
-            count += 1
-        if size % 2:
-            level[size // 2] = level[size - 1]
-        size = (size + 1) // 2
-    for b in range(count):
-        first, last = tree[b, 0], tree[b, 1]
+    for b in range(blocks.shape[0]):
+        first, last = blocks[b, 0], blocks[b, 1]
         centre, half = 0.5 * (nodes[first, 0] + nodes[last, 0]), 0.5 * (nodes[last, 0] - nodes[first, 0])
         centres[b, 0], centres[b, 1], centres[b, 2] = centre, math.cos(0.5 * centre), math.sin(0.5 * centre)
-        reaches[b] = math.tan(0.5 * half) if half <= WIDEST else np.inf
+        centres[b, 3] = math.tan(0.5 * half) if half <= WIDEST else np.inf
         for j in range(first, last if half <= WIDEST else first):
-            step, before, after = nodes[j + 1, 0] - nodes[j, 0], nodes[j, 2], nodes[j + 1, 2]
-            if before == 0.0 and after == 0.0:
-                continue
-            rule = 0
+            step, before, after, rule = nodes[j + 1, 0] - nodes[j, 0], nodes[j, 2], nodes[j + 1, 2], 0
             while rule < longest.size - 1 and step > longest[rule] * half:
                 rule += 1
             for q in range(points.shape[1]):
                 if weights[rule, q] == 0.0:
                     break
-                part = points[rule, q]
-                u = math.tan(0.5 * (nodes[j, 0] + part * step - centre))
-                power = weights[rule, q] * step * (before + part * (after - before))
+                u = math.tan(0.5 * (nodes[j, 0] + points[rule, q] * step - centre))
+                power = weights[rule, q] * step * (before + points[rule, q] * (after - before))
                 for m in range(TERMS):
                     moments[b, m] += power
                     power *= u
@@ -146,7 +125,7 @@ def _near(theta, nodes, first, last, joined, found):
 
 
 @compiled
-def edge(theta, field, nodes, joined, tree, centres, reaches, moments, out):
+def edge(theta, field, nodes, joined, blocks, centres, moments, out):
     """The stresses srr, stt and srt at points on the edge.
 
     Parameters
@@ -154,36 +133,30 @@ def edge(theta, field, nodes, joined, tree, centres, reaches, moments, out):
     theta : ndarray, shape (m,)
     field : ndarray, shape (7,)
         The parts of 1, N, H, cos(theta), sin(theta), cos(2 theta) and sin(2 theta) in the hoop stress.
-    nodes, tree, centres, reaches, moments : ndarray
-        Those of :func:`grow`. The last block is the root.
+    nodes, blocks, centres, moments : ndarray
+        Those of :func:`gather`.
     joined : int
         Last node of a patch all round; -1 without one.
     out : ndarray, shape (3, m)
     """
-    stack, found = np.empty(2 * DEEPEST, dtype=np.int64), np.empty(2)
+    found = np.empty(2)
     for i in range(theta.size):
-        total, top, cos, sin = 0.0, 0, math.cos(0.5 * theta[i]), math.sin(0.5 * theta[i])
+        total, cos, sin = 0.0, math.cos(0.5 * theta[i]), math.sin(0.5 * theta[i])
         found[:] = 0.0
-        if tree.shape[0]:
-            stack[0], top = tree.shape[0] - 1, 1
-        while top:
-            top -= 1
-            b = stack[top]
+        for b in range(blocks.shape[0]):
+            reach = centres[b, 3]
             across, along = sin * centres[b, 1] - cos * centres[b, 2], cos * centres[b, 1] + sin * centres[b, 2]
             if abs(across) < NEAR:
                 across, along = math.sin(0.5 * (theta[i] - centres[b, 0])), math.cos(0.5 * (theta[i] - centres[b, 0]))
-            if reaches[b] < np.inf and reaches[b] * abs(along) <= FAR * abs(across):
-                inverse = along / across
-                terms = TERMS if reaches[b] * abs(inverse) > FARTHER else TERMS // 2
-                square, odd, even = inverse * inverse, moments[b, terms - 1], 0.0
-                for m in range(terms - 2, 0, -2):  # two sums side by side
-                    odd, even = odd * square + moments[b, m - 1], even * square + moments[b, m]
-                total += inverse * moments[b, 0] + (1.0 + square) * (odd + even * inverse)
-            elif tree[b, 2] < 0:
-                total += _near(theta[i], nodes, tree[b, 0], tree[b, 1], joined, found)
-            else:
-                stack[top], stack[top + 1] = tree[b, 3], tree[b, 2]
-                top += 2
+            if reach == np.inf or reach * abs(along) > FAR * abs(across):
+                total += _near(theta[i], nodes, blocks[b, 0], blocks[b, 1], joined, found)
+                continue
+            inverse = along / across
+            terms = TERMS if reach * abs(inverse) > FARTHER else TERMS // 2
+            square, odd, even = inverse * inverse, moments[b, terms - 1], 0.0
+            for m in range(terms - 2, 0, -2):  # two sums side by side
+                odd, even = odd * square + moments[b, m - 1], even * square + moments[b, m]
+            total += inverse * moments[b, 0] + (1.0 + square) * (odd + even * inverse)
         first, second = cos * cos - sin * sin, 2.0 * cos * sin  # the cosine and the sine of theta
         hoop = field[0] + field[1] * found[0] + field[2] * total / (4.0 * math.pi)
         hoop += field[3] * first + field[4] * second

@@ -27,8 +27,8 @@ def kernels() -> list[tuple[Any, ...]]:
     row, rows, block = (np.zeros((1,) * k, dtype=np.complex128) for k in (1, 2, 3))
     return [
         (end_places, line, places, table, cube, table),
-        (conjugate.grow, table, 0, line, table, table, places, table, line, table),
-        (conjugate.edge, line, line, table, 0, places, table, line, table, table),
+        (conjugate.gather, table, places, line, table, table, table, table),
+        (conjugate.edge, line, line, table, 0, places, table, table, table),
         (value_errors, line, places, table, cube, line, line),
         (cauchy.cauchy, line, line, True, table, 0, places, row, line, block, rows),
         (cauchy.grow, table, 0, line, line, table, places, row, line, block),
