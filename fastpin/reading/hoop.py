@@ -83,7 +83,8 @@ def hoop_peak(
 
 
 def peak_in_parts(
-    peak_of: Callable[[Hoop], HoopPeak], hoop: Hoop, assembly: Callable[[Points], Stress], joint: Problem
+    peak_of: Callable[[Hoop], HoopPeak], hoop: Hoop, assembly: Callable[[Points, Body], Stress], body: Body,
+    joint: Problem,
 ) -> HoopPeak:
     """The largest hoop stress, with the part of the assembly at its place and the largest stress of the loads.
 
@@ -94,7 +95,8 @@ def peak_in_parts(
     hoop : callable
         The hoop stress of the state.
     assembly : callable
-        The stress before any load at points.
+        The stress before any load at points of a body.
+    body : {"plate", "pin", "seat"}
     joint : Problem
     """
     peak = peak_of(hoop)
@@ -102,7 +104,7 @@ def peak_in_parts(
         return peak
 
     def before(theta: np.ndarray) -> np.ndarray:
-        return assembly(Points.at_depth(0.0, theta)).hoop
+        return assembly(Points.at_depth(0.0, theta), body).hoop
 
     here = float(before(np.array([0.0 if math.isnan(peak.angle) else peak.angle]))[0])
     if joint.is_round and joint.pair.plate.is_isotropic:  # it is the same all round

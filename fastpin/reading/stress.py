@@ -249,7 +249,7 @@ def stress_at(
 
 
 def edge_hoop(
-    problem: Problem, tractions: Tractions, load: Mapping[str, float], body: Body, seat: Tractions | None = None
+    problem: Problem, load: Mapping[str, float], body: Body, tractions: Tractions, seat: Tractions | None = None
 ) -> Callable[[np.ndarray], np.ndarray]:
     """The hoop stress, Pa, on the edge of a body that :func:`check_body` admits, as a function of angles (m,), rad.
 
