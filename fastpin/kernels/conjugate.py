@@ -4,8 +4,8 @@ On the edge the tractions are two of the three stresses. The hoop stress needs o
 
     H(theta) = (1/4 pi) int T(xi) cot((theta - xi)/2) dxi = Im C[T],
 
-a principal value. Near pieces have a closed form: one Clausen function a node. Far pieces are summed by blocks. With the
-angle c of the middle of a block, b = cot((theta - c)/2) and u = tan((xi - c)/2), the cotangent is
+a principal value. Near pieces have a closed form: one Clausen function a node. Far pieces are summed by blocks. With
+the angle c of the middle of a block, b = cot((theta - c)/2) and u = tan((xi - c)/2), the cotangent is
 
     (b + u)/(1 - b u) = b + (1 + b^2) (u + b u^2 + b^2 u^3 + ...).
 """

@@ -83,7 +83,10 @@ def hoop_peak(
 
 
 def peak_in_parts(
-    peak_of: Callable[[Hoop], HoopPeak], hoop: Hoop, assembly: Callable[[Points, Body], Stress], body: Body,
+    peak_of: Callable[[Hoop], HoopPeak],
+    hoop: Hoop,
+    assembly: Callable[[Points, Body], Stress],
+    body: Body,
     joint: Problem,
 ) -> HoopPeak:
     """The largest hoop stress, with the part of the assembly at its place and the largest stress of the loads.
