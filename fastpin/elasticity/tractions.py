@@ -86,7 +86,7 @@ class Tractions:
 
     @cached_property
     def _edge_blocks(self) -> tuple[np.ndarray | int, ...]:
-        """The blocks of the linear pieces for points on the edge, as :func:`fastpin.kernels.conjugate.edge` takes them."""
+        """The blocks of the linear pieces for points on the edge, for :func:`fastpin.kernels.conjugate.edge`."""
         nodes = np.concatenate([np.zeros((0, 3)), *self.patches])
         blocks = _leaves(self.patches, max(EDGE_LEAF, math.isqrt(len(nodes)) // 3))
         centres, moments = np.empty((len(blocks), 4)), np.zeros((len(blocks), conjugate.TERMS))
