@@ -4,9 +4,9 @@
     python bench/readings.py --runs 100 --nodes 201
 
 So no matrix, table or fit of an earlier run is found again. Key figures are those that a sweep stores. "Readings" are
-the key figures and the largest hoop stress of each state; their bar is 1, in parts of the run. Times are processor times,
-medians of the runs. They are also given over LAPACK's dgetrf of 202 unknowns, and over a fixed loop of plain Python, in
-the same process: other programs slow these down alike.
+the key figures and the largest hoop stress of each state; their bar is 1, in parts of the run. Times are processor
+times, medians of the runs. They are also given over LAPACK's dgetrf of 202 unknowns, and over a fixed loop of plain
+Python, in the same process: other programs slow these down alike.
 """
 
 from __future__ import annotations
