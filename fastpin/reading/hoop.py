@@ -61,7 +61,8 @@ def hoop_peak(
     around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
     nodes = grid.theta[closed]
     angles = np.r_[around, nodes, nodes + 0.5 * grid.weights[closed], refined.resolved, refined.unresolved]
-    angles = np.unique(np.remainder(angles, 2.0 * math.pi))
+    # Whole turns, and no remainder: an edge has a power law beside it, and the rounding of its angle would break ties.
+    angles = np.unique(angles - 2.0 * math.pi * np.floor((angles + 1.5 * math.pi) / (2.0 * math.pi)))
     values = hoop(angles)
     before, after = np.roll(values, 1), np.roll(values, -1)
     tops = np.flatnonzero((values >= before) & (values >= after))
