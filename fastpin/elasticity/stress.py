@@ -97,17 +97,19 @@ def hole_stress(
     tractions, remote, theta, depth
         See :func:`plate_stress`.
     """
-    (pressure, shear), away = tractions.low_coefficients, np.log1p(depth)
+    (pressure, shear), (sxx, syy, sxy), force = tractions.low_coefficients, remote.tolist(), tractions.force
+    share = kolosov / (2.0 * math.pi * (1.0 + kolosov))
+    if not depth.any():  # the tractions are the stresses on the edge, and Re C[N] follows from N
+        mean, pull = 2.0 * float(pressure[0].real) + (sxx + syy), 4.0 * share * force
+        return tractions.on_edge(theta, mean, -1.0, 4.0, pull.real, pull.imag, -2.0 * (sxx - syy), -4.0 * sxy)
+    away = np.log1p(depth)
     whole, of_shear, slope = cauchy_integrals(tractions, theta, away, outside=True).T
     zeta, square = np.exp(away + 1j * theta), (1.0 + depth) ** -2.0  # square: (R/r)^2
     below = depth * (2.0 + depth) * square  # 1 - (R/r)^2
-    force = 2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1])  # int (N - iT) exp(i xi) dxi
-    share = kolosov / (2.0 * math.pi * (1.0 + kolosov))
     mean = 4.0 * np.real(whole + share * force / zeta)
     radial = 2.0 * np.real(whole) - below * (slope - 2.0 * share * force / zeta)
     radial = radial + square * (2j * of_shear - np.conj(pressure[0] - 1j * shear[0]))
     srr, srt = np.real(radial), -np.imag(radial)
-    sxx, syy, sxy = remote
     cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
     along, across = (sxx - syy) * cos + 2.0 * sxy * sin, (sxx - syy) * sin - 2.0 * sxy * cos
     mean = mean + (sxx + syy) - 2.0 * square * along
@@ -151,13 +153,17 @@ def disk_stress(
     tractions, theta, depth
         See :func:`pin_stress`.
     """
+    force = tractions.force
+    share = 1.0 / (math.pi * (1.0 + kolosov)) if pin_load == "centre" else 0.0
+    if not depth.any():  # as in the hole
+        pull = 2.0 * share * force
+        return tractions.on_edge(theta, 0.0, -1.0, -4.0, pull.real, pull.imag, 0.0, 0.0)
     radius = 1.0 - depth
     near = radius < 0.5
     pressure, shear = tractions.coefficients(SERIES) if near.any() else tractions.low_coefficients
+    zeta = radius * np.exp(1j * theta)
     if not tractions.has_moment:
         shear = np.r_[0.0, shear[1:]]
-    zeta = radius * np.exp(1j * theta)
-    force = 2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1])
     whole, first = np.empty(theta.size, dtype=complex), np.empty(theta.size, dtype=complex)
     if near.any():
         whole[near], first[near] = _near_centre(pressure, shear, zeta[near])
@@ -169,7 +175,6 @@ def disk_stress(
     mean = -4.0 * np.real(whole) + 2.0 * pressure[0].real
     radial = -2.0 * np.real(whole) + pressure[0].real + first
     if pin_load == "centre":
-        share = 1.0 / (math.pi * (1.0 + kolosov))
         mean = mean + 4.0 * share * np.real(np.conj(force) * zeta - 0.5 * force / zeta)
         radial = radial + share * force * (np.conj(zeta) - 1.0 / zeta)
         radial[near] -= np.conj(force) / (2.0 * math.pi * np.conj(zeta[near]))

@@ -3,19 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
 
-from fastpin.kernels import cauchy
+from fastpin.kernels import cauchy, conjugate
 from fastpin.runtime.threads import in_chunks
 
-LEAF = 8
-"""Linear pieces in a leaf of the tree of blocks."""
+LEAF, EDGE_LEAF = 8, 7
+"""Linear pieces in a leaf of the tree of blocks; and least number in a block for points on the edge.
+
+A point visits all blocks for the edge. With the root of the number of pieces, it visits about as many pieces.
+"""
 
 GAUSS = 24
 """Gauss points a piece for the moments. Their integrands go up to the power 28, also where a leaf is one long piece."""
+
+SHORT, GAUSS_SHORT = 0.15, 4
+"""Pieces up to so many rad need so few Gauss points for the first two Fourier coefficients: the error is rounding."""
+
+RULES = {3: 0.016, 4: 0.08, 5: 0.19, 6: 0.35, 8: 0.7, 12: 1.4, 16: 2.0}
+"""Gauss points of a piece for the moments on the edge, and its length in parts of the half width of its block up to
+which their error is rounding."""
 
 ROUNDING = 1e-11
 """Moment of the shear that is rounding, in parts of the moment of its magnitude."""
@@ -51,11 +62,11 @@ class Tractions:
 
     def coefficients(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Fourier coefficients of N and T, (1/2 pi) int g exp(-i k xi) dxi, for k = 0 to `count`."""
-        points, weights = _gauss()
         result = np.zeros((2, count + 1), dtype=complex)
         for patch in self.patches:
             theta, values = patch[:, 0, None], patch[:, 1:, None]
             steps = np.diff(theta, axis=0)
+            points, weights = _gauss(GAUSS if count > 1 or steps.max() > SHORT else GAUSS_SHORT)
             turn = np.exp(-1j * (theta[:-1] + steps * points))
             power = (values[:-1] + np.diff(values, axis=0) * points) * (steps * weights)[:, None] / (2.0 * math.pi)
             for k in range(count + 1):
@@ -72,6 +83,30 @@ class Tractions:
     def tree(self) -> Tree:
         """The blocks of the linear pieces, for fast sums."""
         return Tree.of(self)
+
+    @cached_property
+    def _edge_blocks(self) -> tuple[np.ndarray | int, ...]:
+        """The blocks of the linear pieces for points on the edge, for :func:`fastpin.kernels.conjugate.edge`."""
+        nodes = np.concatenate([np.zeros((0, 3)), *self.patches])
+        blocks = _leaves(self.patches, max(EDGE_LEAF, math.isqrt(len(nodes)) // 3))
+        centres, moments = np.empty((len(blocks), 4)), np.zeros((len(blocks), conjugate.TERMS))
+        conjugate.gather(nodes, blocks, *_rules(), centres, moments)
+        return nodes, len(nodes) - 1 if self.all_round else -1, blocks, centres, moments
+
+    def on_edge(self, theta: np.ndarray, *field: float) -> np.ndarray:
+        """Stresses (srr, stt, srt) at angles (m,) on the edge, shape (3, m).
+
+        `field` has the parts of the hoop stress, see :func:`fastpin.kernels.conjugate.edge`.
+        """
+        out = np.empty((3, theta.size))
+        conjugate.edge(np.array(theta), np.array(field), *self._edge_blocks, out)
+        return out
+
+    @cached_property
+    def force(self) -> complex:
+        """int (N - iT) exp(i xi) dxi."""
+        pressure, shear = self.low_coefficients
+        return complex(2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,11 +148,7 @@ class Tree:
             )  # fmt: skip
         nodes = np.concatenate(patches)
         turn = len(nodes) - 1 if tractions.all_round else 0
-        leaves, begin = [], 0
-        for patch in patches:
-            last = begin + len(patch) - 1
-            leaves += [(first, min(first + LEAF, last)) for first in range(begin, last, LEAF)]
-            begin = last + 1
+        leaves = _leaves(patches, LEAF)
         count = 2 * len(leaves) - 1
         blocks = np.full((count, 4), -1)
         blocks[: len(leaves), :2] = leaves
@@ -129,11 +160,30 @@ class Tree:
         return cls(nodes, turn, blocks, centres, radii, moments)
 
 
+def _leaves(patches: Sequence[np.ndarray], size: int) -> np.ndarray:
+    """First and last node of leaves of up to `size` pieces, int, shape (l, 2). Nodes count through all patches."""
+    leaves, begin = [], 0
+    for patch in patches:
+        last = begin + len(patch) - 1
+        leaves += [(first, min(first + size, last)) for first in range(begin, last, size)]
+        begin = last + 1
+    return np.array(leaves, dtype=np.int64).reshape(-1, 2)
+
+
 @cache
-def _gauss() -> tuple[np.ndarray, np.ndarray]:
-    """Gauss points and weights on (0, 1)."""
-    points, weights = np.polynomial.legendre.leggauss(GAUSS)
+def _gauss(count: int = GAUSS) -> tuple[np.ndarray, np.ndarray]:
+    """So many Gauss points and weights on (0, 1)."""
+    points, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 * (points + 1.0), 0.5 * weights
+
+
+@cache
+def _rules() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The rules of Gauss on (0, 1), see :func:`fastpin.kernels.conjugate.gather`."""
+    points, weights = np.zeros((2, len(RULES), max(RULES)))
+    for rule, count in enumerate(RULES):
+        points[rule, :count], weights[rule, :count] = _gauss(count)
+    return np.array(list(RULES.values())), points, weights
 
 
 @cache

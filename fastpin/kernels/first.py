@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.kernels.cauchy import cauchy, grow
-from fastpin.kernels.half_line import end_places, evaluate, least_squares, match, solve, value_errors
+from fastpin.kernels import cauchy, conjugate, power_laws
+from fastpin.kernels.half_line import end_places, evaluate, least_squares, match, series, solve, value_errors
 from fastpin.runtime import beside
 
 MODULE = __name__
@@ -21,18 +21,21 @@ MODULE = __name__
 def kernels() -> list[tuple[Any, ...]]:
     """Kernels, each before arguments of the types of a first run.
 
-    The last five are in the reverse order of their use: there the first process comes to meet the second one.
+    All but the first four are in the reverse order of their use: there the first process comes to meet the second one.
     """
     line, table, cube, places = np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1), dtype=np.int64)
     row, rows, block = (np.zeros((1,) * k, dtype=np.complex128) for k in (1, 2, 3))
-    frozen = np.frombuffer(bytes(8))
     return [
         (end_places, line, places, table, cube, table),
-        (grow, table, 0, line, line, table, places, row, line, block),
-        (cauchy, line, line, True, table, 0, places, row, line, block, rows),
+        (conjugate.gather, table, places, line, table, table, table, table),
+        (conjugate.edge, line, line, table, 0, places, table, table, table),
         (value_errors, line, places, table, cube, line, line),
+        (cauchy.cauchy, line, line, True, table, 0, places, row, line, block, rows),
+        (cauchy.grow, table, 0, line, line, table, places, row, line, block),
+        (power_laws.fit, line, line, 0j, False, places, row),
         (least_squares, table, line, line),
-        (cauchy, frozen, line, True, table, 0, places, row, line, block, rows),
+        (power_laws.evaluate, line, 0j, row, line),
+        (series, 0, 0, table, cube, table, table),
         (evaluate, line, 0.0, 0, table, cube, table, table),
         (match, 0, table, cube, line, table, table),
         (solve, line, 0, table, cube, line, table),

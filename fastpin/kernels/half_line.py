@@ -446,6 +446,27 @@ def match(degree, ends, tables, coefficients, matches, levers):
 
 
 @compiled
+def series(at, degree, ends, tables, matches, rows):
+    """Fill `rows` (terms - 1, n), zeros, with the power series at the end number `at` of the coefficients of a fit.
+
+    Row k gives the coefficient of x^(a + k), for the distance x from the place. `matches` is that of :func:`match`.
+    """
+    first = degree + 1
+    for e in range(at):
+        first += int(ends[e, SOLUTIONS]) - (0 if math.isnan(ends[e, PLACE]) else 1)
+    table, origin = tables[int(ends[at, TABLE])], matches[at, 1]
+    for q in range(1, rows.shape[0] + 1):
+        if not math.isnan(ends[at, PLACE]):
+            rows[q - 1, first + q - 1] = 1.0 / table[GAMMAS, q]
+            continue
+        factor = 1.0  # the powers of the distance from the origin, in those from the outermost node
+        for p in range(q, rows.shape[0] + 1):
+            for j in range(p, rows.shape[0] + 1):
+                rows[q - 1, first + j] += factor * table[MATCHING + p, j] / table[GAMMAS, q]
+            factor *= origin / (p - q + 1)
+
+
+@compiled
 def evaluate(x, last, degree, ends, tables, matches, rows):
     """Fill `rows` (k, n) with the continuous functions of the coefficients at the places `x` (k,).
 

@@ -169,12 +169,20 @@ class Grid:
         return bool(np.ptp(spacing) <= 1e-12 * self.size * spacing[0])
 
     def trig_moments(self) -> tuple[np.ndarray, np.ndarray]:
-        """Exact integrals of every node's hat function times cos theta and times sin theta, shape (n,) each."""
+        """Exact integrals of every node's hat function times cos theta and times sin theta, shape (n,) each.
+
+        They can't be written to.
+        """
+        return self._trig_moments
+
+    @cached_property
+    def _trig_moments(self) -> tuple[np.ndarray, np.ndarray]:
         left, right = self.knots()
         total = np.zeros(self.size, dtype=complex)
         for length, sense in ((self.theta - left, -1.0), (right - self.theta, 1.0)):
             total += _half_hat_moment(length, sense)
         total *= np.exp(1j * self.theta)
+        total.setflags(write=False)
         return total.real, total.imag
 
 

@@ -29,7 +29,9 @@ def top_angle(values: np.ndarray, theta: np.ndarray) -> int:
     That is the place with the largest angle from the bottom of the hole, in (-180, 180] deg. Of several places at this
     angle it is the first.
     """
-    return int(top_angles(np.ravel(values)[None], np.ravel(theta))[0])
+    flat = np.ravel(values)
+    equal = np.flatnonzero(is_top(flat))
+    return int(equal[0] if equal.size == 1 else equal[top_angles(flat[None, equal], np.ravel(theta)[equal])[0]])
 
 
 def top_angles(values: np.ndarray, theta: np.ndarray) -> np.ndarray:

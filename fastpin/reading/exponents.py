@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -41,7 +42,7 @@ class Coupling:
         """The coupling of the surfaces of a problem at the angles `theta` (n,), with the `friction` (n,) there."""
         laminate = None if problem.pair.plate.is_isotropic else problem.joint.hole.laminate
         if laminate is None or laminate.is_isotropic_contact:
-            return cls.of_isotropic(friction, problem.surfaces.dundurs()[1])
+            return _isotropic(friction.tobytes(), problem.surfaces.dundurs()[1])
         surfaces, turned = problem.surfaces, laminate.delta * np.exp(-2j * theta)
         mean, s = 0.5 * surfaces.beta_star, 0.25 * surfaces.alpha_star
         pressed = mean + turned.real  # Lambda_rr of both bodies; Lambda_rt is that of the plate
@@ -69,6 +70,11 @@ class Coupling:
     def is_smooth(self) -> bool:
         """Whether the pressure is smooth at borders, as of like bodies."""
         return not self.tilt.any() and bool(np.all(self.share == 1.0))
+
+
+@functools.lru_cache(maxsize=8)  # the states of a run share them
+def _isotropic(friction: bytes, beta: float) -> Coupling:
+    return Coupling.of_isotropic(np.frombuffer(friction), beta)
 
 
 def contact_exponents(status: np.ndarray, tilt: np.ndarray, run: np.ndarray) -> tuple[float, float]:

@@ -213,11 +213,6 @@ class End(NamedTuple):
     place: float | None = None
     parts: tuple[float, float] = (1.0, 0.0)
 
-    @property
-    def unknowns(self) -> int:
-        """Number of unknowns of the fit."""
-        return self.terms - (self.place is not None)
-
 
 class Try(NamedTuple):
     """A fit to try.
@@ -239,7 +234,8 @@ class Try(NamedTuple):
     @property
     def spare(self) -> int:
         """Number of nodes beyond the number of unknowns."""
-        return self.nodes - self.degree - 1 - sum(end.unknowns for end in self.ends)
+        unknown = sum([end.terms if end.place is None else end.terms - 1 for end in self.ends])
+        return self.nodes - self.degree - 1 - unknown
 
 
 class Tries:
@@ -328,7 +324,7 @@ class Fit:
     """
 
     def __init__(self, values: np.ndarray, ends: tuple[End, ...], degree: int = -1) -> None:
-        packed = Tries([Try(0, values.size, degree, ends)])
+        packed = _packed(values.size, degree, ends)
         self._ends, self._degree, self.last = ends, degree, values.size - 1.0
         self._packed = degree, packed.ends, packed.tables
         unknowns = values.size - Try(0, values.size, degree, ends).spare
@@ -368,15 +364,9 @@ class Fit:
         error : float
             Standard error of the first one.
         """
-        end, first = self._ends[at], self._degree + 1 + sum(end.unknowns for end in self._ends[:at])
-        line, terms = end.half_line, end.terms
-        series = np.zeros((terms - 1, self._coefficients.size))
-        powers = np.eye(terms - 1)  # if the place is known
-        if end.place is None:
-            powers = (_shift(float(self._matches[at, 1]), terms) @ line.matching[:terms, :terms])[1:]
-        gammas = [[math.gamma(line.exponent + m)] for m in range(1, terms)]
-        series[:, first : first + end.unknowns] = powers / gammas
-        return np.asarray(series @ self._coefficients), self._error(series[0])
+        rows = np.zeros((self._ends[at].terms - 1, self._coefficients.size))
+        kernel.series(at, *self._packed, self._matches, rows)
+        return np.asarray(rows @ self._coefficients), self._error(rows[0])
 
     def _error(self, row: np.ndarray) -> float:
         """Standard error of the number that a row (n,) gives from the coefficients."""
@@ -389,8 +379,7 @@ class Fit:
         return rows
 
 
-def _shift(origin: float, terms: int) -> np.ndarray:
-    """Times the coefficients of the powers of a distance, the coefficients for distances from an origin inwards."""
-    orders = np.arange(terms)
-    shifted = origin**orders / [math.factorial(k) for k in range(terms)]
-    return np.asarray(shifted[np.maximum(orders - orders[:, None], 0)] * (orders >= orders[:, None]))
+@functools.lru_cache(maxsize=64)
+def _packed(nodes: int, degree: int, ends: tuple[End, ...]) -> Tries:
+    """One fit of so many nodes, which may be fitted to many values."""
+    return Tries([Try(0, nodes, degree, ends)])

@@ -187,10 +187,9 @@ def _likely(grid: Grid, values: np.ndarray, top: int, peak: float) -> bool:
     The values fall by some amount within DROP_NODES nodes on either side. The peak may be higher than the largest
     value by the larger drop, or lower by the smaller drop and LARGEST_FALL.
     """
-    steps = np.arange(1, DROP_NODES + 1)
-    left, right = (values[(top + side * steps) % grid.size] for side in (-1, 1))
-    drops = float(values[top] - left.min()), float(values[top] - right.min())
-    return bool(-min(*drops, LARGEST_FALL * values[top]) <= peak - values[top] <= max(drops))
+    highest, near = float(values[top]), range(1, DROP_NODES + 1)
+    drops = [highest - min(float(values[(top + side * step) % grid.size]) for step in near) for side in (-1, 1)]
+    return -min(*drops, LARGEST_FALL * highest) <= peak - highest <= max(drops)
 
 
 def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float]:
@@ -204,17 +203,18 @@ def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float
         return at_node
     left, right = grid.knots()
     nodes = [(top + k) % n for k in (-2, -1, 0, 1, 2)]
-    slopes = [(values[j] - values[i]) / (right[i] - grid.theta[i]) for i, j in pairwise(nodes)]
+    beside, steps = values[nodes].tolist(), (right[nodes] - grid.theta[nodes]).tolist()
+    slopes = [(beside[k + 1] - beside[k]) / steps[k] for k in range(4)]
     bends = [before - after for before, after in pairwise(slopes)]
     if abs(bends[1]) > 3.0 * min(abs(bends[0]), abs(bends[2])):
         return at_node
-    before, after = left[top] - grid.theta[top], right[top] - grid.theta[top]
+    before, after = float(left[top] - grid.theta[top]), steps[2]
     curvature = (slopes[2] - slopes[1]) / (after - before)  # values = values[top] + slope x + curvature x^2
     slope = slopes[2] - curvature * after
     if curvature >= 0.0:
         return at_node
     place = min(max(-0.5 * slope / curvature, before), after)
-    return at_node[0] + float(slope * place + curvature * place**2), at_node[1] + float(place)
+    return at_node[0] + (slope * place + curvature * place**2), at_node[1] + place
 
 
 def _interpolated(grid: Grid, values: np.ndarray, angle: float) -> float:
@@ -224,7 +224,10 @@ def _interpolated(grid: Grid, values: np.ndarray, angle: float) -> float:
     if not np.all(values[nearest] > 0.0):
         nearest = np.array([np.flatnonzero(offsets < 0.0)[np.argmax(offsets[offsets < 0.0])],
                             np.flatnonzero(offsets >= 0.0)[np.argmin(offsets[offsets >= 0.0])]])  # fmt: skip
-    return float(np.polyval(np.polyfit(offsets[nearest], values[nearest], nearest.size - 1), 0.0))
+    x, total = offsets[nearest].tolist(), 0.0
+    for k, value in enumerate(values[nearest].tolist()):  # Lagrange's polynomials at 0
+        total += value * math.prod(x[j] / (x[j] - x[k]) for j in range(len(x)) if j != k)
+    return total
 
 
 def peak_slips(slip: np.ndarray, status: np.ndarray, theta: np.ndarray) -> np.ndarray:

@@ -17,13 +17,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fastpin.kernels.half_line import least_squares
+from fastpin.kernels import power_laws as kernel
 from fastpin.reading.ends import end_fit
 from fastpin.reading.half_line import HalfLine
 from fastpin.reading.old_borders import OldBorder
 
-WINDOWS = ((2, 6, 1, False), (2, 8, 2, False), (2, 8, 1, True), (2, 12, 2, True), (2, 12, 3, True),
-               (2, 20, 3, True), (4, 30, 3, True))  # fmt: skip
+WINDOWS = np.array([(2, 6, 1, False), (2, 8, 2, False), (2, 8, 1, True), (2, 12, 2, True), (2, 12, 3, True),
+                    (2, 20, 3, True), (4, 30, 3, True)])  # fmt: skip
 """Fits of a power law to try.
 
 Each has the number of nodes left out at the end of the zone, the number of nodes used, the degree of the polynomial,
@@ -83,10 +83,10 @@ class Law:
 
     def values(self, theta: np.ndarray) -> np.ndarray:
         """The law at angles in the zone, shape (m,); 0 at its end and beyond."""
-        x = np.maximum(self.inwards * (theta - self.place), 0.0) / self.spacing
-        power = np.exp(self.exponent * np.log(np.maximum(x, 1e-300)))
-        series = np.polynomial.polynomial.polyval(x, self.coefficients)
-        return np.where(x > 0.0, np.real(power * series), 0.0)
+        values = np.empty(theta.size)
+        x = self.inwards * (theta - self.place) / self.spacing
+        kernel.evaluate(x, complex(self.exponent), self.coefficients, values)
+        return values
 
 
 def law_of_nodes(
@@ -148,25 +148,10 @@ def fit_law(place: float, exponent: complex, theta: np.ndarray, values: np.ndarr
         return None
     inwards, spacing = (1 if theta[-1] > place else -1), abs(float(theta[1] - theta[0]))
     x = inwards * (theta - place) / spacing
-    turns = abs(exponent.imag) > ROUNDING
-    best: tuple[float, np.ndarray, float] | None = None
-    for first, count, degree, decaying in WINDOWS:
-        window, wanted = x[first : first + count], values[first : first + count]
-        if window.size < count:
-            continue
-        powers = [window ** (exponent + k) for k in range(degree + 1)]
-        parts = [np.imag(powers[0])] * turns + [window ** (exponent.real - 2.0)] * decaying
-        columns = np.column_stack([*np.real(powers), *parts])
-        coefficients = np.empty(columns.shape[1])
-        error = least_squares(columns, np.array(wanted, dtype=float), coefficients)
-        if best is None or error < best[0]:
-            series = coefficients[: degree + 1].astype(complex)
-            if turns:
-                series[0] -= 1j * coefficients[degree + 1]
-            best = error, series, float(window[-1])
-    if best is None:
+    series, turns = np.empty(4, dtype=complex), abs(exponent.imag) > ROUNDING
+    error, reach = kernel.fit(x, np.array(values, dtype=float), complex(exponent), turns, WINDOWS, series)
+    if reach == 0.0:
         return None
-    error, series, reach = best
     found = Law(place, inwards, exponent, series, spacing, spacing * min(REACH, reach))
     outermost = slice(OFF.size)
     size = min(abs(series[0]), float(np.abs(values[outermost]).max()))

@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.elasticity.tractions import RefinedTractions, Tractions
+from fastpin.kernels.half_line import least_squares
 from fastpin.kernels.status import OPEN
 from fastpin.reading.cusps import ShearLaw, ShearNodes
 from fastpin.reading.ends import end_angle
@@ -307,8 +308,10 @@ def _apart(angles: np.ndarray) -> np.ndarray:
 
     A piece between equal angles has no stress.
     """
-    theta = np.unique(angles)
-    stays = np.r_[True, np.diff(theta) > 4.0 * np.spacing(np.abs(theta).max())]
+    theta = np.sort(angles)
+    theta = theta[np.append(True, theta[1:] > theta[:-1])]
+    stays = np.ones(theta.size, dtype=bool)
+    stays[1:] = theta[1:] - theta[:-1] > 4.0 * np.spacing(max(abs(theta[0]), abs(theta[-1])))
     if not stays[-1]:
         stays[-2:] = False, True
     return theta[stays]
@@ -333,7 +336,8 @@ def _with_ends(patch: Patch, pressure: tuple[Law | None, ...]) -> tuple[np.ndarr
         for edge, outside, law in zip(patch.edges, patch.outside, pressure, strict=True)
     )
     inside = (patch.theta > start) & (patch.theta < stop)
-    return np.r_[start, patch.theta[inside], stop], np.pad(values[:, inside], ((0, 0), (1, 1)))
+    ends = np.zeros((2, 1))
+    return np.concatenate([[start], patch.theta[inside], [stop]]), np.hstack([ends, values[:, inside], ends])
 
 
 def _pressure_at_borders(patch: Patch, laws: Laws) -> np.ndarray:
@@ -353,7 +357,8 @@ def _pressure_at_borders(patch: Patch, laws: Laws) -> np.ndarray:
         beyond = np.maximum(-x, 0.0)
         cusp = patch.cusp(law, sign).values(patch.theta)
         columns = np.column_stack([np.vander(x / BORDER_FAR, 4), (beyond / BORDER_FAR) ** (law.exponent.real + 1.0)])
-        coefficients = np.linalg.lstsq(columns[used], (patch.pressure - cusp)[used], rcond=None)[0]
+        coefficients = np.empty(columns.shape[1])
+        least_squares(columns[used], (patch.pressure - cusp)[used], coefficients)
         near = np.abs(x) <= BORDER_NEAR
         pressure[near] = columns[near] @ coefficients + cusp[near]
     return pressure

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -234,25 +234,41 @@ def stress_at(
     if body == "pin" and problem.pin_load == "centre" and not problem.pin_body.bore_radius and np.any(depth == 1.0):
         raise InputError("points", "the force acts at the centre of the pin: the stress there is infinite")
     ratio: float | np.ndarray = material.nu if material.is_isotropic else 0.0
-    if body == "pin":
-        components = pin_stress(problem, tractions, theta, depth)
-    else:
+    if body != "pin":
         for place in (point / problem.hole_radius for point in problem.plate_body.lug.force_points):
             away = np.abs((near_rim(problem, body) + depth) * np.exp(1j * theta) - place)
             if np.any(away < ROUNDING * abs(place)):
                 raise InputError("points", "the reaction acts at one of the points: the stress there is infinite")
         ratio = _ratios_in_plate(problem, depth) if body != "seat" and material.is_isotropic else ratio
-        remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])
-        if seat is not None:
-            components = _of_joint(problem, (tractions, seat), remote, (theta, depth), body)
-        else:
-            stress = seat_stress if body == "seat" else plate_stress
-            components = stress(problem, tractions, remote, theta, depth)
+    components = _components(problem, tractions, load, (theta, depth), body, seat)
     radial, hoop, shear = (component.reshape(points.shape) for component in components)
     axial = np.zeros(points.shape)
     if problem.surfaces.plane == "strain":
         axial = (ratio.reshape(points.shape) if isinstance(ratio, np.ndarray) else ratio) * (radial + hoop)
     return Stress(points.theta, radial, hoop, shear, axial)
+
+
+def edge_hoop(
+    problem: Problem, load: Mapping[str, float], body: Body, tractions: Tractions, seat: Tractions | None = None
+) -> Callable[[np.ndarray], np.ndarray]:
+    """The hoop stress, Pa, on the edge of a body that :func:`check_body` admits, as a function of angles (m,), rad.
+
+    The other arguments are those of :func:`stress_at`.
+    """
+    return lambda theta: _components(problem, tractions, load, (theta, np.zeros(theta.size)), body, seat)[1]
+
+
+def _components(
+    problem: Problem, tractions: Tractions, load: Mapping[str, float], places: tuple[np.ndarray, np.ndarray],
+    body: Body, seat: Tractions | None,
+) -> np.ndarray:  # fmt: skip
+    """Stresses (srr, stt, srt), shape (3, m). `places` are angles, rad, and depths in units of R, both (m,)."""
+    if body == "pin":
+        return pin_stress(problem, tractions, *places)
+    remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])
+    if seat is not None:
+        return _of_joint(problem, (tractions, seat), remote, places, body)
+    return (seat_stress if body == "seat" else plate_stress)(problem, tractions, remote, *places)
 
 
 def assembly_stress(problem: Problem, assembled: Sequence[Tractions], points: Points, body: Body) -> Stress:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
@@ -62,13 +63,21 @@ def in_order(zones: Sequence[Zone]) -> list[Zone]:
 
 def runs(grid: Grid, mask: np.ndarray) -> list[np.ndarray]:
     """Index arrays of the runs of consecutive True nodes. On a circle a run may continue past the last node."""
-    n, inside = grid.size, np.flatnonzero(mask)
+    return list(_runs(mask.tobytes(), grid.closed))
+
+
+@functools.lru_cache(maxsize=8)  # the readings of a state ask for the same runs
+def _runs(mask: bytes, closed: bool) -> list[np.ndarray]:
+    """The runs of a mask, which can't be written to. `closed` tells whether the last node is joined to the first."""
+    n, inside = len(mask), np.flatnonzero(np.frombuffer(mask, dtype=bool))
+    inside.setflags(write=False)
     if inside.size in (0, n):
         return [inside] * (inside.size > 0)
     stops = np.flatnonzero(inside[1:] - inside[:-1] > 1) + 1
     parts = [inside[start:stop] for start, stop in pairwise([0, *stops.tolist(), inside.size])]
-    if grid.closed and len(parts) > 1 and parts[0][0] == 0 and parts[-1][-1] == n - 1:
+    if closed and len(parts) > 1 and parts[0][0] == 0 and parts[-1][-1] == n - 1:
         parts[-1] = np.concatenate([parts[-1], parts[0]])
+        parts[-1].setflags(write=False)
         parts = parts[1:]
     return parts
 

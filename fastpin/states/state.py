@@ -321,8 +321,7 @@ class State(ReadOnly):
 
     def _stick_lines(self, run: np.ndarray) -> tuple[HalfLine, HalfLine]:
         start, stop = stick_exponents(self.shear, self.coupling.tilt, run)
-        beta = self.coupling.beta
-        return half_line(start, float(beta[run[0]])), half_line(stop, float(beta[run[-1]]))
+        return half_line(start, float(self.coupling.beta[run[0]])), half_line(stop, float(self.coupling.beta[run[-1]]))
 
     @cached_property
     def _reserve(self) -> np.ndarray:
@@ -466,10 +465,11 @@ class State(ReadOnly):
             return self.seat.peak_hoop_stress()
         if body not in self._hoop_peaks:
             is_kept = "refined" in self.__dict__
-            nodes = self.grid, self.status != OPEN, self.refined
-            peak_of = partial(reading.hoop.hoop_peak, self.problem, self.load, self.resultants, *nodes, body)
-            hoop, before = partial(self.hoop_stress, body), partial(self.assembly_stress, body=body)
-            self._hoop_peaks[body] = reading.hoop.peak_in_parts(peak_of, hoop, before, self._joint[0])
+            given = self.load, self.resultants, self.grid, self.status != OPEN, self.refined, body
+            peak_of = partial(reading.hoop.hoop_peak, self.problem, *given)
+            refined = [each.refined.tractions for each in self._interfaces]
+            parts = reading.stress.edge_hoop(self.problem, self.load, body, *refined), self.assembly_stress
+            self._hoop_peaks[body] = reading.hoop.peak_in_parts(peak_of, *parts, body, self._joint[0])
             if not is_kept:  # the refined tractions of many states would fill the memory
                 del self.__dict__["refined"]
         return self._hoop_peaks[body]

@@ -66,6 +66,9 @@ def test_a_fit_is_that_of_the_pseudo_inverse(kernels, name):
         if not math.isnan(place):
             error = scatter * np.linalg.norm(levers[at] @ spread)
             assert error == pytest.approx(expected.place_error(at), rel=1e-8)
+        series = np.zeros((ends[at].terms - 1, n))
+        kernels.series(at, degree, packed.ends, packed.tables, matches, series)
+        assert series @ coefficients == pytest.approx(expected.series(at), rel=1e-7, abs=1e-11)
     x = np.array([-0.9, 0.0, 2.3, 6.1, nodes - 1.0])
     rows = np.empty((x.size, n))
     kernels.evaluate(x, nodes - 1.0, degree, packed.ends, packed.tables, matches, rows)

@@ -51,7 +51,7 @@ class NaiveFit:
         self.coefficients = self.inverse @ values
         left, spare = design @ self.coefficients - values, values.size - design.shape[1]
         self.scatter = float(np.linalg.norm(left)) / math.sqrt(spare) * (1.0 + 10.0 / spare)
-        stops = degree + 1 + np.cumsum([0, *(end.unknowns for end in ends)])
+        stops = degree + 1 + np.cumsum([0, *(end.terms - (end.place is not None) for end in ends)])
         self.rows = [slice(start, stop) for start, stop in pairwise(stops.tolist())]
 
     def match(self, at: int) -> tuple[float, np.ndarray]:
@@ -66,6 +66,19 @@ class NaiveFit:
             place -= series(place) / series.deriv()(place)
         lever[self.rows[at]] = place ** np.arange(end.terms) @ scaled / series.deriv()(place)
         return place if LEAST_PLACE <= place <= MOST_PLACE else math.nan, lever
+
+    def series(self, at: int) -> np.ndarray:
+        """The coefficients of the powers of the distance from the place of an end, or from half a node outwards."""
+        end, found = self.ends[at], self.coefficients[self.rows[at]]
+        gammas = [math.gamma(end.half_line.exponent + m) for m in range(1, end.terms)]
+        if end.place is not None:
+            return found / gammas
+        place = self.match(at)[0]
+        far = np.polynomial.Polynomial(
+            end.half_line.matching[: end.terms, : end.terms] @ found / FACTORIALS[: end.terms]
+        )
+        origin = -0.5 if math.isnan(place) else place
+        return np.array([far.deriv(k)(origin) for k in range(1, end.terms)]) / gammas
 
     def place_error(self, at: int) -> float:
         return self.scatter * float(np.linalg.norm(self.match(at)[1] @ self.inverse))

@@ -1,0 +1,164 @@
+"""The conjugate of a piecewise linear shear traction on the edge of the hole, exact and fast.
+
+On the edge the tractions are two of the three stresses. The hoop stress needs one integral more,
+
+    H(theta) = (1/4 pi) int T(xi) cot((theta - xi)/2) dxi = Im C[T],
+
+a principal value. Near pieces have a closed form: one Clausen function a node. Far pieces are summed by blocks. With
+the angle c of the middle of a block, b = cot((theta - c)/2) and u = tan((xi - c)/2), the cotangent is
+
+    (b + u)/(1 - b u) = b + (1 + b^2) (u + b u^2 + b^2 u^3 + ...).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fastpin.kernels.influence import AROUND_PI, AROUND_PI_TERMS, AROUND_ZERO, AROUND_ZERO_TERMS
+from fastpin.runtime.jit import compiled, inner
+
+TERMS = 28
+"""Moments of a block, of the powers 0 to 27 of u."""
+
+FAR = 0.3
+"""Largest product of b and the largest u of a block at which its moments are used. Its power 28 is 2e-15."""
+
+FARTHER = 0.08
+"""The same for half of the moments: its power 14 is 4e-16."""
+
+WIDEST = 1.2
+"""Largest half width of a block with moments, rad."""
+
+NEAR = 0.02
+"""Half distance from the middle of a block, rad, below which it is taken by itself. It would lose two digits of a sum.
+"""
+
+SAME = 4e-15
+"""Distance of two angles that is rounding, rad."""
+
+
+@inner
+def _clausen(x):
+    """Clausen's function, see :func:`fastpin.kernels.influence.clausen`, for |x| <= pi. It takes few terms near 0."""
+    size, total = abs(x), 0.0
+    if size == 0.0:
+        return 0.0
+    if size < 2.0:
+        for k in range(5 if size < 0.3 else AROUND_ZERO_TERMS, 0, -1):
+            total = (total + AROUND_ZERO[k - 1]) * (size * size)
+        return x * (1.0 - math.log(size) + total)
+    y = math.pi - size
+    for k in range(AROUND_PI_TERMS, 0, -1):
+        total = (total + AROUND_PI[k - 1]) * (y * y)
+    return math.copysign(y * (math.log(2.0) - total), x)
+
+
+@inner
+def _reduced(angle):
+    """An angle moved by whole turns into [-pi, pi]."""
+    return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
+
+
+@compiled
+def gather(nodes, blocks, longest, points, weights, centres, moments):
+    """Fill the moments of blocks of linear pieces.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (k, 3)
+        Angle, N and T of the nodes, patch after patch.
+    blocks : ndarray of int, shape (b, 2)
+        First and last node of each block.
+    longest : ndarray, shape (r,)
+        Longest piece, in parts of the half width of its block, for which each rule of Gauss is exact; increasing.
+    points, weights : ndarray, shape (r, q)
+        The rules on (0, 1). The weights behind the last point of a rule are 0.
+    centres : ndarray, shape (b, 4)
+        Output: the angle c of each block, cos(c/2), sin(c/2), and its largest u; infinite without moments.
+    moments : ndarray, shape (b, TERMS)
+        Zeros. The integrals of T u^m are added.
+    """
+    for b in range(blocks.shape[0]):
+        first, last = blocks[b, 0], blocks[b, 1]
+        centre, half = 0.5 * (nodes[first, 0] + nodes[last, 0]), 0.5 * (nodes[last, 0] - nodes[first, 0])
+        centres[b, 0], centres[b, 1], centres[b, 2] = centre, math.cos(0.5 * centre), math.sin(0.5 * centre)
+        centres[b, 3] = math.tan(0.5 * half) if half <= WIDEST else np.inf
+        for j in range(first, last if half <= WIDEST else first):
+            step, before, after, rule = nodes[j + 1, 0] - nodes[j, 0], nodes[j, 2], nodes[j + 1, 2], 0
+            while rule < longest.size - 1 and step > longest[rule] * half:
+                rule += 1
+            for q in range(points.shape[1]):
+                if weights[rule, q] == 0.0:
+                    break
+                u = math.tan(0.5 * (nodes[j, 0] + points[rule, q] * step - centre))
+                power = weights[rule, q] * step * (before + points[rule, q] * (after - before))
+                for m in range(TERMS):
+                    moments[b, m] += power
+                    power *= u
+
+
+@inner
+def _near(theta, nodes, first, last, joined, found):
+    """4 pi H of the pieces from node `first` to node `last`. `found` gets N and T if `theta` lies in one of them.
+
+    `joined` is the last node of a patch all round, which is its first node once more; otherwise -1.
+    """
+    total, slope = 0.0, 0.0
+    for j in range(first, last + 1):
+        x = _reduced(theta - nodes[0 if j == joined else j, 0])
+        jump = -slope
+        if j < last:
+            step = nodes[j + 1, 0] - nodes[j, 0]
+            slope = (nodes[j + 1, 2] - nodes[j, 2]) / step if step > 0.0 else 0.0
+            jump += slope
+            if -SAME < x < step + SAME:
+                part = min(max(x / step, 0.0), 1.0) if step > 0.0 else 0.0
+                found[0] = nodes[j, 1] + part * (nodes[j + 1, 1] - nodes[j, 1])
+                found[1] = nodes[j, 2] + part * (nodes[j + 1, 2] - nodes[j, 2])
+        total -= jump * _clausen(x)
+        if j in (first, last) and nodes[j, 2] != 0.0 and x != 0.0:
+            log = math.log(abs(2.0 * math.sin(0.5 * x)))
+            total += nodes[j, 2] * log if j == first else -nodes[j, 2] * log
+    return 2.0 * total
+
+
+@compiled
+def edge(theta, field, nodes, joined, blocks, centres, moments, out):
+    """The stresses srr, stt and srt at points on the edge.
+
+    Parameters
+    ----------
+    theta : ndarray, shape (m,)
+    field : ndarray, shape (7,)
+        The parts of 1, N, H, cos(theta), sin(theta), cos(2 theta) and sin(2 theta) in the hoop stress.
+    nodes, blocks, centres, moments : ndarray
+        Those of :func:`gather`.
+    joined : int
+        Last node of a patch all round; -1 without one.
+    out : ndarray, shape (3, m)
+    """
+    found = np.empty(2)
+    for i in range(theta.size):
+        total, cos, sin = 0.0, math.cos(0.5 * theta[i]), math.sin(0.5 * theta[i])
+        found[:] = 0.0
+        for b in range(blocks.shape[0]):
+            reach = centres[b, 3]
+            across, along = sin * centres[b, 1] - cos * centres[b, 2], cos * centres[b, 1] + sin * centres[b, 2]
+            if abs(across) < NEAR:
+                across, along = math.sin(0.5 * (theta[i] - centres[b, 0])), math.cos(0.5 * (theta[i] - centres[b, 0]))
+            if reach == np.inf or reach * abs(along) > FAR * abs(across):
+                total += _near(theta[i], nodes, blocks[b, 0], blocks[b, 1], joined, found)
+                continue
+            inverse = along / across
+            terms = TERMS if reach * abs(inverse) > FARTHER else TERMS // 2
+            square, odd, even = inverse * inverse, moments[b, terms - 1], 0.0
+            for m in range(terms - 2, 0, -2):  # two sums side by side
+                odd, even = odd * square + moments[b, m - 1], even * square + moments[b, m]
+            total += inverse * moments[b, 0] + (1.0 + square) * (odd + even * inverse)
+        first, second = cos * cos - sin * sin, 2.0 * cos * sin  # the cosine and the sine of theta
+        hoop = field[0] + field[1] * found[0] + field[2] * total / (4.0 * math.pi)
+        hoop += field[3] * first + field[4] * second
+        hoop += field[5] * (first * first - second * second) + field[6] * (2.0 * first * second)
+        out[0, i], out[1, i], out[2, i] = -found[0], hoop, found[1]
