@@ -6,10 +6,9 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
-from fastpin import casefile, figures, model, report, solver, studies
-from fastpin.cli.progress import Bar, note_duration
+from fastpin import casefile, figures, report, studies
+from fastpin.cli.progress import Bar
 from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -33,7 +32,6 @@ def run(options: argparse.Namespace) -> int:
     outputs = {"--csv": options.csv, "--json": options.json, "--plot": options.plot}
     check_outputs(outputs)
     code, trouble = EXIT_OK, ""
-    note_duration(_expected_seconds(case, nodes, increments, options.increment_nodes))
     with Bar(1, "{desc}") as progress_bar:
 
         def progress(done: float, total: float, what: str) -> None:
@@ -66,17 +64,6 @@ def run(options: argparse.Namespace) -> int:
     more = f" and {counts[1]} increments" if len(counts) > 1 else ""
     kept = f"kept: corner {', '.join(map(str, study.loads))} with {counts[0]} nodes{more}"
     return fail(f"{trouble}; {kept}", written or code)
-
-
-def _expected_seconds(case: model.Case, nodes: list[int], increments: list[int], increment_nodes: int | None) -> float:
-    """The seconds of all grids. 0 for numbers that the study will refuse."""
-    grids: list[dict[str, Any]] = [{"nodes": count} for count in nodes]
-    grids += [{"nodes": increment_nodes or nodes[-1], "method": "increment", "increments": each} for each in increments]
-    try:
-        settings = [model.SolveOptions(**each) for each in grids]
-    except InputError:
-        return 0.0
-    return sum(solver.expected_seconds(case.problem, case.history, each) for each in settings)
 
 
 def _numbers(option: str, text: str) -> list[int]:

@@ -23,15 +23,6 @@ DELAY = 2.0
 FIRST_LINE, RARER = 5.0, 2.0
 """Seconds after which a log has its first line, and the growth of the time until each next one: an hour has ten."""
 
-LONG = 60.0
-"""Seconds above which a user is told before the work begins."""
-
-
-def note_duration(seconds: float, hint: str = "") -> None:
-    """Print a note before work that will take more than a minute. `hint` says how to save time."""
-    if seconds > LONG:
-        say(f"fastpin: note: this will take about {_words(seconds)}{hint}", file=sys.stderr)
-
 
 def _words(seconds: float) -> str:
     """A duration in words, with one or two digits."""

@@ -10,7 +10,6 @@ from typing import Any
 
 from fastpin import casefile, pages, solver, studies
 from fastpin.cli.progress import LOAD_POINTS, READ_POINTS, Bar, progress_to
-from fastpin.cli.run import note_run
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, EXIT_READING, fail, flag, say
 from fastpin.errors import CaseFileError, InputError, ReadingError
 from fastpin.model.case import About, Case
@@ -81,7 +80,6 @@ def _of_case(options: argparse.Namespace, page: Path) -> int:
     case = dataclasses.replace(case, title=options.title or case.title, about=merged(case.about, _about(options)))
     if options.error_bars:
         case = dataclasses.replace(case, options=case.options.changed(error_bars=True))
-    note_run(case)
     with Bar(len(case.history), LOAD_POINTS) as bar:
         try:
             result = solver.solve(case.problem, case.history, progress=progress_to(bar), **case.options.keywords())

@@ -19,7 +19,7 @@ from fastpin.cli import wear
 from fastpin.cli.crack import followed, stored_stops
 from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.options import literal
-from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration, progress_to
+from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -80,7 +80,6 @@ def run(options: argparse.Namespace) -> int:
     if start is not None:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
-    note_run(case)
     beside.module = first.MODULE  # compiles in a second process during a first run
     with Bar(len(case.history), LOAD_POINTS) as progress_bar, _as_options(options):
         keywords["progress"] = progress_to(progress_bar)
@@ -93,12 +92,6 @@ def run(options: argparse.Namespace) -> int:
     if options.output is not None:
         return _write_stored(case, options, ended)
     return RunReport(case, None, solved[0] if ended is None else ended.result, ended).write(options)
-
-
-def note_run(case: Case) -> None:
-    """Print a note before a run that will take more than a minute."""
-    seconds = solver.expected_seconds(case.problem, case.history, case.options)
-    note_duration(seconds, f", with {case.options.nodes:,} nodes; half as many take a fifth of the time")
 
 
 def resume(options: argparse.Namespace) -> int:

@@ -11,13 +11,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from fastpin import figures, report, solver, studies
+from fastpin import figures, report, studies
 from fastpin.cli.options import literal
-from fastpin.cli.progress import READ_POINTS, Bar, note_duration, progress_to
+from fastpin.cli.progress import READ_POINTS, Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say
 from fastpin.errors import InputError
 from fastpin.figures.kinds import DEFAULT_KEY_FIGURE
-from fastpin.runtime.threads import cores
 
 MOST_REASONS = 20
 """Most failed runs that are listed with their reasons."""
@@ -57,8 +56,6 @@ def run_plan(
     options: argparse.Namespace, plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None
 ) -> studies.sweep.Summary:
     """Solve the runs of a plan with a progress bar."""
-    if options.dask is None:
-        note_duration(_expected_seconds(plan, directory, shard, options.workers))
     with _executor(options.dask) as executor, Bar(len(plan.points), "run {n} of {total}") as progress_bar:
         progress = progress_to(progress_bar)
         try:
@@ -76,18 +73,6 @@ def fail_interrupted(plan: studies.plan.Plan, directory: Path, shard: tuple[int,
     now = studies.sweep.status(plan, directory, shard)
     kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command continues"
     return fail(f"interrupted; {kept}", EXIT_INTERRUPTED)
-
-
-def _expected_seconds(
-    plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None, workers: int | None
-) -> float:
-    """The seconds of the runs that wait. Some of the runs stand for all."""
-    waiting = studies.sweep.status(plan, directory, shard).waiting
-    points = list(plan.runs.values())
-    picked = points[:: -(-len(points) // 100)]  # reading a case takes a millisecond
-    cases = [plan.case(point) for point in picked]
-    seconds = [solver.expected_seconds(case.problem, case.history, case.options) for case in cases]
-    return waiting * sum(seconds) / len(seconds) / max(workers or cores(), 1)
 
 
 @contextmanager

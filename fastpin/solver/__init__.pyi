@@ -1,5 +1,4 @@
 from . import assembled as assembled
-from .duration import expected_seconds as expected_seconds
 from .errors import ArcError as ArcError
 from .errors import ConvergenceError as ConvergenceError
 from .errors import Interrupted as Interrupted

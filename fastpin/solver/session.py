@@ -43,7 +43,6 @@ from fastpin.solver.task import (
     one_blas_thread,
     reference_force,
 )
-from fastpin.solver.turns import InTurns, in_turn
 from fastpin.states.state import State
 
 Replay = Literal["history", "load", "none", "follow"]
@@ -56,7 +55,7 @@ NO_HISTORY = LoadHistory([{}])
 """The history of a run that gets its loads one by one."""
 
 
-class Session(InTurns):
+class Session:
     """A contact that is led from load to load.
 
     A session gives the states of :func:`fastpin.solve`, to the same bits: the states of ``solve(session.problem,
@@ -73,8 +72,8 @@ class Session(InTurns):
       more than 4 times `nodes` or 3,000 nodes; the spacing does not divide the circle; or the contact gets too narrow
       for the nodes. A narrow contact is an error if `arc` or `grid` is given.
 
-    One thread at a time may use a session; a call from another thread is refused meanwhile. A process may have several
-    sessions. Sessions can be copied and pickled.
+    One thread at a time may use a session: two at once would mix their loads. A process may have several sessions.
+    Sessions can be copied and pickled.
 
     Parameters
     ----------
@@ -97,8 +96,7 @@ class Session(InTurns):
     Raises
     ------
     InputError
-        If an argument can't be used. The error names it. All methods and attributes raise it while another thread uses
-        the session.
+        If an argument can't be used. The error names it.
 
     Examples
     --------
@@ -141,7 +139,6 @@ class Session(InTurns):
 
     def _forget(self) -> None:
         """Forget all that can be made anew from the present place."""
-        InTurns.__init__(self)
         self._run: Run | None = None
         self._system: System | None = None
         self._limits: dict[str, tuple[int, float]] = {}
@@ -149,42 +146,35 @@ class Session(InTurns):
         self._recorder = LatestState()
 
     @property
-    @in_turn
     def problem(self) -> Problem:
         """The present problem."""
         return self._here.problem
 
     @property
-    @in_turn
     def state(self) -> State | None:
         """The present state; None before the first load."""
         return self._here.state
 
     @property
-    @in_turn
     def history(self) -> LoadHistory | None:
         """The loads that led to the present state; None before the first load."""
         return self._here.loads.history() if self._here.loads.count else None
 
     @property
-    @in_turn
     def grid(self) -> Grid | None:
         """The present nodes; None before the first load."""
         return self._here.grid
 
     @property
-    @in_turn
     def undos(self) -> int:
         """Number of places to which :meth:`undo` can go back."""
         return len(self._undo)
 
     @property
-    @in_turn
     def redos(self) -> int:
         """Number of places to which :meth:`redo` can go forward."""
         return len(self._redo)
 
-    @in_turn
     def advance(self, loads: Corner) -> State:
         """Follow one straight step from the present loads to these, and return the state there.
 
@@ -218,7 +208,6 @@ class Session(InTurns):
         assert self._here.state is not None
         return self._here.state
 
-    @in_turn
     def change(self, *, replay: Replay = "history", new_arc: bool = False, **changes: Any) -> State | None:
         """Change fields of the problem, follow the loads again, and return the state.
 
@@ -275,7 +264,6 @@ class Session(InTurns):
             self._leave_for(place)
         return self._here.state
 
-    @in_turn
     def undo(self, times: int = 1) -> State | None:
         """Go back to the place before the last load or change, and return its state; `times` times.
 
@@ -288,7 +276,6 @@ class Session(InTurns):
             raise InputError("times", f"only {len(self._undo)} earlier places are remembered, not {as_toml(times)}")
         return self._move(self._undo, self._redo, times)
 
-    @in_turn
     def redo(self, times: int = 1) -> State | None:
         """Take back so many calls of :meth:`undo`, and return the state. A new load or change forgets them.
 
@@ -309,7 +296,6 @@ class Session(InTurns):
         self._go_back()
         return self._here.state
 
-    @in_turn
     def reset(self) -> None:
         """Go back to no load, with the present problem and nodes. The history and all other places are forgotten."""
         self._here = replace(self._here, loads=Loads(), restart=None, state=None, followed=False)
@@ -317,7 +303,6 @@ class Session(InTurns):
         self._redo.clear()
         self._run = None
 
-    @in_turn
     def copy(self, matrices: bool = True) -> Session:
         """Another session at the same place, with the same matrices or, to be small, without `matrices`."""
         other = Session.__new__(Session)
@@ -326,7 +311,6 @@ class Session(InTurns):
             other._system, other._recorder.outside = self._system, self._recorder.outside
         return other
 
-    @in_turn
     def result(self, keep: str | KeepRule = DEFAULTS.keep) -> Result:
         """Follow the history once more, and return the result with a state for every load.
 
@@ -347,7 +331,6 @@ class Session(InTurns):
             raise InputError("result", "a change of the friction was followed; the loads alone give other states")
         return solve(self.problem, history, grid=self.grid, keep=keep, slip_sums=self._options.slip_sums)
 
-    @in_turn
     def __getstate__(self) -> dict[str, Any]:
         return {
             "options": self._options, "expected": self._expected, "grid": self._grid, "here": self._here,
@@ -361,7 +344,6 @@ class Session(InTurns):
 
     __copy__ = copy
 
-    @in_turn
     def __repr__(self) -> str:
         here = self._here
         nodes = "no nodes yet" if here.grid is None else f"{here.grid.size} nodes"

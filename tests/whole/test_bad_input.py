@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import bodies, damage, model, solver, states
+from fastpin import bodies, damage, model, states
 from fastpin.casefile.reader import parse_case
 from fastpin.cli.main import main
 from fastpin.errors import CaseFileError, InputError
@@ -303,7 +303,6 @@ STATE = SOLVED[-1]
             lambda: damage.smith_watson_topper_life([1.0], 2e11, 1e300, -0.1, 0.5, -0.6),
             "fatigue_strength: must give a coefficient that is a positive number, not inf",
         ),
-        (lambda: solver.expected_seconds(None, [], None), "problem: must be a Problem, not None"),
         (lambda: fastpin.plot_tractions(SOLVED, title="x" * 2_001), "title: must have at most 2,000 characters in a"),
         (
             lambda: fastpin.plot_tractions(SOLVED, states=range(2**62)),

@@ -1,17 +1,14 @@
-"""Notes of long work, and progress in whole load points."""
+"""Progress in whole load points, and the time that is left."""
 
 import contextlib
 import io
 import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
-from fastpin.casefile.reader import EXAMPLE
 from fastpin.cli import progress
-from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration
-from tests.support.commands import said
+from fastpin.cli.progress import LOAD_POINTS, Bar
 
 
 @pytest.mark.parametrize(
@@ -25,26 +22,8 @@ from tests.support.commands import said
         (1e9, "11,574 days"),
     ],
 )
-def test_long_work_is_announced_in_words(length: float, words: str, capsys: pytest.CaptureFixture[str]) -> None:
-    note_duration(60.0)
-    assert capsys.readouterr().err == ""
-    note_duration(length, ", with 9 nodes")
-    assert capsys.readouterr().err == f"fastpin: note: this will take about {words}, with 9 nodes\n"
-
-
-@pytest.mark.gate
-@pytest.mark.parametrize(
-    "command",
-    ["run case.toml --nodes 101", "converge case.toml --nodes 51,61,71", "sweep plan.toml --workers 1"],
-)
-def test_each_command_announces_long_work(command, monkeypatch):
-    monkeypatch.setattr(progress, "LONG", 1e-3)
-    Path("case.toml").write_text(EXAMPLE)
-    Path("plan.toml").write_text('case = "case.toml"\n[grid]\nsolve.nodes = [51, 61]\n')
-    more = ", with 101 nodes; half as many take a fifth of the time" if "run" in command else ""
-    assert said(*command.split()).err == f"fastpin: note: this will take about 1 second{more}\n"
-    if "sweep" in command:  # nothing is left to do
-        assert said(*command.split()).err == ""
+def test_the_time_that_is_left_is_told_in_words(length: float, words: str) -> None:
+    assert progress._words(length) == words
 
 
 def test_progress_counts_whole_load_points(monkeypatch: pytest.MonkeyPatch) -> None:
