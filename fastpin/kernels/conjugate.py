@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from fastpin.kernels.influence import AROUND_PI, AROUND_PI_TERMS, AROUND_ZERO, AROUND_ZERO_TERMS
+from fastpin.kernels.influence import clausen
 from fastpin.runtime.jit import compiled, inner
 
 TERMS = 28
@@ -37,22 +37,6 @@ NEAR = 0.02
 
 SAME = 4e-15
 """Distance of two angles that is rounding, rad."""
-
-
-@inner
-def _clausen(x):
-    """Clausen's function, see :func:`fastpin.kernels.influence.clausen`, for |x| <= pi. It takes few terms near 0."""
-    size, total = abs(x), 0.0
-    if size == 0.0:
-        return 0.0
-    if size < 2.0:
-        for k in range(5 if size < 0.3 else AROUND_ZERO_TERMS, 0, -1):
-            total = (total + AROUND_ZERO[k - 1]) * (size * size)
-        return x * (1.0 - math.log(size) + total)
-    y = math.pi - size
-    for k in range(AROUND_PI_TERMS, 0, -1):
-        total = (total + AROUND_PI[k - 1]) * (y * y)
-    return math.copysign(y * (math.log(2.0) - total), x)
 
 
 @inner
@@ -117,7 +101,7 @@ def _near(theta, nodes, first, last, joined, found):
                 part = min(max(x / step, 0.0), 1.0) if step > 0.0 else 0.0
                 found[0] = nodes[j, 1] + part * (nodes[j + 1, 1] - nodes[j, 1])
                 found[1] = nodes[j, 2] + part * (nodes[j + 1, 2] - nodes[j, 2])
-        total -= jump * _clausen(x)
+        total -= jump * clausen(x)
         if j in (first, last) and nodes[j, 2] != 0.0 and x != 0.0:
             log = math.log(abs(2.0 * math.sin(0.5 * x)))
             total += nodes[j, 2] * log if j == first else -nodes[j, 2] * log

@@ -87,7 +87,8 @@ def test_a_rigid_body_is_left_out():
 def test_profiles_begin_with_the_stress_on_the_edge(result):
     state = result[-1]
     curve = depth_curves([state], "plate", 30.0, 0.4)[0]
-    assert curve["hoop stress [Pa]"][0] == state.hoop_stress("plate", np.radians([-60.0]))[0]
+    at_edge = state.hoop_stress("plate", np.radians([-60.0]))[0]  # another formula has it on the edge alone
+    assert curve["hoop stress [Pa]"][0] == pytest.approx(at_edge, rel=1e-13)
     assert curve["depth [m]"][[0, -1]] == pytest.approx([0.0, 0.4 * 2.4e-3])
     figure = figures.plot_stress_profile(result, angle=30.0)
     assert "at 30.00 deg" in figure.get_suptitle()

@@ -6,8 +6,6 @@ from scipy.special import spence
 
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
 from fastpin.kernels import conjugate
-from fastpin.kernels.influence import clausen
-from tests.support.kernels import python
 
 KERNELS = conjugate
 PARTS = {"N": 1, "H": 2, "cos": 3, "sin": 4, "cos 2": 5, "sin 2": 6}
@@ -101,10 +99,3 @@ def test_points_do_not_depend_on_their_neighbours(way):
     tractions, theta = samples()["arc"], np.linspace(-4.0, 2.0, 7)
     alone = [read(tractions, theta[k : k + 1], "H")[:, 0] for k in range(7)]
     assert np.array_equal(read(tractions, theta, "H").T, alone)
-
-
-def test_clausen_with_few_terms_near_0():
-    few = python(conjugate._clausen)
-    for x in np.r_[0.0, 10.0 ** np.linspace(-12.0, 0.49, 200), np.pi]:
-        assert few(x) == pytest.approx(clausen(x), rel=1e-15, abs=4e-16)
-        assert few(-x) == -few(x)
