@@ -40,6 +40,12 @@ def shown_unit(unit: str) -> str:
     return f"µ{unit[1:]}" if unit[:1] == "u" and len(unit) > 1 else unit
 
 
+def shown_label(label: str) -> str:
+    """A label with the letters of figures in its units."""
+    label = re.sub(r"\(([^()]*)\)$", lambda found: f"({shown_unit(found[1])})", label)
+    return re.sub(r"(?<=\d )u(?=\w+$)", "µ", label, flags=re.MULTILINE).replace(" -", " −")
+
+
 def quantity(words: str, unit: str = "") -> str:
     """The words of an axis: a quantity, with its unit in parentheses if it has one."""
     return f"{words} ({shown_unit(unit)})" if unit else words
