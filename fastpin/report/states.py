@@ -49,9 +49,6 @@ MOST_COMPARED = 1_000
 IN_PHASE = 1e-9
 """Largest difference of two load points, in cycles, that is rounding. A larger one only lets more states be read."""
 
-MOST_ZONES = 6
-"""Most zones of a state that a row of a table lists. Of more it has the number, and both ends."""
-
 _DEGREE = math.degrees(1.0)
 
 
@@ -460,7 +457,7 @@ def _bar(state: State, factor: float, *names: str) -> str:
 
 def _intervals(state: State, zone: str) -> str:
     parts, zones = [], getattr(state, zone)
-    if len(zones) > MOST_ZONES:
+    if len(zones) > 6:  # a row with more would be too long to read
         first, last = interval_from_bottom(zones[0][0], zones[-1][1])
         return f"{len(zones)} zones within {first:z.2f} to {last:z.2f}"
     for number, (start, stop) in enumerate(zones, start=1):

@@ -87,7 +87,7 @@ def test_the_report_has_the_hot_spots(folder, source):
 
 
 def test_check_explains_the_section(folder):
-    words = "smith-watson-topper, over the whole history as a spectrum, Miner's rule modified by Haibach"
+    words = "Smith-Watson-Topper, over the whole history as a spectrum, Miner's rule modified by Haibach"
     assert words in printed("check", folder / "case.toml")
 
 
