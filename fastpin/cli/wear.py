@@ -24,6 +24,7 @@ from fastpin.cli.terminal import (
     write_text,
 )
 from fastpin.errors import InputError
+from fastpin.report.notes import way_on
 
 
 def run(options: argparse.Namespace) -> int:
@@ -75,7 +76,7 @@ def show(options: argparse.Namespace) -> int:
     life, title, error = storage.load_wear(path), storage.stored_case(path).title, storage.stored_error(path)
     code = _write(life, options, title, error)
     if not life.complete and options.json != "-":
-        why, how = f": {error}" if error else "", report.notes.way_on(path, error)
+        why, how = f": {error}" if error else "", way_on(path, error)
         say(f"note: the life is unfinished{why}{f'; {how}' if how else ''}")
     return code
 

@@ -89,7 +89,7 @@ def reserve_margins(reserves: Sequence[StressReserve], how: FatigueAssessment) -
     """
     return [
         Margin(
-            f"{edge_body(one.problem, one.body)}: {one.criterion}, factor on all stresses",
+            f"{edge_body(one.problem, one.body)}: {one.criterion.title()}, factor on all stresses",
             "ratio", 1.0, one.factor, one.largest, _remark(one, how), one.loads, "fatigue",
             owner_of(one.problem, one.body), part_of(one.problem, owner_of(one.problem, one.body)),
         )

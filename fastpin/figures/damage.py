@@ -55,8 +55,8 @@ def damage_of(life: WearResult, found: WornFatigue) -> Plot:
         lambda path: write_csv([damage_curve(found)], path),
         f"Map of the damage under the first surface of the {edge_body(found.problem, found.body)}, and its largest "
         f"value over {cycles_text(life[-1].cycle)}: {found.words}.",
-        f"Damage by {found.criterion} of the material under the first surface, and the largest damage of all material "
-        "that is still there. Damage goes with the material that wears off.",
+        f"Damage by {found.criterion.title()} of the material under the first surface, and the largest damage of all "
+        "material that is still there. Damage goes with the material that wears off.",
         bitmap=True,
     )
 
@@ -79,7 +79,7 @@ def _draw(look: Look, life: WearResult, found: WornFatigue) -> Sheet:
         Line2D([], [], label="of all material", **EVER),
     ]
     sheet.legend(handles, 2)
-    head = f"{edge_body(found.problem, found.body)}, {found.criterion}: {found.words.replace(' um ', ' µm ')}"
+    head = f"{edge_body(found.problem, found.body)}, {found.criterion.title()}: {found.words.replace(' um ', ' µm ')}"
     head += "" if life.complete else f"; {followed_words(life)}"
     sheet.head(look.title, head, caption=life_caption(life))
     return sheet

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, line
-from fastpin.figures.sweep import MARKERS, fixed_parameters, shown_label
-from fastpin.figures.words import quantity
+from fastpin.figures.sweep import MARKERS, fixed_parameters
+from fastpin.figures.words import quantity, shown_label
 from fastpin.model.checks import instances
 from fastpin.model.problem import Problem
 from fastpin.model.units import PASCAL

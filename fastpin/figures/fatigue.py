@@ -126,9 +126,9 @@ def spectrum_of(found: Sequence[SpectrumDamage]) -> Plot:
     return Plot(
         lambda look: _draw_spectrum(look, found),
         lambda path: write_csv([spectrum_curve(one) for one in found], path),
-        f"Line chart of the damage by {found[0].criterion} along the edge of the {edges}.",
-        f"Damage of one spectrum by {found[0].criterion} along the edge of the {edges}, with its hot spot, and the "
-        "life. Short lines are the worst planes.",
+        f"Line chart of the damage by {found[0].criterion.title()} along the edge of the {edges}.",
+        f"Damage of one spectrum by {found[0].criterion.title()} along the edge of the {edges}, with its hot spot, "
+        "and the life. Short lines are the worst planes.",
     )
 
 
@@ -155,7 +155,7 @@ def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
         handles.append(Line2D([], [], label="worst planes", color="0.3", linewidth=1.0))
         axes[0, 0].set_ylim(0.0, 1.15 * highest)
         axes[1, 0].set_ylim(0.5 / highest, 1e4 / highest)
-    axes[0, 0].set_ylabel(f"damage of a spectrum,\n{damages[0].criterion}")
+    axes[0, 0].set_ylabel(f"damage of a spectrum,\n{damages[0].criterion.title()}")
     axes[1, 0].set_ylabel("life (spectra)")
     for panel in axes[:, 0]:
         panel.set_xlim(-180.0, 180.0)
@@ -181,9 +181,9 @@ def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
     return Plot(
         lambda look: _draw(look, each),
         lambda path: write_csv([fatigue_curve(one) for one in each], path),
-        f"Line chart of the {each[0].criterion} parameter along the edge of the {edges}.",
-        f"Parameter {each[0].criterion} along the edge of the {edges}, with its hot spot{life}. Short lines are the "
-        "worst planes.",
+        f"Line chart of the {each[0].criterion.title()} parameter along the edge of the {edges}.",
+        f"Parameter {each[0].criterion.title()} along the edge of the {edges}, with its hot spot{life}. Short lines "
+        "are the worst planes.",
     )
 
 
@@ -211,7 +211,7 @@ def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
         top.set_ylim(min(1.15 * lowest, 0.0), max(1.15 * highest, 0.0))
     else:
         top.set_yticks([0.0])  # no other value has a meaning
-    top.set_ylabel(quantity(f"parameter of\n{found[0].criterion}", unit))
+    top.set_ylabel(quantity(f"parameter of\n{found[0].criterion.title()}", unit))
     for k, life in lives.items():
         angle, order = _by_angle(found[k])
         axes[1, 0].semilogy(angle, np.where(np.isfinite(life), life, np.nan)[order], **line(2 * k))

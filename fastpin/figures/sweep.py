@@ -26,7 +26,7 @@ from fastpin.errors import InputError
 from fastpin.figures.class_map import class_patches, draw_classes
 from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
-from fastpin.figures.words import caption, shown_unit, wrapped
+from fastpin.figures.words import caption, shown_label, wrapped
 from fastpin.model.checks import instance, instances
 from fastpin.model.problem import Problem
 from fastpin.report.sweep import Axis, Chart
@@ -454,12 +454,6 @@ def _mark_failed(panel: Axes, x: np.ndarray, index: int) -> None:
         linestyle="none",
         color=line(index)["color"],
     )
-
-
-def shown_label(label: str) -> str:
-    """A label with the letters of figures in its units."""
-    label = re.sub(r"\(([^()]*)\)$", lambda found: f"({shown_unit(found[1])})", label)
-    return re.sub(r"(?<=\d )u(?=\w+$)", "µ", label, flags=re.MULTILINE).replace(" -", " −")
 
 
 def _scale_axes(panel: Axes, chart: Chart) -> None:

@@ -17,8 +17,8 @@ from matplotlib.ticker import MaxNLocator
 from fastpin.errors import InputError
 from fastpin.figures.sheet import WIDE, WIDTH, Look, Plot, Sheet
 from fastpin.figures.style import COLOURS
-from fastpin.figures.sweep import round_numbers, shown_label
-from fastpin.figures.words import shown_unit
+from fastpin.figures.sweep import round_numbers
+from fastpin.figures.words import shown_label, shown_unit
 from fastpin.model.checks import instances
 from fastpin.report.tolerances import MOST_OUTCOMES, ToleranceChart
 

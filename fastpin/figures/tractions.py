@@ -20,7 +20,7 @@ from fastpin.figures.sketch import draw_sketch, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, name_states, state_lines
 from fastpin.figures.style import Line
 from fastpin.figures.subjects import InMemory, Subject
-from fastpin.figures.words import ANGLE, point_text, points_text, quantity
+from fastpin.figures.words import ANGLE, is_bonded, point_text, points_text, quantity
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.checks import true_or_false
 from fastpin.model.points import owner_of
@@ -144,7 +144,7 @@ def _draw_curves(axes: Sequence[Axes], states: DrawnStates, curves: Sequence[Cur
         axes[0].plot(angle, factor * pressure, **style)
         if not problem.frictionless:
             friction = friction_along(state, angle)
-            for sign in (1.0, -1.0):
+            for sign in () if is_bonded(problem) else (1.0, -1.0):
                 bound = factor * sign * friction * pressure
                 axes[1].plot(angle, bound, color=style["color"], linewidth=0.5, alpha=0.55, zorder=1)
             axes[1].plot(angle, factor * shear, **style)
@@ -194,7 +194,8 @@ def _styles(states: DrawnStates, bars: bool) -> list[Artist]:
     if bars:
         styles.append(Patch(color="0.35", alpha=_BAND, linewidth=0, label="band: error bars of the curves"))
     if not states[0].problem.frictionless:
-        styles.append(Line2D([], [], color="0.5", linewidth=0.5, label="thin: bounds ±μN of T"))
+        if not is_bonded(states[0].problem):
+            styles.append(Line2D([], [], color="0.5", linewidth=0.5, label="thin: bounds ±μN of T"))
         if len(states) == 1:
             styles.append(Patch(color=_SHADE, linewidth=0, label="slip"))
         else:

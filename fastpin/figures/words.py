@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from fastpin.bodies.bushing import STUCK
 from fastpin.model.checks import shortened
 from fastpin.model.laminate import Laminate
 from fastpin.model.loads import LOAD_KIND, LOADS
@@ -37,6 +38,12 @@ def shown_unit(unit: str) -> str:
     """A unit as figures show it: with the letters for micro and beta."""
     unit = unit.replace("beta*", "β*").replace("^2", "²").replace("^3", "³").replace("sqrt(m)", "√m")
     return f"µ{unit[1:]}" if unit[:1] == "u" and len(unit) > 1 else unit
+
+
+def shown_label(label: str) -> str:
+    """A label with the letters of figures in its units."""
+    label = re.sub(r"\(([^()]*)\)$", lambda found: f"({shown_unit(found[1])})", label)
+    return re.sub(r"(?<=\d )u(?=\w+$)", "µ", label, flags=re.MULTILINE).replace(" -", " −")
 
 
 def quantity(words: str, unit: str = "") -> str:
@@ -79,6 +86,11 @@ def loads_by_change(states: Sequence[State]) -> tuple[list[str], list[str]]:
     return [name for name in acting if name not in differing], differing
 
 
+def is_bonded(problem: Problem) -> bool:
+    """Whether a contact is the seat of a bonded bush: its friction stands for the bond, and has no bounds to show."""
+    return problem.least_friction >= STUCK
+
+
 def caption(problem: Problem, states: Sequence[State] = ()) -> str:
     """The parameters of a problem as text: materials, bodies, friction, sizes, and the load parameter of the states."""
     unit = units(problem)
@@ -91,7 +103,7 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
         f"{owner_of(problem, 'pin')}: {_material(pair.pin, problem)}{pin_body}; plate: {_material(pair.plate, problem)}"
     ]
     parts[0] += f"{plate_body}; plane {pair.plane}"
-    parts.append(f"friction coefficient {problem.friction_words(DIGITS)}")
+    parts.append("bonded" if is_bonded(problem) else f"friction coefficient {problem.friction_words(DIGITS)}")
     if isinstance(problem.friction, Profile):
         parts[-1] += f": {_profile_words(problem.friction, lambda value: f'{value:.{DIGITS}g}')}"
     for name, profile in problem.gap.given.items():

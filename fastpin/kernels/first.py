@@ -27,18 +27,18 @@ def kernels() -> list[tuple[Any, ...]]:
     row, rows, block = (np.zeros((1,) * k, dtype=np.complex128) for k in (1, 2, 3))
     return [
         (end_places, line, places, table, cube, table),
-        (conjugate.gather, table, places, line, table, table, table, table),
-        (conjugate.edge, line, line, table, 0, places, table, table, table),
         (value_errors, line, places, table, cube, line, line),
+        (solve, line, 0, table, cube, line, table),
+        (match, 0, table, cube, line, table, table),
         (cauchy.cauchy, line, line, True, table, 0, places, row, line, block, rows),
         (cauchy.grow, table, 0, line, line, table, places, row, line, block),
         (power_laws.fit, line, line, 0j, False, places, row),
+        (conjugate.edge, line, line, table, 0, places, table, table, table),
+        (conjugate.gather, table, places, line, table, table, table, table),
         (least_squares, table, line, line),
-        (power_laws.evaluate, line, 0j, row, line),
-        (series, 0, 0, table, cube, table, table),
         (evaluate, line, 0.0, 0, table, cube, table, table),
-        (match, 0, table, cube, line, table, table),
-        (solve, line, 0, table, cube, line, table),
+        (series, 0, 0, table, cube, table, table),
+        (power_laws.evaluate, line, 0j, row, line),
     ]
 
 

@@ -353,7 +353,7 @@ def law_words(law: KnownLaw) -> str:
     entries = law_entries(law)
     names = ", ".join(f"{name} = {value:.6g}" for name, value in entries.items() if not isinstance(value, str))
     source = f"; source: {entries['source']}" if law.source else ""
-    return f"{entries['law']}, {names}{source}"
+    return f"{entries['law']}, {names} (SI units){source}"
 
 
 def law_from(entries: dict[str, Any]) -> KnownLaw:

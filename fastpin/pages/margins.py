@@ -66,17 +66,14 @@ def margins(page: PageParts) -> PageSection:
     remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
     remarks += "down to a third of the hole's radius below them; fastpin is elastic."
     if any(row.part for row in found):
-        remarks += (
-            " Of the plate only the edge of its hole is looked at: its other edges, and points below them, may fail "
-        )
-        remarks += "first."
+        remarks += " Of the plate only the edge of its hole is looked at: its other places may fail first."
     rows, author = margin_rows(source.case.problem, found), source.case.about.author
     signed = [("prepared", author, "", ""), ("checked", "", "", ""), ("approved", "", "", "")]
     return PageSection(
         "margins",
         "Margins",
         [
-            Text(sentence(verdict(found))),
+            Text(sentence(verdict(found, source.result.complete))),
             Facts(words, rows, HEADS),
             Text(remarks),
             Facts("Signatures", signed, ("", "name", "date", "signature"), tall=True),

@@ -15,7 +15,7 @@ from fastpin.figures.fatigue import fatigue_of, spectrum_of
 from fastpin.figures.gap import gap_of
 from fastpin.figures.history import history_of
 from fastpin.figures.laminates import strength_of
-from fastpin.figures.load_cycle import STRAIGHT, loops_of, slip_of
+from fastpin.figures.load_cycle import STRAIGHT, area_doubt, loops_of, slip_of
 from fastpin.figures.sketch import sketch_of
 from fastpin.figures.states import DrawnStates
 from fastpin.figures.stick_slip import stick_slip_plot
@@ -86,11 +86,12 @@ def overview(page: PageParts) -> PageSection:
     cycle = source.cycle
     parts: list[SectionPart] = [_status(source), *warnings_and_notes(source)]
     if source.points.size and not problem.dimensionless:
-        parts.append(Text(f"Verdict: {verdict(page.margins)}."))
+        parts.append(Text(f"Verdict: {verdict(page.margins, source.result.complete)}."))
     if source.peaks:
         largest = source.peaks[top([state.peak_pressure for state in source.peaks])]
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
-        sentences = [f"largest contact pressure in all kept states: {pressure}, load point {point}"]
+        touched = f"largest contact pressure in all kept states: {pressure}, load point {point}"
+        sentences = [touched if largest.peak_pressure else "the pin touches the hole in no kept state"]
         sentences += [hoop_line(problem, source.peaks, body) for body in EDGES]
         sentences += [*bush_line(problem, source.peaks).splitlines(), *_seat_lines(source)]
         lines = cycle_lines(problem, source.result.cycles, source.peaks)
@@ -258,10 +259,8 @@ def key_figures(page: PageParts) -> PageSection:
     parts: list[SectionPart] = [Table("States", state_columns(problem, states), gaps)]
     parts.append(_all_quantities(source.drawn))
     if states[0].error_bars is None:
-        how = (
-            "There are no error bars. fastpin report CASE.toml --error-bars solves the case with them, and "
-            "fastpin run CASE.toml --error-bars -o FILE.h5 keeps them in a file. In Python it is error_bars=True."
-        )
+        how = "There are no error bars. fastpin report CASE.toml --error-bars solves the case with them, and fastpin "
+        how += "run CASE.toml --error-bars -o FILE.h5 keeps them in a file. In Python it is error_bars=True."
         if page.source.case.options.error_bars:
             how = "There are no error bars: their run on the coarse grid has not ended. fastpin resume continues it."
         parts.append(Text(how, "missing"))
@@ -286,12 +285,9 @@ def _all_quantities(drawn: Sequence[State]) -> Table:
 
 def tractions(page: PageParts) -> PageSection:
     """Return the figure of the tractions."""
-    if not page.source.drawn:
-        return PageSection("tractions", "Tractions", [Text(NO_STATE, "missing")])
     if not any(state.in_contact for state in page.source.drawn):
-        return PageSection(
-            "tractions", "Tractions", [Text("Pin and hole do not touch in the drawn states.", "missing")]
-        )
+        why = "Pin and hole do not touch in the drawn states." if page.source.drawn else NO_STATE
+        return PageSection("tractions", "Tractions", [Text(why, "missing")])
     return PageSection("tractions", "Tractions", [page.album.figure(tractions_plot(InMemory(page.source.drawn)))])
 
 
@@ -330,10 +326,8 @@ def seat(page: PageParts) -> PageSection:
     drawn, mapped = source.drawn.seats, source.mapped.seats
     if not drawn:
         return PageSection("seat", "Seat of the bush", [Text(NO_STATE, "missing")])
-    words = (
-        "Here the bush is the pin, and its seat in the plate the hole: the motion is that of the bush over the plate."
-    )
-    words += " Work is that of the whole joint."
+    words = "Here the bush is the pin, and its seat in the plate the hole: the motion is that of the bush over the "
+    words += "plate. Work is that of the whole joint."
     parts: list[SectionPart] = [*(Text(sentence(line)) for line in _seat_lines(source)), Text(words)]
     parts += drawn_or_reason(lambda: page.album.figure(tractions_plot(InMemory(drawn))))
     if len(mapped) > 1:
@@ -365,6 +359,8 @@ def hysteresis(page: PageParts) -> PageSection:
         parts += drawn_or_reason(lambda: page.album.figure(loops_of([cycle])))
         if len(cycle.states) <= STRAIGHT:
             parts.append(Text("Loops need states between the corners, such as between = 20 in [solve].", "missing"))
+        elif doubt := area_doubt(cycle):
+            parts.append(Text(sentence(doubt), "note"))
         parts += slip_parts(page, cycle)
     if source.result.cycles:
         parts += drawn_or_reason(lambda: page.album.figure(cycles_of(source.result)))

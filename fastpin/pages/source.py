@@ -318,10 +318,8 @@ class Source:
 
     @cached_property
     def spectrum(self) -> list[SpectrumDamage]:
-        """Damage of plate and bush over a whole history without cycles, see :func:`spectrum_damages`."""
-        is_short = (
-            self.case.fatigue is None and self.cycle is None and self.life is None and self.points.size <= MOST_STOPS
-        )
+        """Damage of plate and bush over a history without repeated blocks, see :func:`spectrum_damages`."""
+        is_short = (self.case.fatigue, self.last_cycle, self.life) == (None,) * 3 and self.points.size <= MOST_STOPS
         states = self.read(range(self.points.size)) if is_short else []
         try:
             return spectrum_damages(states, len(self.case.history))

@@ -170,10 +170,7 @@ def _race(found: WornFatigue) -> list[tuple[str, str]]:
     return [
         ("end of the race", f"{found.race.words}: {found.words}"),
         ("life on the first profile alone", alone),
-        (
-            "largest damage of material still there",
-            f"{left.damage:.4g}, {place}",
-        ),
+        ("largest damage of material still there", f"{left.damage:.4g}, {place}"),
         ("largest damage of material worn off", f"{gone:.4g}" if gone else "none"),
         ("change with every second stored cycle", change),
     ]

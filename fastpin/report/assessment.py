@@ -85,7 +85,7 @@ def assessment_lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]
 
 def _line(damage: SpectrumDamage, how: FatigueAssessment) -> str:
     spot, counted = damage.hot_spot, damage.cycles
-    name = f"fatigue of the {edge_body(damage.problem, damage.body)}, {damage.criterion}"
+    name = f"fatigue of the {edge_body(damage.problem, damage.body)}, {damage.criterion.title()}"
     if math.isnan(spot.theta):
         return f"{name}: no damage"
     depth = "" if spot.depth == 0.0 else f", {units(damage.problem)['length'].text(spot.depth, 3)} below the edge"
@@ -93,12 +93,15 @@ def _line(damage: SpectrumDamage, how: FatigueAssessment) -> str:
         f"life {spot.life:.4g} {how.passes}, damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}",
         f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x",
     ]
-    cycles = []
-    for k in range(min(len(counted.damage), MOST_CYCLES)):
-        share, times = 100.0 * counted.damage[k] / spot.damage, int(counted.times[k])
-        if share >= 0.5:
-            ends = f"{counted.start[k]:.6g} and {counted.stop[k]:.6g}"
-            cycles.append(f"{share:.0f} % by load points {ends}" + (f" ({times:,} times)" if times > 1 else ""))
+    same: dict[frozenset[float], tuple[float, int, str]] = {}  # repeated states have the load points of the first ones
+    for start, stop, times, done in zip(counted.start, counted.stop, counted.times, counted.damage, strict=True):
+        share, before, ends = same.get(key := frozenset((start, stop)), (0.0, 0, f"{start:.6g} and {stop:.6g}"))
+        same[key] = share + 100.0 * done / spot.damage, before + int(times), ends
+    cycles = [
+        f"{share:.0f} % by load points {ends}" + (f" ({times:,} times)" if times > 1 else "")
+        for share, times, ends in sorted(same.values(), key=lambda each: -each[0])[:MOST_CYCLES]
+        if share >= 0.5
+    ]
     return f"{name}: {', '.join(parts)}; {', '.join(cycles)}"
 
 

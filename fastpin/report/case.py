@@ -90,7 +90,7 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
     if case.wear is not None:
         rows.append(("wear", _wear_words(case.wear)))
     if case.fatigue is not None:
-        rows.append(("fatigue", f"{', '.join(case.fatigue.criteria)}, over {assessment_words(case.fatigue)}"))
+        rows.append(("fatigue", f"{', '.join(case.fatigue.criteria).title()}, over {assessment_words(case.fatigue)}"))
     if case.crack is not None:
         rows.append(("crack", crack_words(problem, case.crack)))
     if case.strength is not None:

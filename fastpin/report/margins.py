@@ -40,17 +40,21 @@ def in_order(margins: Sequence[Margin]) -> list[Margin]:
     return sorted(margins, key=lambda row: (math.isnan(row.margin), row.margin))
 
 
-def verdict(margins: Sequence[Margin]) -> str:
-    """Return a sentence on the margin that governs, and on what is not known; without its full stop."""
+def verdict(margins: Sequence[Margin], is_complete: bool = True) -> str:
+    """Return a sentence on the margin that governs, and on what is not known; without its full stop.
+
+    A run that is not complete has a verdict on the loads that it reached only.
+    """
     least, unknown = smallest_margin(margins), [row.subject for row in margins if math.isnan(row.margin)]
     words = "no margin is known"
     if least is not None:
-        fails = (
-            "the joint fails by" if least.margin < 0.0 else "all known margins are positive; the smallest is that of"
-        )
+        but = " but that of a crack that grows" if any(row.margin < 0.0 for row in margins) else ""
+        safe = f"all known margins{but} are positive; the smallest{' other' * bool(but)} is that of"
+        fails = "the joint fails by" if least.margin < 0.0 else safe
         where = "" if math.isnan(least.load_point) else f", load point {point_name(least.load_point)}"
         words = f"{fails} {least.subject}: {least.margin:+.2f}{where}"
         words += f", {least.part}" if least.part else ""
+    words = words if is_complete else f"not known, the run is unfinished; up to its end {words}"
     return words + (f"; not known: {len(unknown)} of {len(margins)}, see their remarks" if unknown else "")
 
 

@@ -320,13 +320,10 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
     if peak.assembly:
         loads = 0.0 if abs(peak.loads) <= ROUNDING * abs(peak.assembly) else peak.loads
         assembly, loads_text = (units(problem)["traction"].text(value, 4) for value in (peak.assembly, loads))
-        of_loads, kt, whole = (
-            f"it is {assembly} of the assembly + {loads_text} of the loads",
-            "Kt of the loads",
-            "the part of the loads",
-        )
+        of_loads = f"it is {assembly} of the assembly + {loads_text} of the loads"
+        kt, whole = "Kt of the loads", "the part of the loads"
     known = [f"{kt} {value:.4g} on the {name} stress" for name, value in ratios.items() if math.isfinite(value)]
-    sums = [f"{whole} is {' + '.join(terms)}"] if known and len(terms) > 1 else []
+    sums = [f"{whole} is {' + '.join(terms).replace('+ -', '- ')}"] if known and len(terms) > 1 else []
     return "; ".join(filter(None, [text, of_loads, *known, *sums]))
 
 
@@ -459,8 +456,11 @@ def _bar(state: State, factor: float, *names: str) -> str:
 
 
 def _intervals(state: State, zone: str) -> str:
-    parts = []
-    for number, (start, stop) in enumerate(getattr(state, zone), start=1):
+    parts, zones = [], getattr(state, zone)
+    if len(zones) > 6:  # a row with more would be too long to read
+        first, last = interval_from_bottom(zones[0][0], zones[-1][1])
+        return f"{len(zones)} zones within {first:z.2f} to {last:z.2f}"
+    for number, (start, stop) in enumerate(zones, start=1):
         first, last = interval_from_bottom(start, stop)
         bar = _bar(state, _DEGREE, f"{zone}_{number}_start", f"{zone}_{number}_stop")
         parts.append("all round" if is_all_round(stop - start) else f"{first:z.2f} to {last:z.2f}{bar}")

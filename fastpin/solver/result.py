@@ -25,7 +25,7 @@ from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.solver.wear_result import WearResult
-from fastpin.states.choice import StateChoice, loaded_span_of, states_between
+from fastpin.states.choice import StateChoice, loaded_span_of, missing_corners, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
@@ -364,7 +364,7 @@ class Result(Sequence[State]):
 
     def _check_corners(self) -> None:
         """Refuse a result without the states at all corners of its history."""
-        missing = states.choice.missing_corners(self.states, 1, len(self.history))
+        missing = missing_corners(self.states, 1, len(self.history))
         if missing:
             raise InputError("states", f"must hold all corners of the history; {len(missing):,} were not kept")
 

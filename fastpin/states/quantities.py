@@ -50,10 +50,8 @@ class Quantity(NamedTuple):
     is_part: bool = False
 
     def is_resolved(self, state: State) -> bool:
-        """Whether the nodes resolve its value in a state, see :class:`fastpin.reading.HoopPeak`."""
-        if self.edge is None or self.edge not in elastic_bodies(state.problem):
-            return True
-        return state.peak_hoop_stress(self.edge).resolved
+        """Whether the nodes resolve its value in a state, if there is one, see :class:`fastpin.reading.HoopPeak`."""
+        return self.edge is None or math.isnan(self.of(state)) or state.peak_hoop_stress(self.edge).resolved
 
     def shown(self, state: State) -> float | str:
         """The value for tables of other programs: a class in words."""

@@ -47,7 +47,7 @@ class Walk(NamedTuple):
     @classmethod
     def of(cls, states: Sequence[State]) -> Walk | None:
         """The walk over the states of a cycle. None without a bush that slips, or with fewer than two states."""
-        seats = tuple(state.seat for state in states if state.seat is not None)
+        seats = tuple(state.seat for state in states if state.seat is not None and state.problem.bush_slips)
         if len(seats) < 2:
             return None
         rotations = np.array([seat.rotation for seat in seats])
@@ -91,7 +91,8 @@ def walk_margins(states: Sequence[State]) -> list[Margin]:
         return []
     turn = abs(walk.turn) if walk.goes_on else 0.0
     words = walk.words(states[0].problem).removeprefix("it ")
-    return [Margin("bush: walks in its seat", "rotation", turn, 0.0, load_point(states[-1]), words, {}, "walk", "bush")]
+    end, subject = states[-1], "bush: walks in its seat"
+    return [Margin(subject, "rotation", turn, 0.0, load_point(end), words, end.load, "walk", "bush")]
 
 
 def walk_doubts(states: Sequence[State], cycles: Sequence[Cycle]) -> list[InputWarning]:

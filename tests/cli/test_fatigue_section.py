@@ -38,9 +38,15 @@ def test_run_and_show_print_the_ranked_bodies(folder):
     assert ran[0] == HEAD
     case = fastpin.read_case(folder / "case.toml")
     spot = fastpin.load(folder / "one.h5").assessed_fatigue(case.fatigue)[0].hot_spot
-    assert ran[1].startswith(f"fatigue of the plate, smith-watson-topper: life {spot.life:.4g} spectra, damage ")
+    assert ran[1].startswith(f"fatigue of the plate, Smith-Watson-Topper: life {spot.life:.4g} spectra, damage ")
     assert " % by load points " in ran[1]
     assert len(ran) == 2
+
+
+def test_equal_cycles_are_told_once():
+    case = CASE.split("[[load]]")[0] + "[[load]]\nsyy = [100e6, 10e6]\nrepeat = 3\n[fatigue]\n[solve]\nnodes = 31\n"
+    Path("case.toml").write_text(case, encoding="utf-8")
+    assert "; 100 % by load points 2 and 1 (3 times)" in printed("run", "case.toml")
 
 
 def test_json_has_the_assessment(folder):
@@ -76,12 +82,12 @@ def test_the_figure_follows_the_section(folder):
 def test_the_report_has_the_hot_spots(folder, source):
     said("report", folder / source, "-o", "page.html")
     text = Path("page.html").read_text(encoding="utf-8")
-    assert "Fatigue of the plate, smith-watson-topper: life " in text
+    assert "Fatigue of the plate, Smith-Watson-Topper: life " in text
     assert "s rule modified by Haibach below the knee at 1e+06 cycles" in text
 
 
 def test_check_explains_the_section(folder):
-    words = "smith-watson-topper, over the whole history as a spectrum, Miner's rule modified by Haibach"
+    words = "Smith-Watson-Topper, over the whole history as a spectrum, Miner's rule modified by Haibach"
     assert words in printed("check", folder / "case.toml")
 
 
@@ -140,7 +146,7 @@ def test_all_outputs_have_the_margins_of_fatigue_and_crack(asked):
     jsonschema.validate(ran, json_schema("run"))
     assert json.loads(printed("show", asked / "one.h5", "--json", "-"))["margins"] == ran["margins"]
     rows = {row["subject"]: row for row in ran["margins"]}
-    fatigue = rows["plate: smith-watson-topper, factor on all stresses"]
+    fatigue = rows["plate: Smith-Watson-Topper, factor on all stresses"]
     assert (fatigue["value"], fatigue["allowable"], fatigue["unit"]) == (1.0, reserve.factor, "")
     assert (fatigue["name"], fatigue["body"], fatigue["load_point"]) == ("fatigue", "plate", reserve.largest)
     assert fatigue["margin"] == pytest.approx(reserve.factor - 1.0)
@@ -150,7 +156,7 @@ def test_all_outputs_have_the_margins_of_fatigue_and_crack(asked):
     assert fracture["margin"] == pytest.approx(35e6 / grown.K_max.max() - 1.0)
     assert rows["plate: crack, threshold"]["margin"] == pytest.approx(grown.threshold[0] / grown.delta_K[0] - 1.0)
     lines = printed("show", asked / "one.h5").splitlines()
-    (line,) = (line for line in lines if line.startswith("  plate: smith-watson-topper, factor on all stresses"))
+    (line,) = (line for line in lines if line.startswith("  plate: Smith-Watson-Topper, factor on all stresses"))
     assert f" {reserve.factor - 1.0:+.2f}" in line
     assert "for a life of 20000 spectra; at " in line
     assert sum(line.startswith("  plate: crack, ") for line in lines) == 3

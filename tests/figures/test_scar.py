@@ -145,7 +145,7 @@ def test_damage_is_drawn_under_the_worn_surface(life: WearResult) -> None:
     found = life.fatigue()
     figure = Look().drawn(damage_of(life, found))
     field, growth, bar = figure.axes
-    assert "plate, smith-watson-topper: no crack within 60 cycles; largest damage" in heading(figure)
+    assert "plate, Smith-Watson-Topper: no crack within 60 cycles; largest damage" in heading(figure)
     worn = max(y.max() for _, y in curves(field))
     assert worn == pytest.approx(1e3 * life[-1].plate_depth.max(), rel=1e-6)
     low, high = bar.get_ylim()

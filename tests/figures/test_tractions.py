@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from fastpin.bodies.bushing import STUCK
 from fastpin.errors import InputError
 from fastpin.figures.cycles import plot_cycles
 from fastpin.figures.polar import plot_polar
@@ -17,6 +18,7 @@ from fastpin.figures.stick_slip import plot_stick_slip
 from fastpin.figures.stress import plot_hoop_stress
 from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, Drawing, spread
 from fastpin.figures.tractions import plot_tractions, traction_curves
+from fastpin.figures.words import caption
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
@@ -28,6 +30,14 @@ from tests.support.tiers import gate
 
 def curves(panel: mpl.axes.Axes, thicker_than: float = 0.8) -> list[np.ndarray]:
     return [line.get_xydata() for line in panel.lines if len(line.get_xdata()) > 2 and line.get_lw() > thicker_than]
+
+
+def test_a_bonded_seat_has_no_bounds_of_its_shear() -> None:
+    states = solve(replace(sample_result().problem, friction=STUCK), [{"P": 2e6}, {"P": 1e6}], nodes=61)
+    panels = plot_tractions(states)
+    assert "thin: bounds ±μN of T" not in legend_words(panels)
+    assert panels.axes[1].get_ylim()[1] < 100.0
+    assert caption(states[0].problem).count("bonded") == 1
 
 
 def test_tractions_are_drawn_in_degrees_from_the_bottom_and_in_megapascal() -> None:

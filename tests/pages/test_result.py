@@ -384,7 +384,15 @@ def test_a_pin_that_does_not_touch_has_no_tractions(tmp_path: Path) -> None:
     words = words_of(result, tmp_path / "page.html")
     assert "Pin and hole do not touch in the drawn states." in words
     assert "no contact" in words
+    assert "The pin touches the hole in no kept state." in words
     assert "nan" not in words.split()
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_loops_of_few_states_are_doubted(only: Callable[..., None], tmp_path: Path) -> None:
+    only(sections.hysteresis)
+    result = sample_result([{"P": 2e6, "Q": load} for load in (0.0, 4e5, -4e5, 1e5, 4e5)])
+    assert "Corners 2 to 5: the areas differ by " in words_of(result, tmp_path / "page.html")
 
 
 def test_words_cover_all_names() -> None:

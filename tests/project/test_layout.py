@@ -193,3 +193,21 @@ def test_every_test_of_the_survey_is_marked():
     for path in (ROOT / "tests" / "survey").glob("test_*.py"):
         text = path.read_text(encoding="utf-8")
         assert re.search(r"^pytestmark = \[?\s*pytest\.mark\.survey", text, re.MULTILINE), path
+
+
+@pytest.mark.gate
+def test_files_name_only_modules_that_the_faces_of_folders_list() -> None:
+    """In a test another import may have loaded the module; in a process of its own it has none."""
+    unknown = []
+    for path in sorted((ROOT / "fastpin").rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        imports = [node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module == "fastpin"]
+        faces = {each.name for node in imports for each in node.names}
+        for node in ast.walk(tree):
+            if not (isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in faces):
+                continue
+            face = f"fastpin.{node.value.id}"
+            is_module = (ROOT / face.replace(".", "/") / f"{node.attr}.py").exists()
+            if is_module and node.attr not in importlib.import_module(face).__all__:
+                unknown.append(f"{path.name}, line {node.lineno}: {face}.{node.attr}")
+    assert unknown == []

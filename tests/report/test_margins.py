@@ -245,4 +245,10 @@ def test_the_verdict_names_the_row_that_governs() -> None:
         == "the joint fails by plate: yield, von Mises: -0.10, load point 2, edge of the hole only"
     )
     assert verdict([unknown]) == "no margin is known; not known: 1 of 1, see their remarks"
+    growing = Margin("plate: crack, threshold", "intensity", 2.0, 1.0, 2.0, name="growth", owner="plate")
+    assert verdict([growing, pin]) == (
+        "all known margins but that of a crack that grows are positive; the smallest other is that of "
+        "pin: yield, von Mises: +0.20, load point 2"
+    )
+    assert verdict([plate, pin], is_complete=False) == f"not known, the run is unfinished; up to its end {known}"
     assert len(margin_rows(problem, in_order([unknown, plate]))) == 2

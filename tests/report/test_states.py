@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fastpin.kernels.status import OPEN
+from fastpin.model.angles import interval_from_bottom
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.report.states import hoop_line, state_table
@@ -18,6 +20,14 @@ def test_long_tables_are_cut_in_the_middle() -> None:
     text = state_table(sample_result().problem, list(sample_result(corners)))
     assert len(text.splitlines()) < 60
     assert "60 more" in text
+
+
+def test_many_zones_have_their_number_and_both_ends(states: list[State]) -> None:
+    state = states[0]
+    many = with_values(state, status=np.where(np.arange(state.status.size) % 4 == 0, OPEN, state.status))
+    ends = interval_from_bottom(many.contact[0][0], many.contact[-1][1])
+    assert len(many.contact) > 6
+    assert f"{len(many.contact)} zones within {ends[0]:.2f} to {ends[1]:.2f}" in state_table(state.problem, [many])
 
 
 @pytest.fixture(scope="module")

@@ -127,7 +127,8 @@ def test_the_line_of_an_interference_pin_tells_both() -> None:
     line = hoop_line(states[0].problem, states)
     assert f"it is {peak.assembly / 1e6:.4g} MPa of the assembly + {peak.loads / 1e6:.4g} MPa of the loads" in line
     assert f"Kt of the loads {peak.loads / peak.bearing_stress:.4g} on the bearing stress" in line
-    parts = [float(word) for word in line.rsplit("the part of the loads is ", 1)[1].split() if word[0] in "-0123456789"]
+    words = line.rsplit("the part of the loads is ", 1)[1].replace("- ", "-").split()
+    parts = [float(word) for word in words if word[-1].isdigit()]
     sums = parts[0] * peak.gross_stress + parts[1] * peak.bearing_stress
     assert sums == pytest.approx(peak.loads, rel=5e-3)  # each has four digits
     alone = hoop_line(states[0].problem, states[:1])

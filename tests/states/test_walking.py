@@ -53,6 +53,7 @@ def test_a_bush_walks_where_no_part_of_its_seat_sticks_throughout(cycle, turn, s
     assert goes_on or margin.remark.endswith(" % of its seat sticks throughout the last cycle")
     assert margin.margin == (-1.0 if goes_on else np.inf)
     assert walk_words(states) == f"it {margin.remark}"
+    assert margin.loads == states[-1].load
     (row,) = document(states[0].problem, [margin])
     assert (row["name"], row["body"], row["smallest"]) == ("walk", "bush", goes_on)
     assert smallest_margin([margin]) == (margin if goes_on else None)
@@ -73,5 +74,8 @@ def test_a_cycle_without_all_corners_or_without_a_seat_has_no_walk(cycle) -> Non
     cycles = sample_seat().cycles
     assert walk_doubts([*turned(cycle, 1e-3, sticks=False)[:2], *turned(cycle, 1e-3, sticks=False)[3:]], cycles) == []
     assert Walk.of([replace(state, seat=None) for state in cycle]) is None
+    body = replace(cycle[0].problem.plate_body, bonded=True, friction=None)
+    bonded = replace(cycle[0].problem, plate_body=body)
+    assert Walk.of([replace(state, problem=bonded) for state in cycle]) is None
     assert walk_margins([]) == []
     assert walk_doubts([], cycles) == []
