@@ -36,9 +36,9 @@ def kernels() -> list[tuple[Any, ...]]:
         (conjugate.edge, line, line, table, 0, places, table, table, table),
         (conjugate.gather, table, places, line, table, table, table, table),
         (least_squares, table, line, line),
-        (evaluate, line, 0.0, 0, table, cube, table, table),
-        (series, 0, 0, table, cube, table, table),
         (power_laws.evaluate, line, 0j, row, line),
+        (series, 0, 0, table, cube, table, table),
+        (evaluate, line, 0.0, 0, table, cube, table, table),
     ]
 
 
