@@ -17,7 +17,6 @@ from fastpin.cli.progress import READ_POINTS, Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say
 from fastpin.errors import InputError
 from fastpin.figures.kinds import DEFAULT_KEY_FIGURE
-from fastpin.figures.words import shown_label
 
 MOST_REASONS = 20
 """Most failed runs that are listed with their reasons."""
@@ -197,7 +196,7 @@ def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path)
     """Draw the figure of a plan, or of the points with the values of ``--where``."""
     values, where, plan = _values(options, plan), _where(options), _shown(options, plan)
     rows = studies.sweep.rows(plan, directory)
-    fixed = [shown_label(words) for words in report.sweep.where_words(plan, rows, where)]
+    fixed = [figures.words.shown_label(words) for words in report.sweep.where_words(plan, rows, where)]
     title = ", ".join(filter(None, [plan.title, *fixed]))
     if options.envelope:
         found = report.envelope.envelopes(plan, rows, values[0])

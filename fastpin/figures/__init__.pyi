@@ -12,6 +12,7 @@ from . import stress as stress
 from . import style as style
 from . import subjects as subjects
 from . import tractions as tractions
+from . import words as words
 from .animation import animate as animate
 from .charts import write_chart_book as write_chart_book
 from .convergence import plot_convergence as plot_convergence

@@ -83,31 +83,6 @@ def gather(nodes, blocks, longest, points, weights, centres, moments):
                     power *= u
 
 
-@inner
-def _near(theta, nodes, first, last, joined, found):
-    """4 pi H of the pieces from node `first` to node `last`. `found` gets N and T if `theta` lies in one of them.
-
-    `joined` is the last node of a patch all round, which is its first node once more; otherwise -1.
-    """
-    total, slope = 0.0, 0.0
-    for j in range(first, last + 1):
-        x = _reduced(theta - nodes[0 if j == joined else j, 0])
-        jump = -slope
-        if j < last:
-            step = nodes[j + 1, 0] - nodes[j, 0]
-            slope = (nodes[j + 1, 2] - nodes[j, 2]) / step if step > 0.0 else 0.0
-            jump += slope
-            if -SAME < x < step + SAME:
-                part = min(max(x / step, 0.0), 1.0) if step > 0.0 else 0.0
-                found[0] = nodes[j, 1] + part * (nodes[j + 1, 1] - nodes[j, 1])
-                found[1] = nodes[j, 2] + part * (nodes[j + 1, 2] - nodes[j, 2])
-        total -= jump * clausen(x)
-        if j in (first, last) and nodes[j, 2] != 0.0 and x != 0.0:
-            log = math.log(abs(2.0 * math.sin(0.5 * x)))
-            total += nodes[j, 2] * log if j == first else -nodes[j, 2] * log
-    return 2.0 * total
-
-
 @compiled
 def edge(theta, field, nodes, joined, blocks, centres, moments, out):
     """The stresses srr, stt and srt at points on the edge.
@@ -120,29 +95,43 @@ def edge(theta, field, nodes, joined, blocks, centres, moments, out):
     nodes, blocks, centres, moments : ndarray
         Those of :func:`gather`.
     joined : int
-        Last node of a patch all round; -1 without one.
+        Last node of a patch all round, which is its first node once more; -1 without one.
     out : ndarray, shape (3, m)
     """
-    found = np.empty(2)
     for i in range(theta.size):
-        total, cos, sin = 0.0, math.cos(0.5 * theta[i]), math.sin(0.5 * theta[i])
-        found[:] = 0.0
+        total, cos, sin = 0.0, math.cos(0.5 * theta[i]), math.sin(0.5 * theta[i])  # total: 4 pi H
+        pressure, shear = 0.0, 0.0
         for b in range(blocks.shape[0]):
-            reach = centres[b, 3]
+            reach, first, last = centres[b, 3], blocks[b, 0], blocks[b, 1]
             across, along = sin * centres[b, 1] - cos * centres[b, 2], cos * centres[b, 1] + sin * centres[b, 2]
             if abs(across) < NEAR:
                 across, along = math.sin(0.5 * (theta[i] - centres[b, 0])), math.cos(0.5 * (theta[i] - centres[b, 0]))
-            if reach == np.inf or reach * abs(along) > FAR * abs(across):
-                total += _near(theta[i], nodes, blocks[b, 0], blocks[b, 1], joined, found)
+            if reach * abs(along) <= FAR * abs(across):
+                inverse = along / across
+                terms = TERMS if reach * abs(inverse) > FARTHER else TERMS // 2
+                square, odd, even = inverse * inverse, moments[b, terms - 1], 0.0
+                for m in range(terms - 2, 0, -2):  # two sums side by side
+                    odd, even = odd * square + moments[b, m - 1], even * square + moments[b, m]
+                total += inverse * moments[b, 0] + (1.0 + square) * (odd + even * inverse)
                 continue
-            inverse = along / across
-            terms = TERMS if reach * abs(inverse) > FARTHER else TERMS // 2
-            square, odd, even = inverse * inverse, moments[b, terms - 1], 0.0
-            for m in range(terms - 2, 0, -2):  # two sums side by side
-                odd, even = odd * square + moments[b, m - 1], even * square + moments[b, m]
-            total += inverse * moments[b, 0] + (1.0 + square) * (odd + even * inverse)
-        first, second = cos * cos - sin * sin, 2.0 * cos * sin  # the cosine and the sine of theta
-        hoop = field[0] + field[1] * found[0] + field[2] * total / (4.0 * math.pi)
-        hoop += field[3] * first + field[4] * second
-        hoop += field[5] * (first * first - second * second) + field[6] * (2.0 * first * second)
-        out[0, i], out[1, i], out[2, i] = -found[0], hoop, found[1]
+            slope = 0.0
+            for j in range(first, last + 1):
+                x = _reduced(theta[i] - nodes[0 if j == joined else j, 0])
+                jump = -slope
+                if j < last:
+                    step = nodes[j + 1, 0] - nodes[j, 0]
+                    slope = (nodes[j + 1, 2] - nodes[j, 2]) / step if step > 0.0 else 0.0
+                    jump += slope
+                    if -SAME < x < step + SAME:
+                        part = min(max(x / step, 0.0), 1.0) if step > 0.0 else 0.0
+                        pressure = nodes[j, 1] + part * (nodes[j + 1, 1] - nodes[j, 1])
+                        shear = nodes[j, 2] + part * (nodes[j + 1, 2] - nodes[j, 2])
+                total -= 2.0 * jump * clausen(x)
+                if j in (first, last) and nodes[j, 2] != 0.0 and x != 0.0:
+                    log = 2.0 * nodes[j, 2] * math.log(abs(2.0 * math.sin(0.5 * x)))
+                    total += log if j == first else -log
+        cos_theta, sin_theta = cos * cos - sin * sin, 2.0 * cos * sin
+        hoop = field[0] + field[1] * pressure + field[2] * total / (4.0 * math.pi)
+        hoop += field[3] * cos_theta + field[4] * sin_theta
+        hoop += field[5] * (cos_theta**2 - sin_theta**2) + field[6] * (2.0 * cos_theta * sin_theta)
+        out[0, i], out[1, i], out[2, i] = -pressure, hoop, shear

@@ -84,8 +84,7 @@ def verify(progress: Callable[[int, int], None] | None = None) -> list[Check]:
         try:
             for check in checks_of(solving):
                 case = check.case or name
-                of_case = f"{check.quantity}, {case}"
-                tolerance = topic.tolerances.get(of_case, topic.tolerances[check.quantity])
+                tolerance = topic.tolerances.get(f"{check.quantity}, {case}", topic.tolerances[check.quantity])
                 checks.append(replace(check, topic=topic.title, case=case, tolerance=tolerance))
         except Exception as error:  # an error of any kind is a result of the check
             checks.append(Check(topic.title, name, message=" ".join(f"{type(error).__name__}: {error}".split())))
@@ -226,14 +225,16 @@ def _stress_difference(state: State, body: Body, radius: np.ndarray, theta: np.n
 
 
 def _edges_and_circles(name: str, problem: Problem, solving: Solving) -> Checks:
-    """Stresses on the edge against the tractions, and on circles against the loads, of all states of a history."""
+    """Stresses on the edge, beside a point below it, against those on the edge alone; on circles against the loads."""
     states = solving(problem, FRETTING)
     for body in _BODIES:
         edge, force, moment = [], [], []
         for state in states:
-            stress = state.stress(Points.at_depth(0.0, state.theta), body, straight=True)
-            difference = np.abs([stress.radial + state.pressure, stress.shear - state.shear])
-            edge.append(float(difference.max()) / state.peak_pressure)
+            depth, theta = np.r_[np.zeros(state.theta.size), 0.1 * problem.hole_radius], np.r_[state.theta, BOTTOM]
+            stress = state.stress(Points.at_depth(depth, theta), body, straight=True)
+            known = -state.pressure, state.hoop_stress(body, straight=True), state.shear  # other formulas
+            difference = np.array([stress.radial, stress.hoop, stress.shear])[:, :-1] - known
+            edge.append(float(np.abs(difference).max()) / state.peak_pressure)
             for radius in (1.2, 3.0) if body == "plate" else (0.3, 0.8):
                 carried, turned = stress_resultant(state, body, radius)
                 part = radius**2 if body == "pin" and problem.pin_load == "body" else 1.0

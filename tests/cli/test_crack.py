@@ -141,7 +141,7 @@ def test_a_case_with_a_crack_is_told_by_every_command():
     said("report", "case.h5", "-o", "page.html")
     page = Path("page.html").read_text()
     assert line[1:] in page
-    assert "Law of growth: walker, C = 1e-10, m = 3, exponent = 0.5; source: own tests." in page
+    assert "Law of growth: walker, C = 1e-10, m = 3, exponent = 0.5 (SI units); source: own tests." in page
 
 
 @pytest.mark.gate

@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 75,
     "constants of modules": 1_405,
     "hidden imports": 0,
-    "lines of code": 49_205,
+    "lines of code": 49_200,
 }
 """The most that each number may be. A smaller number takes its place here."""
 

@@ -10,7 +10,7 @@ import pytest
 
 from fastpin.cli.main import main
 from fastpin.elasticity import stress as formulas
-from fastpin.kernels import cauchy, influence
+from fastpin.kernels import cauchy, conjugate, influence
 from fastpin.reading import stress
 from fastpin.report.checks import table
 from fastpin.solver import solving
@@ -153,6 +153,22 @@ def test_a_wrong_kernel_is_seen(only, monkeypatch, name: str) -> None:
 
 def failed_cases(checks: list[Check]) -> set[tuple[str, str]]:
     return {(check.quantity, check.case) for check in checks if not check.passed}
+
+
+@pytest.mark.gate
+def test_a_wrong_conjugate_of_the_shear_is_seen(only, monkeypatch) -> None:
+    """The hoop stress on the edge, a billionth too large."""
+    only("stresses")
+    exact = conjugate.edge
+
+    def wrong(*given):
+        exact(*given)
+        given[-1][1] *= 1.0 + 1e-9
+
+    monkeypatch.setattr(conjugate, "edge", wrong)
+    seen = failed_cases(installation.verify())
+    for case in ("free rotation, plate", "free rotation, pin", "held rotation, plate", "held rotation, pin"):
+        assert ("on the edge", case) in seen
 
 
 @pytest.mark.gate
