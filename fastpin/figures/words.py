@@ -88,7 +88,7 @@ def loads_by_change(states: Sequence[State]) -> tuple[list[str], list[str]]:
 
 def is_bonded(problem: Problem) -> bool:
     """Whether a contact is the seat of a bonded bush: its friction stands for the bond, and has no bounds to show."""
-    return problem.least_friction >= STUCK
+    return problem.pin_body.is_bush and problem.least_friction >= STUCK
 
 
 def caption(problem: Problem, states: Sequence[State] = ()) -> str:

@@ -23,6 +23,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.cycles import Cycle
+from tests.support.common_sizes import bushed
 from tests.support.drawing import legend_words, plain
 from tests.support.samples import PAIR, sample_result, with_values
 from tests.support.tiers import gate
@@ -32,12 +33,18 @@ def curves(panel: mpl.axes.Axes, thicker_than: float = 0.8) -> list[np.ndarray]:
     return [line.get_xydata() for line in panel.lines if len(line.get_xdata()) > 2 and line.get_lw() > thicker_than]
 
 
+@pytest.mark.gate
 def test_a_bonded_seat_has_no_bounds_of_its_shear() -> None:
-    states = solve(replace(sample_result().problem, friction=STUCK), [{"P": 2e6}, {"P": 1e6}], nodes=61)
+    """A pin in a hole with as much friction is not bonded."""
+    result = solve(bushed(9e-3, 11e-3, any_outline=True), [{"P": 1e6}, {"P": 5e5}], nodes=61)
+    states = [state.seat for state in result]
     panels = plot_tractions(states)
     assert "thin: bounds ±μN of T" not in legend_words(panels)
     assert panels.axes[1].get_ylim()[1] < 100.0
     assert caption(states[0].problem).count("bonded") == 1
+    rough = replace(sample_result().problem, friction=STUCK)
+    assert "bonded" not in caption(rough)
+    assert "thin: bounds ±μN of T" in legend_words(plot_tractions(solve(rough, [{"P": 2e6}], nodes=61)))
 
 
 def test_tractions_are_drawn_in_degrees_from_the_bottom_and_in_megapascal() -> None:
