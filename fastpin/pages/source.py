@@ -319,8 +319,8 @@ class Source:
     @cached_property
     def spectrum(self) -> list[SpectrumDamage]:
         """Damage of plate and bush over a history without repeated blocks, see :func:`spectrum_damages`."""
-        is_short = (self.case.fatigue, self.last_cycle, self.life) == (None,) * 3 and self.points.size <= MOST_STOPS
-        states = self.read(range(self.points.size)) if is_short else []
+        is_wanted = self.case.fatigue is None and self.last_cycle is None and self.life is None
+        states = self.read(range(self.points.size)) if is_wanted and self.points.size <= MOST_STOPS else []
         try:
             return spectrum_damages(states, len(self.case.history))
         except InputError:
