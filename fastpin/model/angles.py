@@ -81,19 +81,16 @@ def degrees_of(angle: float) -> float:
     return _shortest(angle, angle / DEGREE, lambda degrees: degrees * DEGREE)
 
 
-IN_RADIANS = 2e-4
-"""Relative distance from a multiple of pi/12 within which an angle is in rad by mistake: 1.5708 is meant as 90.
-
-It must also have three digits after the point, and its last digit less than one off. Hardly any other angle has both.
-"""
-
-
 def meant_degrees(degrees: float) -> int:
-    """The multiple of 15 degrees that an angle equals if it is in rad by mistake; 0 if it is not."""
+    """The multiple of 15 degrees that an angle equals if it is in rad by mistake; 0 if it is not.
+
+    1.5708 is meant as 90. Such an angle has three digits after the point, the last one less than one off, and is within
+    2e-4 of its size from a multiple of pi/12. Hardly any other angle is so.
+    """
     parts = degrees / (15.0 * DEGREE)
     away = abs(parts - round(parts))
     digits = len(repr(degrees).partition(".")[2])
-    rounded = away <= min(IN_RADIANS * abs(parts), max(10.0**-digits, 1e-14) / (15.0 * DEGREE))
+    rounded = away <= min(2e-4 * abs(parts), max(10.0**-digits, 1e-14) / (15.0 * DEGREE))
     return 15 * round(parts) if 1.0 <= abs(round(parts)) <= 24 and digits > 2 and rounded else 0
 
 

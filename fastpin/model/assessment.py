@@ -10,7 +10,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
-from fastpin.model.checks import choice, items, number, positive, true_or_false
+from fastpin.model.checks import check_fields, choice, items, number, positive, set_fields, true_or_false
 from fastpin.model.fatigue import LIFE_CONSTANTS, FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
@@ -37,9 +37,6 @@ SPECTRA = ("history", "cycle")
 
 MOST_LIFE = 1e18
 """Most passes of a spectrum, and most cycles at a knee: no test has gone as far."""
-
-MOST_ANGLES = 10_000
-"""Angles, at most."""
 
 
 @dataclass(frozen=True)
@@ -90,26 +87,23 @@ class FatigueAssessment:
     life: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "criterion", _words("criterion", self.criterion, tuple(LIFE_CONSTANTS)))
-        if self.bodies is not None:
-            object.__setattr__(self, "bodies", _words("bodies", self.bodies, BODIES))
+        check_fields(self, _checked_words, "criterion", tuple(LIFE_CONSTANTS))
+        check_fields(self, _checked_words, "bodies", BODIES, optional=True)
         choice("over", self.over, SPECTRA)
         choice("method", self.method, DISTANCES)
         if self.length is not None:
-            object.__setattr__(self, "length", checked_distance(self.length))
+            set_fields(self, length=checked_distance(self.length))
             if self.method == "edge":
                 raise InputError("length", 'belongs to the methods "point", "line" and "area", but method is "edge"')
         if self.angles is not None:
             given = [self.angles] if isinstance(self.angles, (int, float)) else self.angles
             angles = [number("angles", each, -360.0, 360.0) for each in items("angles", given, "a list of angles")]
-            if not 1 <= len(angles) <= MOST_ANGLES:
-                raise InputError("angles", f"must be 1 to {MOST_ANGLES:,} angles, not {len(angles):,}")
-            object.__setattr__(self, "angles", tuple(angles))
-        object.__setattr__(self, "knee", checked_knee(self.small_cycles, self.knee))
-        if self.straight is not None:
-            object.__setattr__(self, "straight", true_or_false("straight", self.straight))
-        if self.life is not None:
-            object.__setattr__(self, "life", number("life", self.life, 1.0, MOST_LIFE))
+            if not 1 <= len(angles) <= 10_000:
+                raise InputError("angles", f"must be 1 to 10,000 angles, not {len(angles):,}")
+            set_fields(self, angles=tuple(angles))
+        set_fields(self, knee=checked_knee(self.small_cycles, self.knee))
+        check_fields(self, true_or_false, "straight", optional=True)
+        check_fields(self, number, "life", 1.0, MOST_LIFE, optional=True)
 
     @property
     def criteria(self) -> tuple[str, ...]:
@@ -165,7 +159,7 @@ def checked_distance(length: object) -> float:
     return number("length", positive("length", length), LEAST_RADIUS, MOST_RADIUS)
 
 
-def _words(field: str, value: str | Sequence[str], allowed: tuple[str, ...]) -> tuple[str, ...]:
+def _checked_words(field: str, value: str | Sequence[str], allowed: tuple[str, ...]) -> tuple[str, ...]:
     """Check a word or a list of different words."""
     given = [value] if isinstance(value, str) else items(field, value, "a word or a list of words")
     words = tuple(choice(field, each, allowed) for each in given)

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, fields
 from fastpin.errors import InputError
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.beside import BESIDE, beside_of
-from fastpin.model.checks import instance, string
+from fastpin.model.checks import check_fields, instance, string
 from fastpin.model.crack import CrackGrowth
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
@@ -44,7 +44,7 @@ class About:
 
     def __post_init__(self) -> None:
         for one in fields(self):
-            object.__setattr__(self, one.name, string(one.name, getattr(self, one.name)))
+            check_fields(self, string, one.name)
 
     def given(self) -> dict[str, str]:
         """The fields that are not empty, by name."""
@@ -98,7 +98,7 @@ class Case:
         instance("problem", self.problem, Problem, "a Problem")
         instance("history", self.history, LoadHistory, "a LoadHistory")
         instance("options", self.options, SolveOptions, "a SolveOptions")
-        object.__setattr__(self, "title", string("title", self.title))
+        check_fields(self, string, "title")
 
 
 def check_arc(problem: Problem, options: SolveOptions) -> None:

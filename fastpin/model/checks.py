@@ -9,7 +9,7 @@ import contextlib
 import inspect
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -33,11 +33,27 @@ MOST_PARAMETER = 1e50
 LONGEST_TEXT = 60
 """Most characters of a value that a message repeats."""
 
-SAME_LENGTH = 1e-9
-"""Relative difference of a length and a computed limit up to which they are equal: files have few digits."""
-
 _NUMBER_KINDS = "iuf"
 """Kinds of NumPy arrays and scalars that hold numbers: no truth values, complex numbers, times, texts or objects."""
+
+
+def check_fields(
+    record: object, check: Callable[..., object], names: str, *limits: object, optional: bool = False
+) -> None:
+    """Replace fields of a frozen dataclass that is being made by ``check(name, value, *limits)``.
+
+    `names` are words of one text. An optional field may be None.
+    """
+    for name in names.split():
+        value = getattr(record, name)
+        if value is not None or not optional:
+            object.__setattr__(record, name, check(name, value, *limits))
+
+
+def set_fields(record: object, **values: object) -> None:
+    """Set fields of a frozen dataclass that is being made."""
+    for name, value in values.items():
+        object.__setattr__(record, name, value)
 
 
 def number(field: str, value: object, least: float = -math.inf, most: float = math.inf) -> float:
@@ -61,7 +77,7 @@ def point(field: str, value: object) -> complex:
 
 def is_above(length: float, limit: float) -> bool:
     """Whether a length lies above a computed limit by more than rounding: 9 mm is not above 0.9 times 10 mm."""
-    return length > limit + SAME_LENGTH * abs(limit)
+    return length > limit + 1e-9 * abs(limit)  # files have few digits
 
 
 def is_between(least: float, length: float, most: float) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import DEGREE, angle_at, degrees_at, degrees_of
-from fastpin.model.checks import as_toml, choice, is_above, items, number, numbers, positive
+from fastpin.model.checks import as_toml, check_fields, choice, is_above, items, number, numbers, positive
 from fastpin.model.growth import KnownLaw, known_law, law_entries, law_from
 from fastpin.model.points import EDGES, MOST_ANGLE, far_rim, isotropic_material, material_of, near_rim, owner_of
 from fastpin.model.problem import Problem
@@ -20,9 +20,6 @@ from fastpin.model.units import units
 
 MOST_INCLINATION = 60.0 * DEGREE
 """Largest inclination of a crack, rad. There 80 points still give 1e-4."""
-
-MOST_PAIRS = 1000
-"""Pairs of a residual stress, at most."""
 
 
 @dataclass(frozen=True)
@@ -60,18 +57,15 @@ class CrackGrowth:
     residual_stress: float | Sequence[Sequence[float]] | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "first", positive("first", self.first))
-        object.__setattr__(self, "last", positive("last", self.last))
+        check_fields(self, positive, "first last")
         if self.last <= self.first:
             raise InputError("last", f"must be longer than the first length of {self.first:g} m, not {self.last:g}")
         if self.law is not None:
             known_law("law", self.law)
-        if self.theta is not None:
-            object.__setattr__(self, "theta", number("theta", self.theta, -MOST_ANGLE, MOST_ANGLE))
-        object.__setattr__(self, "angle", number("angle", self.angle, -MOST_INCLINATION, MOST_INCLINATION))
-        object.__setattr__(self, "body", choice("body", self.body, EDGES))
-        if self.residual_stress is not None:
-            object.__setattr__(self, "residual_stress", _residual(self.residual_stress))
+        check_fields(self, number, "theta", -MOST_ANGLE, MOST_ANGLE, optional=True)
+        check_fields(self, number, "angle", -MOST_INCLINATION, MOST_INCLINATION)
+        check_fields(self, choice, "body", EDGES)
+        check_fields(self, _checked_residual, "residual_stress", optional=True)
 
     def residual(self, s: np.ndarray) -> np.ndarray:
         """The residual stress at distances to the mouth, m, of any shape; 0 unless one is given, Pa."""
@@ -192,13 +186,12 @@ def crack_from(**given: Any) -> CrackGrowth:
     return CrackGrowth(**given)
 
 
-def _residual(given: object) -> float | tuple[tuple[float, float], ...]:
-    name = "residual_stress"
+def _checked_residual(name: str, given: object) -> float | tuple[tuple[float, float], ...]:
     if not isinstance(given, (list, tuple, np.ndarray)):
         return number(name, given)
     pairs = items(name, given, "a number, or pairs of a distance and a stress")
-    if not 2 <= len(pairs) <= MOST_PAIRS:
-        raise InputError(name, f"must be a number or 2 to {MOST_PAIRS:,} pairs, not {len(pairs)}")
+    if not 2 <= len(pairs) <= 1000:
+        raise InputError(name, f"must be a number or 2 to 1,000 pairs, not {len(pairs)}")
     found = []
     for pair in pairs:
         if not isinstance(pair, (list, tuple, np.ndarray)) or len(pair) != 2:

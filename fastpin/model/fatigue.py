@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, items, negative, positive, string
+from fastpin.model.checks import check_fields, choice, items, negative, positive, string
 from fastpin.model.synonyms import explains_keywords
 
 LIFE_CONSTANTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -80,11 +80,10 @@ class FatigueConstants:
     source: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "source", string("source", self.source))
-        for name, value in self.given().items():
+        check_fields(self, string, "source")
+        for name in self.given():
             if name != "source":
-                check = negative if name.endswith("_exponent") else positive
-                object.__setattr__(self, name, check(name, value))
+                check_fields(self, negative if name.endswith("_exponent") else positive, name)
 
     def __repr__(self) -> str:
         return f"FatigueConstants({', '.join(f'{name}={value!r}' for name, value in self.given().items())})"

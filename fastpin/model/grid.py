@@ -12,7 +12,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between
-from fastpin.model.checks import number, numbers, true_or_false, whole_number
+from fastpin.model.checks import check_fields, number, numbers, set_fields, true_or_false, whole_number
 
 LEAST_NODES = 5
 MAX_NODES = 20_000
@@ -24,9 +24,6 @@ MOST_WIDTH = 2.0
 
 GRADED_SAMPLES = 400
 """Angles round a single place at which the spacing of a graded grid is computed."""
-
-LEAST_SAMPLES = 30
-"""Such angles round each of many places."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,8 +56,8 @@ class Grid:
         if theta[-1] - theta[0] >= 2.0 * math.pi:
             raise InputError("theta", "nodes must span less than a full turn")
         theta.setflags(write=False)
-        object.__setattr__(self, "theta", theta)
-        object.__setattr__(self, "closed", true_or_false("closed", self.closed))
+        set_fields(self, theta=theta)
+        check_fields(self, true_or_false, "closed")
 
     def __getstate__(self) -> dict[str, Any]:
         return {"theta": self.theta, "closed": self.closed}
@@ -203,7 +200,7 @@ def _graded_counts(places: Sequence[tuple[float, float]]) -> tuple[np.ndarray, n
     if pairs.ndim != 2 or pairs.shape[1:] != (2,) or not pairs.size or pairs[:, 1].min() <= 0.0:
         raise InputError("places", "must be angles with positive widths, rad: (angle, width), ...")
     angles, widths = pairs[:, 0], np.minimum(pairs[:, 1], MOST_WIDTH)
-    away = np.geomspace(0.5, math.pi / float(widths.min()), max(GRADED_SAMPLES // widths.size, LEAST_SAMPLES))
+    away = np.geomspace(0.5, math.pi / float(widths.min()), max(GRADED_SAMPLES // widths.size, 30))
     offsets = np.outer(widths, np.r_[0.0, 0.25, away])
     start = -1.5 * math.pi
     samples = (np.concatenate([angles[:, None] + offsets, angles[:, None] - offsets]) - start) % (2.0 * math.pi)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, in_one_shape, not_negative, number, numbers, positive, string
+from fastpin.model.checks import as_toml, check_fields, in_one_shape, not_negative, number, numbers, positive, string
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -104,7 +104,7 @@ class GrowthLaw:
         return np.where(runs, np.inf, np.where(grows, found, 0.0))
 
     def _range(self, K_max: np.ndarray, K_min: np.ndarray) -> np.ndarray:
-        """The range: that of the open part of the cycle."""
+        """K_max - K_min of the part of the cycle in which the crack is open."""
         return np.maximum(K_max, 0.0) - np.maximum(K_min, 0.0)
 
     def _threshold(self, K_max: np.ndarray, K_min: np.ndarray, length: np.ndarray) -> np.ndarray:
@@ -177,16 +177,12 @@ class Walker(GrowthLaw):
     source: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "source", string("source", self.source))
-        for name in ("C", "m", "unit"):
-            object.__setattr__(self, name, positive(name, getattr(self, name)))
-        for name in ("threshold_range", "intrinsic_length"):
-            object.__setattr__(self, name, not_negative(name, getattr(self, name)))
-        object.__setattr__(self, "exponent", number("exponent", self.exponent, 0.0, 1.0))
-        if self.threshold_exponent is not None:
-            object.__setattr__(self, "threshold_exponent", number("threshold_exponent", self.threshold_exponent, 0, 2))
-        if self.toughness is not None:
-            object.__setattr__(self, "toughness", positive("toughness", self.toughness))
+        check_fields(self, string, "source")
+        check_fields(self, positive, "C m unit")
+        check_fields(self, not_negative, "threshold_range intrinsic_length")
+        check_fields(self, number, "exponent", 0.0, 1.0)
+        check_fields(self, number, "threshold_exponent", 0, 2, optional=True)
+        check_fields(self, positive, "toughness", optional=True)
 
     @property
     def fracture_toughness(self) -> float:
@@ -264,15 +260,12 @@ class Nasgro(GrowthLaw):
     source: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "source", string("source", self.source))
-        for name in ("C", "n", "toughness", "unit"):
-            object.__setattr__(self, name, positive(name, getattr(self, name)))
-        for name in ("p", "q", "threshold_range", "intrinsic_length"):
-            object.__setattr__(self, name, not_negative(name, getattr(self, name)))
-        for name in ("threshold_slope", "compressive_slope"):
-            object.__setattr__(self, name, number(name, getattr(self, name), -10.0, 10.0))
-        object.__setattr__(self, "constraint", number("constraint", self.constraint, 1.0, 3.0))
-        object.__setattr__(self, "stress_level", number("stress_level", self.stress_level, 0.0, 0.99))
+        check_fields(self, string, "source")
+        check_fields(self, positive, "C n toughness unit")
+        check_fields(self, not_negative, "p q threshold_range intrinsic_length")
+        check_fields(self, number, "threshold_slope compressive_slope", -10.0, 10.0)
+        check_fields(self, number, "constraint", 1.0, 3.0)
+        check_fields(self, number, "stress_level", 0.0, 0.99)
 
     @property
     def fracture_toughness(self) -> float:

@@ -18,27 +18,28 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import degrees_at, from_bottom
-from fastpin.model.checks import instance, number, number_array, positive, string, triples, whole_number
+from fastpin.model.checks import (
+    check_fields,
+    instance,
+    number,
+    number_array,
+    positive,
+    set_fields,
+    string,
+    triples,
+    whole_number,
+)
 from fastpin.model.lamination import Stack, checked_stack, ply_strains, ply_stresses, stress_turn, whole_compliance
 from fastpin.model.layup import checked_angles, layup_text
 from fastpin.model.materials import Material, Plane
-from fastpin.model.ply import LEAST_MODULUS, MOST_MODULUS, PLIES, Ply, checked_ratio, ply_from
+from fastpin.model.ply import LEAST_MODULUS, MOST_MODULUS, PLIES, Ply, checked_modulus, checked_ratio, ply_from
 from fastpin.model.synonyms import explains_keywords
 
 ALONG_LOAD = -0.5 * math.pi
 """The axis of a laminate unless it is given: the direction of the load P, rad."""
 
-LEAST_COMPLIANCE, MOST_COMPLIANCE = 1e-60, 1e60
-"""Limits of the compliances a11, a22 and a66, 1/Pa: those of the modulus of a material."""
-
-LEAST_EIGENVALUE = 1e-9
-"""Least eigenvalue of the scaled compliance matrix. A smaller one is rounding: the laminate is not stable."""
-
 ROUND = 1e-12
 """Parts of lambda0, and of the sum and the product of the roots, that are rounding: the response is isotropic."""
-
-CONSISTENT = 1e-9
-"""Largest difference of given compliances from those of given plies, in parts of the largest: it is rounding."""
 
 MODULI = ("E1", "E2", "G12", "nu12")
 """Names of the moduli of the whole and of Poisson's ratio, in their order."""
@@ -92,41 +93,36 @@ class Laminate(Material):
     plies: Stack = ()
 
     def __post_init__(self) -> None:
-        self._check_plies()
+        if not isinstance(self.plies, tuple) or self.plies:
+            set_fields(self, plies=checked_stack("plies", self.plies))
+            known = whole_compliance(self.plies)
+            if not isinstance(self.compliance, tuple) or self.compliance:
+                given = number_array("compliance", self.compliance)
+                size = 1e-9 * max(map(abs, known))  # a smaller difference is rounding
+                if given.shape != (len(ORDER),) or not np.all(np.abs(given - known) <= size):
+                    raise InputError("compliance", "must be left out or be that of the plies, if these are given")
+            set_fields(self, compliance=known)
         values = number_array("compliance", self.compliance)
         if values.shape != (len(ORDER),):
             raise InputError("compliance", f"must be six numbers, {', '.join(ORDER)}, or be left out with plies")
-        given = tuple(number("compliance", value, -MOST_COMPLIANCE, MOST_COMPLIANCE) for value in values.tolist())
+        # Limits of moduli in Pa are limits of compliances in 1/Pa, too.
+        compliance = tuple(number("compliance", value, -MOST_MODULUS, MOST_MODULUS) for value in values.tolist())
         for place in (0, 2, 5):
-            if given[place] <= 0.0:
-                raise InputError("compliance", f"{ORDER[place]} must be positive, not {given[place]:g}")
-            number("compliance", given[place], LEAST_COMPLIANCE, MOST_COMPLIANCE)
-        object.__setattr__(self, "compliance", given)
-        object.__setattr__(self, "axis", number("axis", self.axis))
-        object.__setattr__(self, "name", string("name", self.name))
-        own = _matrix(given)
-        size = 1.0 / np.sqrt(np.diag(own))
-        if np.linalg.eigvalsh(own * np.outer(size, size))[0] < LEAST_EIGENVALUE:
+            if compliance[place] <= 0.0:
+                raise InputError("compliance", f"{ORDER[place]} must be positive, not {compliance[place]:g}")
+            number("compliance", compliance[place], LEAST_MODULUS, MOST_MODULUS)
+        set_fields(self, compliance=compliance)
+        check_fields(self, number, "axis")
+        check_fields(self, string, "name")
+        own = _matrix(compliance)
+        scale = 1.0 / np.sqrt(np.diag(own))
+        if np.linalg.eigvalsh(own * np.outer(scale, scale))[0] < 1e-9:  # a smaller one is rounding
             raise InputError("compliance", "must be positive definite: no stable material has these values")
         lambda0, s = self.lambda0, self.s
-        object.__setattr__(self, "E", 2.0 / lambda0)
-        object.__setattr__(self, "nu", 1.0 - 2.0 * s / lambda0)
+        set_fields(self, E=2.0 / lambda0, nu=1.0 - 2.0 * s / lambda0)
         for name in ("fatigue", "yield_strength", "ultimate_strength", "growth"):
             if getattr(self, name) is not None:
                 raise InputError(name, "has no meaning for a laminate")
-
-    def _check_plies(self) -> None:
-        """Check the plies, if there are any, and take the compliances from them."""
-        if isinstance(self.plies, tuple) and not self.plies:
-            return
-        object.__setattr__(self, "plies", checked_stack("plies", self.plies))
-        known = whole_compliance(self.plies)
-        if not isinstance(self.compliance, tuple) or self.compliance:
-            given = number_array("compliance", self.compliance)
-            size = CONSISTENT * max(map(abs, known))
-            if given.shape != (len(ORDER),) or not np.all(np.abs(given - known) <= size):
-                raise InputError("compliance", "must be left out or be that of the plies, if these are given")
-        object.__setattr__(self, "compliance", known)
 
     @classmethod
     @explains_keywords
@@ -197,10 +193,7 @@ class Laminate(Material):
         InputError
             If a modulus is not positive, or no stable material has these constants.
         """
-        first, second, shear = (
-            number(field_, positive(field_, value), LEAST_MODULUS, MOST_MODULUS)
-            for field_, value in (("E1", E1), ("E2", E2), ("G12", G12))
-        )
+        first, second, shear = checked_modulus("E1", E1), checked_modulus("E2", E2), checked_modulus("G12", G12)
         ratio = checked_ratio(first, second, nu12)
         return cls(compliance=(1 / first, -ratio / first, 1 / second, 0.0, 0.0, 1 / shear), axis=axis, name=name)
 

@@ -15,12 +15,6 @@ from fastpin.model.checks import as_toml, instance, items, number
 from fastpin.model.layup import MOST_ANGLE, MOST_PLIES
 from fastpin.model.ply import Ply
 
-COUPLING = 1e-9
-"""Largest coupling of stretching and bending, in parts of the stiffness. A smaller one is rounding."""
-
-NO_SHEAR = 1e-13
-"""Compliance between stretching and shear, in parts of their own compliances, that is rounding: it is set to 0."""
-
 Stack = tuple[tuple[Ply, float], ...]
 """Plies and their angles, deg, from the lowest to the uppermost."""
 
@@ -89,15 +83,15 @@ def whole_compliance(stack: Stack) -> tuple[float, ...]:
     middle = np.cumsum(part) - 0.5 * part - 0.5
     mean = np.tensordot(part, stiffness, 1)
     size = np.sqrt(np.outer(np.diag(mean), np.diag(mean)))
-    if np.max(np.abs(np.tensordot(part * middle, stiffness, 1)) / size) > COUPLING:
+    if np.max(np.abs(np.tensordot(part * middle, stiffness, 1)) / size) > 1e-9:  # less is rounding
         words = "a stack that is not symmetric bends when it is stretched, and fastpin knows no bending"
         raise InputError("plies", f"must be symmetric about the middle: {words}")
     scale = 1.0 / np.sqrt(np.diag(mean))
     inverse = np.outer(scale, scale) * np.linalg.inv(mean * np.outer(scale, scale))
     compliance = 0.5 * (inverse + inverse.T)
     for row in (0, 1):
-        if abs(compliance[row, 2]) <= NO_SHEAR * math.sqrt(compliance[row, row] * compliance[2, 2]):
-            compliance[row, 2] = 0.0
+        if abs(compliance[row, 2]) <= 1e-13 * math.sqrt(compliance[row, row] * compliance[2, 2]):
+            compliance[row, 2] = 0.0  # it is rounding
     return tuple(float(compliance[place]) for place in ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)))
 
 

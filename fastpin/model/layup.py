@@ -19,7 +19,8 @@ The notation is that of composite design. Spaces count nowhere::
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from itertools import groupby
 from typing import NoReturn
 
 from fastpin.errors import InputError, printable
@@ -187,16 +188,8 @@ def layup_text(angles: Sequence[float]) -> str:
     part = stack[:half] if is_folded else stack
     size = next(size for size in range(1, len(part) + 1) if part == part[:size] * (len(part) // size))
     count = len(part) // size
-    return f"[{'/'.join(_runs(part[:size]))}]{count if count > 1 else ''}{'s' if is_folded else ''}"
-
-
-def _runs(angles: Iterable[float]) -> list[str]:
-    """Words for runs of equal angles: "0", "45_2"."""
-    runs: list[list[float]] = []
-    for angle in angles:
-        if runs and runs[-1][0] == angle:
-            runs[-1].append(angle)
-        else:
-            runs.append([angle])
-    words = (f"{run[0]:.0f}" if run[0] == round(run[0]) else repr(run[0]) for run in runs)
-    return [f"{word}{f'_{len(run)}' if len(run) > 1 else ''}" for word, run in zip(words, runs, strict=True)]
+    words = []
+    for angle, run in groupby(part[:size]):
+        equal = len([*run])
+        words.append((f"{angle:.0f}" if angle == round(angle) else repr(angle)) + (f"_{equal}" if equal > 1 else ""))
+    return f"[{'/'.join(words)}]{count if count > 1 else ''}{'s' if is_folded else ''}"

@@ -15,7 +15,19 @@ import numpy as np
 
 from fastpin.bodies.compliance import COLUMNS
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, choice, instances, items, number, numbers, point, positive, string
+from fastpin.model.checks import (
+    as_toml,
+    check_fields,
+    choice,
+    instances,
+    items,
+    number,
+    numbers,
+    point,
+    positive,
+    set_fields,
+    string,
+)
 from fastpin.model.materials import PLANES, Material, Plane
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
 from fastpin.model.read_only import ReadOnlyDict
@@ -25,9 +37,6 @@ HOLD = ("both", "x", "y", "normal")
 
 LEAST_LIGAMENT = 0.01
 """Least distance of the hole's edge from another edge, in hole radii. The harmonics decay too slowly below it."""
-
-LEAST_HOLE = 1e-3
-"""Least radius of a further hole, in radii of the pin's hole."""
 
 MOST_EXTENT = 1000.0
 """Largest coordinate of a point, in hole radii."""
@@ -63,9 +72,9 @@ class Part:
     through: complex | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "name", string("name", self.name))
-        for name in ("start", "end") if self.through is None else ("start", "end", "through"):
-            object.__setattr__(self, name, point(name, getattr(self, name)))
+        check_fields(self, string, "name")
+        check_fields(self, point, "start end")
+        check_fields(self, point, "through", optional=True)
 
     @cached_property
     def circle(self) -> tuple[complex, float, float, float] | None:
@@ -134,9 +143,9 @@ class Hole:
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "name", string("name", self.name))
-        object.__setattr__(self, "centre", point("centre", self.centre))
-        object.__setattr__(self, "radius", positive("radius", self.radius))
+        check_fields(self, string, "name")
+        check_fields(self, point, "centre")
+        check_fields(self, positive, "radius")
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -171,11 +180,10 @@ class PartLoad:
     normal: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "name", choice("load", self.name, COLUMNS))
+        set_fields(self, name=choice("load", self.name, COLUMNS))
         names = tuple(string("parts", name) for name in items("parts", self.parts, "a list of names"))
-        object.__setattr__(self, "parts", names)
-        for direction in ("x", "y", "normal"):
-            object.__setattr__(self, direction, number(direction, getattr(self, direction)))
+        set_fields(self, parts=names)
+        check_fields(self, number, "x y normal")
 
 
 @dataclass(frozen=True)
@@ -213,26 +221,20 @@ class Lug:
     holes: tuple[Hole, ...] = ()
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "nu", number("nu", self.nu, 0.0, 0.5))
-        object.__setattr__(self, "plane", choice("plane", self.plane, PLANES))
-        object.__setattr__(self, "hole_radius", number("hole_radius", self.hole_radius, LEAST_RADIUS, MOST_RADIUS))
-        object.__setattr__(self, "outline", tuple(instances("outline", self.outline, Part, "a list of parts")))
-        object.__setattr__(self, "loads", tuple(instances("loads", self.loads, PartLoad, "a list of loads")))
-        object.__setattr__(self, "holes", tuple(instances("holes", self.holes, Hole, "a list of holes")))
+        check_fields(self, number, "nu", 0.0, 0.5)
+        check_fields(self, choice, "plane", PLANES)
+        check_fields(self, number, "hole_radius", LEAST_RADIUS, MOST_RADIUS)
+        set_fields(self, outline=tuple(instances("outline", self.outline, Part, "a list of parts")))
+        set_fields(self, loads=tuple(instances("loads", self.loads, PartLoad, "a list of loads")))
+        set_fields(self, holes=tuple(instances("holes", self.holes, Hole, "a list of holes")))
         if not isinstance(self.supports, Mapping):
             raise InputError("supports", f"must map names to words, not {as_toml(self.supports)}")
-        object.__setattr__(self, "supports", ReadOnlyDict(self.supports))
+        set_fields(self, supports=ReadOnlyDict(self.supports))
         _check_outline(self.outline, self.hole_radius)
         points = _polygon(self.outline)
         if np.sum((np.conj(points) * np.roll(points, -1)).imag) < 0.0:  # twice the area, negative clockwise
-            object.__setattr__(self, "outline", tuple(part.reversed() for part in reversed(self.outline)))
+            set_fields(self, outline=tuple(part.reversed() for part in reversed(self.outline)))
         _check_holes(self)
-        self._check_names()
-        motion = self.rigid_motion
-        if motion:
-            raise InputError("support", f"the supports leave a rigid motion: the plate can {motion}; hold more of it")
-
-    def _check_names(self) -> None:
         names = self.names
         for name, hold in self.supports.items():
             check_name("support", name, names)
@@ -241,6 +243,9 @@ class Lug:
             for name in load.parts:
                 check_name("load", name, names)
             check_not_held(load, self.supports)
+        motion = self.rigid_motion
+        if motion:
+            raise InputError("support", f"the supports leave a rigid motion: the plate can {motion}; hold more of it")
 
     @property
     def names(self) -> list[str]:
@@ -279,8 +284,16 @@ class Lug:
                 rows.append(np.stack([along.real, along.imag, (np.conj(along) * 1j * points).real], axis=1))
         _, values, modes = np.linalg.svd(np.concatenate(rows), full_matrices=True)
         values = np.r_[values, np.zeros(3 - values.size)]
-        free = modes[values <= 1e-9 * max(1.0, values[0])]
-        return _motion_in_words(free, size)
+        free = modes[values <= 1e-9 * max(1.0, values[0])]  # rows (x, y, turn by `size`)
+        if len(free) == 2:
+            return "move along x and y" if np.abs(free[:, 2]).max() < 1e-9 else "move, and turn"
+        if len(free) != 1:
+            return "move and turn freely" if len(free) else ""
+        x, y, turn = free[0]
+        if abs(turn) < 1e-9:
+            return f"move along ({x:.3g}, {y:.3g})"
+        centre = 1j * complex(x, y) / turn * size
+        return f"turn about the point [{centre.real:.4g}, {centre.imag:.4g}]"
 
 
 def held_directions(hold: str | None, normals: np.ndarray) -> list[np.ndarray]:
@@ -314,21 +327,6 @@ def check_not_held(load: PartLoad, supports: Mapping[str, str]) -> None:
         for component in lost.get(supports.get(name, ""), ()):
             if getattr(load, component) != 0.0:
                 raise InputError(component, f"the support of {as_toml(name)} takes up this component; leave it out")
-
-
-def _motion_in_words(free: np.ndarray, size: float) -> str:
-    """Words for the rigid motions of the rows (x, y, turn by `size`)."""
-    if not len(free):
-        return ""
-    if len(free) == 3:
-        return "move and turn freely"
-    if len(free) == 2:
-        return "move along x and y" if np.abs(free[:, 2]).max() < 1e-9 else "move, and turn"
-    x, y, turn = free[0]
-    if abs(turn) < 1e-9:
-        return f"move along ({x:.3g}, {y:.3g})"
-    centre = 1j * complex(x, y) / turn * size
-    return f"turn about the point [{centre.real:.4g}, {centre.imag:.4g}]"
 
 
 def _check_outline(outline: Sequence[Part], radius: float) -> None:
@@ -412,12 +410,6 @@ def _crossing(outline: Sequence[Part]) -> complex | None:
     return None
 
 
-def _is_inside(outline: Sequence[Part], place: complex) -> bool:
-    points = _polygon(outline) - place
-    turn = float(np.sum(np.angle(np.roll(points, -1) * np.conj(points))))
-    return abs(turn) > math.pi
-
-
 def _check_holes(lug: Lug) -> None:
     """Check that all holes lie inside the outline, apart from it and from one another."""
     if len(lug.holes) > MOST_PARTS:
@@ -426,13 +418,13 @@ def _check_holes(lug: Lug) -> None:
     circles = [("outline", "the pin's hole", 0j, lug.hole_radius)]
     for hole in lug.holes:
         words = f"the hole {as_toml(hole.name)}"
-        if hole.radius < LEAST_HOLE * lug.hole_radius:
-            raise InputError("holes", f"{words} must have a radius of at least {LEAST_HOLE:g} of the pin's hole")
+        if hole.radius < 1e-3 * lug.hole_radius:
+            raise InputError("holes", f"{words} must have a radius of at least 0.001 of the pin's hole")
         circles.append(("holes", words, hole.centre, hole.radius))
     for place, (at_fault, words, centre, radius) in enumerate(circles):
-        if not max(abs(centre.real), abs(centre.imag)) <= MOST_EXTENT * lug.hole_radius or not _is_inside(
-            lug.outline, centre
-        ):
+        is_far = not max(abs(centre.real), abs(centre.imag)) <= MOST_EXTENT * lug.hole_radius
+        seen = _polygon(lug.outline) - centre  # round a point inside the outline turns once
+        if is_far or abs(float(np.sum(np.angle(np.roll(seen, -1) * np.conj(seen))))) <= math.pi:
             raise InputError(at_fault, f"{words} does not lie inside the outline")
         for part in lug.outline:
             if float(distances(part, np.array([centre]))[0]) < radius + least:

@@ -20,7 +20,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, instance, known_name, number, positive, string
+from fastpin.model.checks import check_fields, choice, instance, known_name, number, positive, set_fields, string
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import KnownLaw, known_law, law_entries
 from fastpin.model.synonyms import explains_keywords
@@ -104,14 +104,11 @@ class Material:
         ratio = number("nu", self.nu)
         if not 0.0 <= ratio <= 0.5:
             raise InputError("nu", f"Poisson's ratio must lie between 0 and 0.5, not {ratio:g}")
-        object.__setattr__(self, "E", float(modulus))
-        object.__setattr__(self, "nu", ratio)
-        object.__setattr__(self, "name", string("name", self.name))
+        set_fields(self, E=float(modulus), nu=ratio)
+        check_fields(self, string, "name")
         if self.fatigue is not None:
             instance("fatigue", self.fatigue, FatigueConstants, "fastpin.model.FatigueConstants")
-        for strength in STRENGTHS:
-            if (value := getattr(self, strength)) is not None:
-                object.__setattr__(self, strength, positive(strength, value))
+        check_fields(self, positive, " ".join(STRENGTHS), optional=True)
         if self.growth is not None:
             known_law("growth", self.growth)
 
@@ -307,7 +304,7 @@ class MaterialPair:
     plane: Plane = "strain"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "plane", choice("plane", self.plane, PLANES))
+        check_fields(self, choice, "plane", PLANES)
         for field, body in (("pin", self.pin), ("plate", self.plate)):
             instance(field, body, Material, 'a Material, such as MATERIALS["steel"]')
         if not self.pin.is_isotropic:

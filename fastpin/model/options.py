@@ -14,7 +14,16 @@ from typing import Any, Literal, TypedDict
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, choice, is_whole, number, true_or_false, whole_number
+from fastpin.model.checks import (
+    as_toml,
+    check_fields,
+    choice,
+    is_whole,
+    number,
+    set_fields,
+    true_or_false,
+    whole_number,
+)
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
 from fastpin.model.synonyms import explains_keywords
 
@@ -30,14 +39,8 @@ MOST_BETWEEN = 10_000
 LEAST_FRACTION = 1e-9
 """Least part of a step from one state to the next. Load points that are closer are one."""
 
-FULL_TURN = 2.0 * math.pi - 1e-5
-"""Length of an arc from which on it is the whole circle, rad. An angle may be written with six digits."""
-
 ALL_ROUND = -1.5 * math.pi, 0.5 * math.pi
 """The whole circle as an arc, rad."""
-
-MOST_TURN = 2.01 * math.pi
-"""Greatest length of an arc, rad: a full turn with room for rounding. Angles in degrees by mistake exceed it."""
 
 KEEP_WORDS = ("all", "corners", "cycles")
 """Words for the states that are kept. ``"every N"`` is the other form."""
@@ -64,7 +67,7 @@ class KeepRule:
     every: int = 1
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "which", choice("keep", self.which, KEEP_WORDS))
+        set_fields(self, which=choice("keep", self.which, KEEP_WORDS))
         whole_number("keep", self.every, 1, None if self.which == "corners" else 1)
 
     @classmethod
@@ -163,19 +166,18 @@ class SolveOptions:
     slip_sums: bool = option(False, "slip distance and friction energy of each node are counted", later=True)
 
     def __post_init__(self) -> None:
-        checked: dict[str, Any] = {
-            "nodes": whole_number("nodes", self.nodes, LEAST_NODES, MAX_NODES),
-            "method": choice("method", self.method, METHODS),
-            "increments": _checked_increments(self.increments, self.method),
-            "arc": _checked_arc(self.arc),
-            "between": _checked_between(self.between),
-            "keep": str(KeepRule.read(self.keep)),
-            "shortcut": true_or_false("shortcut", self.shortcut),
-            "error_bars": true_or_false("error_bars", self.error_bars),
-            "slip_sums": true_or_false("slip_sums", self.slip_sums),
-        }
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
+        check_fields(self, whole_number, "nodes", LEAST_NODES, MAX_NODES)
+        check_fields(self, choice, "method", METHODS)
+        if self.method == "increment":
+            set_fields(self, increments=80 if self.increments is None else self.increments)
+            check_fields(self, whole_number, "increments", 1)
+        elif self.increments is not None:
+            words = 'has no effect with method "path"; leave it out, or choose "increment"'
+            raise InputError("increments", words)
+        check_fields(self, _checked_arc, "arc", optional=True)
+        check_fields(self, _checked_between, "between")
+        set_fields(self, keep=str(KeepRule.read(self.keep)))
+        check_fields(self, true_or_false, "shortcut error_bars slip_sums")
 
     def changed(self, **changes: Any) -> SolveOptions:
         """A copy with some options changed. Method "path" drops ``increments``, unless `changes` give them too."""
@@ -196,7 +198,8 @@ class SolveOptions:
     @property
     def is_full_turn(self) -> bool:
         """Whether the arc is the whole circle."""
-        return self.arc is not None and self.arc[1] - self.arc[0] >= FULL_TURN
+        # An angle may be written with six digits.
+        return self.arc is not None and self.arc[1] - self.arc[0] >= 2.0 * math.pi - 1e-5
 
     @property
     def keep_rule(self) -> KeepRule:
@@ -229,31 +232,22 @@ class OptionValues(TypedDict, total=False):
     slip_sums: bool
 
 
-def _checked_increments(value: object, method: str) -> int | None:
-    if method != "increment":
-        if value is not None:
-            raise InputError("increments", 'has no effect with method "path"; leave it out, or choose "increment"')
-        return None
-    return 80 if value is None else whole_number("increments", value, 1)
-
-
-def _checked_arc(value: object) -> tuple[float, float] | None:
-    if value is None:
-        return None
+def _checked_arc(field: str, value: object) -> tuple[float, float]:
     if not isinstance(value, (list, tuple, np.ndarray)) or getattr(value, "ndim", 1) != 1 or len(value) != 2:
-        raise InputError("arc", f"must be a list of two angles in rad, [start, stop], not {as_toml(value)}")
-    start, stop = (number("arc", angle) for angle in value)
-    if not 0.0 < stop - start < MOST_TURN:
+        raise InputError(field, f"must be a list of two angles in rad, [start, stop], not {as_toml(value)}")
+    start, stop = (number(field, angle) for angle in value)
+    # A full turn with room for rounding. Angles in degrees by mistake exceed it.
+    if not 0.0 < stop - start < 2.01 * math.pi:
         allowed = "must run from a smaller to a larger angle, at most a full turn, in rad"
-        raise InputError("arc", f"{allowed}, not {start:g} to {stop:g}")
+        raise InputError(field, f"{allowed}, not {start:g} to {stop:g}")
     return start, stop
 
 
-def _checked_between(value: object) -> int | tuple[float, ...]:
+def _checked_between(field: str, value: object) -> int | tuple[float, ...]:
     if is_whole(value):
-        return whole_number("between", value, 0, MOST_BETWEEN)
+        return whole_number(field, value, 0, MOST_BETWEEN)
     allowed = f"a whole number, or increasing fractions between 0 and 1, at least {LEAST_FRACTION:g} apart"
-    wrong = InputError("between", f"must be {allowed}, not {as_toml(value)}")
+    wrong = InputError(field, f"must be {allowed}, not {as_toml(value)}")
     items = [value] if isinstance(value, (float, np.floating)) else value
     if not isinstance(items, (list, tuple, np.ndarray)) or getattr(items, "ndim", 1) != 1 or len(items) > MOST_BETWEEN:
         raise wrong

@@ -9,17 +9,11 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import instance, known_name, number, positive, string
+from fastpin.model.checks import check_fields, instance, known_name, number, positive, set_fields, string
 from fastpin.model.synonyms import explains_keywords
 
 LEAST_MODULUS, MOST_MODULUS = 1e-60, 1e60
-"""Limits of the moduli of a ply, Pa: those of a material."""
-
-LEAST_THICKNESS, MOST_THICKNESS = 1e-12, 1e6
-"""Limits of the thickness of a ply, m. A ply of one atom is thicker than the first."""
-
-STABLE = 1e-9
-"""Least part of nu12^2 E2 / E1 below 1. A smaller part is rounding: no stable ply has it."""
+"""Limits of the moduli and strengths of a ply, Pa: those of a material."""
 
 PlyCriterion = Literal["maximum-stress", "maximum-strain", "tsai-hill", "tsai-wu", "hashin", "yamada-sun"]
 
@@ -54,9 +48,7 @@ class PlyStrengths:
     S: float
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            strength = number(each.name, positive(each.name, getattr(self, each.name)), LEAST_MODULUS, MOST_MODULUS)
-            object.__setattr__(self, each.name, strength)
+        check_fields(self, checked_modulus, " ".join(each.name for each in fields(self)))
 
     def entries(self) -> dict[str, float]:
         """The strengths by name, Pa."""
@@ -103,16 +95,13 @@ class Ply:
     source: str = ""
 
     def __post_init__(self) -> None:
-        for field in ("E1", "E2", "G12"):
-            modulus = number(field, positive(field, getattr(self, field)), LEAST_MODULUS, MOST_MODULUS)
-            object.__setattr__(self, field, modulus)
-        object.__setattr__(self, "nu12", checked_ratio(self.E1, self.E2, self.nu12))
-        thickness = number("thickness", positive("thickness", self.thickness), LEAST_THICKNESS, MOST_THICKNESS)
-        object.__setattr__(self, "thickness", thickness)
+        check_fields(self, checked_modulus, "E1 E2 G12")
+        set_fields(self, nu12=checked_ratio(self.E1, self.E2, self.nu12))
+        check_fields(self, positive, "thickness")
+        check_fields(self, number, "thickness", 1e-12, 1e6)  # a ply of one atom is thicker
         if self.strengths is not None:
             instance("strengths", self.strengths, PlyStrengths, "a fastpin.model.PlyStrengths")
-        for field in ("name", "source"):
-            object.__setattr__(self, field, string(field, getattr(self, field)))
+        check_fields(self, string, "name source")
 
     @property
     def stiffness(self) -> np.ndarray:
@@ -161,6 +150,11 @@ def ply_from(**given: Any) -> Ply:
     return Ply(**given, strengths=PlyStrengths(**strengths) if strengths else None)
 
 
+def checked_modulus(field: str, value: object) -> float:
+    """Check a modulus or a strength, Pa, and return it as a float."""
+    return number(field, positive(field, value), LEAST_MODULUS, MOST_MODULUS)
+
+
 def checked_ratio(first: float, second: float, ratio: object) -> float:
     """Check Poisson's ratio nu12 of a body with the moduli E1 and E2, and return it.
 
@@ -170,7 +164,7 @@ def checked_ratio(first: float, second: float, ratio: object) -> float:
         If no stable material has these constants.
     """
     value = number("nu12", ratio)
-    if abs(value) >= math.sqrt(first / second) * (1.0 - 0.5 * STABLE):
+    if abs(value) >= math.sqrt(first / second) * (1.0 - 0.5e-9):  # a smaller part below 1 is rounding
         raise InputError("nu12", f"must lie within +-sqrt(E1/E2) = {math.sqrt(first / second):g}, not {value:g}")
     return value
 
@@ -201,12 +195,9 @@ _ELASTIC = {
     "T300/5208": (181e9, 10.3e9, 7.17e9, 0.28, "Jones, Mechanics of Composite Materials, quoted after public programs"),
 }
 
-USUAL_THICKNESS = 0.125e-3
-"""Thickness of the named plies, m: a usual one of cured tape."""
-
 PLIES = Plies(
     {
-        name: Ply(E1, E2, G12, nu12, USUAL_THICKNESS, _STRENGTHS[name], name, source)
+        name: Ply(E1, E2, G12, nu12, 0.125e-3, _STRENGTHS[name], name, source)  # a usual thickness of cured tape
         for name, (E1, E2, G12, nu12, source) in _ELASTIC.items()
     }
 )

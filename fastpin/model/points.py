@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fastpin.errors import InputError, InputWarning
-from fastpin.model.checks import choice, in_one_shape, instance, numbers
+from fastpin.model.checks import choice, in_one_shape, instance, numbers, set_fields
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
@@ -25,9 +25,6 @@ ROUNDING = 1e-14
 
 MOST_ANGLE = 1e6
 """Largest size of an angle, rad. Beyond, a turn has too few digits."""
-
-MOST_TURNS = 4.0 * math.pi
-"""Largest angle that is not in doubt, rad: two turns. A larger one is probably in degrees."""
 
 BODIES = ("plate", "pin", "seat")
 """Bodies with an edge: the plate with its hole, the pin, and the plate round a bush, whose edge is the bush's seat.
@@ -74,12 +71,12 @@ class Points(ReadOnly):
         turned = numbers("theta", self.theta, -MOST_ANGLE, MOST_ANGLE)
         values, angles = in_one_shape(name, numbers(name, given, 0.0), turned)
         largest = float(np.abs(angles).max(initial=0.0))
-        if largest > MOST_TURNS:
+        if largest > 4.0 * math.pi:  # more than two turns are probably in degrees
             words = f"{largest:g} rad is {math.degrees(largest):,.4g} degrees; angles are in rad"
             warnings.warn(InputWarning("theta", words), stacklevel=4)
         for field, array in ((name, values), ("theta", angles)):
             array.setflags(write=False)
-            object.__setattr__(self, field, array)
+            set_fields(self, **{field: array})
 
     @classmethod
     def at_radius(cls, radius: ArrayLike, theta: ArrayLike) -> Points:

@@ -17,6 +17,7 @@ from fastpin.model.checks import (
     MOST_FRICTION,
     MOST_PARAMETER,
     as_toml,
+    check_fields,
     choice,
     instance,
     is_above,
@@ -25,6 +26,7 @@ from fastpin.model.checks import (
     number,
     number_array,
     positive,
+    set_fields,
     true_or_false,
     whole_number,
 )
@@ -46,9 +48,6 @@ MOST_GAP = 0.1
 
 LOOKED_AT = 1441
 """Points round the hole at which profiles are checked."""
-
-LEAST_GRIP = 1e-9
-"""Overlap of pin and hole, in parts of the largest gap, that counts as none: digits of the linear programme."""
 
 LEAST_HUB = 1e-5
 """Least hub radius, in parts of R. The pin turns by 1/r^2 per moment: a smaller hub holds it by rounding only."""
@@ -165,7 +164,7 @@ class Problem:
             raise InputError("clearance", f"{limits}, not {clearance:g}")
         friction = self._checked_friction(radius)
         check_bodies(self.pair, radius, self.pin_body, self.plate_body, self.pin_load, self.dimensionless)
-        object.__setattr__(self, "hole_radius", radius)
+        set_fields(self, hole_radius=radius)
         if clearance + self.joint.press_fit[1] < 0.0 and self.is_incompressible:
             incompressible = "a pin with nu = 0.5 in a rigid plate keeps its area"
             if self.has_bodies:
@@ -177,7 +176,7 @@ class Problem:
             )
         for name, each in FIELDS.items():
             if each.choices:
-                object.__setattr__(self, name, choice(name, getattr(self, name), each.choices))
+                check_fields(self, choice, name, each.choices)
         if self.pin_load == "body" and self.held:
             raise InputError(
                 "rotation",
@@ -187,13 +186,11 @@ class Problem:
         self._check_hub(radius)
         self._check_drive(radius)
         if self.thickness is not None:
-            object.__setattr__(self, "thickness", checked_thickness("thickness", self.thickness))
+            check_fields(self, checked_thickness, "thickness")
             if self.dimensionless:
                 raise InputError("thickness", NO_THICKNESS)
-        object.__setattr__(self, "clearance", clearance)
-        object.__setattr__(self, "friction", friction)
-        object.__setattr__(self, "dimensionless", bool(self.dimensionless))
-        object.__setattr__(self, "gap", checked_gap(self.gap, radius, self.dimensionless))
+        set_fields(self, clearance=clearance, friction=friction, dimensionless=bool(self.dimensionless))
+        set_fields(self, gap=checked_gap(self.gap, radius, self.dimensionless))
         pin, *seats = self.interfaces  # each contact of the joint is checked as a problem of its own
         if pin.is_gripped and any(not seat.is_gripped for seat in seats):
             words = "must be positive where the pin has an interference fit: only a pressed bush carries such a pin"
@@ -225,7 +222,7 @@ class Problem:
                 limits = f"{LEAST_HUB * radius:g} and the hole radius {radius:g}"
                 raise InputError("hub_radius", f"must lie between {limits}, not {hub:g}")
             self.pin_body.check_hub(hub)
-            object.__setattr__(self, "hub_radius", min(hub, radius))
+            set_fields(self, hub_radius=min(hub, radius))
         if self.hub_stiffness is not None:
             stiffness = number("hub_stiffness", self.hub_stiffness)
             if self.rotation != "spring":
@@ -234,7 +231,7 @@ class Problem:
                 raise InputError("hub_stiffness", f"must be positive, not {stiffness:g}")
             natural = self.natural_loads()["moment"]
             number("hub_stiffness", stiffness, LEAST_STIFFNESS * natural, MOST_STIFFNESS * natural)
-            object.__setattr__(self, "hub_stiffness", stiffness)
+            set_fields(self, hub_stiffness=stiffness)
         elif self.rotation == "spring":
             raise InputError("hub_stiffness", 'a pin with rotation = "spring" needs the stiffness of the spring')
 
@@ -257,7 +254,7 @@ class Problem:
                 if is_above(gauge, radius):
                     raise InputError("gauge_radius", f"must be the hole radius {radius:g} in a laminate, not {gauge:g}")
                 gauge = radius
-            object.__setattr__(self, "gauge_radius", gauge)
+            set_fields(self, gauge_radius=gauge)
 
     def __repr__(self) -> str:
         size = f"load parameter {self.clearance:.6g} (R = F = beta* = 1)"
@@ -504,7 +501,7 @@ class Problem:
             return clearance < 0.0
         gap = clearance + self.gap_at(self.gap_angles)[0]
         room = widest_place(self.gap_angles, gap, self.driven)[0]
-        return room < -LEAST_GRIP * float(np.abs(gap).max())
+        return room < -1e-9 * float(np.abs(gap).max())  # digits of the linear programme
 
     @property
     def is_round(self) -> bool:

@@ -23,6 +23,7 @@ from fastpin.model.checks import (
     number,
     number_array,
     positive,
+    set_fields,
     shortened,
     string,
     whole_number,
@@ -46,17 +47,8 @@ from fastpin.model.synonyms import explains_keywords
 MOST_TERMS = 512
 """Most terms of a profile."""
 
-MOST_HARMONICS = 500
-"""Most waves round the hole that a filter keeps: the finest filter of roundness testers has 500."""
-
 CALLED = 1440
 """Samples of a function round the hole: four a degree."""
-
-BEYOND_ARC = 8
-"""Angles beyond an arc at which the values of its ends are joined."""
-
-MOST_DESCRIBED = 4
-"""Most terms that are described one by one."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -81,7 +73,7 @@ class Profile:
         samples = sum(len(term.angles) for term in terms if isinstance(term, Samples))
         if samples > MOST_SAMPLES:
             raise InputError("terms", f"must have at most {MOST_SAMPLES:,} samples in all, not {samples:,}")
-        object.__setattr__(self, "terms", terms)
+        set_fields(self, terms=terms)
 
     def __repr__(self) -> str:
         return f"<Profile: {self.words(lambda value: f'{value:.6g}')}>"
@@ -223,11 +215,11 @@ class Profile:
         """Words that describe it. `text` words a value."""
         check_callable("text", text, 1)
         orders = [term.wave[0] for term in self.terms if term.wave is not None]
-        if len(orders) == len(self.terms) > MOST_DESCRIBED:
+        if len(orders) == len(self.terms) > 4:
             return f"{len(orders):,} waves, with up to {max(orders)} round the hole"
-        described = [term.words(text) for term in self.terms[:MOST_DESCRIBED]]
-        if len(self.terms) > MOST_DESCRIBED:
-            described.append(f"and {len(self.terms) - MOST_DESCRIBED} more terms")
+        described = [term.words(text) for term in self.terms[:4]]
+        if len(self.terms) > 4:
+            described.append(f"and {len(self.terms) - 4} more terms")
         return "; ".join(described) or text(0.0)
 
     def __add__(self, other: Profile) -> Profile:
@@ -241,8 +233,9 @@ class Profile:
         return Profile(tuple(term.scaled(factor) for term in self.terms))
 
     def filtered(self, harmonics: int) -> Profile:
-        """The sum of the waves of this profile with at most `harmonics` round the hole, 1 to :data:`MOST_HARMONICS`.
+        """The sum of the waves of this profile with at most `harmonics` round the hole, 1 to 500.
 
+        The finest filter of roundness testers keeps 500 waves.
         A roundness tester gives the form of a hole by 15 waves, and by more with the roughness.
 
         Raises
@@ -250,7 +243,7 @@ class Profile:
         InputError
             If `harmonics` is out of range, or the profile has a flat.
         """
-        most = whole_number("harmonics", harmonics, 1, MOST_HARMONICS)
+        most = whole_number("harmonics", harmonics, 1, 500)
         if self.needs_lengths:
             raise InputError("harmonics", "can't filter a flat: its shape depends on the radius")
         found = self.amplitudes(1.0)[: most + 1].tolist()
@@ -314,7 +307,7 @@ def profile_of_nodes(grid: Grid, values: np.ndarray) -> Profile:
     theta = grid.theta
     if not grid.closed:
         first, last = (theta[0] + 2.0 * math.pi, values[0]), (theta[-1], values[-1])
-        beyond = np.linspace(last, first, BEYOND_ARC + 2)[1:-1]
+        beyond = np.linspace(last, first, 10)[1:-1]  # 8 angles join the ends of the arc
         theta, values = np.r_[theta, beyond[:, 0]], np.r_[values, beyond[:, 1]]
     return Profile((Samples(theta, values),))
 
@@ -348,7 +341,7 @@ class InitialGap:
             profile = Profile.of(f"gap.{name}", getattr(self, name))
             if profile.has_jumps:
                 raise InputError(f"gap.{name}", "must not jump: a zone has a step at its ends")
-            object.__setattr__(self, name, profile)
+            set_fields(self, **{name: profile})
 
     @classmethod
     def of(cls, value: InitialGap | ProfileLike) -> InitialGap:

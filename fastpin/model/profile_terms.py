@@ -16,7 +16,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between, degrees_at, degrees_of, from_bottom
-from fastpin.model.checks import number, number_array, numbers, positive, whole_number
+from fastpin.model.checks import check_fields, number, number_array, numbers, positive, set_fields, whole_number
 from fastpin.runtime.extensions import interpolate
 
 MOST_ORDER = 1000
@@ -136,11 +136,10 @@ class Harmonic(Term):
     kind, sizes = "harmonic", ("cosine", "sine")
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "order", whole_number("order", self.order, 0, MOST_ORDER))
-        for name in ("cosine", "sine"):
-            object.__setattr__(self, name, _size(name, getattr(self, name)))
+        check_fields(self, whole_number, "order", 0, MOST_ORDER)
+        check_fields(self, _checked_size, "cosine sine")
         if self.order == 0:
-            object.__setattr__(self, "sine", 0.0)
+            set_fields(self, sine=0.0)
 
     @property
     def wave(self) -> tuple[int, complex] | None:
@@ -204,7 +203,8 @@ class Flat(Term):
     kind, places, sizes, needs_lengths = "flat", ("centre",), ("depth",), True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "depth", _size("depth", positive("depth", self.depth)))
+        check_fields(self, positive, "depth")
+        check_fields(self, _checked_size, "depth")
         self._check_angles()
 
     def values(self, theta: np.ndarray, radius: float) -> np.ndarray:
@@ -244,7 +244,7 @@ class Crown(Term):
     kind, places, spans, sizes = "crown", ("centre",), ("half_width",), ("height",)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "height", _size("height", self.height))
+        check_fields(self, _checked_size, "height")
         width = positive("half_width", self.half_width)
         if not LEAST_ANGLE <= width <= math.pi:
             limits = f"must lie between {math.degrees(LEAST_ANGLE):.2g} and 180 degrees"
@@ -284,7 +284,7 @@ class Zone(Term):
     kind, places, sizes, jumps = "zone", ("start", "stop"), ("value",), True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "value", _size("value", self.value))
+        check_fields(self, _checked_size, "value")
         self._check_angles()
         if not 0.0 < self.stop - self.start < 2.0 * math.pi:
             raise InputError("stop", "must lie beyond the start, by less than a turn")
@@ -345,8 +345,7 @@ class Samples(Term):
                 f"must go all round the hole: neighbours are {math.degrees(widest):.4g} degrees apart, more than 120"
             )
             raise InputError("angles", words)
-        object.__setattr__(self, "angles", tuple(angles.tolist()))
-        object.__setattr__(self, "heights", tuple(heights.tolist()))
+        set_fields(self, angles=tuple(angles.tolist()), heights=tuple(heights.tolist()))
 
     @cached_property
     def _spline(self) -> Callable[..., np.ndarray]:
@@ -373,7 +372,7 @@ TERMS: dict[str, type[Term]] = {made.kind: made for made in (Harmonic, Flat, Cro
 """The kinds of terms by their names in files."""
 
 
-def _size(field: str, value: object) -> float:
+def _checked_size(field: str, value: object) -> float:
     """Check a value of a profile."""
     return number(field, value, -MOST_SIZE, MOST_SIZE)
 

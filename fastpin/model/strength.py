@@ -6,13 +6,10 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, is_above, not_negative, true_or_false
+from fastpin.model.checks import check_fields, choice, is_above, not_negative, set_fields, true_or_false
 from fastpin.model.ply import CRITERION_NAMES, PlyCriterion
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-
-MOST_DISTANCE = 100.0
-"""Largest length in radii of the hole. The pin's stress is 1 % there, and measured lengths are about one radius."""
 
 LENGTHS = ("distance", "tension", "compression")
 """The lengths, m. The first one is a circle, the other two are a curve about the pin's force."""
@@ -47,11 +44,10 @@ class StrengthAssessment:
     failure: bool = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "criterion", choice("criterion", self.criterion, CRITERION_NAMES))
+        check_fields(self, choice, "criterion", CRITERION_NAMES)
         given = checked_lengths(self.distance, self.tension, self.compression)
-        for name in LENGTHS:
-            object.__setattr__(self, name, given.get(name))
-        object.__setattr__(self, "failure", true_or_false("failure", self.failure))
+        set_fields(self, **{name: given.get(name) for name in LENGTHS})
+        check_fields(self, true_or_false, "failure")
 
     @property
     def lengths(self) -> dict[str, float]:
@@ -90,6 +86,7 @@ def check_strength(problem: Problem, how: StrengthAssessment) -> None:
     if plate is None or not plate.plies or any(ply.strengths is None for ply, _ in plate.plies):
         raise InputError("strength", "belongs to a plate that is a laminate whose plies have strengths")
     for name, value in how.lengths.items():
-        if is_above(value, MOST_DISTANCE * problem.hole_radius):
+        # At 100 radii the pin's stress is 1 %, and measured lengths are about one radius.
+        if is_above(value, 100.0 * problem.hole_radius):
             words = units(problem)["length"].text(value)
-            raise InputError(name, f"must be at most {MOST_DISTANCE:g} radii of the hole, not {words}")
+            raise InputError(name, f"must be at most 100 radii of the hole, not {words}")

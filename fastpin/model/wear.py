@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, count, items, not_negative, number, numbers
+from fastpin.model.checks import check_fields, choice, count, items, not_negative, number, numbers, set_fields
 from fastpin.model.profile import Profile, ProfileLike
 
 MOST_CYCLES = 10**12
@@ -17,9 +17,6 @@ MOST_CYCLES = 10**12
 
 MOST_CHOSEN = 10_000
 """Chosen cycles, at most."""
-
-A_DECADE = 10
-"""Cycles that are chosen in each decade, unless others are given."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +55,9 @@ class Wear:
     tolerance: float = 1e-2
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "law", choice("law", self.law, ("archard", "energy")))
-        object.__setattr__(self, "cycles", count("cycles", self.cycles, MOST_CYCLES))
-        object.__setattr__(self, "tolerance", number("tolerance", self.tolerance, 0.0, 0.1))
+        check_fields(self, choice, "law", ("archard", "energy"))
+        check_fields(self, count, "cycles", MOST_CYCLES)
+        check_fields(self, number, "tolerance", 0.0, 0.1)
         if self.coefficient is None and self.pin is None and self.plate is None:
             raise InputError("coefficient", "give the wear coefficient, or those of pin and plate")
         if self.coefficient is not None and (self.pin is not None or self.plate is not None):
@@ -70,12 +67,12 @@ class Wear:
                 profile = Profile.of(name, given)
                 four_a_degree = np.linspace(-np.pi, np.pi, 1441)
                 not_negative(name, float(profile.at(four_a_degree, 1.0).min()))
-                object.__setattr__(self, name, profile)
+                set_fields(self, **{name: profile})
         if self.at is not None:
             chosen = [count("at", each, self.cycles) for each in items("at", self.at, "a list of cycles")]
             if len(chosen) > MOST_CHOSEN or chosen != sorted(set(chosen)):
                 raise InputError("at", f"must be at most {MOST_CHOSEN:,} increasing numbers of cycles")
-            object.__setattr__(self, "at", tuple(chosen))
+            set_fields(self, at=tuple(chosen))
 
     def coefficients(self, radius: float, theta: np.ndarray) -> np.ndarray:
         """Coefficients of pin and plate, 1/Pa, at the angles `theta` (n,), rad, shape (2, n). `radius`: of the hole, m.
@@ -112,8 +109,9 @@ class Wear:
         """The cycles after which profile and states are stored, in order, 0 and the last one included."""
         if self.at is not None:
             return tuple(sorted({0, *self.at, self.cycles}))
-        count = int(np.ceil(A_DECADE * np.log10(self.cycles))) + 1
-        some = np.round(10.0 ** (np.arange(count) / A_DECADE)).astype(np.int64).tolist()
+        a_decade = 10
+        count = int(np.ceil(a_decade * np.log10(self.cycles))) + 1
+        some = np.round(10.0 ** (np.arange(count) / a_decade)).astype(np.int64).tolist()
         return tuple(sorted({0, *(each for each in some if each < self.cycles), self.cycles}))
 
 
