@@ -28,17 +28,23 @@ from fastpin.bodies.compliance import Compliance
 from fastpin.bodies.plate import Plate
 from fastpin.bodies.ring import Ring
 from fastpin.bodies.tube import SeatedBush
-from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, Wall, first_change, force_on, pairs_of, spectrum
+from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, first_change, force_on, pairs_of, spectrum
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.kernels.harmonics import First, Layer
-from fastpin.model.checks import MOST_FRICTION, MOST_PARAMETER, instance, not_negative, number, positive, true_or_false
+from fastpin.model.checks import (
+    MOST_FRICTION,
+    MOST_PARAMETER,
+    check_fields,
+    instance,
+    not_negative,
+    number,
+    positive,
+    true_or_false,
+)
 from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair, check_moduli
 from fastpin.model.synonyms import explains_keywords
-
-THINNEST_LAYER = 0.01
-"""Least wall of a bush, in parts of its outer radius. It is bonded and does not bend; a thinner one is a coating."""
 
 STUCK = 1e3
 """Coefficient of friction in the seat of a bonded bush in a lug of any outline. Nothing slips there."""
@@ -97,15 +103,13 @@ class Bushing(PlateBody):
             raise InputError("material", "must be isotropic: a laminate can only be the material of the plate")
         if self.material.is_rigid:
             raise InputError("material", "a rigid bush is a rigid plate: leave the bush out")
-        object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
-        object.__setattr__(self, "bonded", true_or_false("bonded", self.bonded))
-        checked = not_negative if self.bonded else number
-        object.__setattr__(self, "interference", checked("interference", self.interference))
+        check_fields(self, positive, "outer_radius")
+        check_fields(self, true_or_false, "bonded")
+        check_fields(self, not_negative if self.bonded else number, "interference")
         if not isinstance(self.inside, (Plate, Ring, Compliance)):
             raise InputError("inside", "must be a Plate, a Ring or a Compliance")
-        if self.friction is not None:
-            friction = number("friction", not_negative("friction", self.friction), 0.0, MOST_FRICTION)
-            object.__setattr__(self, "friction", friction)
+        check_fields(self, not_negative, "friction", optional=True)
+        check_fields(self, number, "friction", 0.0, MOST_FRICTION, optional=True)
         if self.bonded and self.friction is not None:
             raise InputError("friction", "a bonded bush does not slip: leave friction out, or set bonded = false")
         if not self.bonded and self.friction is None:
@@ -194,7 +198,8 @@ class Bushing(PlateBody):
     # -- checks and materials
 
     def check(self, radius: float, dimensionless: bool = False, name: str = "hole radius") -> None:
-        check_outer(self.outer_radius, radius, name, THINNEST if self.has_seat else THINNEST_LAYER)
+        # A bonded bush does not bend. Below 0.01 of its outer radius it is a coating.
+        check_outer(self.outer_radius, radius, name, THINNEST if self.has_seat else 0.01)
         self.inside.check(self.outer_radius, name="outer radius of the bush")
         if not dimensionless and abs(self.interference) >= self.outer_radius:
             limit = f"must be smaller than the outer radius {self.outer_radius:g} of the bush"
@@ -273,23 +278,20 @@ class Bushing(PlateBody):
         return np.array([moved[:, 0, 0], 0.5 * (moved[:, 0, 1] + moved[:, 1, 0]), moved[:, 1, 1]])
 
     def displacements(self, rim: Rim) -> Displacements:
-        inside = self.inside.displacements(self.around(rim)[1])
-        return {place: self._through(rim, column) for place, column in inside.items()}
-
-    def _through(self, rim: Rim, column: np.ndarray) -> np.ndarray:
-        """Displacements of the contact rim when the lug's own free hole is displaced by `column`, n = -K to K."""
         bore, seat = self.around(rim)
-        highest, kolosov, outer, unit = column.size // 2, bore.kolosov, seat.ratio, bore.compliance
-        q, inner = outer**-2.0, 2.0 * self.inside.pressed(seat) / unit
-        half = 0.5 * (kolosov - 1.0)
-        uniform = 0.5 * (kolosov + 1.0) * column[highest].real / (half + q - inner * (1.0 - q))
-        first = rim.compliance / unit * self.inside.first(seat).displacement()[0]
-        moved_first = (kolosov + 1.0) * column[highest + 1] / harmonics.first_stiffness(outer, kolosov, first)
-        order = np.arange(2.0, highest + 1.0)
-        layer = self.layer(rim, order)
-        growing = layer.moved_outside(self.inside.whole(seat, order), pairs_of(column))
-        rotation = 1j * column[highest].imag
-        return spectrum(order, layer.contact_displacement(growing), uniform + rotation, moved_first)
+        kolosov, outer, unit, found = bore.kolosov, seat.ratio, bore.compliance, {}
+        for place, column in self.inside.displacements(seat).items():  # of the lug's own free hole, n = -K to K
+            highest, q, inner = column.size // 2, outer**-2.0, 2.0 * self.inside.pressed(seat) / unit
+            half = 0.5 * (kolosov - 1.0)
+            uniform = 0.5 * (kolosov + 1.0) * column[highest].real / (half + q - inner * (1.0 - q))
+            first = rim.compliance / unit * self.inside.first(seat).displacement()[0]
+            moved_first = (kolosov + 1.0) * column[highest + 1] / harmonics.first_stiffness(outer, kolosov, first)
+            order = np.arange(2.0, highest + 1.0)
+            layer = self.layer(rim, order)
+            growing = layer.moved_outside(self.inside.whole(seat, order), pairs_of(column))
+            rotation = 1j * column[highest].imag
+            found[place] = spectrum(order, layer.contact_displacement(growing), uniform + rotation, moved_first)
+        return found
 
     def translation(self, rim: Rim, gauge: float | None) -> tuple[float, float]:
         own, seat = self.around(rim)
@@ -330,12 +332,11 @@ class Bushing(PlateBody):
         return max(harmonics.harmonics_needed(math.sqrt(1.0 / seat.ratio)), self.inside.highest_inside(seat))
 
     def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
-        bush, passed = self._wall_and_passed(rim, tractions(self.highest_inside(rim)), remote)
-        return PlateWalls(bush, self.inside.wall(self.around(rim)[1], passed, remote, whole=True))
+        """The field of the bush beyond that of the hole in the infinite plate, and that of the lug round it.
 
-    def _wall_and_passed(self, rim: Rim, t: np.ndarray, remote: Remote) -> tuple[Wall, np.ndarray]:
-        """The field of the bush beyond that of the hole in the infinite plate, and the harmonics that it passes on."""
-        bore, seat = self.around(rim)
+        `passed` are the harmonics that the bush passes on to the lug.
+        """
+        (bore, seat), t = self.around(rim), tractions(self.highest_inside(rim))
         kolosov, outer, unit, highest = bore.kolosov, seat.ratio, bore.compliance, len(t) - 1
         order = np.arange(2.0, highest + 1.0)
         moved, q, found, passed = self._moved_hole(seat, t, remote), outer**-2.0, Amplitudes.zero(highest), t.copy()
@@ -358,7 +359,8 @@ class Bushing(PlateBody):
         found.first[:2] += grown, -grown
         passed[1, 0] = own.traction(outer) @ t[1] + 2.0 * grown * (outer - outer**-3.0)
         passed[1, 1] = t[1, 1] / outer
-        return found.wall(kolosov, 1.0, outer), passed
+        lug_wall = self.inside.wall(seat, passed, remote, whole=True)
+        return PlateWalls(found.wall(kolosov, 1.0, outer), lug_wall)
 
     def _moved_hole(self, seat: Rim, t: np.ndarray, remote: Remote) -> np.ndarray:
         """Displacement of the lug's own free hole over its radius under the loads, n = -N to N.

@@ -32,12 +32,14 @@ from fastpin.kernels import fourier
 from fastpin.model.checks import (
     any_text,
     as_toml,
+    check_fields,
     choice,
     file_path,
     is_whole,
     number,
     numbers,
     positive,
+    set_fields,
     string,
     why_unreadable,
 )
@@ -54,12 +56,6 @@ VERSION = 1
 
 LEAST_ORDER, MOST_ORDER = 2, 200
 """Limits of the highest harmonic K."""
-
-ASYMMETRY = 1e-6
-"""Largest difference of a matrix and its transpose, in parts of its largest entry."""
-
-DECAYED = 1e-2
-"""Largest entry of the last harmonic, in parts of the largest entry of the harmonics 0 and 2."""
 
 COLUMNS = tuple(LOADS[place] for place in REMOTE)
 """Loads that a plate may have besides the forces on the pin: its own loads take the names of the remote stresses."""
@@ -110,22 +106,22 @@ class Compliance(PlateBody):
     made_by: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "nu", number("nu", self.nu, 0.0, 0.5))
-        object.__setattr__(self, "plane", choice("plane", self.plane, PLANES))
-        object.__setattr__(self, "hole_radius", positive("hole_radius", self.hole_radius))
-        object.__setattr__(self, "made_by", string("made_by", self.made_by))
+        check_fields(self, number, "nu", 0.0, 0.5)
+        check_fields(self, choice, "plane", PLANES)
+        check_fields(self, positive, "hole_radius")
+        check_fields(self, string, "made_by")
         matrix = numbers("matrix", self.matrix, -MOST_ENTRY, MOST_ENTRY).copy()
         size = matrix.shape[0] if matrix.ndim == 2 else 0
         if matrix.shape != (size, size) or size % 4 != 2 or not LEAST_ORDER <= (size - 2) // 4 <= MOST_ORDER:
             words = f"must have the shape (2 + 4 K, 2 + 4 K) with K from {LEAST_ORDER} to {MOST_ORDER}"
             raise InputError("matrix", f"{words}, not {matrix.shape}")
         largest = float(np.abs(matrix).max())
-        if float(np.abs(matrix - matrix.T).max()) > ASYMMETRY * largest:
+        if float(np.abs(matrix - matrix.T).max()) > 1e-6 * largest:
             raise InputError("matrix", "must be symmetric: the displacement at one place under a force at another")
         matrix = 0.5 * (matrix + matrix.T)
         self._check_decay(matrix)
         matrix.setflags(write=False)
-        object.__setattr__(self, "matrix", matrix)
+        set_fields(self, matrix=matrix)
         if not isinstance(self.columns, Mapping):
             raise InputError("columns", f"must map loads to columns, not {as_toml(self.columns)}")
         columns = {}
@@ -135,7 +131,7 @@ class Compliance(PlateBody):
             if columns[name].shape != (size,):
                 raise InputError(f"columns.{name}", f"must have the shape ({size},), not {columns[name].shape}")
             columns[name].setflags(write=False)
-        object.__setattr__(self, "columns", MappingProxyType(columns))
+        set_fields(self, columns=MappingProxyType(columns))
 
     def __reduce__(self) -> tuple[type[Compliance], tuple[Any, ...]]:
         """Copies and pickles are made anew, so that they can't be changed either."""
@@ -158,9 +154,9 @@ class Compliance(PlateBody):
         low, last = np.flatnonzero((harmonic == 0) | (harmonic == 2)), np.flatnonzero(harmonic == harmonic[-1])
         inner = np.flatnonzero(harmonic != 1)  # the first harmonic holds the translation over the supports
         size, left = float(np.abs(matrix[np.ix_(low, inner)]).max()), float(np.abs(matrix[np.ix_(last, inner)]).max())
-        if left > DECAYED * size:
-            words = f"its last harmonic {harmonic[-1]} is {left / size:.2g} of the largest; it must decay to "
-            raise InputError("matrix", f"{words}{DECAYED:g}: take more harmonics")
+        if left > 0.01 * size:
+            words = f"its last harmonic {harmonic[-1]} is {left / size:.2g} of the largest; it must decay to 0.01"
+            raise InputError("matrix", f"{words}: take more harmonics")
 
     @property
     def order(self) -> int:
@@ -258,7 +254,12 @@ class Compliance(PlateBody):
         if name is None:
             return None
         try:
-            return _read(table.folder / name)
+            path = table.folder / name
+            try:
+                status = path.stat()
+            except OSError:  # the file can't be read; the reader says why
+                return Compliance.from_file(path)
+            return _read(path, status.st_mtime_ns, status.st_size)
         except InputError as error:
             table.report(str(error) if key == "file" else f"{key}: {error.reason}", key)
             return None
@@ -357,17 +358,9 @@ class Compliance(PlateBody):
         hoop += 8.0 / (rim.kolosov + 1.0) * np.real(waves @ ((1.0 + order) * complex_coefficients(moved)))
 
 
-def _read(path: Path) -> Compliance:
-    """Read a compliance, unless the same file was read before and has not changed since."""
-    try:
-        status = path.stat()
-    except OSError:  # the file can't be read; the reader says why
-        return Compliance.from_file(path)
-    return _remembered(path, status.st_mtime_ns, status.st_size)
-
-
 @functools.lru_cache(maxsize=8)  # the points of a sweep often share a file
-def _remembered(path: Path, changed: int, size: int) -> Compliance:
+def _read(path: Path, changed: int, size: int) -> Compliance:
+    """Read a compliance, unless the same file was read before and has not changed since."""
     return Compliance.from_file(path)
 
 

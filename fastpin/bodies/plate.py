@@ -13,12 +13,9 @@ from fastpin.bodies.body import WIDEST, InWords, PlateBody, Remote, Rim, Table
 from fastpin.bodies.walls import UNIT_STRESS, Amplitudes, Displacements, Other, force_on
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
-from fastpin.model.checks import is_between, number
+from fastpin.model.checks import is_between, number, set_fields
 from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.synonyms import explains_keywords
-
-NEAREST = 1.05
-"""Least distance of a point reaction from the centre, in parts of the hole radius."""
 
 
 @explains_keywords
@@ -52,15 +49,16 @@ class Plate(PlateBody):
         if not isinstance(self.reaction, (tuple, list)) or len(self.reaction) != 2:
             raise InputError("reaction", "must be a point [x, y]")
         x, y = (number("reaction", value) for value in self.reaction)
-        object.__setattr__(self, "reaction", (x, y))
+        set_fields(self, reaction=(x, y))
 
     @classmethod
     def read(cls, table: Table) -> Plate | None:
         return table.build(cls, {"reaction": table.value("reaction")}, {"reaction": None})
 
     def check(self, radius: float, dimensionless: bool = False, name: str = "hole radius") -> None:
-        if self.reaction is not None and not is_between(NEAREST * radius, math.hypot(*self.reaction), WIDEST * radius):
-            limits = f"must be a point from {NEAREST * radius:g} to {WIDEST * radius:g} from the centre"
+        least, most = 1.05 * radius, WIDEST * radius
+        if self.reaction is not None and not is_between(least, math.hypot(*self.reaction), most):
+            limits = f"must be a point from {least:g} to {most:g} from the centre"
             raise InputError("reaction", f"{limits}, not {math.hypot(*self.reaction):g}")
 
     def without_gauge(self, radius: float) -> str:

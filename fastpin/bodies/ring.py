@@ -13,7 +13,7 @@ from fastpin.bodies.walls import UNIT_STRESS, Amplitudes, Displacements, Other, 
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.kernels.harmonics import Layer
-from fastpin.model.checks import choice, is_above, positive
+from fastpin.model.checks import check_fields, choice, is_above, positive
 from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.materials import Material
 from fastpin.model.synonyms import explains_keywords
@@ -22,9 +22,6 @@ Support = Literal["held", "uniform", "normal", "shear", "half", "body"]
 """Kinds of support of a ring's outer rim."""
 
 SUPPORTS: tuple[Support, ...] = ("held", "uniform", "normal", "shear", "half", "body")
-
-SERIES_BELOW, SERIES_TERMS = 0.2, 12
-"""Radius, in parts of the rim's, below which the half cosine is summed by its series, and the terms of the series."""
 
 
 @explains_keywords
@@ -58,8 +55,8 @@ class Ring(PlateBody):
     support: Support = "held"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
-        object.__setattr__(self, "support", choice("support", self.support, SUPPORTS))
+        check_fields(self, positive, "outer_radius")
+        check_fields(self, choice, "support", SUPPORTS)
 
     @property
     def held(self) -> bool:
@@ -220,13 +217,13 @@ class HalfCosine(NamedTuple):
         """s_rr + s_tt and D at the points z, (T46)."""
         w = z / self.outer * np.exp(-1j * self.middle)
         beyond = np.maximum(np.abs(w) ** -2.0 - 1.0, 0.0)  # on the rim rounding may leave a negative one
-        pole, near = w * w == -1.0, np.abs(w) < SERIES_BELOW
+        pole, near = w * w == -1.0, np.abs(w) < 0.2  # near the centre the series has all digits by 12 terms
         safe = np.where(pole | near, 1.0, w)
         arctan = np.arctan(safe)
         value = 0.5 * ((safe + 1.0 / safe) * arctan - 1.0)
         slope = 0.5 * ((safe - 1.0 / safe) * arctan + 1.0)
         value[pole], slope[pole] = -0.5, 0.0  # there `beyond` times the logarithm of the slope vanishes
-        m = np.arange(1.0, SERIES_TERMS + 1.0)
+        m = np.arange(1.0, 13.0)
         terms = (-1.0) ** (m + 1.0) / (4.0 * m * m - 1.0)
         square = w[near] ** 2
         value[near] = square * np.polynomial.polynomial.polyval(square, terms)

@@ -12,7 +12,7 @@ from fastpin.bodies.body import THINNEST, Control, Harmonics, InWords, PinBody, 
 from fastpin.bodies.walls import Amplitudes, Wall, first_change, free_at_contact
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
-from fastpin.model.checks import choice, is_above, positive
+from fastpin.model.checks import check_fields, choice, is_above, positive
 from fastpin.model.synonyms import explains_keywords
 
 TubeLoad = Literal["uniform", "normal", "shear", "held", "body"]
@@ -49,8 +49,8 @@ class Tube(PinBody):
     load: TubeLoad = "uniform"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "bore_radius", positive("bore_radius", self.bore_radius))
-        object.__setattr__(self, "load", choice("load", self.load, TUBE_LOADS))
+        check_fields(self, positive, "bore_radius")
+        check_fields(self, choice, "load", TUBE_LOADS)
 
     @property
     def held(self) -> bool:
