@@ -30,9 +30,6 @@ None leaves the choice to the figure.
 MOST_CHOSEN = 100_000
 """Most load points of a choice."""
 
-SAME_POINT = 1e-9
-"""Largest difference of equal load points. Texts such as 2.333333333 name thirds of a step."""
-
 NO_CYCLE = "no cycle of the history has ended; add repeat = 2 to a [[load]] block"
 """Refusal of a cycle where there is none."""
 
@@ -123,17 +120,25 @@ def chosen_places(points: np.ndarray, cycles: Sequence[Cycle], chosen: StateChoi
     if word == "last":
         return [len(points) - 1]
     if word == "cycle":
-        return _places_of_last_cycle(points, cycles)
+        if not cycles:
+            raise InputError("states", NO_CYCLE)
+        first, last = span_of(cycles[-1])
+        places = np.flatnonzero((points >= first) & (points <= last)).tolist()
+        if not places:
+            raise InputError("states", "the states of the last cycle were not kept")
+        return places
     wanted = _points_of(chosen)
-    by_range = {ends: _places(points, ends) for ends in dict.fromkeys(wanted)}
+    by_range = {}
+    for ends in dict.fromkeys(wanted):  # texts such as 2.333333333 name thirds of a step
+        within = np.flatnonzero((points > ends.first - 1e-9) & (points < ends.last + 1e-9))
+        if not within.size:
+            raise _no_state(ends, points[-1])
+        by_range[ends] = within[:1].tolist() if ends.is_single else within.tolist()
     return [place for ends in wanted for place in by_range[ends]]
 
 
 def even_choice(places: Sequence[int], most: int, kept: Collection[int] = ()) -> list[int]:
-    """Return at most `most` of some places, in order: those of `kept` among them, and others evenly spread.
-
-    The first and the last place are among the others.
-    """
+    """Thin `places` out evenly to `most`; those in `kept` stay, and so do the first and the last of the others."""
     if len(places) <= most:
         return list(places)
     chosen = [place for place in places if place in kept][:most]
@@ -159,25 +164,11 @@ def check_choice(chosen: StateChoice, history: LoadHistory) -> None:
             raise _no_state(ends, len(history))
 
 
-def _places_of_last_cycle(points: np.ndarray, cycles: Sequence[Cycle]) -> list[int]:
-    if not cycles:
-        raise InputError("states", NO_CYCLE)
-    first, last = span_of(cycles[-1])
-    places: list[int] = np.flatnonzero((points >= first) & (points <= last)).tolist()
-    if not places:
-        raise InputError("states", "the states of the last cycle were not kept")
-    return places
-
-
 def _points_of(chosen: Any) -> list[Range]:
     """The load points, and ranges of them, that a choice names."""
-    parts = (
-        chosen.split(",")
-        if isinstance(chosen, str)
-        else [chosen]
-        if isinstance(chosen, (int, float, np.number))
-        else chosen
-    )
+    parts = [chosen] if isinstance(chosen, (int, float, np.number)) else chosen
+    if isinstance(chosen, str):
+        parts = chosen.split(",")
     try:
         listed = items("states", parts, "load points")
         if isinstance(chosen, str):
@@ -192,14 +183,6 @@ def _points_of(chosen: Any) -> list[Range]:
         shown = repr(chosen) if isinstance(chosen, str) else as_toml(chosen)
         raise InputError("states", f"must be last, cycle, all or load points such as 2,3.5, 1-9 or 10-, not {shown}")
     return points
-
-
-def _places(points: np.ndarray, ends: Range) -> list[int]:
-    """The places of the states in a range of load points, at least one."""
-    within = np.flatnonzero((points > ends.first - SAME_POINT) & (points < ends.last + SAME_POINT))
-    if not within.size:
-        raise _no_state(ends, points[-1])
-    return within[:1].tolist() if ends.is_single else within.tolist()
 
 
 def _no_state(ends: Range, last: float) -> InputError:

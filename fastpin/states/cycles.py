@@ -58,23 +58,13 @@ def periodic_from(cycles: Sequence[Cycle]) -> Cycle | None:
 
 def innermost_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
     """The cycles that contain no shorter one, in the order of their ends."""
-    ends: list[tuple[int, int]] = []  # end and length of the cycles so far
-    found = []
-    for cycle in sorted(cycles, key=lambda cycle: (cycle.corner, cycle.length)):
-        if not _contains_another(cycle, ends):
+    ordered, found = sorted(cycles, key=lambda cycle: (cycle.corner, cycle.length)), []
+    for place, cycle in enumerate(ordered):
+        begin, earlier = cycle.corner - cycle.length, (ordered[before] for before in range(place - 1, -1, -1))
+        last = next((other for other in earlier if other.corner <= begin or other.length < cycle.length), None)
+        if last is None or last.corner <= begin:  # no earlier, shorter cycle ended inside this one
             found.append(cycle)
-        ends.append((cycle.corner, cycle.length))
     return found
-
-
-def _contains_another(cycle: Cycle, ends: Sequence[tuple[int, int]]) -> bool:
-    """Whether a shorter one of the cycles before, given by end and length in this order, ended in the cycle."""
-    for end, length in reversed(ends):
-        if end <= cycle.corner - cycle.length:
-            return False
-        if length < cycle.length:
-            return True
-    return False
 
 
 def consecutive_cycles(cycles: Sequence[Cycle]) -> list[list[Cycle]]:

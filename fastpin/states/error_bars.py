@@ -26,12 +26,6 @@ ORDER = 1.0
 Stick-slip borders beside older borders converge with this order. All other quantities have 1.5 to 2, with some scatter.
 """
 
-PEAK_FLOORS = 1.0, 0.2
-"""Floors of a peak that is read at a node, and of a peak that is read between nodes.
-
-The unit is the drop of the traction from the peak to the lower one of the two neighbouring nodes.
-"""
-
 PLACE_FLOOR, PEAK_PLACE_FLOOR = 0.2, 1.0
 """Floors of each end of an interval, and of the angle of a peak, in node distances.
 
@@ -53,9 +47,6 @@ The unit is the size of the quantity (:func:`fastpin.states.quantities.size`) ov
 contact. The floor of int |T| is large: |T| has kinks at earlier borders and where the sign of T changes.
 """
 
-HOOP_FLOOR = 0.2
-"""Floor of the largest hoop stress and of its ratios, in parts of the value over the number of nodes in contact."""
-
 ROUNDING = 1e-11
 """Largest relative difference of two equal values, in parts of the size of the quantity.
 
@@ -64,9 +55,6 @@ Values this close are equal by symmetry or equilibrium. Their bar is this roundi
 
 LEAST_COARSE = 51
 """Least number of nodes of the coarse grid."""
-
-SAME_TOP = 1.5
-"""Reach of a peak, in node distances. A local maximum of the nodal values within this reach is the peak itself."""
 
 
 def bars(state: State, coarse: State) -> dict[str, float]:
@@ -89,9 +77,14 @@ def bars(state: State, coarse: State) -> dict[str, float]:
     mine, theirs = values(state), matching_values(state, coarse)
     found = {name: value_bar(name, value, theirs[name], [state]) for name, value in mine.items()}
     for name, traction in (("peak_pressure", state.pressure), ("peak_shear", np.abs(state.shear))):
-        highest = state.theta[_as_high(state, traction, found[name])]
-        others = np.abs(angle_between(highest, mine[f"{name}_angle"]))
-        others = others[others > SAME_TOP * float(state.grid.weights.max())]
+        before, after = np.roll(traction, 1), np.roll(traction, -1)
+        if not state.grid.closed:
+            before[0] = after[-1] = 0.0
+        is_peak = (traction > 0.0) & (traction >= before) & (traction >= after)
+        # A peak within twice the bar may be the highest. Of equal largest values a rule takes one: they do not count.
+        is_high = is_peak & ~is_top(traction) & (traction >= traction.max() - 2.0 * found[name])
+        others = np.abs(angle_between(state.theta[np.flatnonzero(is_high)], mine[f"{name}_angle"]))
+        others = others[others > 1.5 * float(state.grid.weights.max())]  # nearer maxima are the peak itself
         if others.size:
             known = found[f"{name}_angle"]
             found[f"{name}_angle"] = max(float(others.max()), known if math.isfinite(known) else 0.0)
@@ -183,10 +176,11 @@ def _floor(name: str, state: State) -> float:
         top = top_angle(traction, state.theta)
         beside = traction[[top - 1, (top + 1) % traction.size]]
         peak = abs(QUANTITIES[name].of(state))
-        floor = PEAK_FLOORS[int(peak > (1.0 + 1e-12) * float(traction[top]))]
+        # The floor is the drop to the lower neighbour, or 0.2 of it for a peak that is read between nodes.
+        floor = 0.2 if peak > (1.0 + 1e-12) * float(traction[top]) else 1.0
         return floor * max(peak - float(beside.min()), 0.0)
     if quantity(name).edge is not None and kind != "angle":
-        part = HOOP_FLOOR / closed if quantity(name).is_resolved(state) else reading.hoop.UNRESOLVED
+        part = 0.2 / closed if quantity(name).is_resolved(state) else reading.hoop.UNRESOLVED
         return part * abs(QUANTITIES[name].of(state))
     if kind in ("angle", "width"):
         zone, ends = name.removesuffix("_width"), 1
@@ -219,18 +213,6 @@ def check_nodes(nodes: int) -> None:
 def _closed(state: State) -> int:
     """Number of nodes in contact, at least 1."""
     return max(1, int(np.count_nonzero(state.pressure)))
-
-
-def _as_high(state: State, traction: np.ndarray, bar: float) -> np.ndarray:
-    """Indices of nodes with a local maximum of `traction` below the largest value, but within twice its bar.
-
-    Of equal largest values a rule takes one: they do not count.
-    """
-    before, after = np.roll(traction, 1), np.roll(traction, -1)
-    if not state.grid.closed:
-        before[0] = after[-1] = 0.0
-    highest = (traction > 0.0) & (traction >= before) & (traction >= after)
-    return np.flatnonzero(highest & ~is_top(traction) & (traction >= traction.max() - 2.0 * bar))
 
 
 SAFETY = 1.25

@@ -27,7 +27,7 @@ def spacings(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Hats:
-    """The hat functions of the nodes as pressures and shears, and which of them are known to stresses.
+    """Unit hat tractions, and which of them have stress columns already.
 
     Parameters
     ----------

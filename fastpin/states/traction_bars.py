@@ -45,9 +45,6 @@ MOST_SHIFT = 2.0
 An end without a counterpart on the coarse grid has an infinite bar.
 """
 
-SHIFTS = np.array([-1.0, -0.5, 0.5, 1.0])
-"""Parts of its shift by which an edge is moved. The largest change counts."""
-
 
 class PairBars(ErrorBars):
     """The error bars of a state from the state at the same load on a `coarse` grid with half the intervals."""
@@ -101,24 +98,19 @@ def _curves_and_bars(state: State, bars: ErrorBars, theta: np.ndarray) -> tuple[
     angle, spacing = np.degrees(theta) + 90.0, np.degrees(_spacing(state.grid, theta))
     curves, index = tractions_at(fine, angle), np.zeros((2, theta.size))
     for place in AROUND:
-        beside = angle + place * spacing
-        one, two = tractions_at(fine, beside), tractions_at(coarse, beside)
+        near = angle + place * spacing
+        one, two = tractions_at(fine, near), tractions_at(coarse, near)
         index = np.maximum(index, pair_bar(one, two, ORDER))
-    shift = np.degrees(_shift(state, bars, theta))
-    moved = [np.abs(tractions_at(fine, angle + part * shift) - curves) for part in SHIFTS]
-    floor = size_floor("traction", sizes(state)["traction"], state) * ((index > 0.0) | (curves != 0.0))
-    return curves, index + np.max(moved, axis=0) + floor
-
-
-def _shift(state: State, bars: ErrorBars, theta: np.ndarray) -> np.ndarray:
-    """The largest shift by an edge or border near each angle, rad, shape (m,)."""
-    shift = np.zeros(theta.size)
+    shift = np.zeros(theta.size)  # the largest one by an edge or border near each angle, rad
     for name in (name for name in bars if name not in QUANTITIES):  # ends of zones
         place = quantity(name).of(state)
-        (spacing,) = _spacing(state.grid, np.array([place]))
-        away = np.abs(angle_between(theta, place)) / (REACH * spacing)
-        shift = np.maximum(shift, min(bars[name], MOST_SHIFT * spacing) * np.maximum(1.0 - away, 0.0))
-    return shift
+        (beside,) = _spacing(state.grid, np.array([place]))
+        away = np.abs(angle_between(theta, place)) / (REACH * beside)
+        shift = np.maximum(shift, min(bars[name], MOST_SHIFT * beside) * np.maximum(1.0 - away, 0.0))
+    shift = np.degrees(shift)  # an edge is moved by parts of it, and the largest change counts
+    moved = [np.abs(tractions_at(fine, angle + part * shift) - curves) for part in (-1.0, -0.5, 0.5, 1.0)]
+    floor = size_floor("traction", sizes(state)["traction"], state) * ((index > 0.0) | (curves != 0.0))
+    return curves, index + np.max(moved, axis=0) + floor
 
 
 def _spacing(grid: Grid, theta: np.ndarray) -> np.ndarray:

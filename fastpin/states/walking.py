@@ -60,16 +60,12 @@ class Walk(NamedTuple):
         """Whether the bush walks: no node sticks throughout, and the cycle has turned it."""
         return self.sticking == 0.0 and abs(self.turn) > LEAST_WALK * self.swing
 
-    @property
-    def cycles_of_a_turn(self) -> float:
-        """Cycles until a bush that walks has turned once."""
-        return 2.0 * math.pi / abs(self.turn)
-
     def words(self, problem: Problem) -> str:
         """What the bush of a joint does, with its turn in a cycle."""
         if self.goes_on:
             turn = units(problem)["rotation"].text(abs(self.turn), 3)
-            return f"it walks {turn} a cycle, {self.cycles_of_a_turn:,.4g} cycles for a full turn"
+            cycles = 2.0 * math.pi / abs(self.turn)
+            return f"it walks {turn} a cycle, {cycles:,.4g} cycles for a full turn"
         if self.sticking:
             return f"it rests: {100.0 * self.sticking:.3g} % of its seat sticks throughout the last cycle"
         return "it slips to and fro: no part of its seat sticks throughout the last cycle"
