@@ -14,6 +14,13 @@ def angle_between(angles: np.ndarray | float, angle: np.ndarray | float) -> np.n
     return np.remainder(np.asarray(angles) - angle + math.pi, 2.0 * math.pi) - math.pi
 
 
+def distinct(angles: np.ndarray) -> np.ndarray:
+    """The different angles (n,), in increasing order. np.unique would import numpy.ma in every run."""
+    ordered = np.sort(angles)
+    found: np.ndarray = ordered[np.r_[True, ordered[1:] != ordered[:-1]]] if ordered.size else ordered
+    return found
+
+
 BOTTOM = -0.5 * math.pi
 """Angle of the bottom of the hole, rad."""
 

@@ -291,7 +291,7 @@ def number_array(field: str, values: ArrayLike) -> np.ndarray:
     """Check an array of numbers, also NaN and infinite ones, and return it as a float array of any shape."""
     with contextlib.suppress(Exception):  # Any object can be given, and its conversion may fail in any way.
         array = np.asarray(values)
-        if array.dtype.kind in _NUMBER_KINDS + "O" and not isinstance(values, np.ma.MaskedArray):
+        if array.dtype.kind in _NUMBER_KINDS + "O" and not _is_masked(values):
             return array.astype(float)
     raise InputError(field, f"must be a number, not {as_toml(values)}")
 
@@ -310,7 +310,7 @@ def as_toml(value: object) -> str:
 
 
 def _as_toml(value: object, depth: int) -> str:
-    if isinstance(value, (np.ndarray, np.generic)) and not isinstance(value, np.ma.MaskedArray):
+    if isinstance(value, (np.ndarray, np.generic)) and not _is_masked(value):
         value = value.tolist()
     if isinstance(value, bool):
         return str(value).lower()
@@ -334,8 +334,7 @@ def _as_float(value: Any) -> float | None:
     """A number as a float, infinite if it is too large; None for anything else."""
     if type(value) is float:
         return value
-    no_number = (bool, complex, str, bytes, bytearray, Sequence, Mapping, np.ma.MaskedArray)
-    if isinstance(value, no_number):
+    if isinstance(value, (bool, complex, str, bytes, bytearray, Sequence, Mapping)) or _is_masked(value):
         return None
     if isinstance(value, (np.ndarray, np.generic)) and (value.dtype.kind not in _NUMBER_KINDS or value.ndim):
         return None
@@ -345,6 +344,11 @@ def _as_float(value: Any) -> float | None:
         return math.inf
     except Exception:  # Any object can be given, and its conversion may fail in any way.
         return None
+
+
+def _is_masked(value: object) -> bool:
+    """Whether a value is a masked array. Its class is not named: that would import numpy.ma in every run."""
+    return isinstance(value, np.ndarray) and hasattr(value, "mask")
 
 
 def shortened(words: str) -> str:

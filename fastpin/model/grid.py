@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.angles import angle_between
+from fastpin.model.angles import angle_between, distinct
 from fastpin.model.checks import check_fields, number, numbers, set_fields, true_or_false, whole_number
 
 LEAST_NODES = 5
@@ -205,7 +205,8 @@ def _graded_counts(places: Sequence[tuple[float, float]]) -> tuple[np.ndarray, n
     start = -1.5 * math.pi
     samples = (np.concatenate([angles[:, None] + offsets, angles[:, None] - offsets]) - start) % (2.0 * math.pi)
     steps = np.linspace(0.0, 2.0 * math.pi, GRADED_SAMPLES)
-    theta = np.unique(np.round(np.r_[steps, samples[samples > 0.0]], 13)) + start
+    every: np.ndarray = np.r_[steps, samples[samples > 0.0]]
+    theta = distinct(every.round(13)) + start
     spacing = np.full(theta.size, MOST_WIDTH)
     for angle, width in zip(angles, widths, strict=True):
         spacing = np.minimum(spacing, np.maximum(width, 2.0 * np.abs(angle_between(theta, angle))))
@@ -233,7 +234,7 @@ def halved(grid: Grid, direction: float | None) -> Grid:
     n = grid.size
     if not grid.uniform:
         ends = grid.theta[-1:] if not grid.closed else grid.theta[:1]
-        return Grid(np.union1d(grid.theta[::2], ends), grid.closed)
+        return Grid(distinct(np.r_[grid.theta[::2], ends]), grid.closed)
     parity = 0 if direction is None else int(np.argmin(np.abs(angle_between(grid.theta, direction)))) % 2
     if grid.closed:
         return Grid.circle((n + 1) // 2, float(grid.theta[parity]))

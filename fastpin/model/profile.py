@@ -14,7 +14,7 @@ from typing import Any, TypeAlias, get_args
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.angles import angle_at
+from fastpin.model.angles import angle_at, distinct
 from fastpin.model.checks import (
     as_toml,
     check_callable,
@@ -359,7 +359,7 @@ class InitialGap:
     def angles(self, count: int, radius: float) -> np.ndarray:
         """Angles at which the gap shows itself, rad, in order; see :meth:`Profile.angles`."""
         found = np.concatenate([self.hole.angles(count, radius), self.pin.angles(0, radius)])
-        return np.unique(np.remainder(found + math.pi, 2.0 * math.pi) - math.pi)
+        return distinct(np.remainder(found + math.pi, 2.0 * math.pi) - math.pi)
 
     def waves(self) -> dict[int, complex]:
         """The amplitudes A of the waves Re A exp(i n theta) of the gap, by n. They are its harmonics.
