@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self
+from functools import partial
+from typing import Any, Self
 
 import numpy as np
 
@@ -94,7 +95,7 @@ class Plate(PlateBody):
         if self.reaction is None:
             return ()
         x, y = (value / rim.radius for value in self.reaction)
-        return (Reaction(complex(x, y), -force_on(t), rim.kolosov).polar,)
+        return (partial(_reaction, complex(x, y), -force_on(t), rim.kolosov),)
 
     def words(self, length: InWords) -> str:
         if self.reaction is None:
@@ -132,27 +133,23 @@ def _point_force(place: complex, force: complex, kolosov: float, compliance: flo
     return found
 
 
-class Reaction(NamedTuple):
-    """A force at the point `place` of the infinite plate with a free hole of radius 1, (T47)."""
+def _reaction(place: complex, force: complex, kolosov: float, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """s_rr + s_tt and D at the points z, under a force at a point of the infinite plate with a free hole, (T47).
 
-    place: complex
-    force: complex
-    kolosov: float
-
-    def polar(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """s_rr + s_tt and D at the points z."""
-        share = self.force / (2.0 * math.pi * (self.kolosov + 1.0))
-        other, conj_place, s = np.conj(share), np.conj(self.place), 1.0 / z
-        away, image = z - self.place, s - conj_place
-        slope, slope_2 = -share / away, share / away**2  # of the force alone: Omega', Omega''
-        omega_1 = self.kolosov * other / away - share * conj_place / away**2
-        mirrored, mirrored_1, mirrored_2 = -other / image, other / image**2, -2.0 * other / image**3
-        at_centre = other / conj_place  # mirrored at s = 0
-        rest = self.kolosov * share / image - other * self.place / image**2
-        rest_1 = -self.kolosov * share / image**2 + 2.0 * other * self.place / image**3
-        free = at_centre - mirrored + s * mirrored_1 + s * s * rest  # Omega' of the hole
-        free_2 = -(s**3) * (mirrored_2 + 2.0 * rest + s * rest_1)
-        free_omega = s * s * (mirrored + np.conj(at_centre) + free) - s * free_2
-        both = 2.0 * np.real(slope + free)
-        turn = z * z / np.abs(z) ** 2
-        return 2.0 * both, both - z * (slope_2 + free_2) - turn * (omega_1 + free_omega)
+    The radius of the hole is 1.
+    """
+    share = force / (2.0 * math.pi * (kolosov + 1.0))
+    other, conj_place, s = np.conj(share), np.conj(place), 1.0 / z
+    away, image = z - place, s - conj_place
+    slope, slope_2 = -share / away, share / away**2  # of the force alone: Omega', Omega''
+    omega_1 = kolosov * other / away - share * conj_place / away**2
+    mirrored, mirrored_1, mirrored_2 = -other / image, other / image**2, -2.0 * other / image**3
+    at_centre = other / conj_place  # mirrored at s = 0
+    rest = kolosov * share / image - other * place / image**2
+    rest_1 = -kolosov * share / image**2 + 2.0 * other * place / image**3
+    free = at_centre - mirrored + s * mirrored_1 + s * s * rest  # Omega' of the hole
+    free_2 = -(s**3) * (mirrored_2 + 2.0 * rest + s * rest_1)
+    free_omega = s * s * (mirrored + np.conj(at_centre) + free) - s * free_2
+    both = 2.0 * np.real(slope + free)
+    turn = z * z / np.abs(z) ** 2
+    return 2.0 * both, both - z * (slope_2 + free_2) - turn * (omega_1 + free_omega)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -27,8 +26,7 @@ Other = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 """A field in closed form: s_rr + s_tt and D = s_rr - i s_rtheta at the points z (m,)."""
 
 
-@dataclass(frozen=True, eq=False)
-class Wall:
+class Wall(NamedTuple):
     """A smooth field of stress between two circles.
 
     Attributes

@@ -89,7 +89,10 @@ class AnisotropicTerm:
         whole = both * self._turn
         if not self.grid.closed:
             whole[..., [0, -1]] = 0.0
-        moved = self._factor * self._turn * self._convolved(whole)
+        period, spectrum = self._spectrum  # of a convolution with k
+        parts = fft.rfft(np.stack([whole.real, whole.imag]), period, workers=1) * spectrum
+        real, imag = fft.irfft(parts, period, workers=1)[..., :n]
+        moved = self._factor * self._turn * (real + 1j * imag)
         if not self.grid.closed and both[..., [0, -1]].any():
             moved = moved + both[..., [0, -1]] @ self._half_hats.T
         return np.concatenate([moved.real, -moved.imag], axis=-1).T
@@ -106,13 +109,6 @@ class AnisotropicTerm:
                 out[:, place] += np.where(rows >= n, -moved.imag, moved.real)
             else:
                 toeplitz.add_turned_column(self.by_distance, self._turn, self._factor, rows, column, out[:, place])
-
-    def _convolved(self, values: np.ndarray) -> np.ndarray:
-        """The convolution of k and `values` (..., n), complex."""
-        period, spectrum = self._spectrum
-        parts = fft.rfft(np.stack([values.real, values.imag]), period, workers=1) * spectrum
-        real, imag = fft.irfft(parts, period, workers=1)[..., : self.grid.size]
-        return np.asarray(real + 1j * imag)
 
     def add_to(self, matrix: np.ndarray) -> None:
         """Add the term to a matrix of all entries, shape (2n, 2n)."""

@@ -20,6 +20,8 @@ def bush_stress(
 ) -> np.ndarray:
     """Stresses (srr, stt, srt) in the bush, shape (3, m).
 
+    Those that both fields have stem from a uniform traction on either rim, which carries the force and the moment.
+
     Parameters
     ----------
     problem : Problem
@@ -32,20 +34,13 @@ def bush_stress(
     outer = seat.hole_radius / pin.hole_radius
     found = plate_stress(pin, of_pin, np.zeros(3), theta, depth)
     found += pin_stress(seat, of_seat, theta, np.clip((outer - 1.0 - depth) / outer, 0.0, None))
-    found -= _shared(outer, pin.surfaces.plate_kolosov, traction_harmonics(of_pin, 1), theta, 1.0 + depth)
-    return found
-
-
-def _shared(outer: float, kolosov: float, t: np.ndarray, theta: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Stresses (srr, stt, srt) of a bush under a uniform traction on either rim, which carry the force and the moment.
-
-    `t` are the harmonics of the tractions on the bore, n = 0 and 1, shape (2, 2).
-    """
-    force, amplitudes = t[1, 1], harmonics.first(outer, kolosov, "uniform")
+    t, radius = traction_harmonics(of_pin, 1), 1.0 + depth
+    force, amplitudes = t[1, 1], harmonics.first(outer, pin.surfaces.plate_kolosov, "uniform")
     A, D, L = (each[1] * force for each in (amplitudes.A, amplitudes.D, amplitudes.L))
     z = radius * np.exp(1j * theta)
     both = 4.0 * np.real(2.0 * A * z - np.conj(L) / z)
     forward = 2.0 * (A * radius + D * radius**-3.0 - L / radius)
     traction = forward * np.exp(1j * theta) + np.conj(force) / radius * np.exp(-1j * theta)
     radial = traction.real
-    return np.array([radial, both - radial, traction.imag + t[0, 0].imag / radius**2])
+    found -= np.array([radial, both - radial, traction.imag + t[0, 0].imag / radius**2])
+    return found

@@ -35,12 +35,6 @@ PIN, SEAT = 0, 1
 AROUND = 720
 """Angles round the bore at which its shape is told."""
 
-ACROSS_WALL = 2.0
-"""Nodes of the seat, at least, on a length of the seat that is as long as the wall of the bush is thick."""
-
-ON_AXIS = 1e-9
-"""Largest distance of a node from the bottom, the right, the top or the left of the hole that is rounding, rad."""
-
 TURN = 2
 """Place of the rotation among the three motions of an interface, and of its condition."""
 
@@ -199,7 +193,7 @@ class JointSystem(System):
 
 
 def seat_grid(problem: Problem, grid: Grid) -> Grid:
-    """The nodes of the seat: as many as the pin's, but at least :data:`ACROSS_WALL` on a wall's length.
+    """The nodes of the seat: as many as the pin's, but at least 2 per wall thickness of the bush.
 
     One of them lies at a node of the pin: at the bottom, the right, the top or the left of the hole if the pin has a
     node there, so that a symmetric joint has symmetric nodes.
@@ -207,11 +201,11 @@ def seat_grid(problem: Problem, grid: Grid) -> Grid:
     bush = problem.plate_body.bush
     assert bush is not None
     wall = bush.outer_radius / problem.hole_radius - 1.0
-    least = math.ceil(ACROSS_WALL * 2.0 * math.pi * (1.0 + wall) / wall)
+    least = math.ceil(2.0 * 2.0 * math.pi * (1.0 + wall) / wall)
     start = 0
     if not grid.closed:
         away = np.abs(angle_between(grid.theta, BOTTOM + 0.5 * math.pi * np.arange(4)[:, None]))
-        axis = int(np.argmax(away.min(axis=1) < ON_AXIS))  # the bottom if the pin has no node on any axis
+        axis = int(np.argmax(away.min(axis=1) < 1e-9))  # the bottom if the pin has no node on any axis
         start = int(np.argmin(away[axis]))
     return Grid.circle(max(grid.size, least), float(grid.theta[start]))
 

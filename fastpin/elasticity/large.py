@@ -26,8 +26,10 @@ MOST_DENSE = 400
 MOST_KEPT = 512
 """Most nodes of a system that is kept. It takes 8 MB."""
 
-SYSTEMS_KEPT = 4
-"""Systems that are kept: of a history, of its coarse run, and the same two for its error bars or the run before."""
+_KEPT: list[System] = []
+"""The latest systems with few nodes. A history that goes on in pieces asks for the same one again and again."""
+
+_LOCK = threading.Lock()
 
 
 class ColumnsOperator(Operator):
@@ -104,32 +106,18 @@ def latest_system(problem: Problem, grid: Grid, force: float) -> System:
     The latest systems with few nodes are kept, and returned again for the same problem and grid. Problems that differ
     in friction and fit only share their matrices, as many runs of a sweep do.
     """
-    return _KEPT.system(problem, grid, force) if grid.size <= MOST_KEPT else System.build(problem, grid, force)
-
-
-class _LatestSystems:
-    """The latest systems with few nodes. A history that goes on in pieces asks for the same one again and again."""
-
-    def __init__(self) -> None:
-        self._systems: list[System] = []
-        self._lock = threading.Lock()
-
-    def system(self, problem: Problem, grid: Grid, force: float) -> System:
-        """The system of `problem` on `grid` with reference force `force`, N/m."""
-        with self._lock:
-            alike = [
-                known for known in self._systems
-                if known.scales.force == force and known.grid.closed == grid.closed
-                and np.array_equal(known.grid.theta, grid.theta)
-            ]  # fmt: skip
-        system = next((known for known in alike if known.problem == problem), None)
-        if system is None:
-            changed = (known.changed(problem) for known in alike)
-            system = next(filter(None, changed), None) or System.build(problem, grid, force)
-        with self._lock:
-            others = [known for known in self._systems if known is not system]
-            self._systems = [system, *others[: SYSTEMS_KEPT - 1]]
-        return system
-
-
-_KEPT = _LatestSystems()
+    if grid.size > MOST_KEPT:
+        return System.build(problem, grid, force)
+    with _LOCK:
+        alike = [
+            known for known in _KEPT
+            if known.scales.force == force and known.grid.closed == grid.closed
+            and np.array_equal(known.grid.theta, grid.theta)
+        ]  # fmt: skip
+    system = next((known for known in alike if known.problem == problem), None)
+    if system is None:
+        changed = (known.changed(problem) for known in alike)
+        system = next(filter(None, changed), None) or System.build(problem, grid, force)
+    with _LOCK:  # four: of a history, of its coarse run, and the same two for its error bars or the run before
+        _KEPT[:] = [system, *(known for known in _KEPT if known is not system)][:4]
+    return system

@@ -248,27 +248,24 @@ def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive:
     smooth = None if bodies is None or not bodies.coefficients.any() else bodies.coefficients
     term = None if bodies is None or not bodies.anisotropy else AnisotropicTerm(grid, bodies.anisotropy)
     if grid.uniform and n > LARGEST_DENSE:
-        base = ToeplitzOperator(influence.uniform_columns(*hats, smooth), grid.closed, *_added(grid, bodies, drive))
+        factors = [drive.factors]  # of the part of the operator that is no Toeplitz matrix
+        if bodies is not None and bodies.matrix.size:
+            factors.insert(0, bodies.factors(grid))
+        parts = zip(*factors, strict=True)
+        blocks = influence.uniform_columns(*hats, smooth)
+        base = ToeplitzOperator(blocks, grid.closed, np.hstack(next(parts)), np.vstack(next(parts)))
         return base if term is None else AnisotropicOperator(base, term)
     matrix = np.empty((2 * n, 2 * n), order="F")
     influence.fill_operator(*hats, matrix, smooth)
-    if bodies is not None:
-        bodies.add_matrix(grid, matrix)
+    if bodies is not None and bodies.matrix.size:
+        waves, displaced = bodies.factors(grid)
+        matrix += waves @ displaced
     if term is not None:
         term.add_to(matrix)
     moved, coupling = drive.factors
     if coupling.size:
         matrix += moved @ coupling
     return DenseOperator(matrix)
-
-
-def _added(grid: Grid, bodies: BodyTerms | None, drive: Drive) -> tuple[np.ndarray, np.ndarray]:
-    """Factors (2n, r) and (r, 2n) of the part of the operator that is no Toeplitz matrix."""
-    factors = [drive.factors]
-    if bodies is not None and bodies.matrix.size:
-        factors.insert(0, bodies.factors(grid))
-    left, right = zip(*factors, strict=True)
-    return np.hstack(left), np.vstack(right)
 
 
 def uniform_part(problem: Problem) -> float:

@@ -36,21 +36,6 @@ TOUCHING = 1e-8
 SMOOTH = 1e-6
 """Largest difference of the unit tangents of two parts at an end that is no corner."""
 
-ROWS, NEAR_PANELS = 200, 32
-"""Rows of nodes, and panels with their near nodes, that are computed at once. They limit the memory."""
-
-DROPPED, ROUNDING = 2e-12, 1e-13
-"""Subintervals at a node that are left out: parts of the panel, and hole radii. The integrands are integrable there."""
-
-REACH = 1.1
-"""Lengths of a panel within which it is near a node."""
-
-APART = 1.5
-"""Least distance of a node from the middle of a subinterval, in lengths of the subinterval."""
-
-MOST_HALVINGS = 60
-"""Most halvings of a panel; :data:`DROPPED` ends them sooner."""
-
 
 class Fineness(NamedTuple):
     """How finely edges are cut: nodes of a panel, and halvings of a part towards a corner."""
@@ -238,17 +223,17 @@ def matrices(edges: Edges, kolosov: float, scale: float, progress: Callable[[flo
 
     A rigid motion has no tractions, so that each row of T has the sum 0. It gives the entry of the node itself.
     """
-    count = edges.z.size
+    count, chunk, near = edges.z.size, 200, 32  # rows, and panels with near nodes, that are computed at once
     both = np.empty((2, 2, count, 2, count))
-    for first in range(0, count, ROWS):
-        rows = slice(first, first + ROWS)
+    for first in range(0, count, chunk):
+        rows = slice(first, first + chunk)
         with np.errstate(divide="ignore", invalid="ignore"):  # the node itself comes later
             values = kernels(edges.z - edges.z[rows, None], edges.normals, kolosov, scale) * edges.weights
         for value, (matrix, i, j) in zip(values, PLACES, strict=True):
             both[matrix, i, rows, j] = value
         progress(0.5 * first / count)
-    for first in range(0, edges.part.size, NEAR_PANELS):
-        _near(edges, np.arange(first, min(first + NEAR_PANELS, edges.part.size)), kolosov, scale, both)
+    for first in range(0, edges.part.size, near):
+        _near(edges, np.arange(first, min(first + near, edges.part.size)), kolosov, scale, both)
         progress(0.5 + 0.5 * first / edges.part.size)
     both[0, 1, :, 0] = both[0, 0, :, 1]
     here = np.arange(count)
@@ -263,7 +248,7 @@ def _near(edges: Edges, panels: np.ndarray, kolosov: float, scale: float, both: 
     """Replace the entries between some panels and the nodes near them."""
     samples, _ = edges.at(panels[:, None], np.linspace(-1.0, 1.0, 9))
     distance = np.abs(edges.z[:, None] - samples[:, None, :]).min(axis=2)
-    place, node = np.nonzero(distance < 2.0 * REACH * edges.half[panels][:, None])
+    place, node = np.nonzero(distance < 2.2 * edges.half[panels][:, None])  # within 1.1 lengths of a panel
     panel = panels[place]
     pair, middle, size = _subintervals(edges, panel, node)
     gauss, weights = edges.rule
@@ -281,16 +266,20 @@ def _near(edges: Edges, panels: np.ndarray, kolosov: float, scale: float, both: 
 
 
 def _subintervals(edges: Edges, panel: np.ndarray, node: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Subintervals of panels that are apart from nodes: the pair of panel and node in order, middle, half width."""
+    """Subintervals of panels that are apart from nodes: the pair of panel and node in order, middle, half width.
+
+    A node is 1.5 lengths of a subinterval away from its middle. Subintervals at a node are left out below 2e-12 of the
+    panel and 1e-13 hole radii: the integrands are integrable there. This takes less than 60 halvings.
+    """
     pair = np.arange(panel.size)
     middle, size = np.zeros(panel.size), np.ones(panel.size)
     found = []
-    for _ in range(MOST_HALVINGS):
+    for _ in range(60):
         centre, _ = edges.at(panel[pair], middle)
         half = edges.half[panel[pair]]
-        apart = np.abs(centre - edges.z[node[pair]]) >= 2.0 * APART * size * half
+        apart = np.abs(centre - edges.z[node[pair]]) >= 3.0 * size * half
         found.append((pair[apart], middle[apart], size[apart]))
-        left = ~apart & (size > np.maximum(DROPPED, ROUNDING / half))
+        left = ~apart & (size > np.maximum(2e-12, 1e-13 / half))
         if not left.any():
             break
         pair, size = np.tile(pair[left], 2), np.tile(0.5 * size[left], 2)

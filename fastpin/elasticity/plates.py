@@ -38,18 +38,6 @@ when harmonics below 1e-5 are left out."""
 RIGID = np.arange(1, 6)
 """Places of the rotation and of the first harmonic, which hold the motion of the hole over the supports."""
 
-PHASE = 4.0
-"""Largest angle of a panel on the hole's edge times the highest harmonic, rad. Ten nodes integrate a product of two
-such harmonics to 1e-12, eight nodes to 1e-8."""
-
-LEAST_KOLOSOV = 1.0 + 1e-7
-"""Least Kolosov constant in the integral equations. At 1 (nu = 0.5 in plane strain) the pressure on an outline that is
-held all round moves nothing, and the equations have no unique solution. The matrix changes by 1e-7."""
-
-FAR = 8.0
-"""Unit of length in the logarithm, in extents of the plate. No plate has then the size at which a purely logarithmic
-equation for held edges has no unique solution."""
-
 
 @dataclass(frozen=True, eq=False)
 class PlateResult:
@@ -145,27 +133,26 @@ def plate_compliance(
         if order is not None or computed == MOST_CHOSEN or harmonic_sizes(rough)[-1] <= KEPT:
             break
         computed, tried = min(2 * computed, MOST_CHOSEN), tried + 1
-    kept = decayed_order(rough) if order is None else order
+    kept = order
+    if kept is None:
+        kept = max(LEAST_ORDER, int(np.flatnonzero(harmonic_sizes(rough) > KEPT)[-1]))
     fine = respond(lug, kept, FINE, share(0.1 * (tried + 1), 0.9 - 0.1 * tried))
     cut = 2 + 4 * kept
     whole = fine.projected()
     less = whole - np.hstack([coarse[:cut, :cut], coarse[:cut, size:]])
     matrix = whole[:, :cut] - hole_compliance(kept, lug.kolosov)
     columns = {name: whole[:, cut + place] for place, name in enumerate(fine.loads)}
+    try:
+        made = Compliance(lug.nu, lug.plane, lug.hole_radius, 0.5 * (matrix + matrix.T), columns, made_by)
+    except InputError as error:
+        raise InputError("harmonics" if "more harmonics" in error.reason else error.field, error.reason) from None
     return PlateResult(
-        _compliance(lug, 0.5 * (matrix + matrix.T), columns, made_by),
+        made,
         largest_part(matrix - matrix.T, whole),
         float(harmonic_sizes(matrix)[-1]),
         largest_part(less, whole),
         fine.edges.z.size,
     )
-
-
-def _compliance(lug: Lug, matrix: np.ndarray, columns: dict[str, np.ndarray], made_by: str) -> Compliance:
-    try:
-        return Compliance(lug.nu, lug.plane, lug.hole_radius, matrix, columns, made_by)
-    except InputError as error:
-        raise InputError("harmonics" if "more harmonics" in error.reason else error.field, error.reason) from None
 
 
 def largest_part(difference: np.ndarray, whole: np.ndarray) -> float:
@@ -195,11 +182,6 @@ def harmonic_sizes(matrix: np.ndarray) -> np.ndarray:
     return found / max(rows[0], found[2:].max())
 
 
-def decayed_order(matrix: np.ndarray) -> int:
-    """The last harmonic of at least the size :data:`KEPT`."""
-    return max(LEAST_ORDER, int(np.flatnonzero(harmonic_sizes(matrix) > KEPT)[-1]))
-
-
 def hole_compliance(order: int, kolosov: float) -> np.ndarray:
     """The matrix "hole" of (T41): the hole in the infinite plate, without its first harmonic of the force."""
     matrix = np.zeros((2 + 4 * order, 2 + 4 * order))
@@ -216,10 +198,14 @@ def respond(lug: Lug, order: int, fineness: Fineness, progress: Callable[[float]
     """Solve the integral equations for the harmonics up to `order` and for the loads."""
     edges = Edges(_loops(lug, order), fineness)
     held, frame = _supports(lug, edges)
-    kolosov = max(lug.kolosov, LEAST_KOLOSOV)
+    # At 1 (nu = 0.5 in plane strain) the pressure on an outline that is held all round moves nothing, and the equations
+    # have no unique solution. The matrix changes by 1e-7.
+    kolosov = max(lug.kolosov, 1.0 + 1e-7)
     tractions, loads = _tractions(lug, edges, order)
     with threadpool_limits(limits=1, user_api="blas"):  # the same bits with any number of cores
-        both = matrices(edges, kolosov, FAR * edges.extent, lambda done: progress(0.7 * done))
+        # With this unit of length no plate has the size at which a purely logarithmic equation for held edges has no
+        # unique solution.
+        both = matrices(edges, kolosov, 8.0 * edges.extent, lambda done: progress(0.7 * done))
         for matrix in both:  # both components of u and t at a node along the support's frame
             x, y = matrix[:, :, 0], matrix[:, :, 1]
             turned = -x * frame.imag + y * frame.real
@@ -255,7 +241,8 @@ def _loops(lug: Lug, order: int) -> list[Boundary]:
     def scaled(parts: tuple[Part, ...]) -> tuple[Part, ...]:
         return tuple(part.scaled(1.0 / lug.hole_radius) for part in parts)
 
-    hole = Boundary(scaled(lug.contact_edge), (None,) * len(lug.contact_edge), min(Boundary.turn, PHASE / order))
+    # Ten nodes on 4 rad of a harmonic integrate a product of two such harmonics to 1e-12, eight nodes to 1e-8.
+    hole = Boundary(scaled(lug.contact_edge), (None,) * len(lug.contact_edge), min(Boundary.turn, 4.0 / order))
     loops = [hole, Boundary(scaled(lug.outline), tuple(marks(part.name) for part in lug.outline))]
     for other in lug.holes:
         loops.append(Boundary(scaled(other.parts), (marks(other.name),) * len(other.parts)))

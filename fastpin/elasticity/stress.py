@@ -204,7 +204,7 @@ def _sum(coefficients: np.ndarray, zeta: np.ndarray) -> np.ndarray:
 # -- the smooth fields of bodies ------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=80)  # the hat functions of 32 nodes, see fastpin/states/stress_map.py
+@lru_cache(maxsize=80)  # the readings of a state ask for the same ones
 def traction_harmonics(tractions: Tractions, highest: int) -> np.ndarray:
     """Harmonics (t_n, conj t_-n) of t = s_rr + i s_rtheta on the contact rim, n = 0 to `highest`; (highest + 1, 2)."""
     found = np.zeros((highest + 1, 2), dtype=complex)
@@ -218,13 +218,13 @@ def traction_harmonics(tractions: Tractions, highest: int) -> np.ndarray:
     return found / (2.0 * math.pi)
 
 
-@lru_cache(maxsize=80)  # the hat functions of 32 nodes, see fastpin/states/stress_map.py
+@lru_cache(maxsize=80)  # the readings of a state ask for the same ones
 def pin_wall(problem: Problem, tractions: Tractions) -> Wall | None:
     """The field of a hollow pin beyond that of a solid pin under a force at its centre; None for a solid pin."""
     return problem.pin_body.wall(problem.joint.pin_rim, partial(traction_harmonics, tractions))
 
 
-@lru_cache(maxsize=80)  # the hat functions of 32 nodes, see fastpin/states/stress_map.py
+@lru_cache(maxsize=80)  # the readings of a state ask for the same ones
 def plate_walls(problem: Problem, tractions: Tractions, remote: tuple[float, ...]) -> PlateWalls | None:
     """The smooth fields of a plate under tractions and a remote stress (sxx, syy, sxy); None for an infinite plate."""
     return problem.plate_body.walls(problem.joint.hole, partial(traction_harmonics, tractions), remote)

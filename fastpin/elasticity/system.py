@@ -28,16 +28,6 @@ from fastpin.model.grid import Grid, arc_of
 from fastpin.model.loads import ACTING, FRICTION_CHANGE, LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
 from fastpin.model.problem import Problem
 
-_ACTING_FORCES = min(DISPLACEMENTS) if max(DISPLACEMENTS) == ACTING - 1 else ACTING
-"""Number of loads in products under forces. The displacements, where they stand last, are left out: zeros cost bits."""
-
-
-ROUNDED = 1e-10
-"""Clearance, in F beta*, that counts as none: a tenth of the error that a returned state may have."""
-
-NEARLY = 1e-6
-"""Clearance, in F beta*, of a nearly neat fit. Its contact feels it in the last part of an unloading only."""
-
 IN_PLACE = {"friction", "clearance", "gap"}
 """Fields of a problem that the matrices do not depend on."""
 
@@ -282,8 +272,11 @@ class System:
 
     @cached_property
     def is_nearly_neat(self) -> bool:
-        """Whether the pin is neat or loose by at most :data:`NEARLY`. Its contacts vanish where all loads vanish."""
-        return bool(self.concentric_gap.min() >= 0.0 and self.concentric_gap.max() <= NEARLY)
+        """Whether the pin is neat or loose by at most 1e-6 F beta*. Its contacts vanish where all loads vanish.
+
+        The contact feels such a clearance in the last part of an unloading only.
+        """
+        return bool(self.concentric_gap.min() >= 0.0 and self.concentric_gap.max() <= 1e-6)
 
     @cached_property
     def has_friction(self) -> bool:
@@ -375,11 +368,12 @@ class System:
 
     @cached_property
     def _acting(self) -> int:
-        """Number of loads in products."""
+        """Number of loads in products. Displacements that stand last are left out under forces: zeros cost bits."""
         columns = self.loads.shape[1]
         if columns > len(LOADS):  # wear is one more
             return columns
-        return ACTING if self.drive.has_displacements else _ACTING_FORCES
+        stand_last = max(DISPLACEMENTS) == ACTING - 1
+        return min(DISPLACEMENTS) if stand_last and not self.drive.has_displacements else ACTING
 
     def displacement(
         self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
@@ -396,24 +390,18 @@ class System:
         rest_gap : ndarray, shape (n,), or float
             Gap of the rigid pin in the undeformed hole.
         """
-        return self.total_displacement(self.elastic(tractions), motion, load, rest_gap)
-
-    def total_displacement(
-        self, elastic: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
-    ) -> np.ndarray:
-        """Gap and slip, shape (2n,), from their elastic part ``operator @ tractions``.
-
-        The other arguments are as in :meth:`displacement`.
-        """
-        result = elastic + self.motion @ motion + self.load_displacement(load)
+        result = self.elastic(tractions) + self.motion @ motion + self.load_displacement(load)
         result[: self.grid.size] += rest_gap
         return result
 
 
 def _rest_clearance(problem: Problem, scales: Scales) -> float:
-    """The clearance of the assembled pin, dimensionless; 0 where it is rounding beside the displacements."""
+    """The clearance of the assembled pin, dimensionless; 0 where it is rounding beside the displacements.
+
+    Up to 1e-10 it counts as none: a tenth of the error that a returned state may have.
+    """
     clearance = problem.assembled_clearance / scales.displacement
-    return 0.0 if abs(clearance) <= ROUNDED and not problem.gap else clearance
+    return 0.0 if abs(clearance) <= 1e-10 and not problem.gap else clearance
 
 
 def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) -> tuple[float, np.ndarray]:

@@ -48,12 +48,6 @@ class BodyTerms:
     columns: Displacements = field(default_factory=dict)
     anisotropy: complex | None = None
 
-    def add_matrix(self, grid: Grid, operator: np.ndarray) -> None:
-        """Add the matrix of a compliance to the `operator`, shape (2n, 2n). Without one nothing changes."""
-        if self.matrix.size:
-            waves, displaced = self.factors(grid)
-            operator += waves @ displaced
-
     def factors(self, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
         """Factors (2n, m) and (m, 2n) of the matrix that a compliance adds to the operator."""
         waves, integrals = basis(self.matrix, grid)

@@ -12,24 +12,15 @@ import numpy as np
 from fastpin.kernels import cauchy, conjugate
 from fastpin.runtime.threads import in_chunks
 
-LEAF, EDGE_LEAF = 8, 7
-"""Linear pieces in a leaf of the tree of blocks; and least number in a block for points on the edge.
-
-A point visits all blocks for the edge. With the root of the number of pieces, it visits about as many pieces.
-"""
+LEAF = 8
+"""Linear pieces in a leaf of the tree of blocks."""
 
 GAUSS = 24
 """Gauss points a piece for the moments. Their integrands go up to the power 28, also where a leaf is one long piece."""
 
-SHORT, GAUSS_SHORT = 0.15, 4
-"""Pieces up to so many rad need so few Gauss points for the first two Fourier coefficients: the error is rounding."""
-
 RULES = {3: 0.016, 4: 0.08, 5: 0.19, 6: 0.35, 8: 0.7, 12: 1.4, 16: 2.0}
 """Gauss points of a piece for the moments on the edge, and its length in parts of the half width of its block up to
 which their error is rounding."""
-
-ROUNDING = 1e-11
-"""Moment of the shear that is rounding, in parts of the moment of its magnitude."""
 
 CHUNK = 20_000
 """Points that one thread computes at a time."""
@@ -58,7 +49,7 @@ class Tractions:
         """Whether the shear has a moment beyond rounding."""
         whole = sum(float(np.trapezoid(patch[:, 2], patch[:, 0])) for patch in self.patches)
         size = sum(float(np.trapezoid(np.abs(patch[:, 2]), patch[:, 0])) for patch in self.patches)
-        return abs(whole) > ROUNDING * size
+        return abs(whole) > 1e-11 * size
 
     def coefficients(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Fourier coefficients of N and T, (1/2 pi) int g exp(-i k xi) dxi, for k = 0 to `count`."""
@@ -66,7 +57,8 @@ class Tractions:
         for patch in self.patches:
             theta, values = patch[:, 0, None], patch[:, 1:, None]
             steps = np.diff(theta, axis=0)
-            points, weights = _gauss(GAUSS if count > 1 or steps.max() > SHORT else GAUSS_SHORT)
+            # For two coefficients of pieces up to 0.15 rad the error of 4 points is rounding.
+            points, weights = _gauss(GAUSS if count > 1 or steps.max() > 0.15 else 4)
             turn = np.exp(-1j * (theta[:-1] + steps * points))
             power = (values[:-1] + np.diff(values, axis=0) * points) * (steps * weights)[:, None] / (2.0 * math.pi)
             for k in range(count + 1):
@@ -80,15 +72,31 @@ class Tractions:
         return self.coefficients(1)
 
     @cached_property
-    def tree(self) -> Tree:
-        """The blocks of the linear pieces, for fast sums."""
-        return Tree.of(self)
+    def tree(self) -> tuple[np.ndarray | int, ...]:
+        """The blocks of the linear pieces with their moments, for :func:`fastpin.kernels.cauchy.cauchy`.
+
+        They are leaves of :data:`LEAF` pieces, then pairs of neighbours, up to one root.
+        """
+        if not self.patches:
+            moments = np.zeros((0, 2, cauchy.TERMS), complex)
+            return np.zeros((0, 3)), 0, np.zeros((0, 4), np.int64), np.zeros(0, complex), np.zeros(0), moments
+        nodes, leaves = np.concatenate(self.patches), _leaves(self.patches, LEAF)
+        turn, count = len(nodes) - 1 if self.all_round else 0, 2 * len(leaves) - 1
+        blocks = np.full((count, 4), -1)
+        blocks[: len(leaves), :2] = leaves
+        centres, radii = np.empty(count, dtype=complex), np.empty(count)
+        moments = np.zeros((count, 2, cauchy.TERMS), dtype=complex)
+        cauchy.grow(nodes, len(leaves), *_gauss(), _binomials(), blocks, centres, radii, moments)
+        if turn:
+            nodes = np.concatenate([nodes[:-1], nodes + np.array([2.0 * math.pi, 0.0, 0.0])])
+        return nodes, turn, blocks, centres, radii, moments
 
     @cached_property
     def _edge_blocks(self) -> tuple[np.ndarray | int, ...]:
         """The blocks of the linear pieces for points on the edge, for :func:`fastpin.kernels.conjugate.edge`."""
         nodes = np.concatenate([np.zeros((0, 3)), *self.patches])
-        blocks = _leaves(self.patches, max(EDGE_LEAF, math.isqrt(len(nodes)) // 3))
+        # A point visits all blocks. With the root of the number of pieces, it visits about as many pieces.
+        blocks = _leaves(self.patches, max(7, math.isqrt(len(nodes)) // 3))
         centres, moments = np.empty((len(blocks), 4)), np.zeros((len(blocks), conjugate.TERMS))
         conjugate.gather(nodes, blocks, *_rules(), centres, moments)
         return nodes, len(nodes) - 1 if self.all_round else -1, blocks, centres, moments
@@ -124,40 +132,6 @@ class RefinedTractions:
     tractions: Tractions
     resolved: tuple[float, ...]
     unresolved: tuple[float, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Tree:
-    """Blocks of linear pieces with the moments of their tractions, see :mod:`fastpin.kernels.cauchy`."""
-
-    nodes: np.ndarray
-    turn: int
-    blocks: np.ndarray
-    centres: np.ndarray
-    radii: np.ndarray
-    moments: np.ndarray
-
-    @classmethod
-    def of(cls, tractions: Tractions) -> Tree:
-        """Build the tree: leaves of :data:`LEAF` pieces, then pairs of neighbours, up to one root."""
-        patches = tractions.patches
-        if not patches:
-            return cls(
-                np.zeros((0, 3)), 0, np.zeros((0, 4), np.int64), np.zeros(0, complex), np.zeros(0),
-                np.zeros((0, 2, cauchy.TERMS), complex),
-            )  # fmt: skip
-        nodes = np.concatenate(patches)
-        turn = len(nodes) - 1 if tractions.all_round else 0
-        leaves = _leaves(patches, LEAF)
-        count = 2 * len(leaves) - 1
-        blocks = np.full((count, 4), -1)
-        blocks[: len(leaves), :2] = leaves
-        centres, radii = np.empty(count, dtype=complex), np.empty(count)
-        moments = np.zeros((count, 2, cauchy.TERMS), dtype=complex)
-        cauchy.grow(nodes, len(leaves), *_gauss(), _binomials(), blocks, centres, radii, moments)
-        if turn:
-            nodes = np.concatenate([nodes[:-1], nodes + np.array([2.0 * math.pi, 0.0, 0.0])])
-        return cls(nodes, turn, blocks, centres, radii, moments)
 
 
 def _leaves(patches: Sequence[np.ndarray], size: int) -> np.ndarray:
@@ -204,10 +178,9 @@ def cauchy_integrals(tractions: Tractions, theta: np.ndarray, away: np.ndarray, 
         Whether the points lie in the plate.
     """
     out, tree = np.empty((theta.size, 3), dtype=complex), tractions.tree
-    given = tree.nodes, tree.turn, tree.blocks, tree.centres, tree.radii, tree.moments
 
     def compute(part: slice) -> None:
-        cauchy.cauchy(theta[part], away[part], outside, *given, out[part])
+        cauchy.cauchy(theta[part], away[part], outside, *tree, out[part])
 
     in_chunks(theta.size, CHUNK, compute)
     return out

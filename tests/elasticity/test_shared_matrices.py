@@ -22,7 +22,7 @@ GRID = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 61)
 @pytest.fixture
 def kept(monkeypatch):
     """No system is kept before a test."""
-    monkeypatch.setattr(large, "_KEPT", large._LatestSystems())
+    monkeypatch.setattr(large, "_KEPT", [])
 
 
 def problem_of(pair, case="plain", **changes):
@@ -68,7 +68,7 @@ def test_results_have_the_same_bits_with_shared_matrices(titanium_in_aluminium):
     problems = [problem_of(titanium_in_aluminium, friction=friction) for friction in (0.3, 0.31, 0.32, 0.9)]
     shared = [solve(problem, history, nodes=61) for problem in problems]
     for problem, result in zip(problems, shared, strict=True):
-        large._KEPT = large._LatestSystems()
+        large._KEPT.clear()
         alone = solve(problem, history, nodes=61)
         assert np.array_equal(result.grid.theta, alone.grid.theta)
         assert_same_bits(result, alone)

@@ -221,9 +221,9 @@ def test_mirror_image(body, pin_load):
 
 def test_the_blocks_of_the_tree_hold_their_own_nodes_tightly():
     """A block that reached over its nodes would be summed piece by piece at more points than it must."""
-    tree = some_tractions(nodes=40).tree
-    places = np.exp(1j * tree.nodes[:, 0])
-    for (first, last, child, _), centre, radius in zip(tree.blocks, tree.centres, tree.radii, strict=True):
+    nodes, _, blocks, centres, radii, _ = some_tractions(nodes=40).tree
+    places = np.exp(1j * nodes[:, 0])
+    for (first, last, child, _), centre, radius in zip(blocks, centres, radii, strict=True):
         away = np.abs(places[first : last + 1] - centre)
         assert away.max() <= radius + 1e-15
         if child < 0:
