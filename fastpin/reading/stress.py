@@ -240,7 +240,7 @@ def stress_at(
             if np.any(away < ROUNDING * abs(place)):
                 raise InputError("points", "the reaction acts at one of the points: the stress there is infinite")
         ratio = _ratios_in_plate(problem, depth) if body != "seat" and material.is_isotropic else ratio
-    components = _components(problem, tractions, load, (theta, depth), body, seat)
+    components = stress_components(problem, tractions, load, (theta, depth), body, seat)
     radial, hoop, shear = (component.reshape(points.shape) for component in components)
     axial = np.zeros(points.shape)
     if problem.surfaces.plane == "strain":
@@ -255,14 +255,17 @@ def edge_hoop(
 
     The other arguments are those of :func:`stress_at`.
     """
-    return lambda theta: _components(problem, tractions, load, (theta, np.zeros(theta.size)), body, seat)[1]
+    return lambda theta: stress_components(problem, tractions, load, (theta, np.zeros(theta.size)), body, seat)[1]
 
 
-def _components(
+def stress_components(
     problem: Problem, tractions: Tractions, load: Mapping[str, float], places: tuple[np.ndarray, np.ndarray],
-    body: Body, seat: Tractions | None,
+    body: Body, seat: Tractions | None = None,
 ) -> np.ndarray:  # fmt: skip
-    """Stresses (srr, stt, srt), shape (3, m). `places` are angles, rad, and depths in units of R, both (m,)."""
+    """Stresses (srr, stt, srt), shape (3, m), in a body that :func:`check_body` admits.
+
+    `places` are angles, rad, and depths in units of R, both (m,). The other arguments are those of :func:`stress_at`.
+    """
     if body == "pin":
         return pin_stress(problem, tractions, *places)
     remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])

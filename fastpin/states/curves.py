@@ -10,11 +10,9 @@ import math
 
 import numpy as np
 
+from fastpin.model.angles import distinct
 from fastpin.runtime.extensions import interpolate
 from fastpin.states.state import State
-
-FINEST = 0.5
-"""Largest distance of the points of a curve, degrees."""
 
 
 def traction_patches(state: State) -> list[np.ndarray]:
@@ -28,9 +26,8 @@ def traction_patches(state: State) -> list[np.ndarray]:
         points = np.column_stack([np.degrees(patch[:, 0]) + 90.0, patch[:, 1:]])
         points = points[np.append(np.diff(points[:, 0]) > 0.0, True)]  # rounding may join neighbours
         points = _smoothed(points)
-        most = (
-            friction_along(state, points[:, 0]) * points[:, 1]
-        )  # fits and cubics may pass the bound by some 0.5 % of the peak
+        # Fits and cubics may pass the bound by some 0.5 % of the peak.
+        most = friction_along(state, points[:, 0]) * points[:, 1]
         points[:, 2] = np.clip(points[:, 2], -most, most)
         patches.append(points)
     return patches
@@ -61,13 +58,13 @@ def tractions_at(patches: list[np.ndarray], angle: np.ndarray) -> np.ndarray:
 
 def _smoothed(points: np.ndarray) -> np.ndarray:
     """A curve with more points where its own are far apart: on monotone cubics, which keep its corners and peaks."""
-    steps = np.diff(points[:, 0])
-    wide = np.flatnonzero(steps > FINEST)
+    steps, finest = np.diff(points[:, 0]), 0.5  # degrees
+    wide = np.flatnonzero(steps > finest)
     if len(points) < 3 or not wide.size:
         return points
-    shares = [np.arange(1, math.ceil(steps[k] / FINEST)) / math.ceil(steps[k] / FINEST) for k in wide]
+    shares = [np.arange(1, math.ceil(steps[k] / finest)) / math.ceil(steps[k] / finest) for k in wide]
     between = np.concatenate([points[k, 0] + steps[k] * share for k, share in zip(wide, shares, strict=True)])
-    every = np.unique(np.r_[points[:, 0], between])
+    every = distinct(np.r_[points[:, 0], between])
     return np.column_stack([every, interpolate.PchipInterpolator(points[:, 0], points[:, 1:])(every)])
 
 
@@ -94,19 +91,16 @@ def one_turn(patches: list[np.ndarray]) -> np.ndarray:
     for points in patches:
         first = math.floor((points[0, 0] + 180.0) / 360.0)
         last = math.ceil((points[-1, 0] + 180.0) / 360.0)
-        parts += [_part(points - [360.0 * turn, 0.0, 0.0]) for turn in range(first, last)]
-    parts = sorted((part for part in parts if len(part) > 1), key=lambda part: part[0, 0])
+        for turn in range(first, last):
+            turned = points - [360.0 * turn, 0.0, 0.0]
+            low, high = max(turned[0, 0], -180.0), min(turned[-1, 0], 180.0)
+            inside = turned[(turned[:, 0] > low) & (turned[:, 0] < high)]
+            ends = [np.interp([low, high], turned[:, 0], column) for column in turned.T]
+            parts.append(np.insert(np.column_stack(ends), 1, inside, axis=0))
+    parts.sort(key=lambda part: part[0, 0])
     joined: list[np.ndarray] = []
     for part in parts:
         if joined and part[0, 0] > joined[-1][-1, 0]:
             joined.append(np.full((1, 3), np.nan))
         joined.append(part)
     return np.concatenate(joined) if joined else np.zeros((0, 3))
-
-
-def _part(points: np.ndarray) -> np.ndarray:
-    """The part of a curve from -180 to 180 degrees."""
-    low, high = max(points[0, 0], -180.0), min(points[-1, 0], 180.0)
-    inside = points[(points[:, 0] > low) & (points[:, 0] < high)]
-    ends = [np.interp([low, high], points[:, 0], column) for column in points.T]
-    return np.insert(np.column_stack(ends), 1, inside, axis=0)

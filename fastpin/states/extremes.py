@@ -52,7 +52,7 @@ READINGS: dict[str, Quantity] = {
         for name, each in QUANTITIES.items()
         if each.kind not in ("angle", "ratio", "class") and not each.is_part
     },
-    "bush_least_friction": Quantity("bush least friction", "ratio", of_bush(lambda fit: fit.least_friction)),
+    "bush_least_friction": Quantity("bush least friction", "ratio", of_bush("least_friction")),
     "seat_slip": Quantity(
         "slip in the seat", "displacement", lambda state: math.nan if state.seat is None else state.seat.peak_slip
     ),

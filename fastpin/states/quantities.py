@@ -16,8 +16,7 @@ from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # this module imports compiled code
-    from fastpin.reading.bush import BushFit
-    from fastpin.reading.stress import HoopPeak
+    pass
 
 
 class Quantity(NamedTuple):
@@ -72,26 +71,24 @@ def _integral(state: State, traction: np.ndarray) -> float:
     return state.problem.hole_radius * float(state.grid.weights @ traction)
 
 
-def _hoop(
-    label: str, kind: str, read: Callable[[HoopPeak], float], words: str, edge: Body = "plate", is_part: bool = False
-) -> Quantity:
-    """A number of the largest hoop stress on an edge; NaN without the body, or if it is rigid.
+def _hoop(label: str, kind: str, name: str, words: str, edge: Body = "plate", is_part: bool = False) -> Quantity:
+    """A number of the largest hoop stress on an edge, by its name there; NaN without the body, or if it is rigid.
 
     The parts of assembly and loads are NaN where nothing is pressed.
     """
 
     def of(state: State) -> float:
         is_known = edge in elastic_bodies(state.problem) and (state.problem.is_pressed or not is_part)
-        return read(state.peak_hoop_stress(edge)) if is_known else math.nan
+        return float(getattr(state.peak_hoop_stress(edge), name)) if is_known else math.nan
 
     return Quantity(label, kind, of, words, edge=edge, is_part=is_part)
 
 
-def of_bush(read: Callable[[BushFit], float]) -> Callable[[State], float]:
-    """A reading of the interface between bush and plate; NaN without a bush."""
+def of_bush(name: str) -> Callable[[State], float]:
+    """A reading of the interface between bush and plate, by its name there; NaN without a bush."""
 
     def of(state: State) -> float:
-        return math.nan if state.problem.joint.bush is None else read(state.bush_fit())
+        return math.nan if state.problem.joint.bush is None else float(getattr(state.bush_fit(), name))
 
     return of
 
@@ -124,40 +121,23 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "dissipation": Quantity("dissipated", "energy", lambda state: state.dissipation, "energy dissipated so far"),
     "work": Quantity("work", "energy", lambda state: state.work, "work of the loads so far"),
-    "peak_hoop": _hoop("peak hoop", "traction", lambda peak: peak.value, "largest hoop stress round the hole"),
-    "peak_hoop_angle": _hoop("peak hoop at", "angle", lambda peak: peak.angle, "its place"),
-    "peak_hoop_assembly": _hoop(
-        "of the assembly", "traction", lambda peak: peak.assembly, "its part before any load", is_part=True
-    ),
-    "peak_hoop_loads": _hoop(
-        "of the loads", "traction", lambda peak: peak.loads, "its part of the loads", is_part=True
-    ),
-    "kt_gross": _hoop(
-        "Kt gross", "ratio", lambda peak: peak.kt_gross, "ratio of the loads' part to the remote stress, Kt gross"
-    ),
+    "peak_hoop": _hoop("peak hoop", "traction", "value", "largest hoop stress round the hole"),
+    "peak_hoop_angle": _hoop("peak hoop at", "angle", "angle", "its place"),
+    "peak_hoop_assembly": _hoop("of the assembly", "traction", "assembly", "its part before any load", is_part=True),
+    "peak_hoop_loads": _hoop("of the loads", "traction", "loads", "its part of the loads", is_part=True),
+    "kt_gross": _hoop("Kt gross", "ratio", "kt_gross", "ratio of the loads' part to the remote stress, Kt gross"),
     "kt_bearing": _hoop(
-        "Kt bearing",
-        "ratio",
-        lambda peak: peak.kt_bearing,
-        "ratio of the loads' part to the bearing stress, Kt bearing",
+        "Kt bearing", "ratio", "kt_bearing", "ratio of the loads' part to the bearing stress, Kt bearing"
     ),
-    "kt_net": _hoop(
-        "Kt net", "ratio", lambda peak: peak.kt_net, "ratio of the loads' part to the net-section stress, Kt net"
-    ),
+    "kt_net": _hoop("Kt net", "ratio", "kt_net", "ratio of the loads' part to the net-section stress, Kt net"),
     "peak_hoop_seat": _hoop(
-        "peak hoop seat",
-        "traction",
-        lambda peak: peak.value,
-        "largest hoop stress of the plate at the seat of the bush",
-        "seat",
+        "peak hoop seat", "traction", "value", "largest hoop stress of the plate at the seat of the bush", "seat"
     ),
-    "peak_hoop_seat_angle": _hoop("peak hoop seat at", "angle", lambda peak: peak.angle, "its place", "seat"),
+    "peak_hoop_seat_angle": _hoop("peak hoop seat at", "angle", "angle", "its place", "seat"),
     "peak_hoop_seat_assembly": _hoop(
-        "seat, of the assembly", "traction", lambda peak: peak.assembly, "its part before any load", "seat", True
+        "seat, of the assembly", "traction", "assembly", "its part before any load", "seat", True
     ),
-    "peak_hoop_seat_loads": _hoop(
-        "seat, of the loads", "traction", lambda peak: peak.loads, "its part of the loads", "seat", True
-    ),
+    "peak_hoop_seat_loads": _hoop("seat, of the loads", "traction", "loads", "its part of the loads", "seat", True),
     "joint_ux": Quantity(
         "joint ux",
         "displacement",
@@ -168,12 +148,12 @@ QUANTITIES: dict[str, Quantity] = {
         "joint uy", "displacement", lambda state: state.joint_displacement()["uy"], "displacement of the joint upwards"
     ),
     "bush_open_margin": Quantity(
-        "bush open margin", "traction", of_bush(lambda fit: fit.open_margin), "least pressure between bush and plate"
+        "bush open margin", "traction", of_bush("open_margin"), "least pressure between bush and plate"
     ),
     "bush_slip_margin": Quantity(
         "bush slip margin",
         "traction",
-        of_bush(lambda fit: fit.slip_margin),
+        of_bush("slip_margin"),
         "least pressure between bush and plate, minus shear over friction",
     ),
     "regime": Quantity("regime", "class", lambda state: float(state.regime), "regime of the contact", REGIMES),

@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fastpin.elasticity.stress import pin_stress, plate_stress, seat_stress
-from fastpin.elasticity.tractions import Tractions
 from fastpin.model.angles import from_bottom
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points, elastic_bodies, far_rim, material_of, near_rim
@@ -128,13 +126,6 @@ class Places(NamedTuple):
                 depth.append(np.full(there.size, one.depth))
                 circle += [one] * there.size
         return cls(circle[0].body, np.concatenate(theta), np.concatenate(depth), circle)
-
-    def stress(self, problem: Problem, tractions: Tractions, remote: np.ndarray) -> np.ndarray:
-        """Stresses (srr, stt, srt) at the points, shape (3, m), for tractions and a remote stress (sxx, syy, sxy)."""
-        if self.body == "pin":
-            return pin_stress(problem, tractions, self.theta, self.depth)
-        of = seat_stress if self.body == "seat" else plate_stress
-        return of(problem, tractions, remote, self.theta, self.depth)
 
     def von_mises(self, problem: Problem, stress: np.ndarray) -> np.ndarray:
         """Equivalent stresses of von Mises, shape (...,), from (srr, stt, srt), shape (3, ...)."""

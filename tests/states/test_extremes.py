@@ -23,7 +23,7 @@ from fastpin.states import extremes, reading_bounds
 from fastpin.states.extremes import MARKS, READINGS, KeptStates, marked_extremes, marked_places
 from fastpin.states.reading_bounds import NUMBERS
 from fastpin.states.state import State
-from fastpin.states.stress_map import Hats, NodalStress
+from fastpin.states.stress_map import StressMap
 from tests.support.samples import sample_result
 from tests.support.tiers import gate, seeds, some_gate
 from tests.survey.histories import GENERATORS, generate
@@ -140,18 +140,16 @@ def test_stresses_of_hat_functions_add_up(result: Result) -> None:
     theta = np.linspace(-3.0, 3.0, 17)
     bushed = isinstance(result.problem.plate_body, Bushing)
 
-    def of(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
-        found = plate_stress(result.problem, tractions, remote, theta, np.zeros(17))
+    def of(tractions: list[Tractions], remote: np.ndarray) -> np.ndarray:
+        found = plate_stress(result.problem, tractions[0], remote, theta, np.zeros(17))
         seat = theta[: 5 * bushed]
-        return np.c_[found, seat_stress(result.problem, tractions, remote, seat, np.zeros(5))] if bushed else found
+        return np.c_[found, seat_stress(result.problem, tractions[0], remote, seat, np.zeros(5))] if bushed else found
 
-    hats = Hats(result.problem, result.grid)
-    stress = NodalStress(hats, of)
+    stress = StressMap(result.problem, [result.grid], of)
     pressure, shear = (np.array([getattr(state, name) for state in result[:6]]) for name in ("pressure", "shear"))
     remote = np.zeros((6, 3))
-    for nodes, block in hats.blocks(pressure, shear):
-        stress.learn(nodes, block)
-    hoop = stress.component(1, pressure, shear, remote)
+    stress.learn([(pressure, shear)])
+    hoop = stress.component(1, [(pressure, shear)], remote)
     known = np.array([state.hoop_stress("plate", theta, straight=True) for state in result[:6]])
     if bushed:
         known = np.c_[known, [state.hoop_stress("seat", theta[:5], straight=True) for state in result[:6]]]
