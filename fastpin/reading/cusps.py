@@ -42,17 +42,11 @@ GOOD_ENOUGH = 5e-5
 The standard error of a wide window misses a part of its error: its terms are too few for all places in it.
 """
 
-PRESSURE_GOOD_ENOUGH = 0.1 * GOOD_ENOUGH
-"""The same for the pressure. It is smoother than the shear, and its error comes on top of the error of the shear."""
-
 BEYOND, TRIED = 6.0, 81
 """Reach on the slip side of a border of unlike bodies, in node distances, and the number of places tried there.
 
 The largest shear lies a little beyond the border. The places gather at the border.
 """
-
-LAW_ERROR = 0.01
-"""Largest standard error of the height of a power law at an old border, in parts of it."""
 
 SPARE = 2
 """Least number of nodes of a window beyond the number of unknowns."""
@@ -77,8 +71,7 @@ class Cusp(NamedTuple):
     node: int
 
 
-@dataclass(frozen=True)
-class ShearLaw:
+class ShearLaw(NamedTuple):
     """The power law of T at an old border: T gains height * x^exponent in the zone that ended there.
 
     Attributes
@@ -126,14 +119,6 @@ class _Window(NamedTuple):
     values: np.ndarray
     shapes: list[tuple[tuple[End, ...], int]]
     is_last: bool = False
-
-
-class _Reading(NamedTuple):
-    """The best fit of some windows, its error, and its window."""
-
-    fit: Fit
-    error: float
-    window: _Window
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,23 +183,22 @@ class ShearNodes:
 
     @cached_property
     def _patches(self) -> list[_Patch]:
-        return [self._patch(nodes) for nodes in runs(self.grid, self.pressure > 0.0)]
-
-    def _patch(self, nodes: np.ndarray) -> _Patch:
-        """The contact of some neighbouring `nodes`."""
-        theta, shear = unrolled(self.grid, nodes), self.shear[nodes]
-        areas = 0.5 * (shear[1:] + shear[:-1]) * (theta[1:] - theta[:-1])
-        margins = (0.0, 0.0)
-        if nodes.size > 1:
-            margins = 0.5 * float(shear[0] * (theta[1] - theta[0])), 0.5 * float(shear[-1] * (theta[-1] - theta[-2]))
-        cusps = []
-        for node, border in self._coupled_borders:
-            at = (node - int(nodes[0])) % self.grid.size
-            if at < nodes.size:
-                end = self._end(border._replace(at=at), node, 0, CUSP_TERMS, border.sign)
-                share = float(self.coupling.share[border.sign, node])
-                cusps.append(end._replace(parts=(1.0, -share)))
-        return _Patch(nodes, np.concatenate([[0.0], np.cumsum(areas)]), margins, cusps)
+        found = []
+        for nodes in runs(self.grid, self.pressure > 0.0):
+            theta, shear, margins = unrolled(self.grid, nodes), self.shear[nodes], (0.0, 0.0)
+            steps = theta[1:] - theta[:-1]
+            if nodes.size > 1:
+                margins = 0.5 * float(shear[0] * steps[0]), 0.5 * float(shear[-1] * steps[-1])
+            cusps = []
+            for node, border in self._coupled_borders:
+                at = (node - int(nodes[0])) % self.grid.size
+                if at < nodes.size:
+                    end = self._end(border._replace(at=at), node, 0, CUSP_TERMS, border.sign)
+                    share = float(self.coupling.share[border.sign, node])
+                    cusps.append(end._replace(parts=(1.0, -share)))
+            areas = 0.5 * (shear[1:] + shear[:-1]) * steps
+            found.append(_Patch(nodes, np.concatenate([[0.0], np.cumsum(areas)]), margins, cusps))
+        return found
 
     def old_cusps(self, least: float) -> Iterator[Cusp]:
         """Read the cusps at old borders beside which a node has the shear `least` or more."""
@@ -229,7 +213,7 @@ class ShearNodes:
                     continue  # this cusp points towards T = 0
                 highest = int(beside[np.argmax(size[beside])])
                 best = self._best_at(run, border, borders, GOOD_ENOUGH * float(size[highest]))
-                cusp = None if best is None else self._read(best, int(run[border.at]), border, highest)
+                cusp = None if best is None else self._read(*best, int(run[border.at]), border, highest)
                 if cusp is not None:
                     yield cusp
 
@@ -255,7 +239,10 @@ class ShearNodes:
 
         None if the solutions of the half line do not show the border at this angle.
         """
-        node, offset = int(nodes[0]), self._offset(int(nodes[0]), angle)
+        (left, right), node = self.grid.knots(), int(nodes[0])
+        theta = float(self.grid.theta[node])
+        away = math.remainder(angle - theta, 2.0 * math.pi)
+        offset = away / float(right[node] - theta if away > 0.0 else theta - left[node])
         place = self._border_place(nodes[::-outwards], -outwards)
         if not abs(-outwards * place - offset) <= SAME_PLACE:
             return None
@@ -303,7 +290,9 @@ class ShearNodes:
         outside = int(run[0] - 1) if inwards > 0 else int((run[-1] + 1) % self.grid.size)
         return int(np.sign(self.shear[outside]))
 
-    def _best_at(self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], enough: float) -> _Reading | None:
+    def _best_at(
+        self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], enough: float
+    ) -> tuple[Fit, float, _Window] | None:
         """The best fit at an old border in the stick zone of the nodes `run`, see :func:`_best`."""
         windows = []
         for first, last in _spans(border.at, run.size):
@@ -329,21 +318,20 @@ class ShearNodes:
             if border.is_end(run.size) or self.pressure[node] > most_pressure:
                 continue
             best = self._best_at(run, border, borders, GOOD_ENOUGH * largest)
-            if best is None or math.isnan(place := best.fit.place(0)):
+            if best is None or math.isnan(place := best[0].place(0)):
                 continue
-            series, error = best.fit.series(0)
-            if error <= LAW_ERROR * abs(series[0]):
-                end = self._end(border, node, best.window.first, CUSP_TERMS, best.window.sign)
-                height = sum(end.parts) * float(series[0]) * (-best.window.sign or 1)
-                angle = self._angle(node, place + best.window.first - border.at)
+            (series, error), window = best[0].series(0), best[2]
+            if error <= 0.01 * abs(series[0]):
+                end = self._end(border, node, window.first, CUSP_TERMS, window.sign)
+                height = sum(end.parts) * float(series[0]) * (-window.sign or 1)
+                angle = self._angle(node, place + window.first - border.at)
                 beside = run[max(border.at - 2, 0) : border.at + 3]
                 if abs(height) <= 2.0 * float((self.friction[beside] * self.pressure[beside]).max()):
                     spacing = float(self.grid.weights[node])
                     yield ShearLaw(angle, border.inwards, end.half_line.exponent, height, spacing)
 
-    def _read(self, reading: _Reading, node: int, border: OldBorder, highest: int) -> Cusp | None:
+    def _read(self, fit: Fit, error: float, window: _Window, node: int, border: OldBorder, highest: int) -> Cusp | None:
         """Read the cusp at an old border, whose outermost node is `node`, from the best fit beside it."""
-        fit, error, window = reading
         places = fit.place(0) - border.inwards * (self._beyond if border.sign else np.zeros(1))
         offsets = places + window.first - border.at
         values = fit.values(places)
@@ -414,12 +402,14 @@ class ShearNodes:
             for first, last in _spans(at, size):
                 values = self.pressure[patch.nodes[first:last]] - patch.turned(first, last)
                 windows.append(_Window(first, 0, values, _pressure_shapes(patch, first, last)))
-            best = _best(windows, at + float(offsets[0]), PRESSURE_GOOD_ENOUGH * float(self.pressure[node]))
+            # The pressure is smoother than the shear, and its error comes on top of the error of the shear.
+            enough = 0.1 * GOOD_ENOUGH * float(self.pressure[node])
+            best = _best(windows, at + float(offsets[0]), enough)
             if best is None:
                 return None
-            first, count = best.window.first, best.window.values.size
-            smooth = best.fit.values(at - first + offsets)
-            return smooth + self._turned_until(patch, first, first + count, at, inwards, offsets), best.error
+            (fit, error, window), first = best, best[2].first
+            smooth = fit.values(at - first + offsets)
+            return smooth + self._turned_until(patch, first, first + window.values.size, at, inwards, offsets), error
         return None
 
     def _turned_until(
@@ -440,13 +430,6 @@ class ShearNodes:
     def _exponent(self, node: int, sign: int, inwards: int) -> float:
         """Exponent (T26) of the reserve at a border with its outermost `node`, and shear of this `sign` beyond."""
         return 0.5 - float(self.coupling.tilt[sign, node]) * sign * inwards
-
-    def _offset(self, node: int, angle: float) -> float:
-        """Distance of an angle from a node, in node distances."""
-        left, right = self.grid.knots()
-        theta = float(self.grid.theta[node])
-        offset = math.remainder(angle - theta, 2.0 * math.pi)
-        return offset / float(right[node] - theta if offset > 0.0 else theta - left[node])
 
     def _angle(self, node: int, offset: float) -> float:
         """Angle of a place `offset` node distances from a node, rad."""
@@ -478,9 +461,10 @@ def _pressure_shapes(patch: _Patch, first: int, last: int) -> list[tuple[tuple[E
     ]
 
 
-def _best(windows: list[_Window], at: float | None, enough: float) -> _Reading | None:
-    """The fit with the smallest standard error at the place `at` of the zone; None takes the place of its first end.
+def _best(windows: list[_Window], at: float | None, enough: float) -> tuple[Fit, float, _Window] | None:
+    """The fit with the smallest standard error at the place `at` of the zone, this error, and its window.
 
+    Without `at` it is the error at the first end of the fit.
     No wider window counts after a fit with an error that is small `enough`. None if there is no fit.
     """
     tries, places, owners, start = [], [], [], 0
@@ -504,7 +488,7 @@ def _best(windows: list[_Window], at: float | None, enough: float) -> _Reading |
     if best is None:
         return None
     window, fit = owners[best], tries[best]
-    return _Reading(Fit(window.values, fit.ends, fit.degree), least, window)
+    return Fit(window.values, fit.ends, fit.degree), least, window
 
 
 def _top(values: np.ndarray) -> int:

@@ -40,10 +40,6 @@ SUMMED = 16
 """Terms of Hurwitz's zeta function that are summed. The rest, by Euler and Maclaurin, then has an error of 1e-15."""
 
 
-_LOGARITHM = np.array([0.0, -0.5, 1.0 / 24.0, 0.0, -1.0 / 2880.0, 0.0])
-"""Coefficients of log((1 - exp(-s))/s) in powers of s."""
-
-
 @dataclass(frozen=True, eq=False)
 class HalfLine:
     """Solutions of a half line whose nodes are 0, 1, 2, ...; the node -1 lies outside.
@@ -86,44 +82,29 @@ def half_line(exponent: float, coupling: float | None = None) -> HalfLine:
         nodal[:, m] = first = np.cumsum(first)
     moments = np.array([smooth.sum(), -(order @ smooth), 0.5 * (order**2 @ smooth)])
     matching = np.zeros((TERMS, TERMS))
+    step = np.array([0.0, -0.5, 1.0 / 24.0, 0.0, -1.0 / 2880.0, 0.0])  # log((1 - exp(-s))/s) in powers of s
     for m in range(TERMS):
         # Coefficients of exp(moments) ((1 - exp(-s))/s)^(-exponent - m) in powers of s.
-        logarithm, far = (-exponent - m) * _LOGARITHM, np.empty(TERMS)
+        logarithm, far = (-exponent - m) * step, np.empty(TERMS)
         logarithm[: moments.size] += moments
         kernel.exponential(logarithm, far)
         matching[: m + 1, m] = far[m::-1]
     return HalfLine(exponent, nodal, matching, coupling or 0.0)
 
 
-class _Samples(NamedTuple):
-    """What all symbols have in common, at the samples; each has the shape (SAMPLES,).
-
-    Attributes
-    ----------
-    even, odd : ndarray
-        g and h.
-    inner, outer : ndarray
-        log(1 - z) and log(1 - 1/z) of z = exp(-i p).
-    turns : ndarray
-        The samples lie half a step off the places of the discrete Fourier transform. These are the factors of its
-        coefficients, in its order.
-    """
-
-    even: np.ndarray
-    odd: np.ndarray
-    inner: np.ndarray
-    outer: np.ndarray
-    turns: np.ndarray
-
-
 @functools.cache
-def _samples() -> _Samples:
+def _samples() -> tuple[np.ndarray, ...]:
+    """All that symbols have in common at the samples: g, h, log(1 - z) and log(1 - 1/z) of z = exp(-i p), and turns.
+
+    The samples lie half a step off the places of the discrete Fourier transform. The turns are the factors of its
+    coefficients, in its order. Each array has the shape (SAMPLES,).
+    """
     p = 2.0 * math.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES
     part = p / (2.0 * math.pi)
     here, there = (4.0 * np.sin(0.5 * p) ** 2 / (2.0 * math.pi) ** 3 * zeta_3(t) for t in (part, 1.0 - part))
     z = np.exp(-1j * p)
     turns = np.exp(1j * math.pi * np.fft.fftfreq(SAMPLES, 1.0 / SAMPLES) / SAMPLES)
-    return _Samples(here + there, here - there, np.log(1.0 - z), np.log(1.0 - 1.0 / z), turns)
+    return here + there, here - there, np.log(1.0 - z), np.log(1.0 - 1.0 / z), turns
 
 
 @functools.lru_cache(maxsize=64)
@@ -162,7 +143,7 @@ def shear_columns(exponent: float, coupling: float) -> np.ndarray:
     # Without its singular factors (1 - z)^tilt (1 - 1/z)^-tilt, the ratio is smooth.
     product = np.exp(factor + tilt * (outer - inner)) * ratio
     whole = np.concatenate([product, product[::-1].conj()])  # at 2 pi - p it is the complex conjugate
-    weights = np.fft.fftshift(np.real(np.fft.ifft(whole) * _samples().turns))
+    weights = np.fft.fftshift(np.real(np.fft.ifft(whole) * _samples()[-1]))
     reach = half + MOST_NODES - 1
     columns = np.empty((2 * MOST_NODES - 1, SHEAR_TERMS))
     columns[:, 0] = np.convolve(_two_sided(-0.5, -tilt, reach)[1:], weights, "valid")

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from fastpin.elasticity.tractions import RefinedTractions
-from fastpin.model.angles import angle_between, near_bottom
+from fastpin.model.angles import angle_between, distinct, near_bottom
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points, near_rim
 from fastpin.model.problem import Problem
@@ -22,23 +22,11 @@ AROUND = 180
 TRIED = 4
 """Local maxima beside which the peak is looked for."""
 
-ZOOMS, ZOOMED = 3, 21
-"""Rounds of the search beside a local maximum, and the number of angles in each."""
-
-STEPS = np.arange(float(ZOOMED))
-"""Steps of a round."""
-
 LEAST_NODES = 40
 """Least number of nodes in contact of a resolved peak. With less, errors of 3 % were found."""
 
 NEAR = 2.0
 """Distance from an unresolved place, in node distances, within which a peak belongs to it."""
-
-SHARP = 0.45
-"""Drop beside a peak over two node distances, in parts of the drop over four, from which on the peak is a cusp.
-
-A parabola has 0.25, a straight line 0.5, a root 0.71.
-"""
 
 UNRESOLVED = 0.13
 """Bar of a hoop stress whose peak the nodes do not resolve, in parts of the value.
@@ -62,7 +50,7 @@ def hoop_peak(
     nodes = grid.theta[closed]
     angles = np.r_[around, nodes, nodes + 0.5 * grid.weights[closed], refined.resolved, refined.unresolved]
     # Whole turns, and no remainder: an edge has a power law beside it, and the rounding of its angle would break ties.
-    angles = np.unique(angles - 2.0 * math.pi * np.floor((angles + 1.5 * math.pi) / (2.0 * math.pi)))
+    angles = distinct(angles - 2.0 * math.pi * np.floor((angles + 1.5 * math.pi) / (2.0 * math.pi)))
     values = hoop(angles)
     before, after = np.roll(values, 1), np.roll(values, -1)
     tops = np.flatnonzero((values >= before) & (values >= after))
@@ -125,13 +113,14 @@ def _highest(hoop: Hoop, angles: np.ndarray, values: np.ndarray, tops: np.ndarra
     """
     value, angle, row = values[tops], angles[tops], np.arange(tops.size)
     low, high = (angle_between(angles[(tops + side) % angles.size], angle) for side in (-1, 1))
-    for _ in range(ZOOMS):
-        tried = angle[:, None] + (low[:, None] + STEPS * ((high - low) / (ZOOMED - 1))[:, None])
+    steps = np.arange(21.0)
+    for _ in range(3):
+        tried = angle[:, None] + (low[:, None] + steps * ((high - low) / (steps.size - 1))[:, None])
         found = hoop(tried.ravel()).reshape(tried.shape)
         best = np.argmax(found, axis=1)
         higher = found[row, best] > value
         value, angle = np.where(higher, [found[row, best], tried[row, best]], [value, angle])
-        high = (high - low) / (ZOOMED - 1)
+        high = (high - low) / (steps.size - 1)
         low = -high
     return list(zip(value.tolist(), (near_bottom(each) for each in angle.tolist()), strict=True))
 
@@ -156,4 +145,5 @@ def _is_resolved(
     if any(abs(angle_between(place, angle)) < spacing for place in refined.resolved):
         return True
     drops = value - hoop(angle + spacing * np.array([-4.0, -2.0, 2.0, 4.0]))
-    return not any(drops[near] > SHARP * drops[far] for near, far in ((1, 0), (2, 3)) if drops[far] > 1e-3 * abs(value))
+    # Of the drop over four node distances a parabola has 0.25 over two, a straight line 0.5, and a root 0.71: a cusp.
+    return not any(drops[near] > 0.45 * drops[far] for near, far in ((1, 0), (2, 3)) if drops[far] > 1e-3 * abs(value))

@@ -29,9 +29,17 @@ def joint_displacement(
 
     `tractions` are the pressure and the shear (n,), `moved` is dx + i dy, and `force` is Q - i P of the tractions.
     """
-    radius = problem.hole_radius
-    hub = None if hub_radius is None else _checked_hub(problem, hub_radius) / radius
-    gauge = None if gauge_radius is None else _checked_gauge(problem, gauge_radius) / radius
+    radius, lug, hub, gauge = problem.hole_radius, problem.plate_body.lug, None, None
+    if hub_radius is not None:
+        if problem.pin_load == "body":
+            raise InputError("hub_radius", "the displacement of a body-loaded pin is its mean: leave the hub out")
+        least = problem.pin_body.bore_radius or LEAST_HUB * radius
+        hub = number("hub_radius", hub_radius, least, radius) / radius
+    if gauge_radius is not None:
+        if lug.edge_only:
+            raise InputError("gauge_radius", lug.without_gauge(gauge_radius))
+        most = min(lug.outer_radius, MOST_GAUGE * radius)
+        gauge = number("gauge_radius", gauge_radius, radius, most) / radius
     own, coupling = problem.joint.displacement_compliances(hub, gauge)
     unit = problem.surfaces.beta_star
     (cos, sin), (pressure, shear) = grid.trig_moments(), tractions
@@ -42,23 +50,6 @@ def joint_displacement(
         moved, problem.joint.hole, lambda matrix: basis(matrix, grid)[1] @ np.r_[pressure, shear], load
     )
     return {"ux": float(moved.real), "uy": float(moved.imag)}
-
-
-def _checked_hub(problem: Problem, hub_radius: float) -> float:
-    """A radius in the pin, m."""
-    if problem.pin_load == "body":
-        raise InputError("hub_radius", "the displacement of a body-loaded pin is its mean: leave the hub out")
-    least = problem.pin_body.bore_radius or LEAST_HUB * problem.hole_radius
-    return number("hub_radius", hub_radius, least, problem.hole_radius)
-
-
-def _checked_gauge(problem: Problem, gauge_radius: float) -> float:
-    """A radius in the plate, m."""
-    lug = problem.plate_body.lug
-    if lug.edge_only:
-        raise InputError("gauge_radius", lug.without_gauge(gauge_radius))
-    most = min(lug.outer_radius, MOST_GAUGE * problem.hole_radius)
-    return number("gauge_radius", gauge_radius, problem.hole_radius, most)
 
 
 def counted_twice(problem: Problem, resultants: Mapping[str, float]) -> dict[str, float]:

@@ -8,7 +8,7 @@ time at which it is read.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -129,7 +129,7 @@ class Marks:
         for node, inwards, sign in present_borders(status, grid.closed):
             fresh[node] = fresh.get(node, 0) | BITS[inwards, sign]
             if sign:
-                corner = corner or _Corner(problem, grid, friction, tractions, status, self)
+                corner = corner or _Corner(problem, grid, friction, tractions, status, self, 1 + self.depth)
                 place = MarkedPlace(corner, node, inwards)
                 places[node] = place.read() if corner.depth > DEEPEST else place
         if not fresh:
@@ -172,10 +172,10 @@ def _known(place: MarkedPlace | float) -> float | None:
     return None if math.isnan(value) else value
 
 
-class _Corner:
+class _Corner(NamedTuple):
     """The nodal values of a corner, from which the places of its borders are read.
 
-    Parameters
+    Attributes
     ----------
     problem : Problem
     grid : Grid
@@ -186,36 +186,31 @@ class _Corner:
     status : ndarray, shape (n,)
     older : Marks
         The old borders.
+    depth : int
+        Number of corners whose nodal values are kept for a place of this one.
     """
 
-    __slots__ = ("_friction", "_grid", "_older", "_problem", "_status", "_tractions", "depth")
-
-    def __init__(
-        self,
-        problem: Problem,
-        grid: Grid,
-        friction: np.ndarray,
-        tractions: tuple[np.ndarray, np.ndarray],
-        status: np.ndarray,
-        older: Marks,
-    ) -> None:
-        self._problem, self._grid, self._friction, self._tractions = problem, grid, friction, tractions
-        self._status, self._older = status, older
-        self.depth: int = 1 + older.depth
+    problem: Problem
+    grid: Grid
+    friction: np.ndarray
+    tractions: tuple[np.ndarray, np.ndarray]
+    status: np.ndarray
+    older: Marks
+    depth: int
 
     def place(self, node: int, inwards: int) -> float:
         """The place of the border at a sticking `node`; NaN if the node or the one beyond it carries no shear."""
-        (pressure, shear), n = self._tractions, self._status.size
-        bound = self._friction * pressure
-        sticking = truly_sticking(self._status, bound - np.abs(shear))
+        (pressure, shear), n = self.tractions, self.status.size
+        bound = self.friction * pressure
+        sticking = truly_sticking(self.status, bound - np.abs(shear))
         sign = float(np.sign(shear[(node - inwards) % n])) if sticking[node] else 0.0
         if sign == 0.0:
             return math.nan
         nodes = node + inwards * np.arange(min(MOST_VALUES, n))
-        nodes = nodes % n if self._grid.closed else nodes[(nodes >= 0) & (nodes < n)]
+        nodes = nodes % n if self.grid.closed else nodes[(nodes >= 0) & (nodes < n)]
         slipping = np.flatnonzero(~sticking[nodes])
         zone = nodes[: slipping[0]] if slipping.size else nodes
-        cusps = self._older.near(zone[: MOST_VALUES // 2].tolist(), inwards)
-        coupling = Coupling.of(self._problem, self._friction[[node]], self._grid.theta[[node]])
+        cusps = self.older.near(zone[: MOST_VALUES // 2].tolist(), inwards)
+        coupling = Coupling.of(self.problem, self.friction[[node]], self.grid.theta[[node]])
         line = half_line(0.5 - float(coupling.tilt[int(sign), 0]) * sign * inwards, float(coupling.beta[0]))
         return end_place(bound[zone] - sign * shear[zone], line, cusps)

@@ -62,12 +62,9 @@ def old_borders(marks: np.ndarray, places: np.ndarray) -> list[OldBorder]:
     return list(found.values())
 
 
-_FORWARD = sum(bit for (inwards, _), bit in BITS.items() if inwards > 0)
-
-
 def is_ambiguous(mark: int) -> bool:
     """Whether a node with this mark ends zones in both directions, so that it has no single place."""
-    return mark & _FORWARD != 0 and mark & ~_FORWARD != 0
+    return len({inwards for (inwards, _), bit in BITS.items() if mark & bit}) == 2
 
 
 def present_borders(status: np.ndarray, closed: bool) -> list[tuple[int, int, int]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -37,13 +36,6 @@ STEEPEST_RISE = 1.25
 The unit is the larger of two drops, from the largest node to its neighbour and on to the next node. On the side where
 the drop is smaller the traction is smooth. It goes on from there to the cusp at most this many node distances: 1.1 in
 the reference cases of docs/accuracy-tables.md.
-"""
-
-BORDER_DOUBT = 0.01
-"""Largest relative difference of mu N at two readings of a border, which then agree.
-
-One is the fit of the border, the other the line through the two outermost sticking nodes. Where they do not agree, the
-lower bound counts.
 """
 
 LARGEST_FALL = 0.01
@@ -116,7 +108,11 @@ def _peaks_at_borders(
     magnitude, slipping = np.abs(shear), (pressure > 0.0) & ~sticking
     peaks, fitted_here = [], False
     bound = contact.friction * pressure
-    for border, outwards, nodes in _borders(grid, sticking, stick):
+    borders = []  # ends of stick zones, rad, the way out of the zone, and the nodes of the zone from that end on
+    for run, (start, stop) in zip(runs(grid, sticking), stick, strict=True):
+        if not is_all_round(stop - start):
+            borders += [(start, -1, run), (stop, 1, run[::-1])]
+    for border, outwards, nodes in borders:
         offsets = outwards * angle_between(grid.theta, border)
         spacing = float(grid.weights[np.argmin(np.abs(offsets))])
         if not slipping[(offsets >= 0.0) & (offsets <= 1.5 * spacing)].any():
@@ -138,20 +134,10 @@ def _peaks_at_borders(
         at_border = float(contact.friction[nodes[0]]) * _interpolated(grid, pressure, border)
         if _likely(grid, magnitude, highest, at_border):
             by_line = _bound_by_two_nodes(grid, bound, magnitude, nodes, outwards, exponent)
-            if at_border > (1.0 + BORDER_DOUBT) * by_line:
+            if at_border > 1.01 * by_line:  # where the two readings do not agree, the lower one counts
                 at_border = min(at_border, max(by_line, float(magnitude[highest])))
             peaks.append((min(at_border, _highest_cusp(grid, magnitude, highest)), border, highest))
     return peaks, fitted_here
-
-
-def _borders(grid: Grid, sticking: np.ndarray, stick: list[Interval]) -> Iterator[tuple[float, int, np.ndarray]]:
-    """Ends of the stick zones, rad, the direction (1 or -1) from each end out of its zone, and the nodes of the zone.
-
-    The nodes begin with the one at that end. A contact that sticks all round has no borders.
-    """
-    for run, (start, stop) in zip(runs(grid, sticking), stick, strict=True):
-        if not is_all_round(stop - start):
-            yield from ((start, -1, run), (stop, 1, run[::-1]))
 
 
 def _bound_by_two_nodes(

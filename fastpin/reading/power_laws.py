@@ -13,7 +13,7 @@ of nodes and of terms depends on the neighbourhood. So some windows are tried, a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -39,9 +39,6 @@ REACH = 9.0
 LARGEST_ERROR = 0.02
 """Largest standard error of the leading coefficient of a power law, in parts of it."""
 
-EQUAL = 1e-6
-"""Largest difference of two places that are the same, in node distances."""
-
 OFF = np.array([0.25, 0.11, 0.03, 0.03])
 """Largest difference of a power law and the values at the four outermost nodes, in parts of the leading coefficient.
 
@@ -49,8 +46,7 @@ Where an earlier border lies between these nodes, the difference is larger. In g
 """
 
 
-@dataclass(frozen=True, eq=False)
-class Law:
+class Law(NamedTuple):
     """A power law at one end of a zone: the real part of x^a (c0 + c1 x + ...), with the distance x from the end.
 
     Attributes
@@ -114,8 +110,9 @@ def law_of_nodes(
     fit = end_fit(values, line, cusps) if theta.size > 1 else None
     if fit is not None:
         spacing, last = float(theta[1] - theta[0]), int(fit.last)
-        equal = abs(float(theta[last] - theta[0]) - last * spacing) <= EQUAL * abs(spacing)
-        if equal and abs(float(theta[0]) + fit.place(0) * spacing - place) <= EQUAL * abs(spacing):
+        rounding = 1e-6 * abs(spacing)
+        equal = abs(float(theta[last] - theta[0]) - last * spacing) <= rounding
+        if equal and abs(float(theta[0]) + fit.place(0) * spacing - place) <= rounding:
             series, error = fit.series(0)
             free = min((cusp.at for cusp in cusps if cusp.at > 0), default=last)
             if error <= LARGEST_ERROR * abs(series[0]):

@@ -41,23 +41,11 @@ RIVAL = 0.6
 GRADED = np.linspace(0.0, 1.0, 61) ** 4
 """The ends of the linear pieces of a power law. They gather at the edge."""
 
-EXCESS = 1.1
-"""Least |T| / (mu N) at a sticking edge that shows a slip zone between the edge and the outermost node."""
-
-
-BORDER_NEAR, BORDER_FAR, BORDER_LEAST = 2.5, 9.0, 4
-"""Beside a border of unlike bodies the pressure is fitted.
-
-Within BORDER_NEAR node distances it is taken from a fit of the nodes up to BORDER_FAR. The fit needs BORDER_LEAST nodes
-on either side.
-"""
-
 BOTH_ENDS = (slice(None), slice(None, None, -1))
 """Order of the nodes of a zone, from its start and from its stop."""
 
 
-@dataclass(frozen=True, eq=False)
-class StickZone:
+class StickZone(NamedTuple):
     """A stick zone of a patch. Pairs belong to its start and its stop.
 
     Attributes
@@ -82,28 +70,6 @@ class StickZone:
     exponents: tuple[float, float]
     cusps: list[OldBorder]
     shear_laws: tuple[ShearLaw, ...]
-
-
-class PressureCusp(NamedTuple):
-    """The cusp of N at a border of unlike bodies, if mu N - s T begins with c0 x^a there; (T26), (T52).
-
-    Attributes
-    ----------
-    law : Law
-        Of mu N - s T on the stick side.
-    outside, inside : float
-        Coefficients of x^a on the slip side and on the stick side, for the distance x in node distances. Of isotropic
-        bodies they are -+ s beta c0 sin(pi a), with the upper sign where the stick zone lies at larger angles, and 0.
-    """
-
-    law: Law
-    outside: float
-    inside: float
-
-    def values(self, theta: np.ndarray) -> np.ndarray:
-        """The cusp at some angles, rad, shape (m,)."""
-        x = self.law.inwards * (theta - self.law.place) / self.law.spacing
-        return np.where(x < 0.0, self.outside, self.inside) * np.abs(x) ** self.law.exponent.real
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,17 +104,22 @@ class Patch:
     friction: np.ndarray
     coupling: Coupling
 
-    def cusp(self, law: Law, sign: int) -> PressureCusp:
-        """The cusp of the pressure at a border with the `law` of mu N - s T, and this sign s."""
+    def cusp(self, law: Law, sign: int, theta: np.ndarray) -> np.ndarray:
+        """The cusp of N at a border of unlike bodies, at some angles, rad, shape (m,); (T26), (T52).
+
+        The `law` of mu N - s T with this `sign` s begins with c0 x^a on the stick side, for the distance x in node
+        distances. The coefficients of x^a on the slip side and on the stick side of isotropic bodies are
+        -+ s beta c0 sin(pi a), with the upper sign where the stick zone lies at larger angles, and 0.
+        """
         node = int(np.argmin(np.abs(self.theta - law.place)))
-        first = float(law.coefficients[0].real)
-        outside = -law.inwards * (sign * float(self.coupling.cusp[sign, node]))
-        inside = (1.0 - float(self.coupling.share[sign, node])) / float(self.friction[node])
-        return PressureCusp(law, outside * first * math.sin(math.pi * law.exponent.real), inside * first)
+        first, power = float(law.coefficients[0].real), law.exponent.real
+        outside = -law.inwards * (sign * float(self.coupling.cusp[sign, node])) * first * math.sin(math.pi * power)
+        inside = (1.0 - float(self.coupling.share[sign, node])) / float(self.friction[node]) * first
+        x = law.inwards * (theta - law.place) / law.spacing
+        return np.where(x < 0.0, outside, inside) * np.abs(x) ** power
 
 
-@dataclass(frozen=True, eq=False)
-class Laws:
+class Laws(NamedTuple):
     """The power laws of a patch.
 
     Attributes
@@ -192,7 +163,10 @@ def refined_tractions(
     resolved: list[float] = []
     unresolved: list[float] = []
     for patch in _patches(nodes, status, contact, stick):
-        pressure = _pressure_laws(patch)
+        pressure = tuple(
+            law_of_nodes(edge, half_line(exponent), patch.theta[order], patch.pressure[order])
+            for edge, exponent, order in zip(patch.edges, patch.exponents or (), BOTH_ENDS, strict=False)
+        )
         zones = tuple(_with_hidden_slip(patch, zone, pressure) for zone in patch.stick)
         hidden = [end for zone, was in zip(zones, patch.stick, strict=True) if zone is not was for end in zone.ends]
         laws, cusps = _laws(replace(patch, stick=zones), pressure), [cusp for zone in zones for cusp in zone.shear_laws]
@@ -207,19 +181,10 @@ def refined_tractions(
     return RefinedTractions(Tractions(tuple(arrays)), tuple(resolved), tuple(unresolved))
 
 
-def _pressure_laws(patch: Patch) -> tuple[Law | None, ...]:
-    if patch.exponents is None:
-        return ()
-    return tuple(
-        law_of_nodes(edge, half_line(exponent), patch.theta[order], patch.pressure[order])
-        for edge, exponent, order in zip(patch.edges, patch.exponents, BOTH_ENDS, strict=True)
-    )
-
-
 def _with_hidden_slip(patch: Patch, zone: StickZone, pressure: tuple[Law | None, ...]) -> StickZone:
     """A stick zone with the slip zone at an edge that is narrower than the node distance.
 
-    There all nodes stick, and T at the edge would exceed mu N.
+    There all nodes stick, and T at the edge would exceed mu N: by a tenth, as fits of T and N tell.
     """
     for k, order in enumerate(BOTH_ENDS):
         of_pressure = pressure[k] if pressure else None
@@ -228,14 +193,14 @@ def _with_hidden_slip(patch: Patch, zone: StickZone, pressure: tuple[Law | None,
             theta, shear = patch.theta[nodes], patch.shear[nodes]
             of_shear = fit_law(of_pressure.place, of_pressure.exponent, theta, shear)
             steepest = patch.friction[nodes[0]] * of_pressure.coefficients[0].real
-            if of_shear is None or abs(of_shear.coefficients[0].real) < EXCESS * steepest:
+            if of_shear is None or abs(of_shear.coefficients[0].real) < 1.1 * steepest:
                 continue
             sign = int(np.sign(of_shear.coefficients[0].real))
             reserve = patch.friction[nodes] * patch.pressure[nodes] - sign * shear
             border = end_angle(theta, reserve, half_line(zone.exponents[k]), of_pressure.place)
             one, two = (border, zone.ends[1]) if k == 0 else (zone.ends[0], border)
             first, second = (sign, zone.signs[1]) if k == 0 else (zone.signs[0], sign)
-            zone = replace(zone, ends=(one, two), signs=(first, second))
+            zone = zone._replace(ends=(one, two), signs=(first, second))
     return zone
 
 
@@ -276,8 +241,8 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
     pressure, shear = np.interp(theta, nodes, values[0]), np.interp(theta, nodes, values[1])
     friction = np.interp(theta, patch.theta, patch.friction)
     for law, sign in laws.borders:
-        of_pressure = patch.cusp(law, sign)
-        missed = of_pressure.values(theta) - np.interp(theta, nodes, of_pressure.values(nodes))  # by straight lines
+        straight = np.interp(theta, nodes, patch.cusp(law, sign, nodes))
+        missed = patch.cusp(law, sign, theta) - straight
         pressure += np.where(np.abs(theta - law.place) < 2.0 * law.reach, missed, 0.0)
     for edge_law in laws.pressure:
         if edge_law is not None:
@@ -344,22 +309,22 @@ def _pressure_at_borders(patch: Patch, laws: Laws) -> np.ndarray:
     """The nodal pressure of a patch, shape (n,), with better values beside the borders of unlike bodies.
 
     The nodal values beside a cusp of N have errors of alternating sign. So they are taken from a fit of the nodes
-    beyond: a cubic, the cusp of (T26) and its next power.
+    beyond, at least 4 on either side: a cubic, the cusp of (T26) and its next power.
     """
-    pressure = patch.pressure.copy()
+    pressure, inner, outer = patch.pressure.copy(), 2.5, 9.0  # node distances between which nodes are fitted
     for law, sign in () if patch.coupling.is_smooth else laws.borders:
         x = law.inwards * (patch.theta - law.place) / law.spacing
         others = [other.place for other in laws.all if other is not law] + laws.unresolved + list(patch.edges)
-        room = min(abs(place - law.place) for place in others) / law.spacing - BORDER_NEAR
-        used = (np.abs(x) > BORDER_NEAR) & (np.abs(x) < min(room, BORDER_FAR))
-        if min(np.count_nonzero(used & (x < 0.0)), np.count_nonzero(used & (x > 0.0))) < BORDER_LEAST:
+        room = min(abs(place - law.place) for place in others) / law.spacing - inner
+        used = (np.abs(x) > inner) & (np.abs(x) < min(room, outer))
+        if min(np.count_nonzero(used & (x < 0.0)), np.count_nonzero(used & (x > 0.0))) < 4:
             continue
         beyond = np.maximum(-x, 0.0)
-        cusp = patch.cusp(law, sign).values(patch.theta)
-        columns = np.column_stack([np.vander(x / BORDER_FAR, 4), (beyond / BORDER_FAR) ** (law.exponent.real + 1.0)])
+        cusp = patch.cusp(law, sign, patch.theta)
+        columns = np.column_stack([np.vander(x / outer, 4), (beyond / outer) ** (law.exponent.real + 1.0)])
         coefficients = np.empty(columns.shape[1])
         least_squares(columns[used], (patch.pressure - cusp)[used], coefficients)
-        near = np.abs(x) <= BORDER_NEAR
+        near = np.abs(x) <= inner
         pressure[near] = columns[near] @ coefficients + cusp[near]
     return pressure
 
