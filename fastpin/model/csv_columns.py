@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from fastpin.errors import InputError
 from fastpin.model.checks import LONGEST_TEXT, as_toml, number, string
@@ -17,12 +17,8 @@ COLUMN_KEYS = ("column", "scale", "unit")
 MOST_SHOWN = 12
 """Most columns of a file that an error names."""
 
-MOST_SEARCHED = 100
-"""Most columns of a file among which an error looks for the one that is meant."""
 
-
-@dataclass(frozen=True)
-class ColumnChoice:
+class ColumnChoice(NamedTuple):
     """The column of a file that holds a load.
 
     Attributes
@@ -40,8 +36,7 @@ class ColumnChoice:
     unit: str = ""
 
 
-@dataclass(frozen=True)
-class CsvColumn:
+class CsvColumn(NamedTuple):
     """A column that is read.
 
     Attributes
@@ -129,7 +124,7 @@ def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) ->
             fault = f"{len(places)} columns of the file are" if places else "the file has no column"
             hint = ""
             if not places and len(wanted) < LONGEST_TEXT:
-                known = [*titles[:MOST_SEARCHED], *(name for name, _ in parts[:MOST_SEARCHED])]
+                known = [*titles[:100], *(name for name, _ in parts[:100])]
                 hint = closest(wanted, [title for title in known if len(title) < LONGEST_TEXT])
             raise InputError(load, f"{fault} {as_toml(wanted)}; its columns are {shown}{hint}")
         place = places[0]
@@ -170,7 +165,7 @@ def with_unit_row(columns: Sequence[CsvColumn], cells: Sequence[str]) -> list[Cs
         written = unit_name(cells[column.place])
         unit = "" if written in ("", "-") else written
         unit = _one_unit(column.load, column.unit, unit, "the line below the header says")
-        found.append(CsvColumn(column.place, column.load, column.title, column.scale, unit))
+        found.append(column._replace(unit=unit))
     return found
 
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
@@ -18,8 +17,7 @@ POUND, INCH = 4.4482216152605, 0.0254
 """A pound of force, N, and an inch, m. Both are exact."""
 
 
-@dataclass(frozen=True)
-class LoadUnit:
+class LoadUnit(NamedTuple):
     """The way of a number in a unit to SI units: times `factor` and 10 to the `power`.
 
     A power of ten is put behind the digits of a number, so 1.005 kN are exactly 1005 N.

@@ -18,11 +18,6 @@ with contextlib.suppress(ImportError):  # Windows has neither
     import grp
     import pwd
 
-READING = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-"""A pipe does not block, and is refused when it is open."""
-
-WRITING = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
-
 logger = logging.getLogger("fastpin.compiler")
 
 
@@ -32,7 +27,8 @@ def read(file: Path, package: Path) -> bytes:
     :class:`OSError` if there is none, if it is no ordinary file, or if others can write it or its folder.
     """
     _check(os.stat(file.parent), file.parent, package)  # noqa: PTH116  every process does it for each kernel
-    descriptor = os.open(file, READING)
+    # A pipe does not block, and is refused when it is open.
+    descriptor = os.open(file, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     try:
         found = os.fstat(descriptor)
         _check(found, file.parent, package)
@@ -52,7 +48,8 @@ def write(file: Path, content: bytes, package: Path) -> None:
     file.parent.mkdir(mode=0o755, parents=True, exist_ok=True)
     _check(file.parent.stat(), file.parent, package)
     part = file.with_name(f"{file.name}.{os.urandom(8).hex()}.part")
-    descriptor = os.open(part, WRITING, 0o644)
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+    descriptor = os.open(part, flags, 0o644)
     try:
         with os.fdopen(descriptor, "wb") as target:
             target.write(content)

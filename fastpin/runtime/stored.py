@@ -62,7 +62,9 @@ class StoredCode:
 
     def load(self, *directories: Path) -> Callable[..., Any] | None:
         """The function from the first file that agrees, of these or the user's directories; None if there is none."""
-        loaders = {MACHINE: self._load_machine} if machine.CAN_LOAD else {}
+        loaders: dict[str, Callable[[bytes], Callable[..., Any]]] = {}
+        if machine.CAN_LOAD:
+            loaders[MACHINE] = lambda body: machine.load(machine.Code.from_bytes(body), self.name, self.module)
         for directory in directories or self._directories():
             for suffix, loader in {**loaders, NUMBA: compiler.unpack}.items():
                 # Damaged files and folders, and parts of Numba that have changed: the kernel is compiled anew.
@@ -71,9 +73,6 @@ class StoredCode:
                     if content[:SIZE] == self._digest(content[SIZE:]):
                         return loader(content[SIZE:])
         return None
-
-    def _load_machine(self, body: bytes) -> Callable[..., Any]:
-        return machine.load(machine.Code.from_bytes(body), self.name, self.module)
 
     def _digest(self, body: bytes) -> bytes:
         return blake2b(body, key=self.key, digest_size=SIZE).digest()
@@ -89,16 +88,12 @@ class StoredCode:
                 files.write(directory / (self.stem + self.text + suffix), self._digest(body) + body, self.home)
             except OSError:
                 continue
-            if directory == self._beside():
-                self._forget_older(directory)
+            if directory == self._beside():  # delete the code of earlier texts of the file
+                for path in directory.glob(f"{self.stem}*"):
+                    if path.suffix in (MACHINE, NUMBA) and path.stem != self.stem + self.text:
+                        with contextlib.suppress(OSError):  # another process has deleted it, or keeps it open
+                            path.unlink()
             return
-
-    def _forget_older(self, directory: Path) -> None:
-        """Delete the code of earlier texts of the file, where that is possible."""
-        for path in directory.glob(f"{self.stem}*"):
-            if path.suffix in (MACHINE, NUMBA) and path.stem != self.stem + self.text:
-                with contextlib.suppress(OSError):  # another process has deleted it, or keeps it open
-                    path.unlink()
 
     def _beside(self) -> Path:
         return self.home / "__pycache__"

@@ -13,9 +13,6 @@ from typing import TypeVar
 Item = TypeVar("Item")
 Found = TypeVar("Found")
 
-STACK = 2**24
-"""Bytes of the stack of an undisturbed thread: compilers go deep, and some systems give threads little."""
-
 LATE = 2.0
 """Seconds after which a thread that has not begun is taken for lost."""
 
@@ -95,7 +92,7 @@ class _Undisturbed(threading.Thread):
 
     def start(self) -> None:
         with _starting:
-            before = threading.stack_size(STACK)
+            before = threading.stack_size(2**24)  # compilers go deep, and some systems give threads little
             try:
                 super().start()
             finally:
