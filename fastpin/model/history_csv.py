@@ -56,27 +56,21 @@ def read_corners(path: Path, choices: Mapping[str, ColumnChoice] | None, basis: 
     """
     try:
         with TextIOWrapper(open_input(path), encoding="utf-8-sig", newline="") as file:
-            return _corners(file, str(path), choices, basis)
+            rows, is_head = _Rows(str(path), basis), True
+            lines = (each for each in _lines(file, str(path), rows.numbers) if not _is_skipped(each[1]))
+            for line_number, line in lines:
+                rows.read_header(line_number, line, choices)
+                break
+            for line_number, line in lines:
+                if not is_head or not rows.read_units(line_number, line):
+                    rows.read(line_number, line)
+                is_head = False
+                if len(rows.faults) >= MOST_FAULTS:
+                    rows.faults.append((line_number, "that is enough; what follows was not read"))
+                    break
+            return rows.table()
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None
-
-
-def _corners(file: TextIO, name: str, choices: Mapping[str, ColumnChoice] | None, basis: Basis) -> np.ndarray:
-    rows = _Rows(name, basis)
-    lines = ((number, line) for number, line in _lines(file, name, rows.numbers) if not _is_skipped(line))
-    for line_number, line in lines:
-        rows.read_header(line_number, line, choices)
-        break
-    for line_number, line in lines:
-        if not rows.read_units(line_number, line):
-            rows.read(line_number, line)
-        break
-    for line_number, line in lines:
-        rows.read(line_number, line)
-        if len(rows.faults) >= MOST_FAULTS:
-            rows.faults.append((line_number, "that is enough; what follows was not read"))
-            break
-    return rows.table()
 
 
 class _Rows:

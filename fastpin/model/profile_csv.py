@@ -77,7 +77,13 @@ def _samples(text: str, name: str, quantity: ProfileKind, basis: Basis) -> tuple
     for line_number, line in rest:
         try:
             cells = _cells(line, separator)
-            rows.append([_number(title, cell, separator) for title, cell in zip(units, cells, strict=True)])
+            row = []
+            for title, cell in zip(units, cells, strict=True):
+                text = cell if separator == "," else cell.replace(",", ".")
+                if not _is_number(text):
+                    raise InputError(title, f"must be a number, not {as_toml(cell)}")
+                row.append(number(title, float(text)))
+            rows.append(row)
         except InputError as error:
             faults.append((line_number, str(error)))
         except ValueError:
@@ -122,13 +128,6 @@ def _cells(line: str, separator: str) -> list[str]:
         return [cell.strip() for cell in next(csv.reader(StringIO(line), delimiter=separator, skipinitialspace=True))]
     except (csv.Error, StopIteration):
         return []
-
-
-def _number(field: str, cell: str, separator: str) -> float:
-    text = cell if separator == "," else cell.replace(",", ".")
-    if not _is_number(text):
-        raise InputError(field, f"must be a number, not {as_toml(cell)}")
-    return number(field, float(text))
 
 
 def _is_number(text: str) -> bool:
