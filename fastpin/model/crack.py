@@ -92,9 +92,6 @@ class CrackGrowth:
         return found | usual | ({} if self.body == "plate" else {"body": self.body})
 
 
-LONGEST = 1e4
-"""Largest length in parts of the hole's radius, checked against the crack in a plate without a hole."""
-
 MOST_OF_WALL = 0.9
 """Largest depth of a tip in parts of the wall. The ligament beyond is not elastic for long."""
 
@@ -123,8 +120,8 @@ def check_length(field: str, problem: Problem, body: str, angle: float, longest:
     length = units(problem)["length"]
     radius = problem.hole_radius * near_rim(problem, edge_of(body))
     wall = wall_of(problem, body)
-    if is_above(longest, LONGEST * radius):
-        raise InputError(field, f"must be at most {LONGEST:g} radii of the hole, not {length.text(longest)}")
+    if is_above(longest, 1e4 * radius):  # up to there it was checked against the crack in a plate without a hole
+        raise InputError(field, f"must be at most 10000 radii of the hole, not {length.text(longest)}")
     if is_above(depth_of(angle, longest / radius), MOST_OF_WALL * wall):
         words = f"must end within {MOST_OF_WALL:g} of the wall of {length.text(wall * radius)}"
         raise InputError(field, f"{words}, not be {length.text(longest)}")

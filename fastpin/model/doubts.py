@@ -51,9 +51,6 @@ LEAST_STRAIN = 3e-4
 LARGEST_HOLE = 1.0
 """Hole radius, m, above which it is probably in mm: pins of large bridges and cranes have half of it."""
 
-TIGHTEST = 0.02
-"""Interference in parts of the radius above which a body yields."""
-
 LEAST_STRENGTH = 1e-5
 """Strength in parts of Young's modulus, below which it is probably in MPa: a pure soft metal yields at 1e-4."""
 
@@ -315,16 +312,17 @@ def _of_material(name: str, material: Material, has_units: bool) -> Iterator[Dou
 def _of_sizes(problem: Problem) -> Iterator[Doubt]:
     """Doubts about lengths."""
     radius, clearance, bush = problem.hole_radius, problem.clearance, problem.plate_body.bush
+    tightest = 0.02  # interference in parts of the radius above which a body yields
     if radius > LARGEST_HOLE and _softest_and_stiffest(problem)[0][1] >= STIFF:
         words = f"{_short(radius)} m is larger than any pin; lengths are in m"
         yield "hole_radius", f"{words}; {_meant(radius, 'mm', 1e-3)}"
     if problem.thickness is not None and problem.thickness > 50.0 * radius:  # such a long pin bends
         words = f"{_short(problem.thickness)} m is more than 50 hole radii"
         yield "thickness", f"{words}; lengths are in m: 5 mm is 5e-3"
-    if clearance < -TIGHTEST * radius:
+    if clearance < -tightest * radius:
         words = f"the interference is {-100.0 * clearance / radius:.3g} % of the hole radius"
         yield "clearance", f"{words}; metals yield at 0.5 %"
-    if bush is not None and bush.interference > TIGHTEST * bush.outer_radius:
+    if bush is not None and bush.interference > tightest * bush.outer_radius:
         words = f"{_short(bush.interference)} m is {100.0 * bush.interference / bush.outer_radius:.3g} %"
         yield "interference", f"{words} of the outer radius of the bush; metals yield at 0.5 %"
 

@@ -19,13 +19,6 @@ MAX_NODES = 20_000
 """Limits of the number of nodes. The matrices hold 4 nodes^2 numbers: 13 GB for the largest grid."""
 
 
-MOST_WIDTH = 2.0
-"""Largest width of a place of a graded grid, rad. Wider contacts need no grading."""
-
-GRADED_SAMPLES = 400
-"""Angles round a single place at which the spacing of a graded grid is computed."""
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Grid:
     """Nodes on an arc of the hole or on the whole circle.
@@ -199,15 +192,16 @@ def _graded_counts(places: Sequence[tuple[float, float]]) -> tuple[np.ndarray, n
     pairs = numbers("places", places)
     if pairs.ndim != 2 or pairs.shape[1:] != (2,) or not pairs.size or pairs[:, 1].min() <= 0.0:
         raise InputError("places", "must be angles with positive widths, rad: (angle, width), ...")
-    angles, widths = pairs[:, 0], np.minimum(pairs[:, 1], MOST_WIDTH)
-    away = np.geomspace(0.5, math.pi / float(widths.min()), max(GRADED_SAMPLES // widths.size, 30))
+    angles, widest, count = pairs[:, 0], 2.0, 400  # a wider contact, rad, needs no grading; and angles round a place
+    widths = np.minimum(pairs[:, 1], widest)
+    away = np.geomspace(0.5, math.pi / float(widths.min()), max(count // widths.size, 30))
     offsets = np.outer(widths, np.r_[0.0, 0.25, away])
     start = -1.5 * math.pi
     samples = (np.concatenate([angles[:, None] + offsets, angles[:, None] - offsets]) - start) % (2.0 * math.pi)
-    steps = np.linspace(0.0, 2.0 * math.pi, GRADED_SAMPLES)
+    steps = np.linspace(0.0, 2.0 * math.pi, count)
     every: np.ndarray = np.r_[steps, samples[samples > 0.0]]
     theta = distinct(every.round(13)) + start
-    spacing = np.full(theta.size, MOST_WIDTH)
+    spacing = np.full(theta.size, widest)
     for angle, width in zip(angles, widths, strict=True):
         spacing = np.minimum(spacing, np.maximum(width, 2.0 * np.abs(angle_between(theta, angle))))
     density = 1.0 / spacing

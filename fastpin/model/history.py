@@ -48,9 +48,6 @@ MOST_POINTS = 100_000
 MOST_LOAD = 1e50
 """Limit of every load, in parts of the load that strains the bodies by about 1. Squares of all results are numbers."""
 
-MOST_SHOWN = 6
-"""Most blocks that the short form of a history shows."""
-
 CycleKey = tuple[int, int]
 """A cycle of a history: the block, counted from 0, and the inner cycle, counted from 1; 0 is the block itself."""
 
@@ -384,9 +381,9 @@ class LoadHistory:
         names = ", ".join(name for name, is_given in zip(LOADS, given, strict=True) if is_given)
         parts = [
             _count_corners(len(block.given)) + (f" x {block.count:,}" if block.count > 1 else "")
-            for block in self._blocks[:MOST_SHOWN]
+            for block in self._blocks[:6]
         ]
-        more = [f"{len(self._blocks) - MOST_SHOWN} more blocks"] * (len(self._blocks) > MOST_SHOWN)
+        more = [f"{len(self._blocks) - 6} more blocks"] * (len(self._blocks) > 6)
         blocks = f"; {' + '.join(parts + more)}" if len(self._blocks) > 1 or self._blocks[0].count > 1 else ""
         return f"<LoadHistory: {_count_corners(len(self))} of {names or 'no load'}{blocks}>"
 

@@ -21,9 +21,6 @@ HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 SQLITE_SIGNATURE = b"SQLite format 3\0"
 """The first bytes of an SQLite file."""
 
-HANDED_OVER = Path("/dev/stdin"), Path("/dev/fd")
-"""Standard input, and the folder of the files that the shell hands over open: `fastpin run <(sed ...)`."""
-
 _READ: ContextVar[set[tuple[int, int]] | None] = ContextVar("_READ", default=None)
 
 
@@ -54,7 +51,9 @@ def open_input(path: Path) -> BinaryIO:
         If the file can't be opened.
     """
     mode = path.stat().st_mode
-    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or HANDED_OVER[0] == path or HANDED_OVER[1] == path.parent):
+    # The shell hands over open files: `fastpin run <(sed ...)`.
+    is_handed_over = path == Path("/dev/stdin") or path.parent == Path("/dev/fd")
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or is_handed_over):
         raise SpecialFileError
     file = path.open("rb")
     note_input(path)

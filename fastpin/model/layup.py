@@ -32,14 +32,8 @@ MOST_PLIES = 1_000
 LONGEST = 10_000
 """Most characters of a layup: more than the longest text of :data:`MOST_PLIES` angles needs."""
 
-DEEPEST = 20
-"""Most parentheses in one another. A reader loses count long before."""
-
 MOST_ANGLE = 360.0
 """Largest angle of a ply, deg: the limit of all angles in degrees."""
-
-SHOWN = 30
-"""Characters before and behind a fault that a message repeats."""
 
 _ANGLE = re.compile(r"(?P<sign>\+/?-|-/?\+|±|∓|[+-]|)(?P<size>\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)", re.ASCII)
 _COUNT = re.compile(r"_?(\d+)", re.ASCII)
@@ -104,8 +98,8 @@ class _LayupReader:
 
     def _item(self, depth: int) -> list[float]:
         if self._takes("("):
-            if depth == DEEPEST:
-                self._refuse(f"must have at most {DEEPEST} parentheses in one another", -1)
+            if depth == 20:  # a reader loses count long before
+                self._refuse("must have at most 20 parentheses in one another", -1)
             found = self._items(depth + 1)
             if not self._takes(")"):
                 self._refuse('must go on with "/" or ")"')
@@ -155,7 +149,7 @@ class _LayupReader:
     def _refuse(self, words: str, by: int = 0) -> NoReturn:
         at = self._at + by
         place = self._places[at] if at < len(self._places) else len(self._given)
-        first, last = max(place - SHOWN, 0), min(place + SHOWN, len(self._given))
+        first, last = max(place - 30, 0), min(place + 30, len(self._given))
         shown = f"{'...' * (first > 0)}{printable(self._given[first:last])}{'...' * (last < len(self._given))}"
         raise InputError(self._field, f'{words} at position {place + 1} of "{shown}"')
 

@@ -177,28 +177,19 @@ class Plies(dict[str, Ply]):
         raise KeyError(name)
 
 
+_JONES = "Jones, Mechanics of Composite Materials, quoted after public programs"
 _WWFE = "Soden, Hinton and Kaddour, Composites Science and Technology 58 (1998), p. 1011, quoted after public programs"
-
-_STRENGTHS = {
-    "AS4/3501-6": PlyStrengths(1950e6, 1480e6, 48e6, 200e6, 79e6),
-    "T300/914": PlyStrengths(1500e6, 900e6, 27e6, 200e6, 80e6),
-    "E-glass/LY556": PlyStrengths(1140e6, 570e6, 35e6, 114e6, 72e6),
-    "E-glass/MY750": PlyStrengths(1280e6, 800e6, 40e6, 145e6, 73e6),
-    "T300/5208": PlyStrengths(1500e6, 1500e6, 40e6, 246e6, 68e6),
-}
-
-_ELASTIC = {
-    "AS4/3501-6": (126e9, 11e9, 6.6e9, 0.28, _WWFE),
-    "T300/914": (138e9, 11e9, 5.5e9, 0.28, _WWFE),
-    "E-glass/LY556": (53.48e9, 17.7e9, 5.83e9, 0.278, _WWFE),
-    "E-glass/MY750": (45.6e9, 16.2e9, 5.83e9, 0.278, _WWFE),
-    "T300/5208": (181e9, 10.3e9, 7.17e9, 0.28, "Jones, Mechanics of Composite Materials, quoted after public programs"),
-}
 
 PLIES = Plies(
     {
-        name: Ply(E1, E2, G12, nu12, 0.125e-3, _STRENGTHS[name], name, source)  # a usual thickness of cured tape
-        for name, (E1, E2, G12, nu12, source) in _ELASTIC.items()
+        name: Ply(*elastic, 0.125e-3, PlyStrengths(*strengths), name, source)  # a usual thickness of cured tape
+        for name, elastic, strengths, source in (
+            ("AS4/3501-6", (126e9, 11e9, 6.6e9, 0.28), (1950e6, 1480e6, 48e6, 200e6, 79e6), _WWFE),
+            ("T300/914", (138e9, 11e9, 5.5e9, 0.28), (1500e6, 900e6, 27e6, 200e6, 80e6), _WWFE),
+            ("E-glass/LY556", (53.48e9, 17.7e9, 5.83e9, 0.278), (1140e6, 570e6, 35e6, 114e6, 72e6), _WWFE),
+            ("E-glass/MY750", (45.6e9, 16.2e9, 5.83e9, 0.278), (1280e6, 800e6, 40e6, 145e6, 73e6), _WWFE),
+            ("T300/5208", (181e9, 10.3e9, 7.17e9, 0.28), (1500e6, 1500e6, 40e6, 246e6, 68e6), _JONES),
+        )
     }
 )
 """Named plies at room temperature, with typical values and no allowables.

@@ -52,9 +52,6 @@ LOOKED_AT = 1441
 LEAST_HUB = 1e-5
 """Least hub radius, in parts of R. The pin turns by 1/r^2 per moment: a smaller hub holds it by rounding only."""
 
-LEAST_STIFFNESS, MOST_STIFFNESS = 1e-30, 1e30
-"""Limits of the stiffness of a hub's spring, in parts of R^2/beta*. At a limit the pin is free or fixed."""
-
 MOST_GAUGE = 1e30
 """Largest gauge radius, in parts of R. The displacement grows like its logarithm: a larger circle is no plate."""
 
@@ -101,9 +98,8 @@ class Problem:
     dimensionless : bool
         Set by :meth:`from_load_parameter`. It lifts the check that the clearance is smaller than the hole.
     hub_stiffness : float, optional
-        Stiffness of the spring, N (moment per unit thickness per rad), :data:`LEAST_STIFFNESS` to
-        :data:`MOST_STIFFNESS` R^2/beta*; only with ``rotation="spring"``, and needed there. In a dimensionless problem
-        its unit is R^2/beta*.
+        Stiffness of the spring, N (moment per unit thickness per rad), 1e-30 to 1e30 R^2/beta*; only with
+        ``rotation="spring"``, and needed there. In a dimensionless problem its unit is R^2/beta*.
     drive : {"force", "ux", "uy", "both"}
         "force": the loads P and Q push the pin. "ux": the load ``ux`` prescribes the displacement of the hub along x.
         Q is then the reaction, and P is a force. "uy": ``uy`` prescribes the displacement along y, P is the reaction,
@@ -230,7 +226,7 @@ class Problem:
             if stiffness <= 0.0:
                 raise InputError("hub_stiffness", f"must be positive, not {stiffness:g}")
             natural = self.natural_loads()["moment"]
-            number("hub_stiffness", stiffness, LEAST_STIFFNESS * natural, MOST_STIFFNESS * natural)
+            number("hub_stiffness", stiffness, 1e-30 * natural, 1e30 * natural)  # there the pin is free or fixed
             set_fields(self, hub_stiffness=stiffness)
         elif self.rotation == "spring":
             raise InputError("hub_stiffness", 'a pin with rotation = "spring" needs the stiffness of the spring')

@@ -28,15 +28,6 @@ MOST_SAMPLES = 20_000
 WAVE = 16
 """Angles in a wave, or in a crown, at which its value must be looked at."""
 
-PERIODIC = 1e-9
-"""Largest difference of samples a turn apart, in parts of the largest sample."""
-
-WIDEST = 2.0 * math.pi / 3.0
-"""Largest angle between neighbouring samples, rad. Samples on a part of the circle only say nothing of the rest.
-
-Angles in the wrong unit are refused in this way, too.
-"""
-
 MOST_ANGLE = 4.0 * math.pi
 """Largest angle, rad. One beyond two turns is in degrees by mistake."""
 
@@ -325,9 +316,9 @@ class Samples(Term):
         numbers("heights", heights, -MOST_SIZE, MOST_SIZE)
         if angles.size != heights.size:
             raise InputError("heights", f"must be as many as the angles, {angles.size}, not {heights.size}")
-        turn = 2.0 * math.pi
-        if angles.size > 1 and math.isclose(angles[-1] - angles[0], turn, rel_tol=PERIODIC):
-            if abs(heights[-1] - heights[0]) > PERIODIC * np.abs(heights).max():
+        turn, rounding = 2.0 * math.pi, 1e-9
+        if angles.size > 1 and math.isclose(angles[-1] - angles[0], turn, rel_tol=rounding):
+            if abs(heights[-1] - heights[0]) > rounding * np.abs(heights).max():
                 raise InputError(
                     "heights", f"must be equal at the ends of a turn, not {heights[0]:g} and {heights[-1]:g}"
                 )
@@ -340,7 +331,8 @@ class Samples(Term):
             words = f"neighbours are {math.degrees(least):.2g} degrees apart, less than"
             raise InputError("angles", f"{words} {math.degrees(LEAST_ANGLE):.2g}")
         widest = float(np.diff(angles, append=angles[0] + turn).max())
-        if widest > WIDEST:
+        # Samples on a part of the circle say nothing of the rest. Angles in the wrong unit are refused so, too.
+        if widest > 2.0 * math.pi / 3.0:
             words = (
                 f"must go all round the hole: neighbours are {math.degrees(widest):.4g} degrees apart, more than 120"
             )

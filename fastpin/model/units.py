@@ -54,9 +54,6 @@ _WITH_PREFIX = frozenset(
 )
 """Units that may get an SI prefix."""
 
-_POWERS = {"m^2": (2, -2), "m^3": (3, -5)}
-"""The power of a unit, to which a prefix is raised too: 1 mm^2 is 1e-6 m^2. Then the lowest decade of values in it."""
-
 FIXED_PREFIXES = {"kN, mm": {"N": 3, "N/m": 3, "N m": 0, "J": 0, "J/m": 0, "m": -3, "Pa": 6}}
 """Choices of prefixes that do not depend on the size of a value: a power of ten for each unit, by the choice's name.
 
@@ -123,7 +120,8 @@ def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
     largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     if unit not in _WITH_PREFIX or largest == 0.0:
         return 1.0, unit
-    power, lowest = _POWERS.get(unit, (1, 0))
+    # A prefix is raised to the power of a unit, too: 1 mm^2 is 1e-6 m^2. Then the lowest decade of values in it.
+    power, lowest = {"m^2": (2, -2), "m^3": (3, -5)}.get(unit, (1, 0))
     exponent = 3 * math.floor((math.log10(largest * (1.0 + 1e-12)) - lowest) / (3.0 * power))
     exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))
     return 10.0 ** (-exponent * power), _PREFIXES[exponent] + unit

@@ -15,9 +15,6 @@ from fastpin.model.profile import Profile, ProfileLike
 MOST_CYCLES = 10**12
 """Cycles, at most."""
 
-MOST_CHOSEN = 10_000
-"""Chosen cycles, at most."""
-
 
 @dataclass(frozen=True)
 class Wear:
@@ -70,8 +67,8 @@ class Wear:
                 set_fields(self, **{name: profile})
         if self.at is not None:
             chosen = [count("at", each, self.cycles) for each in items("at", self.at, "a list of cycles")]
-            if len(chosen) > MOST_CHOSEN or chosen != sorted(set(chosen)):
-                raise InputError("at", f"must be at most {MOST_CHOSEN:,} increasing numbers of cycles")
+            if len(chosen) > 10_000 or chosen != sorted(set(chosen)):
+                raise InputError("at", "must be at most 10,000 increasing numbers of cycles")
             set_fields(self, at=tuple(chosen))
 
     def coefficients(self, radius: float, theta: np.ndarray) -> np.ndarray:

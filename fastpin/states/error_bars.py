@@ -47,12 +47,6 @@ The unit is the size of the quantity (:func:`fastpin.states.quantities.size`) ov
 contact. The floor of int |T| is large: |T| has kinks at earlier borders and where the sign of T changes.
 """
 
-ROUNDING = 1e-11
-"""Largest relative difference of two equal values, in parts of the size of the quantity.
-
-Values this close are equal by symmetry or equilibrium. Their bar is this rounding, without a floor.
-"""
-
 LEAST_COARSE = 51
 """Least number of nodes of the coarse grid."""
 
@@ -160,8 +154,9 @@ def _known_bar(kind: str, value: float, other: float, natural_size: float) -> fl
         return math.inf
     if value == other == 0.0:
         return 0.0
-    rounding = ROUNDING * natural_size
-    # These may be exact, by symmetry or equilibrium. Ends read at nodes of both grids agree, but are not exact.
+    rounding = 1e-11 * natural_size
+    # These may be exact, by symmetry or equilibrium: their bar is the rounding, without a floor. Ends read at nodes of
+    # both grids agree, but are not exact.
     if abs(value - other) <= rounding and kind in ("force", "moment", "rotation", "displacement"):
         return rounding
     return None

@@ -77,10 +77,6 @@ MARKS: dict[tuple[str, Side], str] = {
 """The extremes that texts, tables and figures show, with their words."""
 
 
-FAR = 2.0
-"""Strength over stress beyond which no state is near yield, in the states of the largest tractions and stresses."""
-
-
 class Extreme(NamedTuple):
     """An extreme of a quantity over the kept states of a result.
 
@@ -228,7 +224,7 @@ def _are_plainly_elastic(problem: Problem, most: np.ndarray) -> bool:
 
 
 def _is_near_yield(state: State, owner: str) -> bool:
-    """Whether the largest von Mises stress of a body may be above 1/:data:`FAR` of its yield strength.
+    """Whether the largest von Mises stress of a body may be above half of its yield strength.
 
     Only the edges are looked at. Below an edge the stress by a pressure is at most the pressure (the half-plane), and
     other loads bend a body most at its edges.
@@ -238,7 +234,7 @@ def _is_near_yield(state: State, owner: str) -> bool:
     strength = strength_of(state.problem, peak.circle)
     rims = (state,) if state.seat is None else (state, state.seat)
     largest = max(peak.value, *(float(rim.pressure.max()) for rim in rims))
-    return strength is not None and FAR * largest > strength
+    return strength is not None and 2.0 * largest > strength
 
 
 def yield_doubts(

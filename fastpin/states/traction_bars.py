@@ -36,15 +36,6 @@ AROUND = np.linspace(-2.0, 2.0, 17)
 With one node distance the shear beside old borders holds in 97.1 instead of 97.7 % of the points.
 """
 
-REACH = 4.0
-"""Distance from an edge or border at which its shift no longer moves the curve, in node distances."""
-
-MOST_SHIFT = 2.0
-"""Largest shift of an edge or border, in node distances. The difference of the curves shows a larger shift by itself.
-
-An end without a counterpart on the coarse grid has an infinite bar.
-"""
-
 
 class PairBars(ErrorBars):
     """The error bars of a state from the state at the same load on a `coarse` grid with half the intervals."""
@@ -105,8 +96,9 @@ def _curves_and_bars(state: State, bars: ErrorBars, theta: np.ndarray) -> tuple[
     for name in (name for name in bars if name not in QUANTITIES):  # ends of zones
         place = quantity(name).of(state)
         (beside,) = _spacing(state.grid, np.array([place]))
-        away = np.abs(angle_between(theta, place)) / (REACH * beside)
-        shift = np.maximum(shift, min(bars[name], MOST_SHIFT * beside) * np.maximum(1.0 - away, 0.0))
+        away = np.abs(angle_between(theta, place)) / (4.0 * beside)
+        # The difference of the curves shows a larger shift by itself. An end without a counterpart has an infinite bar.
+        shift = np.maximum(shift, min(bars[name], 2.0 * beside) * np.maximum(1.0 - away, 0.0))
     shift = np.degrees(shift)  # an edge is moved by parts of it, and the largest change counts
     moved = [np.abs(tractions_at(fine, angle + part * shift) - curves) for part in (-1.0, -0.5, 0.5, 1.0)]
     floor = size_floor("traction", sizes(state)["traction"], state) * ((index > 0.0) | (curves != 0.0))

@@ -26,9 +26,6 @@ if TYPE_CHECKING:  # this module imports compiled code
 AROUND = 180
 """Equally spaced angles of a circle."""
 
-DEPTHS = tuple(0.01 * 2.0**k for k in range(6))
-"""Depths of the circles below an edge, in units of the hole's radius."""
-
 OWNERS = ("pin", "plate", "bush")
 """Bodies with a yield strength."""
 
@@ -89,7 +86,8 @@ def _wall(problem: Problem, body: Body) -> float:
 
 
 def _depths(wall: float) -> tuple[float, ...]:
-    return 0.0, *(depth for depth in DEPTHS if depth < 0.9 * wall)
+    """Depths of the circles below an edge in a wall, in units of the hole's radius."""
+    return 0.0, *(depth for k in range(6) if (depth := 0.01 * 2.0**k) < 0.9 * wall)
 
 
 class Places(NamedTuple):

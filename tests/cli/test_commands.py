@@ -127,7 +127,7 @@ def test_heavy_imports_wait_until_they_are_needed(needed: str) -> None:
 
 HEAVY = (
     "numba", "scipy", "scipy.linalg", "scipy.special", "scipy.fft", "tqdm", "matplotlib", "h5py", "multiprocessing",
-    "jinja2", "shtab", "importlib.metadata", "numpy.typing", "numpy.f2py", "numpy.testing", "numpy.random",
+    "jinja2", "shtab", "importlib.metadata", "numpy.typing", "numpy.f2py", "numpy.testing", "numpy.random", "numpy.ma",
 )  # fmt: skip
 """Modules that take long to import. Nothing that is loaded from disk needs them."""
 
