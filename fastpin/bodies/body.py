@@ -99,12 +99,6 @@ class Uniform(NamedTuple):
         mean = 2.0 * radial * (1.0 + compliance) / (kolosov + 1.0)
         return cls(mean, radial - mean)
 
-    @classmethod
-    def of_press_fit(cls, pressure: float, outer: float) -> Uniform:
-        """The stresses of a ring, 1 <= r <= `outer`, under a pressure on its outer rim."""
-        mean = -pressure / ((1.0 - 1.0 / outer) * (1.0 + 1.0 / outer))
-        return cls(mean, -mean)
-
     def radial(self, radius: float) -> float:
         """s_rr at a radius."""
         return self.mean + self.decaying / radius**2

@@ -324,8 +324,10 @@ class Bushing(PlateBody):
         own, seat = self.around(rim)
         unit = 0.5 * own.compliance
         whole = harmonics.uniform_of_layer(seat.ratio, own.kolosov, 2.0 * unit, self.inside.pressed(seat)) / unit
-        parts = Uniform.of_rim(-contact, whole, own.kolosov), Uniform.of_press_fit(self.press_fit(rim)[0], seat.ratio)
-        return Uniform(*map(sum, zip(*parts, strict=True)))
+        mean, decaying = Uniform.of_rim(-contact, whole, own.kolosov)
+        wall = (1.0 - 1.0 / seat.ratio) * (1.0 + 1.0 / seat.ratio)
+        pressed = -self.press_fit(rim)[0] / wall  # of a ring under a pressure on its outer rim
+        return Uniform(mean + pressed, decaying - pressed)
 
     def highest_inside(self, rim: Rim) -> int:
         seat = self.around(rim)[1]

@@ -119,7 +119,13 @@ class Compliance(PlateBody):
         if float(np.abs(matrix - matrix.T).max()) > 1e-6 * largest:
             raise InputError("matrix", "must be symmetric: the displacement at one place under a force at another")
         matrix = 0.5 * (matrix + matrix.T)
-        self._check_decay(matrix)
+        harmonic = np.r_[0, 0, np.repeat(np.arange(1, (size - 2) // 4 + 1), 4)]
+        low, last = np.flatnonzero((harmonic == 0) | (harmonic == 2)), np.flatnonzero(harmonic == harmonic[-1])
+        inner = np.flatnonzero(harmonic != 1)  # the first harmonic holds the translation over the supports
+        most, left = (float(np.abs(matrix[np.ix_(rows, inner)]).max()) for rows in (low, last))
+        if left > 0.01 * most:
+            words = f"its last harmonic {harmonic[-1]} is {left / most:.2g} of the largest; it must decay to 0.01"
+            raise InputError("matrix", f"{words}: take more harmonics")
         matrix.setflags(write=False)
         set_fields(self, matrix=matrix)
         if not isinstance(self.columns, Mapping):
@@ -147,16 +153,6 @@ class Compliance(PlateBody):
 
     def __hash__(self) -> int:
         return hash(self.digest)
-
-    @staticmethod
-    def _check_decay(matrix: np.ndarray) -> None:
-        harmonic = np.r_[0, 0, np.repeat(np.arange(1, (len(matrix) - 2) // 4 + 1), 4)]
-        low, last = np.flatnonzero((harmonic == 0) | (harmonic == 2)), np.flatnonzero(harmonic == harmonic[-1])
-        inner = np.flatnonzero(harmonic != 1)  # the first harmonic holds the translation over the supports
-        size, left = float(np.abs(matrix[np.ix_(low, inner)]).max()), float(np.abs(matrix[np.ix_(last, inner)]).max())
-        if left > 0.01 * size:
-            words = f"its last harmonic {harmonic[-1]} is {left / size:.2g} of the largest; it must decay to 0.01"
-            raise InputError("matrix", f"{words}: take more harmonics")
 
     @property
     def order(self) -> int:

@@ -120,7 +120,6 @@ class Tube(PinBody):
         return [*super().page_controls(radius), Control("bore_load", self.load, choices=TUBE_LOADS)]
 
 
-@dataclass(frozen=True)
 class SeatedBush(Tube):
     """A bush as the pin of its seat. Its stress also depends on the tractions in its bore, which the seat lacks."""
 

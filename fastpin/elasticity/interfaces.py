@@ -32,9 +32,6 @@ from fastpin.model.problem import Problem
 PIN, SEAT = 0, 1
 """Places of the two interfaces."""
 
-AROUND = 720
-"""Angles round the bore at which its shape is told."""
-
 TURN = 2
 """Place of the rotation among the three motions of an interface, and of its condition."""
 
@@ -159,7 +156,7 @@ class JointSystem(System):
     @cached_property
     def bore_shape(self) -> tuple[np.ndarray, np.ndarray]:
         """Angles (a,) round the bore, rad, and its radial displacement there per traction in the seat, (a, 2k)."""
-        theta = Grid.circle(AROUND).theta
+        theta = Grid.circle(720).theta
         return theta, self.bore_at(theta)
 
     def bore_at(self, theta: np.ndarray) -> np.ndarray:

@@ -14,12 +14,6 @@ import numpy as np
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
 from fastpin.model.laminate import Laminate
 
-LEAST_SPREAD = 2e-4
-"""Least difference of the two roots, in parts of their size. Equal roots are spread.
-
-The error of the stress is the square of the spread, and the error 1e-11 of the Cauchy integrals over the spread.
-"""
-
 
 def laminate_stress(
     laminate: Laminate, tractions: Tractions, remote: np.ndarray, theta: np.ndarray, depth: np.ndarray
@@ -29,7 +23,9 @@ def laminate_stress(
     They are means through the thickness. The arguments are those of :func:`fastpin.elasticity.stress.plate_stress`.
     """
     roots = _apart(*laminate.roots)
-    forces, moves = _potentials(laminate.matrix, roots)
+    (a11, a12, a16), (_, a22, a26), _ = laminate.matrix
+    mu = np.array(roots)  # stress functions are 2 Re(B f), displacements 2 Re(A f), with the matrices B and A
+    forces, moves = np.array([-mu, np.ones(2)]), np.array([a11 * mu * mu + a12 - a16 * mu, a12 * mu + a22 / mu - a26])
     inverse = np.linalg.inv(forces)
     whole = np.block([[forces.real, -forces.imag], [moves.real, -moves.imag]])  # 2 Re(B c) = 1, Re(A c) = 0
     solved = np.linalg.solve(2.0 * whole, np.eye(4)[:, :2])
@@ -56,19 +52,15 @@ def laminate_stress(
 
 
 def _apart(one: complex, two: complex) -> tuple[complex, complex]:
-    """The two roots, spread if they are equal."""
-    if abs(one - two) >= LEAST_SPREAD * abs(one):
+    """The two roots, spread if they are equal.
+
+    The error of the stress is the square of the spread, and the error 1e-11 of the Cauchy integrals over the spread.
+    """
+    spread = 2e-4
+    if abs(one - two) >= spread * abs(one):
         return one, two
-    middle, half = 0.5 * (one + two), 0.5 * LEAST_SPREAD
+    middle, half = 0.5 * (one + two), 0.5 * spread
     return middle * (1.0 - half), middle * (1.0 + half)
-
-
-def _potentials(compliance: np.ndarray, roots: tuple[complex, complex]) -> tuple[np.ndarray, np.ndarray]:
-    """The matrices B and A of the stress functions and displacements 2 Re(B f) and 2 Re(A f), shape (2, 2) each."""
-    (a11, a12, a16), (_, a22, a26), _ = compliance
-    mu = np.array(roots)
-    moves = np.array([a11 * mu * mu + a12 - a16 * mu, a12 * mu + a22 / mu - a26])
-    return np.array([-mu, np.ones(2)]), moves
 
 
 def _beyond_edge(root: complex, theta: np.ndarray, depth: np.ndarray) -> np.ndarray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,9 +15,6 @@ from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels import fourier, influence
 from fastpin.model.grid import Grid, arc_of
 from fastpin.model.problem import Problem
-
-COLUMNS = 64
-"""Columns of the operator that are computed together."""
 
 MOST_DENSE = 400
 """Nodes of unequal spacing, at most, for which the whole operator is filled."""
@@ -50,8 +46,8 @@ class ColumnsOperator(Operator):
         h_left, h_right = grid.theta - left, right - grid.theta
         gap = np.full(n, -scale * uniform_part(self._problem) * float(grid.weights @ pressure))
         slip = np.zeros(n)
-        for begin in range(0, loaded.size, COLUMNS):
-            nodes = loaded[begin : begin + COLUMNS]
+        for begin in range(0, loaded.size, 64):  # so many columns at a time
+            nodes = loaded[begin : begin + 64]
             direct, cross = (np.empty((n, nodes.size), order="F") for _ in range(2))
             influence.log_columns(
                 grid.theta, grid.theta[nodes], h_left[nodes], h_right[nodes], pair.alpha_star / pair.beta_star, scale,
@@ -73,7 +69,6 @@ class ColumnsOperator(Operator):
         return found + moved @ (coupling @ tractions) if coupling.size else found
 
 
-@dataclass(frozen=True, eq=False)
 class LargeSystem(System):
     """A system whose operator has no stored entries. Solvers work on a window of neighbouring nodes."""
 

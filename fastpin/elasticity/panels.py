@@ -27,14 +27,8 @@ from fastpin.model.lug import Part, distances
 MOST_NODES = 4000
 """Most nodes of all edges. The two matrices then take one gigabyte."""
 
-WIDEST = math.pi / 4 * (1.0 + 1e-9)
-"""Largest angle of a circular panel: ten nodes resolve it to 1e-12."""
-
 TOUCHING = 1e-8
 """Largest distance of the ends of two parts that meet, in hole radii."""
-
-SMOOTH = 1e-6
-"""Largest difference of the unit tangents of two parts at an end that is no corner."""
 
 
 class Fineness(NamedTuple):
@@ -55,18 +49,18 @@ class Boundary:
     marks : tuple of object
         Something for each part, equal where support and loads are equal.
     turn : float
-        Largest angle of a circular panel.
+        Largest angle of a circular panel, rad. Ten nodes resolve the default to 1e-12.
     """
 
     parts: tuple[Part, ...]
     marks: tuple[object, ...]
-    turn: float = WIDEST
+    turn: float = math.pi / 4 * (1.0 + 1e-9)
 
     def halvings(self, place: int, most: int) -> int:
         """Halvings towards the start of the part at `place`: none where the edge goes on as it is."""
         before, after = self.parts[place - 1], self.parts[place]
         turned = before.direction(np.ones(1)) - after.direction(np.zeros(1))
-        if np.abs(turned[0]) > SMOOTH or self.marks[place - 1] != self.marks[place]:
+        if np.abs(turned[0]) > 1e-6 or self.marks[place - 1] != self.marks[place]:
             return most
         if before.circle is None or after.circle is None:
             same = before.circle is after.circle

@@ -126,8 +126,10 @@ class Points(ReadOnly):
             if far is not None and np.any(depth > wall + ROUNDING * max(1.0, wall)):
                 rim = "at least the bore" if body == "pin" else "at most the outer"
                 raise InputError("radius", f"must be {rim} radius of {far * radius:g} in the {body}")
-        if body != "pin" and problem.plate_body.lug.edge_only and np.any(_is_in_compliance(problem, body, depth)):
-            raise InputError("points", "a compliance gives the stress on the edge of the hole only")
+        if body != "pin" and problem.plate_body.lug.edge_only:
+            is_bushed = body == "plate" and problem.joint.bush is not None
+            if np.any(is_beyond_bush(problem, depth) if is_bushed else depth > 0.0):
+                raise InputError("points", "a compliance gives the stress on the edge of the hole only")
         return np.minimum(depth, wall)
 
 
@@ -138,13 +140,6 @@ def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:
     """
     bush = problem.joint.bush
     return np.zeros(depth.shape, dtype=bool) if bush is None else 1.0 + depth > bush * (1.0 + ROUNDING)
-
-
-def _is_in_compliance(problem: Problem, body: Body, depth: np.ndarray) -> np.ndarray:
-    """Whether points of "plate" or "seat" lie inside a plate that only a compliance describes, and not on its edge."""
-    if body == "plate" and problem.joint.bush is not None:
-        return is_beyond_bush(problem, depth)
-    return depth > 0.0
 
 
 def bodies_of(problem: Problem) -> tuple[Body, ...]:

@@ -24,32 +24,17 @@ from fastpin.reading.half_line import End, Fit, HalfLine, Tries, Try, half_line
 from fastpin.reading.old_borders import OldBorder, old_borders
 from fastpin.reading.zones import runs, unrolled
 
-HALF_WIDTHS = (5, 7, 10, 14, 20)
-"""Windows to try about a place: the number of nodes on either side."""
-
 DEGREES = (3, 4, 5)
 """Degrees of the polynomial to try where no end of the zone is in the window."""
 
 END_TERMS = (4, 5)
 """Terms to try at an end of the zone."""
 
-SAME_PLACE = 0.01
-"""Largest difference of two readings of one border that agree, in node distances."""
-
 GOOD_ENOUGH = 5e-5
 """Relative standard error of a value from which on no wider window is tried.
 
 The standard error of a wide window misses a part of its error: its terms are too few for all places in it.
 """
-
-BEYOND, TRIED = 6.0, 81
-"""Reach on the slip side of a border of unlike bodies, in node distances, and the number of places tried there.
-
-The largest shear lies a little beyond the border. The places gather at the border.
-"""
-
-SPARE = 2
-"""Least number of nodes of a window beyond the number of unknowns."""
 
 
 class Cusp(NamedTuple):
@@ -244,7 +229,7 @@ class ShearNodes:
         away = math.remainder(angle - theta, 2.0 * math.pi)
         offset = away / float(right[node] - theta if away > 0.0 else theta - left[node])
         place = self._border_place(nodes[::-outwards], -outwards)
-        if not abs(-outwards * place - offset) <= SAME_PLACE:
+        if not abs(-outwards * place - offset) <= 0.01:  # else the two readings of the border do not agree
             return None
         offsets = offset + outwards * self._beyond
         read = self._pressure_at(node, offsets, -outwards)
@@ -257,8 +242,11 @@ class ShearNodes:
 
     @cached_property
     def _beyond(self) -> np.ndarray:
-        """Distances from a border, outwards, at which the largest shear may lie, in node distances."""
-        return np.zeros(1) if self.coupling.is_smooth else BEYOND * np.linspace(0.0, 1.0, TRIED) ** 2
+        """Distances from a border, outwards, at which the largest shear may lie, in node distances.
+
+        Of unlike bodies it lies a little beyond the border. The places gather at the border.
+        """
+        return np.zeros(1) if self.coupling.is_smooth else 6.0 * np.linspace(0.0, 1.0, 81) ** 2
 
     @cached_property
     def _coupled_borders(self) -> list[tuple[int, OldBorder]]:
@@ -353,7 +341,7 @@ class ShearNodes:
         cusps = [border, *(other for other in others if not other.is_end(run.size))]
         met = _met(first, last, run.size)
         least = len(met) * END_TERMS[0] if met else DEGREES[0] + 1
-        if last - first - least - sum(CUSP_TERMS - (cusp.place is not None) for cusp in cusps) < SPARE:
+        if last - first - least - sum(CUSP_TERMS - (cusp.place is not None) for cusp in cusps) < 2:
             return  # too few nodes for all of these fits
         own, *inside = [self._end(cusp, int(run[cusp.at]), first, CUSP_TERMS, sign) for cusp in cusps]
         if not met:
@@ -371,24 +359,23 @@ class ShearNodes:
 
         Its outermost node is the `node` of the grid.
         """
-        key = node, border.sign, border.inwards, sign
-        known = self._solutions.get(key)
-        if known is None:
-            known = self._solutions[key] = self._solution(*key)
-        return End(known[0], border.at - first, border.inwards, terms, border.place, known[1])
+        own, inwards = border.sign, border.inwards
+        if (key := (node, own, inwards, sign)) not in self._solutions:
+            line = half_line(self._exponent(node, own, inwards), float(self.coupling.beta[node]) if own else None)
+            parts, share = (1.0, 0.0), float(self.coupling.share[own, node])
+            if not self.coupling.is_smooth and own not in (0, sign):
+                parts = (1.0, -2.0 * share) if sign else (0.0, share)
+            self._solutions[key] = line, parts
+        line, parts = self._solutions[key]
+        return End(line, border.at - first, inwards, terms, border.place, parts)
 
     @cached_property
     def _solutions(self) -> dict[tuple[int, int, int, int], tuple[HalfLine, tuple[float, float]]]:
-        """The solutions of borders that were read, by the arguments of :meth:`_solution`."""
-        return {}
+        """The half line and the parts in the fitted quantity of borders that were read.
 
-    def _solution(self, node: int, own: int, inwards: int, sign: int) -> tuple[HalfLine, tuple[float, float]]:
-        """The half line of a border with its `own` sign, and its parts in the fitted quantity, see :meth:`_end`."""
-        line = half_line(self._exponent(node, own, inwards), float(self.coupling.beta[node]) if own else None)
-        parts, share = (1.0, 0.0), float(self.coupling.share[own, node])
-        if not self.coupling.is_smooth and own not in (0, sign):
-            parts = (1.0, -2.0 * share) if sign else (0.0, share)
-        return line, parts
+        The key has the outermost node, the border's own sign, its direction inwards and the sign of :meth:`_end`.
+        """
+        return {}
 
     def _pressure_at(self, node: int, offsets: np.ndarray, inwards: int) -> tuple[np.ndarray, float] | None:
         """The pressure beside a border, and its standard error at the first place.
@@ -440,7 +427,7 @@ class ShearNodes:
 
 def _spans(at: int, size: int) -> list[tuple[int, int]]:
     """The windows to try about the node number `at` of a zone of `size` nodes: first node, and node after the last."""
-    return list(dict.fromkeys((max(at - half, 0), min(at + half + 1, size)) for half in HALF_WIDTHS))
+    return list(dict.fromkeys((max(at - half, 0), min(at + half + 1, size)) for half in (5, 7, 10, 14, 20)))
 
 
 def _met(first: int, last: int, size: int) -> list[int]:
@@ -471,7 +458,7 @@ def _best(windows: list[_Window], at: float | None, enough: float) -> tuple[Fit,
     for window in windows:
         for ends, degree in window.shapes:
             fit = Try(start, window.values.size, degree, ends)
-            if fit.spare >= SPARE:
+            if fit.spare >= 2:
                 tries.append(fit)
                 owners.append(window)
                 places.append(math.nan if at is None else at - window.first)

@@ -20,27 +20,8 @@ CROWDED = ((8, 3), (10, 3), (12, 4), (14, 4), (18, 4), (24, 5))
 MOST_VALUES = 2 * max(count for count, _ in (*WINDOWS, *CROWDED))
 """Values of a zone that count: a window takes at most half of them. More values give the same place."""
 
-LEAST_NODES = 10
-"""Number of nodes that a fit may use in a small zone, all but one node at most.
-
-In a zone of more than twice this number of nodes, it is the outer half.
-"""
-
 CUSP_TERMS = 3
 """Terms at an old border."""
-
-GOOD_ENOUGH = 1e-4
-"""Standard error of a place, in node distances, from which on no other window is tried.
-
-The error of the discrete problem itself is of this size.
-"""
-
-LARGEST_ERROR, LARGEST_COUPLED = 0.05, 0.01
-"""Largest standard error of a place, in node distances, for like bodies and at a border of unlike ones.
-
-A fit with a larger one is not taken. The solutions at a border of unlike bodies leave out contact edges nearby, which
-the standard error shows in part only.
-"""
 
 
 def end_place(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder] = ()) -> float:
@@ -78,7 +59,7 @@ def _best(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder]) -> tup
         for cusp in sorted(cusps)
         if cusp.at < MOST_VALUES // 2 and (cusp.at, cusp.inwards) != (0, 1)
     ]
-    most = max(values.size // 2, min(values.size - 1, LEAST_NODES))
+    most = max(values.size // 2, min(values.size - 1, 10))  # the outer half; of a small zone all nodes but one
     return _best_fit(values[:MOST_VALUES].tobytes(), line, tuple(others), min(most, MOST_VALUES // 2))
 
 
@@ -89,14 +70,16 @@ def _best_fit(values: bytes, line: HalfLine, others: tuple[End, ...], most: int)
     It is kept, because the same end is read for the zones of a state and for its cusps.
     """
     tries, packed = _tries(line, others, most)
-    best, found, least = None, math.nan, LARGEST_COUPLED if line.coupling else LARGEST_ERROR
+    # Standard errors in node distances. The solutions at a border of unlike bodies leave out contact edges nearby,
+    # which the standard error shows in part only.
+    best, found, least = None, math.nan, 0.01 if line.coupling else 0.05
     if packed is None:
         return None, math.nan
     is_crowded = _is_crowded(others)
     for each, (place, error) in zip(tries, packed.end_places(np.frombuffer(values)).tolist(), strict=True):
         if error < least:
             best, found, least = each, place, error
-        if least <= GOOD_ENOUGH and not is_crowded:
+        if least <= 1e-4 and not is_crowded:  # the discrete problem itself has errors of this size
             break
     return best, found
 

@@ -36,9 +36,6 @@ SHEAR_TERMS = 3
 SAMPLES = 4096
 """Samples of the symbol. The coefficients of its logarithm fall with the fourth power: the last ones are 1e-15."""
 
-SUMMED = 16
-"""Terms of Hurwitz's zeta function that are summed. The rest, by Euler and Maclaurin, then has an error of 1e-15."""
-
 
 @dataclass(frozen=True, eq=False)
 class HalfLine:
@@ -164,9 +161,10 @@ def _two_sided(inner: float, outer: float, reach: int) -> np.ndarray:
 
 def zeta_3(t: np.ndarray) -> np.ndarray:
     """Hurwitz's zeta function zeta(3, t) for t > 0, shape (k,). SciPy has it too, but takes long to import."""
-    far = t + SUMMED
+    summed = 16  # the rest, by Euler and Maclaurin, then has an error of 1e-15
+    far = t + summed
     rest = 0.5 / far**2 + 0.5 / far**3 + 0.25 / far**4 - 1.0 / (12.0 * far**6) + 1.0 / (12.0 * far**8) - 0.15 / far**10
-    return np.asarray(((t + np.arange(SUMMED)[:, None]) ** -3.0).sum(axis=0) + rest)
+    return np.asarray(((t + np.arange(summed)[:, None]) ** -3.0).sum(axis=0) + rest)
 
 
 class End(NamedTuple):

@@ -19,14 +19,8 @@ from fastpin.reading.stress import HoopPeak, Stress, open_hole_hoop
 AROUND = 180
 """Equally spaced angles round the hole that are tried, beside edges, borders, closed nodes and their middles."""
 
-TRIED = 4
-"""Local maxima beside which the peak is looked for."""
-
 LEAST_NODES = 40
 """Least number of nodes in contact of a resolved peak. With less, errors of 3 % were found."""
-
-NEAR = 2.0
-"""Distance from an unresolved place, in node distances, within which a peak belongs to it."""
 
 UNRESOLVED = 0.13
 """Bar of a hoop stress whose peak the nodes do not resolve, in parts of the value.
@@ -54,7 +48,7 @@ def hoop_peak(
     values = hoop(angles)
     before, after = np.roll(values, 1), np.roll(values, -1)
     tops = np.flatnonzero((values >= before) & (values >= after))
-    found = _highest(hoop, angles, values, tops[np.argsort(-values[tops])[:TRIED]])
+    found = _highest(hoop, angles, values, tops[np.argsort(-values[tops])[:4]])
     value, angle = found[top_angle(*np.array(found).T)]
     rim, force = near_rim(problem, body), math.hypot(resultants["P"], resultants["Q"])
     resolved = _is_resolved(grid.weights[closed], refined, hoop, value, angle, rim - 1.0)
@@ -140,7 +134,7 @@ def _is_resolved(
     if refined.unresolved:
         places = np.array(refined.unresolved)
         missed = hoop(places) >= (1.0 - UNRESOLVED) * value
-        if np.any(missed | (np.abs(angle_between(places, angle)) < NEAR * spacing)):
+        if np.any(missed | (np.abs(angle_between(places, angle)) < 2.0 * spacing)):  # the peak belongs to the place
             return False
     if any(abs(angle_between(place, angle)) < spacing for place in refined.resolved):
         return True

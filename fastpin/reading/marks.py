@@ -20,13 +20,6 @@ from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import half_line
 from fastpin.reading.old_borders import BITS, OldBorder, is_ambiguous, present_borders, truly_sticking
 
-DEEPEST = 64
-"""Largest number of corners whose unread places follow from each other.
-
-The places of the next corner are read at once, and the nodal values of all these corners are given free. A place is
-read with the places of older borders nearby.
-"""
-
 
 class MarkedPlace:
     """The place of a border in node distances inwards from its outermost node; NaN where no fit is good enough.
@@ -131,7 +124,8 @@ class Marks:
             if sign:
                 corner = corner or _Corner(problem, grid, friction, tractions, status, self, 1 + self.depth)
                 place = MarkedPlace(corner, node, inwards)
-                places[node] = place.read() if corner.depth > DEEPEST else place
+                # The places of 64 corners may follow from each other. Then they are read, and their values given free.
+                places[node] = place.read() if corner.depth > 64 else place
         if not fresh:
             return self
         bits = self._bits | {node: mark | self._bits.get(node, 0) for node, mark in fresh.items()}

@@ -15,12 +15,6 @@ from fastpin.reading.cusps import ShearNodes
 from fastpin.reading.ends import by_two_nodes
 from fastpin.reading.zones import Interval, is_all_round, runs
 
-NEAR = 12
-"""Reach of the cusp at a stick-slip border of unlike bodies, in node distances.
-
-A largest shear traction within this reach belongs to the cusp.
-"""
-
 RIVAL = 0.8
 """Least nodal shear beside a border, in parts of the largest nodal shear.
 
@@ -117,9 +111,8 @@ def _peaks_at_borders(
         spacing = float(grid.weights[np.argmin(np.abs(offsets))])
         if not slipping[(offsets >= 0.0) & (offsets <= 1.5 * spacing)].any():
             continue  # no slip beside this end of the stick zone: it is the end of the contact
-        beside = np.flatnonzero(
-            (offsets >= -2.0 * spacing) & (offsets <= (2.0 if contact.coupling.is_smooth else NEAR) * spacing)
-        )
+        reach = 2.0 if contact.coupling.is_smooth else 12.0  # of the cusp at a border, in node distances
+        beside = np.flatnonzero((offsets >= -2.0 * spacing) & (offsets <= reach * spacing))
         highest = int(beside[np.argmax(magnitude[beside])])
         if magnitude[highest] < RIVAL * magnitude[top]:
             continue

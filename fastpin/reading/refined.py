@@ -35,9 +35,6 @@ from fastpin.reading.zones import Interval, is_all_round, runs, unrolled
 REACH = 20.0
 """Nodes on the side of a cusp within which it is refined."""
 
-RIVAL = 0.6
-"""Largest pressure at a cusp, in parts of the peak pressure. Where it is higher the hoop stress is no peak."""
-
 GRADED = np.linspace(0.0, 1.0, 61) ** 4
 """The ends of the linear pieces of a power law. They gather at the edge."""
 
@@ -374,7 +371,8 @@ def _zones(nodes: ShearNodes, stick: list[tuple[np.ndarray, Interval]], run: np.
     """The stick zones in the contact of the nodes `run`, in their order there. They may cross the first node."""
     places = np.full(nodes.grid.size, -1)
     places[run] = np.arange(run.size)
-    zones, most = [], RIVAL * float(nodes.pressure[run].max())
+    # At a cusp under a higher pressure the hoop stress is no peak.
+    zones, most = [], 0.6 * float(nodes.pressure[run].max())
     for inside, ends in stick:
         if places[inside[0]] >= 0:
             signs, exponents = (
