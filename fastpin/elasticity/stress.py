@@ -15,7 +15,7 @@ import numpy as np
 from fastpin.bodies.walls import PlateWalls, Wall
 from fastpin.elasticity.laminate_stress import laminate_stress
 from fastpin.elasticity.tractions import CHUNK, Tractions, cauchy_integrals
-from fastpin.kernels import fourier, laurent
+from fastpin.kernels import fourier, harmonics, laurent
 from fastpin.model.points import is_beyond_bush
 from fastpin.model.problem import Problem
 from fastpin.runtime.threads import in_chunks
@@ -199,6 +199,39 @@ def _near_centre(pressure: np.ndarray, shear: np.ndarray, zeta: np.ndarray) -> t
 def _sum(coefficients: np.ndarray, zeta: np.ndarray) -> np.ndarray:
     """The power series with these coefficients at the points zeta."""
     return np.polynomial.polynomial.polyval(zeta, coefficients)
+
+
+def bush_stress(
+    problem: Problem, of_pin: Tractions, of_seat: Tractions, theta: np.ndarray, depth: np.ndarray
+) -> np.ndarray:
+    """Stresses (srr, stt, srt) in a bush that slips in its seat, shape (3, m), from the tractions on both of its rims.
+
+    The bush under the tractions of the pin, which leave by a uniform traction on its outer rim, is a ring. Under the
+    tractions of the seat, which enter by a uniform traction at its bore, it is a tube. The sum of both fields has the
+    two uniform tractions too many. So the field of a bush that these alone load is taken away.
+
+    Parameters
+    ----------
+    problem : Problem
+    of_pin, of_seat : Tractions
+        Tractions on the bore and in the seat.
+    theta, depth : ndarray, shape (m,)
+        Angles of the points, rad, and their distances from the bore, in units of R.
+    """
+    pin, seat = problem.interfaces
+    outer = seat.hole_radius / pin.hole_radius
+    found = plate_stress(pin, of_pin, np.zeros(3), theta, depth)
+    found += pin_stress(seat, of_seat, theta, np.clip((outer - 1.0 - depth) / outer, 0.0, None))
+    t, radius = traction_harmonics(of_pin, 1), 1.0 + depth
+    force, amplitudes = t[1, 1], harmonics.first(outer, pin.surfaces.plate_kolosov, "uniform")
+    A, D, L = (each[1] * force for each in (amplitudes.A, amplitudes.D, amplitudes.L))
+    z = radius * np.exp(1j * theta)
+    both = 4.0 * np.real(2.0 * A * z - np.conj(L) / z)
+    forward = 2.0 * (A * radius + D * radius**-3.0 - L / radius)
+    traction = forward * np.exp(1j * theta) + np.conj(force) / radius * np.exp(-1j * theta)
+    radial = traction.real
+    found -= np.array([radial, both - radial, traction.imag + t[0, 0].imag / radius**2])
+    return found
 
 
 # -- the smooth fields of bodies ------------------------------------------------------------------------------

@@ -9,8 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fastpin.elasticity.bush_stress import bush_stress
-from fastpin.elasticity.stress import pin_stress, plate_stress, seat_stress
+from fastpin.elasticity.stress import bush_stress, pin_stress, plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN
@@ -21,9 +20,6 @@ from fastpin.model.materials import Material
 from fastpin.model.points import ROUNDING, Body, Points, is_beyond_bush, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.reading.zones import runs, unrolled
-
-NEGLIGIBLE = 1e-9
-"""A nominal stress below this part of the peak is rounding: there is no concentration."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +183,7 @@ class HoopPeak:
 
     def _over(self, stress: float, nominal: float) -> float:
         """A stress over a nominal stress; NaN if the nominal stress is zero or rounding beside the peak."""
-        return stress / nominal if abs(nominal) > NEGLIGIBLE * abs(self.value) else math.nan
+        return stress / nominal if abs(nominal) > 1e-9 * abs(self.value) else math.nan
 
 
 def tractions_of(grid: Grid, status: np.ndarray, pressure: np.ndarray, shear: np.ndarray) -> Tractions:

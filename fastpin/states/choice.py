@@ -6,8 +6,10 @@ choose states in Python (``states=``) and on the command line (``--states``).
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Collection, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +18,6 @@ from fastpin.model.checks import as_toml, instances, items, number, places_of
 from fastpin.model.history import LoadHistory
 from fastpin.states.cycles import Cycle, consecutive_cycles
 from fastpin.states.quantities import load_point
-from fastpin.states.ranges import Range, ranges_in
 from fastpin.states.state import State
 
 StateChoice = str | float | Sequence[float] | slice | None
@@ -32,6 +33,52 @@ MOST_CHOSEN = 100_000
 
 NO_CYCLE = "no cycle of the history has ended; add repeat = 2 to a [[load]] block"
 """Refusal of a cycle where there is none."""
+
+
+class Range(NamedTuple):
+    """All numbers from one to another, both included. A single number is a range of equal ends.
+
+    Attributes
+    ----------
+    first, last : float
+        -inf and inf are open ends.
+    """
+
+    first: float
+    last: float
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it is a single number."""
+        return self.first == self.last
+
+    def __str__(self) -> str:
+        ends = [f"{end:g}" if math.isfinite(end) else "" for end in self]
+        return ends[0] if self.is_single else "-".join(ends)
+
+
+def ranges_in(text: str) -> list[Range]:
+    """Return the numbers and ranges of a text, in their order.
+
+    Raises
+    ------
+    ValueError
+        If a part is neither a number nor a range, is not finite, or a range ends before it begins.
+    """
+    number = r"(\d+(?:\.\d*)?|\.\d+)?"
+    found = []
+    for part in map(str.strip, text.split(",")):
+        match = re.fullmatch(rf"{number}\s*-\s*{number}", part)
+        if match and (match[1] or match[2]):
+            ends = Range(float(match[1] or -math.inf), float(match[2] or math.inf))
+        else:
+            ends = Range(float(part), float(part))
+            if not math.isfinite(ends.first):
+                raise ValueError(f"{part} is not finite")
+        if ends.last < ends.first:
+            raise ValueError(f"{part} goes downwards")
+        found.append(ends)
+    return found
 
 
 def span_of(cycle: Cycle) -> tuple[int, int]:

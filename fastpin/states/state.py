@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     # these modules import compiled code, and are loaded when a stress is asked for
     from fastpin.elasticity.tractions import RefinedTractions, Tractions
-    from fastpin.reading.bush import BushFit
+    from fastpin.reading.joint import BushFit
     from fastpin.reading.stress import HoopPeak, Stress
 
 

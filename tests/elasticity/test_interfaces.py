@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fastpin.elasticity.bush_stress import bush_stress
 from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem, seat_grid
+from fastpin.elasticity.stress import bush_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels import harmonics
 from fastpin.model.grid import Grid

@@ -9,7 +9,7 @@ from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.errors import InputError
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.reading.bush import BushFit
+from fastpin.reading.joint import BushFit
 from fastpin.solver.solving import solve
 from fastpin.states.quantities import QUANTITIES
 from fastpin.states.state import State
