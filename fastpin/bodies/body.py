@@ -19,7 +19,7 @@ from fastpin.bodies.walls import Amplitudes, Displacements, Other, PlateWalls, W
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.kernels.harmonics import FREE, HELD, First
-from fastpin.model.checks import is_between
+from fastpin.model.checks import given_fields, is_between
 from fastpin.model.laminate import Laminate
 from fastpin.model.materials import Material, MaterialPair, Plane
 
@@ -169,7 +169,7 @@ class BodyBase:
 
     def toml(self) -> dict[str, Any]:
         """The keys and values of its section in a case file. Without any, the section is left out."""
-        return {each.name: value for each in fields(self) if (value := getattr(self, each.name)) is not None}
+        return given_fields(self)
 
     def entries(self) -> dict[str, Any]:
         """The kind, and the fields by name, as HDF5 files hold them. A body inside has entries of its own."""

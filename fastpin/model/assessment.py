@@ -10,7 +10,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
-from fastpin.model.checks import check_fields, choice, items, number, positive, set_fields, true_or_false
+from fastpin.model.checks import check_fields, choice, given_fields, items, number, positive, set_fields, true_or_false
 from fastpin.model.fatigue import LIFE_CONSTANTS, FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
@@ -140,8 +140,7 @@ class FatigueAssessment:
 
     def stored(self) -> dict[str, Any]:
         """All given fields, for files."""
-        values = {each.name: getattr(self, each.name) for each in fields(self)}
-        return {name: value for name, value in values.items() if value is not None}
+        return given_fields(self)
 
     def changed(self, **given: Any) -> FatigueAssessment:
         """Return the assessment with other values of some fields.

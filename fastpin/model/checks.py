@@ -10,6 +10,7 @@ import inspect
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -54,6 +55,11 @@ def set_fields(record: object, **values: object) -> None:
     """Set fields of a frozen dataclass that is being made."""
     for name, value in values.items():
         object.__setattr__(record, name, value)
+
+
+def given_fields(record: Any) -> dict[str, Any]:
+    """The fields of a dataclass that are not None, by name."""
+    return {each.name: value for each in fields(record) if (value := getattr(record, each.name)) is not None}
 
 
 def number(field: str, value: object, least: float = -math.inf, most: float = math.inf) -> float:

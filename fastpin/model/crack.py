@@ -12,7 +12,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import DEGREE, angle_at, degrees_at, degrees_of
-from fastpin.model.checks import as_toml, check_fields, choice, is_above, items, number, numbers, positive
+from fastpin.model.checks import as_toml, check_fields, choice, given_fields, is_above, items, number, numbers, positive
 from fastpin.model.growth import KnownLaw, known_law, law_entries, law_from
 from fastpin.model.points import EDGES, MOST_ANGLE, far_rim, isotropic_material, material_of, near_rim, owner_of
 from fastpin.model.problem import Problem
@@ -79,8 +79,7 @@ class CrackGrowth:
 
     def entries(self) -> dict[str, Any]:
         """The keys and values of the section [crack] of a case file. Angles are in degrees, theta from the bottom."""
-        found = {each.name: getattr(self, each.name) for each in fields(self)}
-        found = {name: value for name, value in found.items() if value is not None}
+        found = given_fields(self)
         if isinstance(self.residual_stress, tuple):
             found["residual_stress"] = [list(pair) for pair in self.residual_stress]
         if self.law is not None:

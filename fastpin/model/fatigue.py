@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from fastpin.errors import InputError
-from fastpin.model.checks import check_fields, choice, items, negative, positive, string
+from fastpin.model.checks import check_fields, choice, given_fields, items, negative, positive, string
 from fastpin.model.synonyms import explains_keywords
 
 LIFE_CONSTANTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -90,10 +90,7 @@ class FatigueConstants:
 
     def given(self) -> dict[str, Any]:
         """The constants that are given, by name, and the source unless it is empty."""
-        values = ((field.name, getattr(self, field.name)) for field in fields(self))
-        return {
-            name: value for name, value in values if value is not None and not (isinstance(value, str) and value == "")
-        }
+        return {name: value for name, value in given_fields(self).items() if not isinstance(value, str) or value}
 
     def required(self, names: Sequence[str], purpose: str, body: str) -> tuple[float, ...]:
         """The constants of these names.

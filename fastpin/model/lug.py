@@ -35,14 +35,8 @@ from fastpin.model.read_only import ReadOnlyDict
 HOLD = ("both", "x", "y", "normal")
 """Components of the displacement that a support holds."""
 
-LEAST_LIGAMENT = 0.01
-"""Least distance of the hole's edge from another edge, in hole radii. The harmonics decay too slowly below it."""
-
 MOST_EXTENT = 1000.0
 """Largest coordinate of a point, in hole radii."""
-
-SAME_PLACE = 1e-9
-"""Largest distance of two ends that count as one point, in hole radii."""
 
 MOST_PARTS = 200
 """Most parts of the outline and most further holes."""
@@ -332,6 +326,7 @@ def check_not_held(load: PartLoad, supports: Mapping[str, str]) -> None:
 def _check_outline(outline: Sequence[Part], radius: float) -> None:
     if not 2 <= len(outline) <= MOST_PARTS:
         raise InputError("outline", f"must have 2 to {MOST_PARTS} parts, not {len(outline)}")
+    same_place = 1e-9 * radius  # largest distance of two ends that count as one point
     for part in outline:
         points = [part.start, part.end] + ([part.through] if part.through is not None else [])
         for corner in points:
@@ -339,11 +334,11 @@ def _check_outline(outline: Sequence[Part], radius: float) -> None:
                 raise InputError(
                     "outline", f"part {as_toml(part.name)} has a point more than {MOST_EXTENT:g} hole radii away"
                 )
-        if part.is_flat or part.length <= SAME_PLACE * radius:
+        if part.is_flat or part.length <= same_place:
             kind = "two of its points are one" if part.through is None else "its three points lie on a line"
             raise InputError("outline", f"part {as_toml(part.name)} has no shape: {kind}")
     for part, following in zip(outline, (*outline[1:], outline[0]), strict=True):
-        if abs(part.end - following.start) > SAME_PLACE * radius:
+        if abs(part.end - following.start) > same_place:
             raise InputError(
                 "outline",
                 f"is not closed: {as_toml(part.name)} ends at {_point(part.end)}, and {as_toml(following.name)} begins "
@@ -414,7 +409,8 @@ def _check_holes(lug: Lug) -> None:
     """Check that all holes lie inside the outline, apart from it and from one another."""
     if len(lug.holes) > MOST_PARTS:
         raise InputError("holes", f"must be at most {MOST_PARTS}, not {len(lug.holes)}")
-    least = LEAST_LIGAMENT * lug.hole_radius
+    ligament = 0.01  # in hole radii: the harmonics decay too slowly below it
+    least = ligament * lug.hole_radius
     circles = [("outline", "the pin's hole", 0j, lug.hole_radius)]
     for hole in lug.holes:
         words = f"the hole {as_toml(hole.name)}"
@@ -429,8 +425,8 @@ def _check_holes(lug: Lug) -> None:
         for part in lug.outline:
             if float(distances(part, np.array([centre]))[0]) < radius + least:
                 raise InputError(
-                    at_fault, f"{words} must keep {LEAST_LIGAMENT:g} hole radii from the part {as_toml(part.name)}"
+                    at_fault, f"{words} must keep {ligament:g} hole radii from the part {as_toml(part.name)}"
                 )
         for _, other, middle, size in circles[:place]:
             if abs(centre - middle) < radius + size + least:
-                raise InputError(at_fault, f"{words} must keep {LEAST_LIGAMENT:g} hole radii from {other}")
+                raise InputError(at_fault, f"{words} must keep {ligament:g} hole radii from {other}")

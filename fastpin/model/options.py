@@ -36,9 +36,6 @@ METHODS = ("path", "increment")
 MOST_BETWEEN = 10_000
 """Most states inside a step."""
 
-LEAST_FRACTION = 1e-9
-"""Least part of a step from one state to the next. Load points that are closer are one."""
-
 ALL_ROUND = -1.5 * math.pi, 0.5 * math.pi
 """The whole circle as an arc, rad."""
 
@@ -246,15 +243,16 @@ def _checked_arc(field: str, value: object) -> tuple[float, float]:
 def _checked_between(field: str, value: object) -> int | tuple[float, ...]:
     if is_whole(value):
         return whole_number(field, value, 0, MOST_BETWEEN)
-    allowed = f"a whole number, or increasing fractions between 0 and 1, at least {LEAST_FRACTION:g} apart"
+    least_apart = 1e-9  # of a step: load points that are closer are one
+    allowed = f"a whole number, or increasing fractions between 0 and 1, at least {least_apart:g} apart"
     wrong = InputError(field, f"must be {allowed}, not {as_toml(value)}")
     items = [value] if isinstance(value, (float, np.floating)) else value
     if not isinstance(items, (list, tuple, np.ndarray)) or getattr(items, "ndim", 1) != 1 or len(items) > MOST_BETWEEN:
         raise wrong
     fractions: list[float] = []
     for item in items:
-        least = (fractions or [0.0])[-1] + LEAST_FRACTION
-        if not isinstance(item, (float, np.floating)) or not least <= item <= 1.0 - LEAST_FRACTION:
+        least = (fractions or [0.0])[-1] + least_apart
+        if not isinstance(item, (float, np.floating)) or not least <= item <= 1.0 - least_apart:
             raise wrong
         fractions.append(float(item))
     return tuple(fractions)

@@ -9,7 +9,17 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import check_fields, choice, count, items, not_negative, number, numbers, set_fields
+from fastpin.model.checks import (
+    check_fields,
+    choice,
+    count,
+    given_fields,
+    items,
+    not_negative,
+    number,
+    numbers,
+    set_fields,
+)
 from fastpin.model.profile import Profile, ProfileLike
 
 MOST_CYCLES = 10**12
@@ -93,13 +103,12 @@ class Wear:
 
     def toml(self) -> dict[str, Any]:
         """The keys and values of the section [wear] of a case file."""
-        found = {each.name: getattr(self, each.name) for each in fields(self) if getattr(self, each.name) is not None}
-        return {name: value.toml() if isinstance(value, Profile) else value for name, value in found.items()}
+        return {name: value.toml() if isinstance(value, Profile) else value for name, value in self.given.items()}
 
     @property
     def given(self) -> dict[str, Any]:
         """The fields that are not None, by name."""
-        return {name: value for name in WEAR_KEYS if (value := getattr(self, name)) is not None}
+        return given_fields(self)
 
     @property
     def chosen(self) -> tuple[int, ...]:

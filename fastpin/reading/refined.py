@@ -32,9 +32,6 @@ from fastpin.reading.old_borders import OldBorder
 from fastpin.reading.power_laws import Law, fit_law, law_of_nodes
 from fastpin.reading.zones import Interval, is_all_round, runs, unrolled
 
-REACH = 20.0
-"""Nodes on the side of a cusp within which it is refined."""
-
 GRADED = np.linspace(0.0, 1.0, 61) ** 4
 """The ends of the linear pieces of a power law. They gather at the edge."""
 
@@ -229,7 +226,8 @@ def _laws(patch: Patch, pressure: tuple[Law | None, ...]) -> Laws:
 def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
     """Angle, pressure and shear of the refined patch, shape (m, 3)."""
     graded = [_graded(law) for law in laws.all]
-    graded += [cusp.place + cusp.inwards * REACH * cusp.spacing * GRADED for cusp in cusps]
+    reach = 20.0  # node distances on the side of a cusp within which it is refined
+    graded += [cusp.place + cusp.inwards * reach * cusp.spacing * GRADED for cusp in cusps]
     if not patch.coupling.is_smooth:
         graded += [2.0 * law.place - _graded(law) for law, _ in laws.borders]
     nodes, values = _with_ends(patch, laws.pressure)
@@ -255,7 +253,7 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
         near = law.applies(theta)
         shear[near] = law.values(theta[near])
     for cusp in cusps:
-        near = np.abs(theta - cusp.place) < REACH * cusp.spacing
+        near = np.abs(theta - cusp.place) < reach * cusp.spacing
         missed = cusp.values(theta) - np.interp(theta, nodes, cusp.values(nodes))
         shear[near] += missed[near]
     refined_patch = np.column_stack([theta, pressure, shear])

@@ -23,9 +23,6 @@ from fastpin.reading.stress import Stress
 if TYPE_CHECKING:  # this module imports compiled code
     from fastpin.states.state import State
 
-AROUND = 180
-"""Equally spaced angles of a circle."""
-
 OWNERS = ("pin", "plate", "bush")
 """Bodies with a yield strength."""
 
@@ -111,7 +108,7 @@ class Places(NamedTuple):
     @classmethod
     def of(cls, problem: Problem, grid: Grid, owner: str, edges_only: bool = False) -> Places:
         """The points of an owner of :data:`OWNERS`: of all circles, or of edges only. A contact has the nodes, too."""
-        around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
+        around = math.pi * (2.0 * np.arange(180) / 180 - 1.0)
         if edges_only:  # away from the contact the stress changes slowly
             around = around[::4]
         nodes = grid.theta[:: -(-grid.size // 400)]  # at most 400, evenly chosen
