@@ -300,7 +300,7 @@ class PlateBody(BodyBase):
     support : str
         The distribution of the force on the outer rim, see :func:`fastpin.kernels.harmonics.first`.
     edge_only : bool
-        Whether stresses and displacements are known at the edge of the hole only.
+        Whether displacements are known at the edge of the hole only, and stresses up to :attr:`reach`.
     """
 
     title: ClassVar[str] = ""
@@ -314,6 +314,11 @@ class PlateBody(BodyBase):
     def outer_kind(self) -> str:
         """Whether the outer rim is held."""
         return HELD if self.support == "held" else FREE
+
+    @property
+    def reach(self) -> float:
+        """Largest radius at which the stress is known, in radii of its own hole."""
+        return math.inf
 
     @property
     def lug(self) -> PlateBody:

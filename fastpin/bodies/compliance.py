@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.bodies.body import Harmonics, InWords, PlateBody, Projected, Remote, Rim, Table
-from fastpin.bodies.walls import Displacements
+from fastpin.bodies.walls import Displacements, PlateWalls, Wall
 from fastpin.errors import InputError, printable
 from fastpin.kernels import fourier
 from fastpin.model.checks import (
@@ -65,6 +65,18 @@ MOST_ENTRY = 1e9
 
 MOST_BYTES = 10_000_000
 """Most bytes of a file."""
+
+FARTHEST = 100.0
+"""Radius of the nearest other edge that is looked for, at most, in radii of the hole."""
+
+DECAYED = 1e-6
+"""Part of the second harmonic below which an entry tells how fast the harmonics fall."""
+
+NOISE = 1e-10
+"""Part of the largest harmonic below which others are left out inside the plate: their noise grows like r^n."""
+
+NEAREST_PART = 0.25
+"""Part of the way from the hole to the nearest other edge on which the harmonics give the stress to six digits."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -343,15 +355,48 @@ class Compliance(PlateBody):
         x, y = unit * (translation_rows(len(self.matrix)) @ displacement)
         return moved + complex(x, y)
 
+    @cached_property
+    def reach(self) -> float:
+        """Largest radius at which the stress is known, in radii of the hole.
+
+        Entries of the matrix fall like d^-2n with the harmonic n, where d is the radius of the nearest other edge.
+        """
+        size = np.abs(self.matrix).max(axis=1)[6:].reshape(-1, 4).max(axis=1)  # of the harmonics 2 to K
+        size = np.maximum.accumulate(size[::-1])[::-1]  # in a symmetric plate some harmonics vanish
+        if size[0] == 0.0:
+            return 1.0 + NEAREST_PART * (FARTHEST - 1.0)
+        small = np.flatnonzero(size < DECAYED * size[0])
+        last = int(small[0]) if small.size else size.size - 1  # later ones may be noise
+        nearest = float(size[last] / size[0]) ** (-0.5 / max(last, 1)) if size[last] > 0.0 else FARTHEST
+        return 1.0 + NEAREST_PART * (min(nearest, FARTHEST) - 1.0)
+
+    def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
+        """The smooth field near the hole, which leaves the hole free of traction; (T48)."""
+        moved = self._edge_displacement(tractions, remote)
+        moved[np.abs(moved) < NOISE * np.abs(moved).max()] = 0.0
+        order = np.arange(self.order + 1.0)
+        amplitudes = 2.0 / (rim.kolosov + 1.0) * (np.arange(-self.order, self.order + 1.0) + 1.0) * moved
+        a, b = amplitudes[self.order :], amplitudes[self.order :: -1]  # those of z^n and z^-n
+        growing = np.array([a, order * a, (1.0 - order) * a + np.conj(b)])
+        decaying = np.array([b, -order * b, (1.0 + order) * b + np.conj(a)])
+        decaying[:, 0] = 0.0  # the constant belongs to the growing ones
+        far = self.reach
+        return PlateWalls(Wall(growing * far**order / [[1.0], [1.0], [far * far]], decaying, 1.0, far), None)
+
     def add_edge_hoop(self, hoop: np.ndarray, rim: Rim, tractions: Harmonics, remote: Remote, at: np.ndarray) -> None:
         """Add the hoop stress on the edge beyond the infinite plate at the angles `at`, shape (m,); (T48)."""
+        order = np.arange(-self.order, self.order + 1.0)
+        waves = np.exp(1j * np.multiply.outer(at, order))
+        moved = self._edge_displacement(tractions, remote)
+        hoop += 8.0 / (rim.kolosov + 1.0) * np.real(waves @ ((1.0 + order) * moved))
+
+    def _edge_displacement(self, tractions: Harmonics, remote: Remote) -> np.ndarray:
+        """Fourier coefficients of G v/R of the edge beyond the infinite plate, n = -K to K."""
         t = tractions(self.order)
         moved = self.matrix @ plate_coefficients(-(t[:, 0] + t[:, 1]), -1j * (t[:, 0] - t[:, 1]))
         for place, value in zip(REMOTE, remote, strict=True):
             moved = moved + value * self.columns_of(LOADS[place])
-        order = np.arange(-self.order, self.order + 1.0)
-        waves = np.exp(1j * np.multiply.outer(at, order))
-        hoop += 8.0 / (rim.kolosov + 1.0) * np.real(waves @ ((1.0 + order) * complex_coefficients(moved)))
+        return complex_coefficients(moved)
 
 
 @functools.lru_cache(maxsize=8)  # the points of a sweep often share a file

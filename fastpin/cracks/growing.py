@@ -237,7 +237,7 @@ def growth(
     ------
     InputError
         If the states are no cycle of one problem, `last` is not longer than `first`, the crack is longer than the body,
-        the body is rigid, or a compliance gives its plate no stress inside.
+        the body is rigid, or a compliance describes the plate.
     """
     instance("crack", crack, Crack, "a Crack")
     return _Following.of(states, law, crack, (first, last), residual_stress).grown(crack)

@@ -38,21 +38,21 @@ def plate_stress(
     theta : ndarray, shape (m,)
         Angles of the points, rad.
     depth : ndarray, shape (m,)
-        Distances of the points from the edge of the hole, in units of R; at least 0. All are 0 for a compliance.
+        Distances of the points from the edge of the hole, in units of R; at least 0.
     """
     laminate = None if problem.pair.plate.is_isotropic else problem.joint.hole.laminate
     if laminate is not None and not laminate.is_quasi_isotropic:
         return laminate_stress(laminate, tractions, remote, theta, depth)
     kolosov, none = problem.surfaces.plate_kolosov, np.zeros(3)
     far = remote if problem.plate_body.is_infinite else none
+    if problem.plate_body.edge_only and not depth.any():
+        found, of_order = hole_stress(kolosov, tractions, none, theta, depth), partial(traction_harmonics, tractions)
+        problem.plate_body.add_edge_hoop(found[1], problem.joint.hole, of_order, remote.tolist(), theta)
+        return found
     walls = plate_walls(problem, tractions, tuple(float(value) for value in remote))
     if walls is None or walls.lug is None:
         found = hole_stress(kolosov, tractions, far, theta, depth)
-        if walls is not None:
-            found += polar(walls.surface, theta, 1.0 + depth)
-        of_order = partial(traction_harmonics, tractions)
-        problem.plate_body.add_edge_hoop(found[1], problem.joint.hole, of_order, remote.tolist(), theta)
-        return found
+        return found if walls is None else found + polar(walls.surface, theta, 1.0 + depth)
     found, beyond = np.empty((3, theta.size)), is_beyond_bush(problem, depth)
     inside = ~beyond
     found[:, inside] = hole_stress(kolosov, tractions, none, theta[inside], depth[inside])

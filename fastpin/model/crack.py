@@ -138,7 +138,7 @@ def check_crack(problem: Problem, crack: CrackGrowth) -> None:
     law_of(problem, crack)
 
 
-NO_INSIDE = "a compliance gives no stress inside the plate: a crack needs it"
+NO_INSIDE = "a compliance gives the stress near its hole only: a crack needs all of it"
 """Refusal of a plate that is a compliance."""
 
 

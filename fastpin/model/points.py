@@ -14,6 +14,7 @@ from fastpin.model.checks import choice, in_one_shape, instance, numbers, set_fi
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.units import units
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -105,7 +106,7 @@ class Points(ReadOnly):
         Raises
         ------
         InputError
-            If a point lies outside the body, or inside a plate that a compliance describes.
+            If a point lies outside the body, or in a plate that a compliance describes, too far from its hole.
         """
         instance("problem", problem, Problem, "a Problem")
         material_of(problem, body)
@@ -126,10 +127,10 @@ class Points(ReadOnly):
             if far is not None and np.any(depth > wall + ROUNDING * max(1.0, wall)):
                 rim = "at least the bore" if body == "pin" else "at most the outer"
                 raise InputError("radius", f"must be {rim} radius of {far * radius:g} in the {body}")
-        if body != "pin" and problem.plate_body.lug.edge_only:
-            is_bushed = body == "plate" and problem.joint.bush is not None
-            if np.any(is_beyond_bush(problem, depth) if is_bushed else depth > 0.0):
-                raise InputError("points", "a compliance gives the stress on the edge of the hole only")
+        known = known_radius(problem)
+        if body != "pin" and np.any(near + depth > known * (1.0 + ROUNDING)):
+            reach = units(problem)["length"].text(known * radius)
+            raise InputError("points", f"a compliance gives the stress near the hole only: up to the radius {reach}")
         return np.minimum(depth, wall)
 
 
@@ -213,6 +214,11 @@ def isotropic_material(field: str, problem: Problem, body: Body, subject: str) -
 def near_rim(problem: Problem, body: Body) -> float:
     """Radius of a body's edge over the hole's radius: above 1 at the seat of a bush."""
     return problem.joint.bush or 1.0 if body == "seat" else 1.0
+
+
+def known_radius(problem: Problem) -> float:
+    """Largest radius in the plate at which the stress is known, over the hole's radius."""
+    return problem.plate_body.lug.reach * (problem.joint.bush or 1.0)
 
 
 def far_rim(problem: Problem, body: Body) -> float | None:

@@ -12,7 +12,17 @@ from fastpin.damage.laminates import first_ply_failure
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import choice, number
-from fastpin.model.points import BODIES, ROUNDING, Body, Points, elastic_bodies, far_rim, material_of, near_rim
+from fastpin.model.points import (
+    BODIES,
+    ROUNDING,
+    Body,
+    Points,
+    elastic_bodies,
+    far_rim,
+    known_radius,
+    material_of,
+    near_rim,
+)
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.reading.stress import Stress
@@ -135,6 +145,10 @@ def _check_depth(depth: float, problem: Problem, body: Body) -> None:
     """Check the depth of a profile, in hole radii."""
     far = far_rim(problem, body)
     wall = math.inf if far is None else abs(far - near_rim(problem, body))
+    known = math.inf if body == "pin" else known_radius(problem) - near_rim(problem, body)
+    if depth > known:
+        words = f"must be above 0 and at most {known:.3g} radii: a compliance gives the stress near its hole only"
+        raise InputError("depth", f"{words}; not {depth:g}")
     inside = depth < wall if far == 0.0 else depth <= wall * (1.0 + ROUNDING)  # a force may act at the centre of a pin
     if depth > 0.0 and inside:
         return
@@ -179,13 +193,12 @@ def field_curves(
     drawn = tuple(each for each in bodies_of(state, body) if each != "seat")  # the plate has it
     if component == UTILIZATION:
         drawn = ("plate",)
-    if body == "both" and state.problem.plate_body.edge_only:
-        drawn = tuple(each for each in drawn if each == "pin")  # the stress inside the plate is unknown
+    known = known_radius(state.problem)
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
     for each in drawn:
         part, far = np.linspace(0.0, 1.0, fineness)[:, None], far_rim(state.problem, each)
         if each == "plate":
-            below = radius * (min(outer, math.inf if far is None else far) - 1.0) * part**2
+            below = radius * (min(outer, known, math.inf if far is None else far) - 1.0) * part**2
         else:  # The force may act at a solid pin's centre, where the stress is infinite.
             below = radius * (1.0 - (far or 0.001)) * (1.0 - part) ** 2
         found = state.stress(Points.at_depth(below, theta), each)

@@ -14,7 +14,7 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom
 from fastpin.model.grid import Grid
-from fastpin.model.points import Body, Points, elastic_bodies, far_rim, material_of, near_rim
+from fastpin.model.points import Body, Points, elastic_bodies, far_rim, known_radius, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.ties import top_angle
 from fastpin.model.units import units
@@ -57,17 +57,14 @@ class Circle(NamedTuple):
 
 
 def circles(problem: Problem) -> Iterator[Circle]:
-    """The circles of a problem. A rigid body has none; a compliance has the edge of its hole only."""
+    """The circles of a problem. A rigid body has none."""
     if problem.joint.bush is not None:
         wall = near_rim(problem, "seat") - 1.0
         if not problem.surfaces.plate.is_rigid:
             yield from (Circle("bush", "plate", depth, "bore of the bush") for depth in _depths(wall))
             yield Circle("bush", "plate", wall, "rim of the bush")
         if not problem.pair.plate.is_rigid:
-            depths = (0.0,) if problem.plate_body.lug.edge_only else _depths(_wall(problem, "seat"))
-            yield from (Circle("plate", "seat", depth, "seat") for depth in depths)
-    elif problem.plate_body.edge_only:
-        yield Circle("plate", "plate", 0.0, "hole")
+            yield from (Circle("plate", "seat", depth, "seat") for depth in _depths(_wall(problem, "seat")))
     elif not problem.surfaces.plate.is_rigid:
         yield from (Circle("plate", "plate", depth, "hole") for depth in _depths(_wall(problem, "plate")))
     if "pin" in elastic_bodies(problem):
@@ -78,8 +75,10 @@ def circles(problem: Problem) -> Iterator[Circle]:
 
 
 def _wall(problem: Problem, body: Body) -> float:
-    far = far_rim(problem, body)
-    return math.inf if far is None else abs(far - near_rim(problem, body))
+    """Depth of a body in units of the hole's radius, as far as its stress is known."""
+    near, far = near_rim(problem, body), far_rim(problem, body)
+    known = math.inf if body == "pin" else known_radius(problem) - near
+    return known if far is None else min(known, abs(far - near))
 
 
 def _depths(wall: float) -> tuple[float, ...]:

@@ -12,6 +12,7 @@ from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.model.lug import Hole, Lug, Part, PartLoad, rectangle
 from tests.support.lugs import disc, make_coarse, make_rough, plate
+from tests.support.ring_compliance import block, held_ring_matrix
 from tests.support.tiers import for_gate, gate
 
 ORDER = 8
@@ -27,12 +28,6 @@ FINITE_ELEMENTS = {  # whole entries G v/R of the rectangle: triangles of second
 
 def nothing(_: float) -> None:
     """Progress that nobody watches."""
-
-
-def block(a: float, b: float, d: float) -> np.ndarray:
-    """The entries (r cos, r sin, theta cos, theta sin) of one harmonic from the compliances of (t_n, conj t_-n)."""
-    rr, tt, rt = 0.5 * (a + d) + b, 0.5 * (a + d) - b, 0.5 * (a - d)
-    return -0.5 * np.array([[rr, 0, 0, rt], [0, rr, -rt, 0], [0, -rt, tt, 0], [rt, 0, 0, tt]])
 
 
 def harmonic(matrix: np.ndarray, n: int, m: int | None = None) -> np.ndarray:
@@ -51,18 +46,9 @@ def made():
 @pytest.mark.parametrize("plane", [*gate("strain"), "stress"])
 def test_a_held_ring_agrees_with_its_closed_form(plane):
     lug = Lug(0.3, plane, 5e-3, disc(10e-3), {"rim": "both"})
-    k = lug.kolosov
     made = plate_compliance(lug, ORDER).compliance.matrix
-    expected = np.zeros_like(made)
-    expected[0, 0] = -0.5 * (harmonics.uniform(2.0, k, "held") + 1.0)
-    expected[1, 1] = 0.5 * (1.0 - 0.25) - 0.5  # 2G u_theta/r = -(1 - 1/q) s_rtheta with 1/q = 1/4
-    first = harmonics.first(2.0, k, "held")
-    own, moved = first.displacement(), first.translation(2.0)
-    expected[2:6, 2:6] = block(own[0] + 0.5, own[1], moved[1])
-    assert moved[0] == pytest.approx(own[1])  # the closed form is symmetric itself
-    a, b, d = harmonics.ring(np.arange(2.0, ORDER + 1.0), 2.0, k, "held")
-    for n in range(2, ORDER + 1):
-        expected[4 * n - 2 : 4 * n + 2, 4 * n - 2 : 4 * n + 2] = block(a[n - 2], b[n - 2], d[n - 2])
+    expected = held_ring_matrix(2.0, lug.kolosov, ORDER)
+    assert expected == pytest.approx(expected.T)  # the closed form is symmetric itself
     assert np.abs(made - expected).max() < 1e-9  # measured: 3e-10
 
 

@@ -74,8 +74,8 @@ def margins_of(part: str, plate: float, pin: float) -> list[Margin]:
     ("part", "plate", "pin", "verdicts"),
     [
         ("", 0.5, 7.0, ["+0.50, the smallest", "+7.00"]),
-        ("edge of the hole only", 0.5, 7.0, ["+0.50", "+7.00"]),
-        ("edge of the hole only", 0.5, 0.1, ["+0.50", "+0.10, the smallest known"]),
+        ("near the hole only", 0.5, 7.0, ["+0.50", "+7.00"]),
+        ("near the hole only", 0.5, 0.1, ["+0.50", "+0.10, the smallest known"]),
     ],
 )
 def test_the_margin_of_a_part_is_never_called_the_smallest(
@@ -98,7 +98,7 @@ def test_a_lug_of_any_outline_is_looked_at_on_the_edge_of_its_hole_only(bushed: 
         MaterialPair(STEEL, ALUMINIUM), 10e-3, 30e-6, 0.3, plate_body=replace(LUG, inside=lug) if bushed else lug
     )
     parts = {row.owner: row.part for row in static_margins(problem, Found(), lambda places: [])}
-    assert parts == {"plate": "edge of the hole only", "pin": "", **({"bush": ""} if bushed else {})}
+    assert parts == {"plate": "near the hole only", "pin": "", **({"bush": ""} if bushed else {})}
 
 
 @pytest.mark.gate
@@ -239,10 +239,9 @@ def test_the_verdict_names_the_row_that_governs() -> None:
     known = "all known margins are positive; the smallest is that of pin: yield, von Mises: +0.20, load point 2"
     assert verdict([plate, pin]) == known
     assert verdict([plate, pin, unknown]) == f"{known}; not known: 1 of 3, see their remarks"
-    failed = plate._replace(allowable=0.9e8, part="edge of the hole only")
+    failed = plate._replace(allowable=0.9e8, part="near the hole only")
     assert (
-        verdict([failed, pin])
-        == "the joint fails by plate: yield, von Mises: -0.10, load point 2, edge of the hole only"
+        verdict([failed, pin]) == "the joint fails by plate: yield, von Mises: -0.10, load point 2, near the hole only"
     )
     assert verdict([unknown]) == "no margin is known; not known: 1 of 1, see their remarks"
     growing = Margin("plate: crack, threshold", "intensity", 2.0, 1.0, 2.0, name="growth", owner="plate")
