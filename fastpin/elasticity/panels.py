@@ -12,6 +12,7 @@ displacements u stand for 2G u.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -29,6 +30,9 @@ MOST_NODES = 4000
 
 TOUCHING = 1e-8
 """Largest distance of the ends of two parts that meet, in hole radii."""
+
+LEAST_TURN = 0.15
+"""Least turn of the outline at a corner, rad. Panels do not shrink towards smaller ones."""
 
 
 class Fineness(NamedTuple):
@@ -48,20 +52,31 @@ class Boundary:
         In hole radii.
     marks : tuple of object
         Something for each part, equal where support and loads are equal.
+    free : tuple of bool
+        Whether each part has no support.
     turn : float
         Largest angle of a circular panel, rad. Ten nodes resolve the default to 1e-12.
     """
 
     parts: tuple[Part, ...]
     marks: tuple[object, ...]
+    free: tuple[bool, ...]
     turn: float = math.pi / 4 * (1.0 + 1e-9)
 
     def halvings(self, place: int, most: int) -> int:
-        """Halvings towards the start of the part at `place`: none where the edge goes on as it is."""
+        """Halvings towards the start of the part at `place`: none where the edge goes on as it is.
+
+        The stress is singular where a support or load changes, at held corners and at re-entrant ones. It vanishes at
+        free convex corners: with 16 halvings elsewhere, 5 of them leave 4e-10 of the matrix there, and 1e-8 of the
+        stress near by. Where the outline turns by a small angle, as in a polyline, none leave 3e-7.
+        """
         before, after = self.parts[place - 1], self.parts[place]
-        turned = before.direction(np.ones(1)) - after.direction(np.zeros(1))
-        if np.abs(turned[0]) > 1e-6 or self.marks[place - 1] != self.marks[place]:
+        turn = cmath.phase(complex(after.direction(np.zeros(1))[0] / before.direction(np.ones(1))[0]))
+        is_corner, is_free = abs(turn) > 1e-6, self.free[place - 1] and self.free[place]
+        if self.marks[place - 1] != self.marks[place] or (is_corner and not is_free):
             return most
+        if is_corner:
+            return most if turn < -LEAST_TURN else -(-most * 5 // 16) if turn > LEAST_TURN else 0
         if before.circle is None or after.circle is None:
             same = before.circle is after.circle
         else:

@@ -35,6 +35,9 @@ KEPT = 1e-7
 """Least size of the last harmonic that is kept, in parts of the largest. The peak pressure of a contact changes by 1e-6
 when harmonics below 1e-5 are left out."""
 
+HOLE = 0.5
+"""Compliance G v/R of the hole in the infinite plate under pressure."""
+
 RIGID = np.arange(1, 6)
 """Places of the rotation and of the first harmonic, which hold the motion of the hole over the supports."""
 
@@ -174,12 +177,15 @@ def largest_part(difference: np.ndarray, whole: np.ndarray) -> float:
 
 
 def harmonic_sizes(matrix: np.ndarray) -> np.ndarray:
-    """Largest entry of each harmonic 0 to K, in parts of the largest one. Rotation and translation don't count."""
+    """Largest entry of each harmonic 0 to K, in parts of the largest one. Rotation and translation don't count.
+
+    In a wide plate all entries are small. Then they count in parts of the compliance of the hole itself.
+    """
     count = (len(matrix) - 2) // 4
     harmonic = np.r_[0, 0, np.repeat(np.arange(1, count + 1), 4)]
     rows = np.abs(np.delete(matrix, RIGID, axis=1)).max(axis=1)
     found = np.array([rows[harmonic == n].max() for n in range(count + 1)])
-    return found / max(rows[0], found[2:].max())
+    return found / max(rows[0], found[2:].max(), HOLE)
 
 
 def hole_compliance(order: int, kolosov: float) -> np.ndarray:
@@ -242,10 +248,15 @@ def _loops(lug: Lug, order: int) -> list[Boundary]:
         return tuple(part.scaled(1.0 / lug.hole_radius) for part in parts)
 
     # Ten nodes on 4 rad of a harmonic integrate a product of two such harmonics to 1e-12, eight nodes to 1e-8.
-    hole = Boundary(scaled(lug.contact_edge), (None,) * len(lug.contact_edge), min(Boundary.turn, 4.0 / order))
-    loops = [hole, Boundary(scaled(lug.outline), tuple(marks(part.name) for part in lug.outline))]
-    for other in lug.holes:
-        loops.append(Boundary(scaled(other.parts), (marks(other.name),) * len(other.parts)))
+    turn, count = min(Boundary.turn, 4.0 / order), len(lug.contact_edge)
+    loops = [Boundary(scaled(lug.contact_edge), (None,) * count, (True,) * count, turn)]
+    for names, parts in [
+        ([part.name for part in lug.outline], lug.outline),
+        *(([hole.name] * len(hole.parts), hole.parts) for hole in lug.holes),
+    ]:
+        loops.append(
+            Boundary(scaled(parts), tuple(map(marks, names)), tuple(name not in lug.supports for name in names))
+        )
     return loops
 
 

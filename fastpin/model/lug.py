@@ -38,7 +38,7 @@ HOLD = ("both", "x", "y", "normal")
 MOST_EXTENT = 1000.0
 """Largest coordinate of a point, in hole radii."""
 
-MOST_PARTS = 200
+MOST_PARTS = 300
 """Most parts of the outline and most further holes."""
 
 
