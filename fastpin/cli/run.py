@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fastpin import casefile, cracks, figures, live, report, solver, storage
+from fastpin.assess.crack import CrackStops
 from fastpin.cli import wear
-from fastpin.cli.crack import followed, stored_stops
+from fastpin.cli.crack import PLACES
 from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.options import literal
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
@@ -54,7 +55,7 @@ from fastpin.report.states import (
 )
 from fastpin.report.strength import StrengthFound, assess_strength, strength_lines
 from fastpin.runtime import beside
-from fastpin.states.choice import check_choice, last_cycle_states, span_of
+from fastpin.states.choice import check_choice, last_cycle_states, span_of, states_between
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
 from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.walking import walk_doubts
@@ -394,10 +395,17 @@ class RunReport:
         """Return the last cycle. :class:`InputError` says why there is none."""
         if self.result is None:
             raise InputError("cycle", "no state was reached")
-        if self.part is None or self.path is None or not self.result.cycles:
+        if not self.result.cycles:
             return self.result.cycle()
-        places = storage.places_between(self.path, *span_of(self.result.cycles[-1]))
-        return storage.load(self.path, states=places).cycle()
+        between = self._between(*span_of(self.result.cycles[-1]))
+        return dataclasses.replace(self.result, states=between).cycle()
+
+    def _between(self, first: int, last: int) -> list[State]:
+        """The kept states from one corner to another: of the file if `result` does not have all."""
+        assert self.result is not None
+        if self.part is None or self.path is None:
+            return states_between(self.result, first, last)
+        return storage.load(self.path, states=storage.places_between(self.path, first, last)).states
 
     def _crack(self) -> cracks.Growth | None:
         """Follow the crack of the case. None without one; a note says why it can't be followed."""
@@ -405,9 +413,9 @@ class RunReport:
         if case.crack is None or result is None or self.ended is not None:
             return None
         try:
-            if self.part is None or self.path is None:
-                return followed(result.states, result.cycles, case)
-            return followed(stored_stops(self.path, case)[0], result.cycles, case)
+            with Bar(1, PLACES) as bar:
+                stops = CrackStops.of(len(case.history), result.cycles, self._between)
+                return stops.growth(case.crack, progress_to(bar))
         except InputError as error:
             say(f"fastpin: note: no crack is followed: {error}", file=sys.stderr)
             return None

@@ -47,6 +47,7 @@ def run(options: argparse.Namespace) -> int:
     check_outputs({flag(name): getattr(options, name) for name in ("json", "record", "output")}, result="--output")
     settings: dict[str, Any] = {"nodes": options.nodes or case.options.nodes, "arc": case.options.arc}
     settings |= {"overwrite": options.overwrite, "resume": options.resume, "output": options.output}
+    settings |= {"fatigue": case.fatigue}
     result: solver.WearResult | None = None
     code, trouble = EXIT_OK, None
     with Bar(1, "{whole} of {total:,} cycles") as progress_bar:

@@ -3,40 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from fastpin import cracks, damage
+from fastpin import cracks
 from fastpin.cracks import CrackFate
-from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
-from fastpin.model.case import Case
 from fastpin.model.growth import Nasgro, Walker, law_entries
 from fastpin.model.points import owner_of
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
 from fastpin.report.table import table
-from fastpin.states.choice import missing_corners
-from fastpin.states.cycles import Cycle
 from fastpin.states.margins import over_yield_words
-from fastpin.states.state import State
 
 ROWS = 13
 """Most lengths of a table, in equal steps of their logarithm."""
-
-
-def passes_of(growth: cracks.Growth) -> str:
-    """Return the name of the passes that are counted: "cycles" or "spectra"."""
-    return "cycles" if growth.per == "cycle" else "spectra"
 
 
 def growth_curve(growth: cracks.Growth) -> Curve:
     """Return length, stress intensities, range, threshold, rate and cycles of a crack, by its length."""
     unit = units(growth.problem)
     length, intensity, rate = (unit[kind].name for kind in ("length", "stress intensity", "crack growth"))
-    rate, passes = rate.replace("cycle", growth.per), passes_of(growth)
+    rate = rate.replace("cycle", growth.per)
     return Curve(
         {"mouth [deg]": from_bottom(growth.crack.theta), "body": growth.crack.body},
         {
@@ -47,7 +37,7 @@ def growth_curve(growth: cracks.Growth) -> Curve:
             f"range [{intensity}]": growth.delta_K,
             f"threshold [{intensity}]": growth.threshold,
             f"rate [{rate}]": growth.rate,
-            passes: growth.cycles,
+            growth.passes: growth.cycles,
         },
     )
 
@@ -67,37 +57,6 @@ def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) 
         return f"{line}; the error of this {of} is not known{mark}"
     power = math.floor(math.log10(max(growth.error, 1e-9)))
     return f"{line}; numerical error of this {of} below {math.ceil(growth.error / 10.0**power):g}e{power:03d}{mark}"
-
-
-def spectrum_stops(states: Sequence[State], corners: int) -> list[State]:
-    """Return the states of a whole history of so many corners, which is a spectrum.
-
-    Raises
-    ------
-    InputError
-        If a corner was not kept, or there are less than two.
-    """
-    if len(states) < 2:
-        raise InputError("states", "a spectrum needs at least two kept states")
-    if missing_corners(states, 1, corners):
-        raise InputError("states", 'not all corners of the history are kept; keep = "all" keeps them')
-    return list(states)
-
-
-def case_growth(
-    states: Sequence[State], cycles: Sequence[Cycle], case: Case, progress: Callable[[float, float], None] | None = None
-) -> cracks.Growth:
-    """Return the growth of the crack of a case over its last cycle; without cycles over the history as a spectrum.
-
-    Raises
-    ------
-    InputError
-        If states are missing, or the crack can't be followed.
-    """
-    assert case.crack is not None
-    if cycles:
-        return cracks.planned_growth(damage.cycle_states(states, cycles[-1]), case.crack, progress=progress)
-    return cracks.planned_growth(spectrum_stops(states, len(case.history)), case.crack, True, progress)
 
 
 def document(growth: cracks.Growth) -> dict[str, Any]:
@@ -137,7 +96,7 @@ def growth_table(growth: cracks.Growth) -> str:
         ("range", "stress intensity", growth.delta_K),
         ("threshold", "stress intensity", growth.threshold),
         ("growth", "crack growth", growth.rate),
-        (passes_of(growth), "life", growth.cycles),
+        (growth.passes, "life", growth.cycles),
     ]
     cells = []
     for name, kind, values in columns:

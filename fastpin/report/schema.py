@@ -391,7 +391,7 @@ def _compliance() -> Schema:
 def _wear() -> Schema:
     whole, plain = ("cycle", "next_jump", "solved"), ("tau", "depth", "volume", "pin_volume", "plate_volume")
     arrays = dict.fromkeys(("pin_depth", "plate_depth", "pressure"), _list_of(_NUMBER))
-    numbers = (*plain, "energy_per_cycle", "dissipation", "removed", "peak_pressure")
+    numbers = (*plain, "energy_per_cycle", "dissipation", "removed", "largest_pressure")
     cycle = _object(dict.fromkeys(whole, _WHOLE) | dict.fromkeys(numbers, _NUMBER) | arrays)
     return _object(
         {

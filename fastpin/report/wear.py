@@ -140,7 +140,7 @@ def cycles_curve(result: WearResult) -> Curve:
         f"pin volume [{volume.name}]": [volume.factor * each.volumes[0] for each in result],
         f"plate volume [{volume.name}]": [volume.factor * each.volumes[1] for each in result],
         f"depth [{length.name}]": [length.factor * each.depth for each in result],
-        f"energy of a cycle [{energy.name}]": [energy.factor * each.energy_per_cycle for each in result],
+        f"energy per cycle [{energy.name}]": [energy.factor * each.energy_per_cycle for each in result],
         f"largest pressure [{traction.name}]": [traction.factor * each.largest_pressure for each in result],
     }
     return Curve({}, {name: np.array(values) for name, values in columns.items()})
@@ -204,8 +204,8 @@ def _cycle(result: WearResult, cycle: WornCycle, tau: float) -> dict[str, Any]:
         "energy_per_cycle": energy * cycle.energy_per_cycle,
         "dissipation": energy * cycle.dissipation,
         "removed": energy * cycle.removed,
-        "peak_pressure": unit["traction"].factor * float(cycle.pressure.max()),
+        "largest_pressure": unit["traction"].factor * cycle.largest_pressure,
         "pin_depth": (length * cycle.pin_depth).tolist(),
         "plate_depth": (length * cycle.plate_depth).tolist(),
-        "pressure": (unit["traction"].factor * cycle.pressure).tolist(),
+        "pressure": (unit["traction"].factor * cycle.states[-1].pressure).tolist(),
     }

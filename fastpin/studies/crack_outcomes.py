@@ -7,33 +7,29 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from fastpin import cracks, damage
+from fastpin import cracks
+from fastpin.assess.crack import CrackStops
 from fastpin.cracks.fates import CRACK_FATES
-from fastpin.errors import FastpinError
 from fastpin.model.crack import CrackGrowth
 from fastpin.model.doubts import doubts_given
 from fastpin.solver.result import Result
-from fastpin.states.choice import missing_corners
 from fastpin.studies.kept import kept
 
 
 class CrackQuantity(NamedTuple):
     """A number of a crack that grows, see :class:`CycleQuantity`.
 
-    `of` gives its value for a growth. Without a kind it has a `unit`.
+    `of` gives its value for a growth. A "life" counts cycles or spectra.
     """
 
     kind: str
     of: Callable[[Any], float]
     classes: Mapping[int, str] = MappingProxyType({})
-    unit: str = ""
 
 
 CRACK_QUANTITIES: dict[str, CrackQuantity] = {
     "fate": CrackQuantity("class", lambda found: float(found.fate), CRACK_FATES),
-    "life": CrackQuantity(
-        "", lambda found: found.life if math.isfinite(found.life) else math.nan, unit="cycles or spectra"
-    ),
+    "life": CrackQuantity("life", lambda found: found.life if math.isfinite(found.life) else math.nan),
     "arrest": CrackQuantity("length", lambda found: found.arrest),
     "theta": CrackQuantity("angle", lambda found: found.crack.theta),
     "largest_K": CrackQuantity("stress intensity", lambda found: float(found.K_max.max())),
@@ -57,11 +53,9 @@ def grown(result: Result, crack: CrackGrowth) -> cracks.Growth:
 
     Raises
     ------
-    FastpinError
+    InputError
         If the result has neither a cycle nor a spectrum, or the crack can't be followed.
     """
-    if not result.cycles and (len(result) < 3 or missing_corners(result, 1, len(result.history))):
-        raise FastpinError("the history has no cycle, and is no spectrum of at least 3 kept corners")
-    states = damage.cycle_states(result, result.cycles[-1]) if result.cycles else list(result)
+    stops = CrackStops.of(len(result.history), result.cycles, lambda first, last: result)
     with doubts_given():
-        return cracks.planned_growth(states, crack, not result.cycles)
+        return stops.growth(crack)

@@ -58,6 +58,6 @@ def _hot_spot(result: Result, how: FatigueAssessment) -> SpectrumSpot:
         return result.assessed_fatigue(how)[0].hot_spot
 
 
-def unit_of_life(how: FatigueAssessment) -> tuple[str, str]:
-    """Return the kind of a life, and its unit where it has no kind: the spectra of a history are no cycles."""
-    return ("life", "") if how.over == "cycle" else ("", "spectra")
+def unit_of_life(passes: str) -> tuple[str, str]:
+    """Return the kind of a life that counts these passes, and its unit where it has no kind: spectra are no cycles."""
+    return ("life", "") if passes == "cycles" else ("", passes)

@@ -72,6 +72,9 @@ KEYS = {
 }
 """The first key of an outcome says what is read. The others may stand beside it."""
 
+RENAMED = {"dissipation": "energy_per_cycle", "pressure": "largest_pressure"}
+"""Older names of quantities of wear, which plans may still have."""
+
 LONGEST_NAME = 64
 """Most characters in the name of an outcome."""
 
@@ -137,7 +140,7 @@ def outcomes_from(given: Mapping[str, Any], beside: Mapping[str, Any] = MappingP
         By name: a function of a result, a table as in a plan, such as ``{"quantity": "dx", "take": "largest"}``, or an
         :class:`StudyOutcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
     beside : mapping of str, optional
-        The values of the sections [wear], [fatigue], ... of the case by name, for outcomes that leave keys out.
+        What outcomes leave out, see :meth:`fastpin.studies.variation.BaseCase.beside`.
 
     Returns
     -------
@@ -244,11 +247,11 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
             hint = closest(str(key), allowed) or f"; beside {first[0]} there {others}"
             section.report(f'unknown key "{key}"{hint}', str(key))
     if first[0] == "wear":
-        return _of_wear(section, folder, beside.get("wear"))
+        return _of_wear(section, folder, beside)
     if first[0] == "fatigue":
         return _of_fatigue(section, beside.get("fatigue"))
     if first[0] == "crack":
-        return _of_crack(source, section, beside.get("crack"))
+        return _of_crack(source, section, beside)
     if first[0] == "strength":
         return _of_strength(source, section, beside.get("strength"))
     if first[0] == "margin":
@@ -299,11 +302,13 @@ def _of_cycle(section: Section) -> StudyOutcome | None:
     return StudyOutcome(kind, "", json.dumps(definition), partial(of_last_cycle, quantity, interface), classes)
 
 
-def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutcome | None:
+def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of the last cycle, followed on a profile that wears: as the case says, unless the table does."""
-    quantity = _choice(section, "wear", tuple(WEAR_QUANTITIES))
+    default: Wear | None = beside.get("wear")
+    quantity = RENAMED.get(str(section.table.get("wear"))) or _choice(section, "wear", tuple(WEAR_QUANTITIES))
+    asked = beside["fatigue"].criteria if "fatigue" in beside else ()
     with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.counting is not None)
-    criterion = _choice(section, "criterion", with_life)
+    criterion = _choice(section, "criterion", (*asked, *(name for name in with_life if name not in asked)))
     body: Any = _choice(section, "body", BODIES)
     if quantity is not None and not WEAR_QUANTITIES[quantity].is_damage:
         for key in ("criterion", "body"):
@@ -331,21 +336,23 @@ def _of_fatigue(section: Section, default: FatigueAssessment | None) -> StudyOut
         section.report(f"criterion: must be one criterion, not {len(how.criteria)}; each outcome has one", "criterion")
         return None
     how = how.changed(criterion=how.criteria[0])
-    kind, unit = unit_of_life(how) if quantity == "life" else (FATIGUE_QUANTITIES[quantity].kind, "")
+    kind, unit = unit_of_life(how.passes) if quantity == "life" else (FATIGUE_QUANTITIES[quantity].kind, "")
     definition = json.dumps({"fatigue": quantity, "how": how.toml()}, sort_keys=True)
     return StudyOutcome(kind, unit, definition, partial(of_assessment, quantity, how))
 
 
-def _of_crack(source: CaseText, section: Section, default: CrackGrowth | None) -> StudyOutcome | None:
+def _of_crack(source: CaseText, section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of a crack that grows: as the case says, unless the table does."""
-    quantity = _choice(section, "crack", tuple(CRACK_QUANTITIES))
+    quantity, default = _choice(section, "crack", tuple(CRACK_QUANTITIES)), beside.get("crack")
     crack = read_crack(source, section, {} if default is None else default.entries())
     if quantity is None or crack is None:
         return None
     definition = json.dumps({"crack": quantity, "how": crack.entries()}, sort_keys=True)
+    passes = beside.get("passes", "cycles or spectra")  # a plan may vary which of both
     chosen = CRACK_QUANTITIES[quantity]
+    kind, unit = unit_of_life(passes) if quantity == "life" else (chosen.kind, "")
     of = partial(of_crack, quantity, crack)
-    return StudyOutcome(chosen.kind, chosen.unit, definition, of, dict(chosen.classes))
+    return StudyOutcome(kind, unit, definition, of, dict(chosen.classes))
 
 
 def _of_strength(source: CaseText, section: Section, default: StrengthAssessment | None) -> StudyOutcome | None:

@@ -139,8 +139,8 @@ WEAR_QUANTITIES: dict[str, WearQuantity] = {
     "volume": WearQuantity("work per stress", lambda life: life[-1].volume),
     "depth": WearQuantity("displacement", lambda life: life[-1].depth),
     "pin_share": WearQuantity("", lambda life: life[-1].pin_share),
-    "dissipation": WearQuantity("energy", lambda life: life[-1].energy_per_cycle),
-    "pressure": WearQuantity("traction", lambda life: life[-1].largest_pressure),
+    "energy_per_cycle": WearQuantity("energy", lambda life: life[-1].energy_per_cycle),
+    "largest_pressure": WearQuantity("traction", lambda life: life[-1].largest_pressure),
     "life": WearQuantity("life", lambda found: _finite(found.life), is_damage=True),
     "damage": WearQuantity("", lambda found: float(found.damage[-1].max()), is_damage=True),
     "race": WearQuantity(
