@@ -1,20 +1,58 @@
-"""The crack of a case: the states under which it grows."""
+"""The crack of a case: the states under which it grows, and its outputs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fastpin import cracks, damage
+from fastpin.assess.kept import kept
+from fastpin.assess.outputs import Output
+from fastpin.cracks.fates import CRACK_FATES
 from fastpin.errors import InputError
 from fastpin.model.crack import CrackGrowth
+from fastpin.model.doubts import doubts_given
+from fastpin.model.growth import Nasgro, Walker, law_entries
 from fastpin.model.history import LoadHistory
+from fastpin.model.points import EDGES
 from fastpin.states.choice import missing_corners, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 
-LEAST_CORNERS = 3
-"""Least corners of a history without cycles that counts as a spectrum unasked, as for fatigue."""
+GROWTH = (
+    Output("angle_of_mouth", "angle", lambda found: found.crack.theta),
+    Output("direction", "width", lambda found: found.crack.angle),
+    Output("body", "text", lambda found: found.crack.body, allowed=EDGES),
+    Output(
+        "law", "table", lambda found: law_entries(found.law) if isinstance(found.law, Walker | Nasgro) else None
+    ),
+    Output("repeated", "text", lambda found: found.per, allowed=("cycle", "spectrum")),
+    Output("fate", "class", lambda found: found.fate, classes=CRACK_FATES),
+    Output("life", "life", lambda found: found.life, "cycles or spectra; null: no end", optional=True),
+    Output(
+        "error", "", lambda found: found.error, "numerical, in parts of the life or of the arrest; null: unknown",
+        optional=True,
+    ),
+    Output("first", "length", lambda found: float(found.length[0]), optional=True),
+    Output("last", "length", lambda found: float(found.length[-1]), optional=True),
+    Output("arrest", "length", lambda found: found.arrest, optional=True),
+    Output("fracture", "length", lambda found: found.fracture, optional=True),
+    Output("words", "text", lambda found: found.words),
+    Output("doubts", "texts", lambda found: [str(doubt) for doubt in found.doubts]),
+)  # fmt: skip
+"""Outputs of a :class:`fastpin.cracks.Growth`."""
+
+LENGTHS = (
+    Output("length", "length", lambda found: found.length),
+    Output("K_max", "stress intensity", lambda found: found.K_max, heading="K_I largest"),
+    Output("K_min", "stress intensity", lambda found: found.K_min, heading="K_I smallest", short="smallest"),
+    Output("K_II", "stress intensity", lambda found: found.K_II, heading="K_II"),
+    Output("delta_K", "stress intensity", lambda found: found.delta_K, heading="range"),
+    Output("threshold", "stress intensity", lambda found: found.threshold),
+    Output("rate", "crack growth", lambda found: found.rate, short="growth"),
+    Output("cycles", "", lambda found: found.cycles),
+)
+"""Outputs at each length: columns of CSV, JSON and the table of ``fastpin crack``."""
 
 
 class CrackStops(NamedTuple):
@@ -59,7 +97,7 @@ class CrackStops(NamedTuple):
         """
         if cycles and not spectrum:
             return cls(damage.cycle_states(read(*span_of(cycles[-1])), cycles[-1]), False)
-        if corners < LEAST_CORNERS and not spectrum:
+        if corners < 3 and not spectrum:  # as for fatigue
             words = "has no cycle that has ended, and less than three corners; add repeat = 2 to a [[load]] block"
             raise InputError("history", words)
         states = list(read(0, corners))
@@ -77,3 +115,17 @@ class CrackStops(NamedTuple):
 def passes_of(history: LoadHistory) -> str:
     """Return the name of the passes that a crack counts under a whole history: "cycles" or "spectra"."""
     return "cycles" if history.longest_cycle else "spectra"
+
+
+@kept
+def grown(result: Any, how: CrackGrowth) -> cracks.Growth:
+    """Return the growth of a crack under a result. It is kept while the result lives.
+
+    Raises
+    ------
+    InputError
+        If the result has neither a cycle nor a spectrum, or the crack can't be followed.
+    """
+    stops = CrackStops.of(len(result.history), result.cycles, lambda first, last: result)
+    with doubts_given():
+        return stops.growth(how)

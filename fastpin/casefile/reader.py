@@ -199,7 +199,7 @@ def _fatigue(
     section = source.section("fatigue")
     if not section.present:
         return None
-    how = read_assessment(section)
+    how = read_assessment(source, section)
     if how is not None and problem is not None and not source.placed:
         _check_together(source, lambda: check_assessment(problem, how, history, options), "fatigue")
     return how

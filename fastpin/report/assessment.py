@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fastpin.assess import outputs
+from fastpin.assess.fatigue import DAMAGE, HOW
 from fastpin.damage import SpectrumDamage, StressReserve
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
@@ -110,29 +112,10 @@ def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
 
     `over` is that of :func:`assessment_lines`. A body without damage has no angle, depth, plane and life: all None.
     """
-    how = assessed.how
-    return {
-        "criterion": list(how.criteria),
-        "over": how.over,
-        "method": how.method,
-        "small_cycles": how.small_cycles,
-        "knee": how.knee,
-        "life_asked": how.life,
-        "error": assessed.reason or None,
-        "bodies": [_body(one) | {"over_yield": over.get(owner_of(one.problem, one.body))} for one in assessed.found],
-    }
-
-
-def _body(damage: SpectrumDamage) -> dict[str, Any]:
-    spot, counted = damage.hot_spot, damage.cycles
-    columns = {name: getattr(counted, name)[:MOST_LISTED].tolist() for name in counted._fields}
-    return {
-        "criterion": damage.criterion,
-        "body": damage.body,
-        "damage": spot.damage,
-        "life": spot.life,
-        "angle": math.nan if math.isnan(spot.theta) else from_bottom(spot.theta),
-        "depth": units(damage.problem)["length"].factor * spot.depth,
-        "plane": math.degrees(spot.plane),
-        "cycles": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)],
-    }
+    bodies = []
+    for one in assessed.found:
+        cycles = {name: getattr(one.cycles, name)[:MOST_LISTED].tolist() for name in one.cycles._fields}
+        rows = [dict(zip(cycles, row, strict=True)) for row in zip(*cycles.values(), strict=True)]
+        over_yield = over.get(owner_of(one.problem, one.body))
+        bodies.append(outputs.document(DAMAGE, one, units(one.problem)) | {"cycles": rows, "over_yield": over_yield})
+    return outputs.document(HOW, assessed.how, {}) | {"error": assessed.reason or None, "bodies": bodies}

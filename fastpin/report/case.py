@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from fastpin.assess.outputs import ROUNDING as ROUNDING
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.case import Case
@@ -22,9 +23,6 @@ from fastpin.model.strength import StrengthAssessment
 from fastpin.model.units import PASCAL, acting_loads, units
 from fastpin.model.wear import Wear
 from fastpin.report.table import Column, table, visible_rows
-
-ROUNDING = 1e-9
-"""Values below this part of the largest of their kind are rounding. They are printed, written and drawn as 0."""
 
 RULES = {
     "elementary": "elementary Miner's rule",

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from fastpin import cracks
+from fastpin.assess.crack import LENGTHS
 from fastpin.cracks import CrackFate
 from fastpin.model.angles import from_bottom
-from fastpin.model.growth import Nasgro, Walker, law_entries
 from fastpin.model.points import owner_of
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
@@ -25,21 +24,9 @@ ROWS = 13
 def growth_curve(growth: cracks.Growth) -> Curve:
     """Return length, stress intensities, range, threshold, rate and cycles of a crack, by its length."""
     unit = units(growth.problem)
-    length, intensity, rate = (unit[kind].name for kind in ("length", "stress intensity", "crack growth"))
-    rate = rate.replace("cycle", growth.per)
-    return Curve(
-        {"mouth [deg]": from_bottom(growth.crack.theta), "body": growth.crack.body},
-        {
-            f"length [{length}]": growth.length,
-            f"K_I largest [{intensity}]": growth.K_max,
-            f"K_I smallest [{intensity}]": growth.K_min,
-            f"K_II [{intensity}]": growth.K_II,
-            f"range [{intensity}]": growth.delta_K,
-            f"threshold [{intensity}]": growth.threshold,
-            f"rate [{rate}]": growth.rate,
-            growth.passes: growth.cycles,
-        },
-    )
+    columns = {each.column(unit).replace("cycle", growth.per): each.shown(growth, unit) for each in LENGTHS[:-1]}
+    mouth = {"mouth [deg]": from_bottom(growth.crack.theta), "body": growth.crack.body}
+    return Curve(mouth, columns | {growth.passes: growth.cycles})
 
 
 def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) -> str:
@@ -59,49 +46,16 @@ def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) 
     return f"{line}; numerical error of this {of} below {math.ceil(growth.error / 10.0**power):g}e{power:03d}{mark}"
 
 
-def document(growth: cracks.Growth) -> dict[str, Any]:
-    """Return a growth as a JSON-ready dict. A life without end is infinite, and a length that is not known is NaN."""
-    length, law = units(growth.problem)["length"].factor, growth.law
-    values = {
-        "first": growth.length[0],
-        "last": growth.length[-1],
-        "arrest": growth.arrest,
-        "fracture": growth.fracture,
-    }
-    return {
-        "angle_of_mouth": from_bottom(growth.crack.theta),
-        "direction": math.degrees(growth.crack.angle),
-        "body": growth.crack.body,
-        "law": law_entries(law) if isinstance(law, Walker | Nasgro) else None,
-        "repeated": growth.per,
-        "fate": growth.fate.words,
-        "life": growth.life,
-        "error": growth.error,
-        **{name: length * float(value) for name, value in values.items()},
-        "words": growth.words,
-        "doubts": [str(doubt) for doubt in growth.doubts],
-    }
-
-
 def growth_table(growth: cracks.Growth) -> str:
     """Return some lengths of a crack with its stress intensities, threshold, rate and cycles, as text."""
     unit = units(growth.problem)
     rows = np.geomspace(growth.length[0], growth.length[-1], ROWS)
     at = np.unique(np.abs(np.log(growth.length[:, None] / rows)).argmin(axis=0))
-    columns = [
-        ("length", "length", growth.length),
-        ("K_I largest", "stress intensity", growth.K_max),
-        ("smallest", "stress intensity", growth.K_min),
-        ("K_II", "stress intensity", growth.K_II),
-        ("range", "stress intensity", growth.delta_K),
-        ("threshold", "stress intensity", growth.threshold),
-        ("growth", "crack growth", growth.rate),
-        (growth.passes, "life", growth.cycles),
-    ]
     cells = []
-    for name, kind, values in columns:
-        factor, label = unit[kind].scale([float(value) for _, same, each in columns if same == kind for value in each])
-        texts = [f"{factor * value:.4g}" for value in values[at].tolist()]
-        label = "" if kind == "life" else label.replace("cycle", growth.per)
-        cells.append((name, label, ["never" if text == "inf" else text for text in texts]))
+    for each in LENGTHS:
+        same = [float(value) for other in LENGTHS if other.kind == each.kind for value in other.of(growth)]
+        factor, label = unit[each.kind].scale(same) if each.kind else (1.0, "")
+        texts = [f"{factor * value:.4g}" for value in each.of(growth)[at].tolist()]
+        name = each.short or each.heading or each.name if each.kind else growth.passes
+        cells.append((name, label.replace("cycle", growth.per), ["never" if text == "inf" else text for text in texts]))
     return table(cells)

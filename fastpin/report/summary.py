@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from fastpin import cracks
+from fastpin.assess import outputs
+from fastpin.assess.crack import GROWTH
 from fastpin.bodies.body import BodyBase
 from fastpin.cracks.margins import crack_margins
 from fastpin.errors import ReadingError, reading
@@ -35,8 +37,6 @@ from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
 from fastpin.states.state import State
 from fastpin.version import __version__
-
-T = TypeVar("T")
 
 
 def document(
@@ -103,7 +103,7 @@ def document(
         ],
         "cycle": None if cycle is None else cycle_report.document(cycle),
         "fatigue": None if fatigue is None else assessment.document(fatigue, over_yield(margins)),
-        "crack": None if crack is None else crack_growth.document(crack),
+        "crack": None if crack is None else outputs.document(GROWTH, crack, unit),
         "strength": None if strength is None else strength_report.document(strength),
     }
     return json_ready(found)
@@ -153,7 +153,7 @@ def _state_summary(state: State, unread: dict[str, str]) -> dict[str, Any]:
     resultants, bars, plate = state.resultants, state.error_bars, state.problem.surfaces.plate
     unit = units(state.problem)
 
-    def known(name: str, read: Callable[[], T]) -> T | None:
+    def known(name: str, read: Callable[[], Any]) -> Any:
         try:
             with reading(name):
                 return read()
@@ -232,7 +232,7 @@ def crack_document(case: Case, growth: cracks.Growth) -> dict[str, Any]:
             "fastpin": __version__,
             "title": case.title,
             "units": unit_names(growth.problem),
-            "crack": crack_growth.document(growth),
+            "crack": outputs.document(GROWTH, growth, units(growth.problem)),
             "lengths": columns,
             "margins": margins_document(growth.problem, crack_margins(growth)),
         }

@@ -152,8 +152,7 @@ def wear(
         raise InputError("friction", "is a function of lives in memory: a file can't hold it, so leave output out")
     task = WearTask(problem, history, how, SolveOptions(**options), grid, progress, friction)
     warn_of([*doubts(problem, history, task.options), *wear_doubts(problem, how)], 2)
-    string("title", title)
-    judged = checked_beside(problem, {"fatigue": fatigue})
+    title, judged = string("title", title), checked_beside(problem, {"fatigue": fatigue})
     for name, value in (("overwrite", overwrite), ("resume", resume)):
         if true_or_false(name, value) and output is None:
             raise InputError(name, "needs an output")

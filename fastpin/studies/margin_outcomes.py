@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from fastpin.assess.crack import grown
+from fastpin.assess.kept import kept
+from fastpin.assess.strength import worst_state
 from fastpin.cracks.margins import crack_margins
 from fastpin.damage.margins import last_cycle_margins, reserve_margins, strength_margins
 from fastpin.model.assessment import FatigueAssessment
@@ -13,9 +16,6 @@ from fastpin.model.strength import StrengthAssessment
 from fastpin.solver.result import Result
 from fastpin.states.extremes import KeptStates, marked_extremes
 from fastpin.states.margins import Margin, smallest_margin, static_margins
-from fastpin.studies.crack_outcomes import grown
-from fastpin.studies.kept import kept
-from fastpin.studies.strength_outcomes import least_of
 
 LEAST = "least"
 """The smallest of all margins that are known, as tables mark it."""
@@ -62,4 +62,4 @@ def margins_of(
     rows += last_cycle_margins(result.problem, result.states, result.cycles)
     rows += [] if fatigue is None else reserve_margins(result.assessed_reserves(fatigue), fatigue)
     rows += [] if crack is None else crack_margins(grown(result, crack))
-    return rows + ([] if strength is None else strength_margins(strength, *least_of(result, strength)))
+    return rows + ([] if strength is None else strength_margins(strength, *worst_state(result, strength)))

@@ -20,42 +20,38 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
 from fastpin.casefile.assessment import read_assessment
-from fastpin.casefile.cracks import read_crack
+from fastpin.casefile.beside import READERS
 from fastpin.casefile.profiles import read_wear
-from fastpin.casefile.strength import read_strength
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
-from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA, FatigueAssessment
+from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA
 from fastpin.model.beside import BESIDE
 from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
-from fastpin.model.crack import CRACK_KEYS, CrackGrowth
+from fastpin.model.crack import CRACK_KEYS
 from fastpin.model.points import BODIES
 from fastpin.model.profile import Profile
-from fastpin.model.strength import STRENGTH_KEYS, StrengthAssessment
+from fastpin.model.strength import STRENGTH_KEYS
 from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.margins import MARGINS
 from fastpin.states.quantities import QUANTITIES
-from fastpin.studies.crack_outcomes import CRACK_QUANTITIES, of_crack
-from fastpin.studies.fatigue_outcomes import FATIGUE_QUANTITIES, of_assessment, unit_of_life
 from fastpin.studies.margin_outcomes import LEAST, of_margin
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
     TAKES,
-    WEAR_QUANTITIES,
     FunctionOfFile,
     StudyOutcome,
     bar_of_taken,
     digest,
     of_last_cycle,
-    of_wear,
     taken,
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
-from fastpin.studies.strength_outcomes import STRENGTH_QUANTITIES, of_strength
+from fastpin.studies.section_outcomes import SECTION_OUTCOMES, of_section, unit_of_life
 
 Outcomes = dict[str, StudyOutcome]
 """Outcomes by the names that the user chose."""
@@ -248,12 +244,8 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
             section.report(f'unknown key "{key}"{hint}', str(key))
     if first[0] == "wear":
         return _of_wear(section, folder, beside)
-    if first[0] == "fatigue":
-        return _of_fatigue(section, beside.get("fatigue"))
-    if first[0] == "crack":
-        return _of_crack(source, section, beside)
-    if first[0] == "strength":
-        return _of_strength(source, section, beside.get("strength"))
+    if first[0] in SECTION_OUTCOMES:
+        return _of_section(first[0], source, section, beside)
     if first[0] == "margin":
         return _of_margin(section, beside)
     if first[0] == "function":
@@ -305,12 +297,12 @@ def _of_cycle(section: Section) -> StudyOutcome | None:
 def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of the last cycle, followed on a profile that wears: as the case says, unless the table does."""
     default: Wear | None = beside.get("wear")
-    quantity = RENAMED.get(str(section.table.get("wear"))) or _choice(section, "wear", tuple(WEAR_QUANTITIES))
+    quantity = RENAMED.get(str(section.table.get("wear"))) or _choice(section, "wear", (*WEAR_OUTCOMES, *RACE_OUTCOMES))
     asked = beside["fatigue"].criteria if "fatigue" in beside else ()
     with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.counting is not None)
     criterion = _choice(section, "criterion", (*asked, *(name for name in with_life if name not in asked)))
     body: Any = _choice(section, "body", BODIES)
-    if quantity is not None and not WEAR_QUANTITIES[quantity].is_damage:
+    if quantity in WEAR_OUTCOMES:
         for key in ("criterion", "body"):
             if key in section:
                 section.report(f"{key}: has no effect on the {quantity.replace('_', ' ')}", key)
@@ -321,49 +313,40 @@ def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> Study
         return None
     how = {name: value.entries() if isinstance(value, Profile) else value for name, value in wear.given.items()}
     definition = {"wear": quantity, "how": how, "criterion": criterion, "body": body}
-    kind, classes = WEAR_QUANTITIES[quantity].kind, dict(WEAR_QUANTITIES[quantity].classes)
-    read = partial(of_wear, quantity, wear, criterion, body)
-    return StudyOutcome(kind, "", json.dumps(definition, sort_keys=True), read, classes, wear=wear)
+    output, read = (WEAR_OUTCOMES | RACE_OUTCOMES)[quantity], partial(of_wear, quantity, wear, criterion, body)
+    return StudyOutcome(output.kind, "", json.dumps(definition, sort_keys=True), read, dict(output.classes), wear=wear)
 
 
-def _of_fatigue(section: Section, default: FatigueAssessment | None) -> StudyOutcome | None:
-    """Read a number of the worst hot spot by one criterion: as the case says, unless the table does."""
-    quantity = _choice(section, "fatigue", tuple(FATIGUE_QUANTITIES))
-    how = read_assessment(section, {} if default is None else default.given)
+def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
+    """Read a number of a section beside the problem: as the case says, unless the table does."""
+    quantity = _choice(section, name, tuple(SECTION_OUTCOMES[name]))
+    read: Callable[..., Any] = READERS.get(name, read_assessment)
+    how = read(source, section, _entries(name, beside[name]) if name in beside else {})
     if quantity is None or how is None:
         return None
-    if "criterion" in section and len(how.criteria) > 1:
+    if name == "fatigue" and "criterion" in section and len(how.criteria) > 1:
         section.report(f"criterion: must be one criterion, not {len(how.criteria)}; each outcome has one", "criterion")
         return None
-    how = how.changed(criterion=how.criteria[0])
-    kind, unit = unit_of_life(how.passes) if quantity == "life" else (FATIGUE_QUANTITIES[quantity].kind, "")
-    definition = json.dumps({"fatigue": quantity, "how": how.toml()}, sort_keys=True)
-    return StudyOutcome(kind, unit, definition, partial(of_assessment, quantity, how))
+    how = _alone(name, how)
+    definition = json.dumps({name: quantity, "how": _entries(name, how)}, sort_keys=True)
+    output, unit = SECTION_OUTCOMES[name][quantity].output, ""
+    kind = output.kind
+    if kind == "life":
+        kind, unit = unit_of_life(how.passes if name == "fatigue" else beside.get("passes", "cycles or spectra"))
+    return StudyOutcome(kind, unit, definition, partial(of_section, name, quantity, how), dict(output.classes))
 
 
-def _of_crack(source: CaseText, section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
-    """Read a number of a crack that grows: as the case says, unless the table does."""
-    quantity, default = _choice(section, "crack", tuple(CRACK_QUANTITIES)), beside.get("crack")
-    crack = read_crack(source, section, {} if default is None else default.entries())
-    if quantity is None or crack is None:
-        return None
-    definition = json.dumps({"crack": quantity, "how": crack.entries()}, sort_keys=True)
-    passes = beside.get("passes", "cycles or spectra")  # a plan may vary which of both
-    chosen = CRACK_QUANTITIES[quantity]
-    kind, unit = unit_of_life(passes) if quantity == "life" else (chosen.kind, "")
-    of = partial(of_crack, quantity, crack)
-    return StudyOutcome(kind, unit, definition, of, dict(chosen.classes))
+def _alone(name: str, how: Any) -> Any:
+    """Return what one outcome takes of a section: its first criterion, and no load at failure unless that is asked."""
+    if name == "fatigue":
+        return how.changed(criterion=how.criteria[0])
+    return replace(how, failure=False) if name == "strength" else how
 
 
-def _of_strength(source: CaseText, section: Section, default: StrengthAssessment | None) -> StudyOutcome | None:
-    """Read a number of the strength of a laminate: as the case says, unless the table does."""
-    quantity = _choice(section, "strength", tuple(STRENGTH_QUANTITIES))
-    how = read_strength(source, section, {} if default is None else default.entries())
-    if quantity is None or how is None:
-        return None
-    how = replace(how, failure=False)  # the outcome says whether the load at failure is looked for
-    definition = json.dumps({"strength": quantity, "how": how.entries()}, sort_keys=True)
-    return StudyOutcome(STRENGTH_QUANTITIES[quantity].kind, "", definition, partial(of_strength, quantity, how))
+def _entries(name: str, how: Any) -> dict[str, Any]:
+    """Return the keys and values of a section, for the definition of an outcome."""
+    entries: dict[str, Any] = how.toml() if name == "fatigue" else how.entries()
+    return entries
 
 
 def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
@@ -379,13 +362,8 @@ def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | No
         return None
     sections = {each: beside[each] for each in BESIDE if each in beside and (name == LEAST or each == needed)}
     if "strength" in sections:
-        sections["strength"] = replace(sections["strength"], failure=False)
-    written: dict[str, Callable[[Any], dict[str, Any]]] = {
-        "fatigue": FatigueAssessment.toml,
-        "crack": CrackGrowth.entries,
-        "strength": StrengthAssessment.entries,
-    }
-    definition = {"margin": name, "body": owner, **{each: written[each](value) for each, value in sections.items()}}
+        sections["strength"] = _alone("strength", sections["strength"])
+    definition = {"margin": name, "body": owner, **{each: _entries(each, value) for each, value in sections.items()}}
     text = json.dumps({key: value for key, value in definition.items() if value is not None}, sort_keys=True)
     return StudyOutcome("", "", text, partial(of_margin, name, owner, tuple(sections.items())), has_strengths=True)
 

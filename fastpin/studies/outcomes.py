@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fastpin.assess.kept import kept
+from fastpin.assess.outputs import ROUNDING
 from fastpin.damage.criteria import FATIGUE_CRITERIA
-from fastpin.damage.race import Race
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
-from fastpin.model.doubts import doubts_given
 from fastpin.model.points import Body, owner_of
 from fastpin.model.ties import top
 from fastpin.model.units import DEGREE, Unit
@@ -36,23 +36,16 @@ from fastpin.states.load_cycle import NodeBehaviour
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
-from fastpin.studies.kept import kept
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.damage.hot_spots import HotSpot
-    from fastpin.damage.worn import WornFatigue
     from fastpin.solver.result import Result
-    from fastpin.solver.wear_result import WearResult
 
 TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
 """Ways to take one number from the values of a quantity, see :func:`taken`."""
 
 INTERFACES = ("pin", "seat")
 """Interfaces of a joint: the pin in the hole, and a bush that slips in its seat."""
-
-
-ROUNDING = 1e-9
-"""Largest slip range without slip, in parts of the natural size of displacements."""
 
 
 class CycleQuantity(NamedTuple):
@@ -111,47 +104,6 @@ The first four are those of :class:`fastpin.states.cycles.Cycle`. The next four 
 the hole that sticks all the time. The others belong to the hot
 spot on the edge of the plate, see :func:`fastpin.damage.fatigue`. Names that end with "_seat", such as
 "smith_watson_topper_life_seat", belong to the plate round a bush, at the seat of the bush.
-"""
-
-
-class WearQuantity(NamedTuple):
-    """A number of a life of wear.
-
-    Attributes
-    ----------
-    kind : str
-        See :class:`CycleQuantity`.
-    of : callable
-        Gives its value for a :class:`fastpin.solver.WearResult`, or for its :class:`fastpin.damage.WornFatigue`.
-    is_damage : bool
-        Whether it is that of the fatigue.
-    classes : dict of int to str
-        See :class:`CycleQuantity`.
-    """
-
-    kind: str
-    of: Callable[[Any], float]
-    is_damage: bool = False
-    classes: Mapping[int, str] = MappingProxyType({})
-
-
-WEAR_QUANTITIES: dict[str, WearQuantity] = {
-    "volume": WearQuantity("work per stress", lambda life: life[-1].volume),
-    "depth": WearQuantity("displacement", lambda life: life[-1].depth),
-    "pin_share": WearQuantity("", lambda life: life[-1].pin_share),
-    "energy_per_cycle": WearQuantity("energy", lambda life: life[-1].energy_per_cycle),
-    "largest_pressure": WearQuantity("traction", lambda life: life[-1].largest_pressure),
-    "life": WearQuantity("life", lambda found: _finite(found.life), is_damage=True),
-    "damage": WearQuantity("", lambda found: float(found.damage[-1].max()), is_damage=True),
-    "race": WearQuantity(
-        "class", lambda found: float(found.race), is_damage=True, classes={int(race): race.words for race in Race}
-    ),
-}
-"""The quantities of the last cycle of a result that is followed on a profile that wears, by name.
-
-The first five belong to the end of the wear: the last profile, and one cycle on it. "life" is the number of cycles
-until a crack starts, "damage" the largest sum of a material point, and "race" what wins, see
-:class:`fastpin.damage.Race`.
 """
 
 
@@ -412,23 +364,6 @@ def of_last_cycle(quantity: str, interface: str, result: Result) -> float:
     _check_cycles(result)
     chosen = result if interface == "pin" else result.seat
     return math.nan if chosen is None else CYCLE_QUANTITIES[quantity].of(chosen)
-
-
-def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Result) -> float:
-    """The value of a name in :data:`WEAR_QUANTITIES`; NaN without a crack. Lives are kept while the result lives."""
-    chosen = WEAR_QUANTITIES[quantity]
-    return chosen.of(_worn_fatigue(result, wear, criterion, body) if chosen.is_damage else _worn(result, wear))
-
-
-@kept
-def _worn(result: Result, wear: Wear) -> WearResult:
-    with doubts_given():
-        return result.wear(**wear.given)
-
-
-@kept
-def _worn_fatigue(result: Result, wear: Wear, criterion: str, body: Body) -> WornFatigue:
-    return _worn(result, wear).fatigue(criterion, body)
 
 
 @dataclass(frozen=True)

@@ -270,6 +270,7 @@ def test_table_and_csv_of_a_life_have_the_numbers_of_json(life: Path, cycles: li
         assert each["largest_pressure"] >= max(each["pressure"])
 
 
+@pytest.mark.gate
 @pytest.mark.usefixtures("undrawn")
 def test_the_page_of_a_life_has_the_table_and_the_criterion_of_the_case(
     life: Path, cycles: list[dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
