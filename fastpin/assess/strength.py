@@ -15,8 +15,9 @@ from fastpin.states.state import State
 
 
 class WorstState(NamedTuple):
-    """The worst of some states, and the strength of the laminate there."""
+    """How the strength of a laminate is assessed, the worst of some states, and the strength there."""
 
+    how: StrengthAssessment
     state: State
     strength: damage.JointStrength
 
@@ -49,4 +50,4 @@ def worst_state(result: Any, how: StrengthAssessment) -> WorstState:
     InputError
         If the strength can't be assessed.
     """
-    return WorstState(*damage.least_strength(result.states, how))
+    return WorstState(how, *damage.least_strength(result.states, how))

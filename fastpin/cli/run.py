@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fastpin import casefile, cracks, figures, live, report, solver, storage
-from fastpin.assess.crack import CrackStops
+from fastpin import assess, casefile, cracks, figures, live, report, solver, storage
 from fastpin.cli import wear
 from fastpin.cli.crack import PLACES
 from fastpin.cli.interface import load_seat, seat_title
@@ -53,7 +52,6 @@ from fastpin.report.states import (
     stored_rows,
     table_rows,
 )
-from fastpin.report.strength import StrengthFound, assess_strength, strength_lines
 from fastpin.runtime import beside
 from fastpin.states.choice import check_choice, last_cycle_states, span_of, states_between
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
@@ -61,7 +59,8 @@ from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.walking import walk_doubts
 
 if TYPE_CHECKING:  # they import compiled code
-    from fastpin.report.assessment import Assessed
+    from fastpin.assess.fatigue import Assessed
+    from fastpin.report.strength import StrengthFound
     from fastpin.states.load_cycle import LoadCycle
     from fastpin.states.state import State
 
@@ -363,7 +362,7 @@ class RunReport:
         from_file = self.part is not None and self.path is not None and self.result is not None
         with Bar(1.0, "damage of the spectrum") as progress_bar:
             whole = storage.load(self.path) if from_file and self.path is not None else self.result
-            return report.assessment.assess(self.case, whole, progress_to(progress_bar))
+            return assess.fatigue.assess(self.case, whole, progress_to(progress_bar))
 
     def _report_end(self) -> tuple[int, str | None]:
         """Print why the run ended early, and return the exit code and the reason."""
@@ -414,7 +413,7 @@ class RunReport:
             return None
         try:
             with Bar(1, PLACES) as bar:
-                stops = CrackStops.of(len(case.history), result.cycles, self._between)
+                stops = assess.crack.CrackStops.of(len(case.history), result.cycles, self._between)
                 return stops.growth(case.crack, progress_to(bar))
         except InputError as error:
             say(f"fastpin: note: no crack is followed: {error}", file=sys.stderr)
@@ -430,7 +429,7 @@ class RunReport:
         whole = result if self.part is None or self.path is None else storage.load(self.path)
         try:
             with Bar(len(whole), "state {n} of {total}") as progress_bar:
-                return assess_strength(case, whole.states, progress_to(progress_bar))
+                return report.strength.assess_strength(case, whole.states, progress_to(progress_bar))
         except InputError as error:
             say(f"fastpin: note: no strength is assessed: {error}", file=sys.stderr)
             return None
@@ -487,14 +486,17 @@ class RunReport:
         @cache
         def margins() -> list[Margin]:
             rows = static_margins(problem, extremes, lambda places: [found[place] for place in places])
-            if result.cycles or any(each is not None for each in judged[1:]):
-                rows += report.fatigue.life_margins(problem, states, result.cycles, *judged[1:])
+            asked: dict[str, Any] = {"fatigue": judged.fatigue, "crack": judged.crack, "strength": judged.strength}
+            if judged.strength is not None:
+                asked["strength"] = judged.strength.worst
+            if result.cycles or any(asked.values()):
+                rows = assess.margins.result_margins(problem, rows, states, result.cycles, **asked)
             return rows
 
         def lives() -> list[str]:
             over = over_yield(margins())
             if judged.fatigue is not None:
-                return report.assessment.assessment_lines(judged.fatigue, over)
+                return assess.fatigue.assessment_lines(judged.fatigue, over)
             if result.cycles:
                 return report.cycle.fatigue_lines(states, result.cycles[-1], over)
             damages = report.cycle.spectrum_damages(result.states, len(case.history)) if _is_spectrum(case) else []
@@ -509,7 +511,7 @@ class RunReport:
             "margins": lambda: margin_lines(problem, margins()),
             "fatigue": lives,
             "crack": lambda: [] if judged.crack is None else [growth_line(judged.crack, over_yield(margins()))],
-            "strength": lambda: [] if judged.strength is None else strength_lines(judged.strength),
+            "strength": lambda: [] if judged.strength is None else report.strength.strength_lines(judged.strength),
         }
 
 

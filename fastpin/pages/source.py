@@ -15,6 +15,7 @@ import numpy as np
 
 from fastpin import storage
 from fastpin.assess.crack import CrackStops
+from fastpin.assess.fatigue import Assessed, assess
 from fastpin.cracks import Growth
 from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
 from fastpin.damage.margins import MOST_STOPS
@@ -25,7 +26,6 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import edge_body, elastic_bodies
-from fastpin.report.assessment import Assessed, assess
 from fastpin.report.cycle import SWT, fatigue_bodies, spectrum_damages
 from fastpin.report.states import stored_rows
 from fastpin.report.strength import StrengthFound, assess_strength

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fastpin.damage import WornFatigue
+from fastpin.damage.criteria import criterion_title
 from fastpin.figures.damage import damage_of
 from fastpin.figures.scar import scar_plot, wear_plot
 from fastpin.figures.subjects import InMemory
@@ -155,7 +156,7 @@ def damage(page: PageParts) -> PageSection:
 
 
 def _subject(found: WornFatigue) -> str:
-    return f"{edge_body(found.problem, found.body)}, {found.criterion.title()}"
+    return f"{edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}"
 
 
 def _race(found: WornFatigue) -> list[tuple[str, str]]:

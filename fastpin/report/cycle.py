@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.damage import Fatigue, cycle_states, fatigue
-from fastpin.damage.criteria import Criterion
+from fastpin.damage.criteria import Criterion, criterion_title
 from fastpin.damage.margins import MOST_STOPS as MOST_STOPS
 from fastpin.damage.spectrum import SpectrumDamage, bodies_with_lives, spectrum_damage
 from fastpin.errors import InputError
@@ -90,7 +90,7 @@ def spectrum_line(damage: SpectrumDamage, over: Mapping[str, float]) -> str:
     `over` is that of :func:`fatigue_lines`.
     """
     spot, edge = damage.hot_spot, edge_body(damage.problem, damage.body)
-    name = f"fatigue of the {edge} over the whole history as a spectrum, Smith-Watson-Topper"
+    name = f"fatigue of the {edge} over the whole history as a spectrum, {criterion_title(damage.criterion)}"
     if math.isnan(spot.theta):
         return f"{name}: none, no plane has both tension and a changing strain"
     words = f"life {spot.life:.3g} spectra at {from_bottom(spot.theta):z.2f} deg"
@@ -117,7 +117,7 @@ def hot_spot_line(found: Fatigue, states: Sequence[State], over: Mapping[str, fl
     is 0. `over` is that of :func:`fatigue_lines`.
     """
     spot, problem = found.hot_spot, found.problem
-    name = f"fatigue of the {edge_body(problem, found.body)} in the last cycle, Smith-Watson-Topper"
+    name = f"fatigue of the {edge_body(problem, found.body)} in the last cycle, {criterion_title(found.criterion)}"
     pressure = max((state.peak_pressure for state in states), default=0.0)
     if spot.parameter <= ROUNDING * problem.surfaces.beta_star * pressure**2:
         return f"{name}: none, no plane has both tension and a changing strain"

@@ -1,24 +1,13 @@
-"""Fatigue of points as a curve, and the margins of safety of fatigue and of a crack."""
+"""Fatigue of points as a curve."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from fastpin import cracks
-from fastpin.cracks.margins import crack_margins
 from fastpin.damage import Fatigue, SpectrumDamage
-from fastpin.damage.margins import last_cycle_margins, reserve_margins, strength_margins
 from fastpin.model.angles import from_bottom
-from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.report.assessment import Assessed
 from fastpin.report.curves import Curve
-from fastpin.report.strength import StrengthFound
-from fastpin.states.cycles import Cycle
-from fastpin.states.margins import Margin
-from fastpin.states.state import State
 
 
 def spectrum_curve(damage: SpectrumDamage) -> Curve:
@@ -56,21 +45,3 @@ def fatigue_curve(found: Fatigue) -> Curve:
         columns["life [cycles]"] = found.life
     order = np.argsort(angles, kind="stable")
     return Curve({"body": found.body}, {name: np.ravel(values)[order] for name, values in columns.items()})
-
-
-def life_margins(
-    problem: Problem,
-    states: Sequence[State],
-    cycles: Sequence[Cycle],
-    assessed: Assessed | None,
-    grown: cracks.Growth | None,
-    strength: StrengthFound | None = None,
-) -> list[Margin]:
-    """Return the margins of the last cycle and of the sections [fatigue], [crack] and [strength].
-
-    `states` hold the last cycle.
-    """
-    rows = last_cycle_margins(problem, states, cycles)
-    rows += [] if assessed is None else reserve_margins(assessed.reserves, assessed.how)
-    rows += [] if grown is None else crack_margins(grown)
-    return rows + ([] if strength is None else strength_margins(*strength.worst))

@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 
 from fastpin import damage, studies
 from fastpin.assess import outputs
-from fastpin.assess.strength import PLACE
+from fastpin.assess.asked import strength_words
+from fastpin.assess.strength import PLACE, WorstState
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.model.strength import LENGTHS, StrengthAssessment
 from fastpin.model.units import printed_loads, units
-from fastpin.report.case import strength_words
 from fastpin.solver.errors import SolveError
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
@@ -45,9 +45,9 @@ class StrengthFound(NamedTuple):
     reason: str
 
     @property
-    def worst(self) -> tuple[StrengthAssessment, State, damage.JointStrength]:
+    def worst(self) -> WorstState:
         """How it was assessed, the worst state and its strength."""
-        return self.how, self.state, self.strength
+        return WorstState(self.how, self.state, self.strength)
 
 
 def assess_strength(

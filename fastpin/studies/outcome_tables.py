@@ -20,6 +20,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from fastpin.assess.margins import LEAST, of_margin
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
 from fastpin.casefile.assessment import read_assessment
 from fastpin.casefile.beside import READERS
@@ -38,7 +39,6 @@ from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.margins import MARGINS
 from fastpin.states.quantities import QUANTITIES
-from fastpin.studies.margin_outcomes import LEAST, of_margin
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
