@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 
 from fastpin import casefile, figures, report, storage
 from fastpin.assess.crack import CrackStops
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import check_outputs, flag, say, write_files, write_text
+from fastpin.cli.terminal import check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
@@ -39,17 +38,12 @@ def run(options: argparse.Namespace) -> int:
     except InputError as error:
         name = "at" if error.field == "theta" else error.field
         raise InputError(flag(name) if hasattr(options, name) else name, error.reason) from None
-    text = json.dumps(report.summary.crack_document(case, found), indent=2, allow_nan=False) + "\n"
-    code = write_files(
-        [
-            (options.output, lambda path: figures.plot_crack_growth(found, path, case.title)),
-            (options.csv, lambda path: write_csv([growth_curve(found)], path)),
-            (None if options.json == "-" else options.json, lambda path: write_text(path, text)),
-        ]
-    )
-    if options.json == "-":
-        sys.stdout.write(text)
-    else:
+    files = [
+        (options.output, lambda path: figures.plot_crack_growth(found, path, case.title)),
+        (options.csv, lambda path: write_csv([growth_curve(found)], path)),
+    ]
+    code = write_outputs(files, options.json, lambda: report.summary.crack_document(case, found))
+    if options.json != "-":
         say(growth_line(found), "")
         say(*growth_table(found).split("\n"))
     if not stops.is_spectrum and all(state.fraction == 1.0 for state in stops.states):

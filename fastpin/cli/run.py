@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import dataclasses
-import json
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
@@ -29,7 +28,7 @@ from fastpin.cli.terminal import (
     fail,
     flag,
     say,
-    write_files,
+    write_outputs,
     write_text,
 )
 from fastpin.errors import InputError, ReadingError
@@ -333,10 +332,7 @@ class RunReport:
         document = None
         if options.json is not None:
             document = report.summary.document(case, result, error, *judged)
-        text = json.dumps(document, indent=2, allow_nan=False) + "\n"
         writers: list[tuple[Any, Callable[[Path], object]]] = []
-        if options.json != "-":
-            writers.append((options.json, lambda path: write_text(path, text)))
         if result is not None and len(result):
             writers.append((options.plot, lambda path: self._plot(options, path)))
             writers.append((options.record, lambda path: write_text(path, live.record_page(case, result, error or ""))))
@@ -345,10 +341,8 @@ class RunReport:
         elif options.cycles is not None:
             code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
         writers.append((options.cycle_csv, lambda path: report.cycle.write_csv(self._last_cycle(), path)))
-        code = write_files(writers) or code
-        if options.json == "-":  # last: the reader of the output may close it early
-            sys.stdout.write(text)
-        else:
+        code = write_outputs(writers, options.json, lambda: document) or code
+        if options.json != "-":
             self._print_states(read, judged)
         if document is not None:
             for name, reason in document["unread"].items():
