@@ -243,9 +243,7 @@ def _check_keys(source: CaseText) -> None:
             continue
         if name in KEYS:
             for section in source.blocks(name):
-                for key in section.table:
-                    if key not in KEYS[name]:
-                        section.report(f'unknown key "{key}" in {_in_brackets(name)}{key_hint(name, key)}', key)
+                section.check_keys(KEYS[name], f" in {_in_brackets(name)}", hint=partial(key_hint, name))
         elif shown := written(name, value):
             source.report(f"unknown section {shown}{_section_hint(name)}", name)
         else:

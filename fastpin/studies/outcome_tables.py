@@ -237,11 +237,8 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
         section.report(f"must have one of the keys {', '.join(KEYS)}, such as {_EXAMPLE}")
         return None
     allowed = KEYS[first[0]]
-    for key in section.table:
-        if key not in allowed:
-            others = f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
-            hint = closest(str(key), allowed) or f"; beside {first[0]} there {others}"
-            section.report(f'unknown key "{key}"{hint}', str(key))
+    others = f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
+    section.check_keys(allowed, "", f"; beside {first[0]} there {others}")
     if first[0] == "wear":
         return _of_wear(section, folder, beside)
     if first[0] in SECTION_OUTCOMES:
