@@ -17,9 +17,6 @@ from fastpin.report.curves import Curve
 from fastpin.report.table import table
 from fastpin.states.margins import over_yield_words
 
-ROWS = 13
-"""Most lengths of a table, in equal steps of their logarithm."""
-
 
 def growth_curve(growth: cracks.Growth) -> Curve:
     """Return length, stress intensities, range, threshold, rate and cycles of a crack, by its length."""
@@ -49,7 +46,7 @@ def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) 
 def growth_table(growth: cracks.Growth) -> str:
     """Return some lengths of a crack with its stress intensities, threshold, rate and cycles, as text."""
     unit = units(growth.problem)
-    rows = np.geomspace(growth.length[0], growth.length[-1], ROWS)
+    rows = np.geomspace(growth.length[0], growth.length[-1], 13)  # at most so many lengths
     at = np.unique(np.abs(np.log(growth.length[:, None] / rows)).argmin(axis=0))
     cells = []
     for each in LENGTHS:

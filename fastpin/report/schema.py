@@ -11,6 +11,7 @@ from dataclasses import fields
 from typing import Any
 
 from fastpin.assess.crack import GROWTH
+from fastpin.assess.cycle import CYCLE
 from fastpin.assess.fatigue import DAMAGE, HOW
 from fastpin.assess.outputs import properties
 from fastpin.assess.strength import PLACE
@@ -65,6 +66,8 @@ def json_schema(command: str) -> Schema:
 def _summary() -> Schema:
     extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
     sides = _object({"smallest": extreme, "largest": extreme})
+    counts = {"nodes": _map_of(_WHOLE, "number of nodes of each behaviour")}
+    cycle = _object(properties(CYCLE) | counts | {"work": _map_of(_UNKNOWN, "work of each load")})
     of_cycle = dict.fromkeys(Cycle._fields, _UNKNOWN)
     of_cycle |= {"corner": _WHOLE, "length": _WHOLE, "number": _WHOLE, "solved": _TRUTH}
     return _object(
@@ -88,7 +91,7 @@ def _summary() -> Schema:
             "margins": _margins(),
             "unread": _map_of(_TEXT, "why a quantity could not be read from the states, by quantity"),
             "cycles": _list_of(_object(of_cycle)),
-            "cycle": _or_null(_last_cycle()),
+            "cycle": _or_null(cycle),
             "fatigue": _or_null(_fatigue()),
             "crack": _or_null(_object(properties(GROWTH))),
             "strength": _or_null(_strength()),
@@ -218,24 +221,6 @@ def _state(seat: Schema | None = None) -> Schema:
         return _object(parts)
     words = {"description": "the contact of a bush that slips in its seat; left out without one"}
     return _object(parts | {"seat": seat | words}, without=["seat"])
-
-
-def _last_cycle() -> Schema:
-    names = ("slip_range", "slip_distance", "friction_energy", "pressure_range", "shear_range")
-    largest = {f"largest_{name}{end}": _UNKNOWN for name in names for end in ("", "_angle")}
-    return _object(
-        {
-            "first": _WHOLE,
-            "last": _WHOLE,
-            "closed": _TRUTH,
-            **largest,
-            "regime": {"enum": list(REGIMES.values())},
-            "slip_range_is_exact": _TRUTH,
-            "dissipation": _UNKNOWN,
-            "nodes": _map_of(_WHOLE, "number of nodes of each behaviour"),
-            "work": _map_of(_UNKNOWN, "work of each load"),
-        }
-    )
 
 
 def _fatigue() -> Schema:

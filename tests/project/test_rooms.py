@@ -16,10 +16,11 @@ MOST = {
     "isinstance of bodies outside bodies/": 0,
     "drive is None, or not": 0,
     "classes defined twice": 0,
-    "small private functions used once": 75,
+    "small private functions used once": 74,
     "constants of modules": 1_405,
     "hidden imports": 0,
-    "lines of code": 49_200,
+    "lines of code": 49_111,
+    "places that say unknown key": 7,
 }
 """The most that each number may be. A smaller number takes its place here."""
 
