@@ -30,7 +30,7 @@ from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA
 from fastpin.model.beside import BESIDE
-from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
+from fastpin.model.checks import alternatives, as_toml, file_path, string
 from fastpin.model.crack import CRACK_KEYS
 from fastpin.model.points import BODIES
 from fastpin.model.profile import Profile
@@ -250,17 +250,10 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
     return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
 
 
-def _choice(section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
-    """A word of a table; the first one allowed if its key is missing. None if the word is wrong (reported)."""
-    if key not in section:
-        return allowed[0]
-    return section.checked(key, choice, allowed)
-
-
 def _of_quantity(section: Section) -> StudyOutcome | None:
-    quantity = _choice(section, "quantity", tuple(QUANTITIES))
-    take, span = _choice(section, "take", TAKES), _choice(section, "over", SPECTRA)
-    interface = _choice(section, "interface", INTERFACES)
+    quantity = section.choice("quantity", tuple(QUANTITIES))
+    take, span = section.choice("take", TAKES), section.choice("over", SPECTRA)
+    interface = section.choice("interface", INTERFACES)
     if quantity is None or take is None or span is None or interface is None:
         return None
     kind = QUANTITIES[quantity].kind
@@ -283,7 +276,7 @@ def _of_quantity(section: Section) -> StudyOutcome | None:
 
 
 def _of_cycle(section: Section) -> StudyOutcome | None:
-    quantity, interface = _choice(section, "cycle", tuple(CYCLE_QUANTITIES)), _choice(section, "interface", INTERFACES)
+    quantity, interface = section.choice("cycle", tuple(CYCLE_QUANTITIES)), section.choice("interface", INTERFACES)
     if quantity is None or interface is None:
         return None
     kind, classes = CYCLE_QUANTITIES[quantity].kind, dict(CYCLE_QUANTITIES[quantity].classes)
@@ -294,11 +287,11 @@ def _of_cycle(section: Section) -> StudyOutcome | None:
 def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of the last cycle, followed on a profile that wears: as the case says, unless the table does."""
     default: Wear | None = beside.get("wear")
-    quantity = RENAMED.get(str(section.table.get("wear"))) or _choice(section, "wear", (*WEAR_OUTCOMES, *RACE_OUTCOMES))
+    quantity = RENAMED.get(str(section.table.get("wear"))) or section.choice("wear", (*WEAR_OUTCOMES, *RACE_OUTCOMES))
     asked = beside["fatigue"].criteria if "fatigue" in beside else ()
     with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.counting is not None)
-    criterion = _choice(section, "criterion", (*asked, *(name for name in with_life if name not in asked)))
-    body: Any = _choice(section, "body", BODIES)
+    criterion = section.choice("criterion", (*asked, *(name for name in with_life if name not in asked)))
+    body: Any = section.choice("body", BODIES)
     if quantity in WEAR_OUTCOMES:
         for key in ("criterion", "body"):
             if key in section:
@@ -316,7 +309,7 @@ def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> Study
 
 def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of a section beside the problem: as the case says, unless the table does."""
-    quantity = _choice(section, name, tuple(SECTION_OUTCOMES[name]))
+    quantity = section.choice(name, tuple(SECTION_OUTCOMES[name]))
     read: Callable[..., Any] = READERS.get(name, read_assessment)
     how = read(source, section, _entries(name, beside[name]) if name in beside else {})
     if quantity is None or how is None:
@@ -348,8 +341,8 @@ def _entries(name: str, how: Any) -> dict[str, Any]:
 
 def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read the smallest margin of safety, of all kinds or of one kind, with the sections of the case."""
-    name = _choice(section, "margin", (LEAST, *MARGINS))
-    owner = _choice(section, "body", ("pin", "bush", "plate")) if "body" in section else None
+    name = section.choice("margin", (LEAST, *MARGINS))
+    owner = section.choice("body", ("pin", "bush", "plate")) if "body" in section else None
     if name is None or ("body" in section and owner is None):
         return None
     # Some kinds of margins need a section of the case.
