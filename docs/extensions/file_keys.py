@@ -9,6 +9,7 @@ from dataclasses import fields
 from typing import Any
 
 import fastpin
+from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
 from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
 from fastpin.casefile.reader import EXAMPLE, KEYS, ROOT_KEYS
 from fastpin.model import FatigueConstants, InitialGap, Wear
@@ -16,7 +17,7 @@ from fastpin.model.loads import LOAD
 from fastpin.model.options import OPTIONS
 from fastpin.model.units import units_per_thickness
 from fastpin.states import QUANTITIES
-from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES, WEAR_QUANTITIES
+from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
 from fastpin.studies.run_end import KEY_FIGURES
 from fastpin.studies.variation import FACTORS
 
@@ -141,7 +142,7 @@ def plan_outcomes() -> str:
         "`take`": [*TAKES],
         "`over`": ["history", "cycle"],
         "`cycle`": [*CYCLE_QUANTITIES],
-        "`wear`": [*WEAR_QUANTITIES],
+        "`wear`": [*WEAR_OUTCOMES, *RACE_OUTCOMES],
     }
     rows = [(key, ", ".join(f'"{name}"' for name in names)) for key, names in lists.items()]
     figures = ", ".join(f"`{name}`" for name in KEY_FIGURES)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from fastpin.casefile.toml_text import Section
+from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.model.assessment import ASSESSMENT_KEYS, MINER_RULES, FatigueAssessment
 
 
-def read_assessment(section: Section, default: Mapping[str, Any] | None = None) -> FatigueAssessment | None:
+def read_assessment(
+    source: CaseText, section: Section, default: Mapping[str, Any] | None = None
+) -> FatigueAssessment | None:
     """How the fatigue of a history is assessed; None if a key can't be replaced by a harmless one (reported).
 
     `default` holds the values of keys that the section leaves out. A length goes with its method, and a knee with its

@@ -13,7 +13,6 @@ from fastpin.model.laminate import ALONG_LOAD, LAMINATE_KEYS, MODULI, Laminate
 from fastpin.model.layup import checked_angles
 from fastpin.model.materials import MATERIAL_KEYS, STRENGTHS
 from fastpin.model.ply import PLIES, PLY_KEYS, PLY_NUMBERS, STRENGTH_KEYS, Ply, ply_from
-from fastpin.model.synonyms import closest
 
 KINDS = {"layup": ("layup", "ply"), "E1": MODULI, "compliance": ("compliance",)}
 """The ways to give a laminate: the key that names the way, and all its keys."""
@@ -78,11 +77,9 @@ def _ply(source: CaseText, section: Section, given: Any) -> Ply | None:
             section.report(f"ply: {words}, not {as_toml(given)}", "ply")
         return None
     inner = Inside(source, section, "ply", given)
+    inner.check_keys(PLY_KEYS, f" in ply of [{section.name}]")
     for key in given:
-        if key not in PLY_KEYS:
-            hint = closest(key, PLY_KEYS) or f"; the keys are {', '.join(PLY_KEYS)}"
-            inner.report(f'unknown key "{key}" in ply of [{section.name}]{hint}', key)
-        elif key in STRENGTH_KEYS and "load_parameter" in source.section("contact"):
+        if key in STRENGTH_KEYS and "load_parameter" in source.section("contact"):
             inner.report(f"{key}: has no meaning with load_parameter, for the stresses have no unit", key)
     harmless = {**dict.fromkeys(PLY_KEYS, 1.0), "nu12": 0.0, "name": "", "source": ""}
     return inner.build(ply_from, {key: inner.value(key) for key in PLY_KEYS if key in inner}, harmless)

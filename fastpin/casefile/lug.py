@@ -125,10 +125,7 @@ def _check_keys(source: CaseText) -> None:
             source.report(f"{name}: must be a section {shown}, not {written(name, value) or as_toml(value)}", name)
         else:
             for block in source.blocks(name):
-                for key in block.table:
-                    if key not in LUG_KEYS[name]:
-                        hint = closest(key, LUG_KEYS[name]) or f"; the keys are {', '.join(LUG_KEYS[name])}"
-                        block.report(f'unknown key "{key}" in {shown}{hint}', key)
+                block.check_keys(LUG_KEYS[name], f" in {shown}")
 
 
 def _poisson_ratio(plate: Section) -> float | None:

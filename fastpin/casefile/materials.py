@@ -78,10 +78,7 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
         section.report(f"fatigue: must be a table {{ ... }}, not {as_toml(table)}", "fatigue")
         return None
     inner = Section(source, (section.name, "fatigue"), table)
-    for key in table:
-        if key not in _FATIGUE_KEYS:
-            hint = closest(key, _FATIGUE_KEYS) or f"; the keys are {', '.join(_FATIGUE_KEYS)}"
-            inner.report(f'unknown key "{key}" in fatigue of [{section.name}]{hint}', key)
+    inner.check_keys(_FATIGUE_KEYS, f" in fatigue of [{section.name}]")
     given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
     return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
 
@@ -99,10 +96,8 @@ def read_law(source: CaseText, section: Section, key: str) -> KnownLaw | None:
     if name is None:
         return None
     make, allowed, needed = LAWS[name]
-    for constant in table:
-        if constant not in ("law", *allowed):
-            hint = closest(constant, allowed) or f"; the constants of this law are {', '.join(allowed)}"
-            inner.report(f'unknown key "{constant}" in {key} of [{section.name}] with the law {name}{hint}', constant)
+    constants = f"; the constants of this law are {', '.join(allowed)}"
+    inner.check_keys(("law", *allowed), f" in {key} of [{section.name}] with the law {name}", constants)
     for constant in needed:
         if constant not in inner:
             section.report(f"{key}: {constant} is missing; the law {name} needs {', '.join(needed)}", key)
@@ -269,10 +264,7 @@ def _materials_in(source: CaseText) -> dict[str, Material]:
         if printable(name) != name:
             section.report(f"[{name}]: the name of a material must be one line of printable characters")
             continue
-        for key in table:
-            if key not in FILE_KEYS:
-                hint = closest(key, FILE_KEYS) or f"; the keys are {', '.join(FILE_KEYS)}"
-                section.report(f'unknown key "{key}" in [{name}]{hint}', key)
+        section.check_keys(FILE_KEYS, f" in [{name}]")
         section.checked("source", string)
         by_name = "material" in section or "rigid" in section  # such a key is reported already
         material = None if by_name else read_material(source, section, {}, may_be_rigid=False)

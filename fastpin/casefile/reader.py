@@ -199,7 +199,7 @@ def _fatigue(
     section = source.section("fatigue")
     if not section.present:
         return None
-    how = read_assessment(section)
+    how = read_assessment(source, section)
     if how is not None and problem is not None and not source.placed:
         _check_together(source, lambda: check_assessment(problem, how, history, options), "fatigue")
     return how
@@ -243,9 +243,7 @@ def _check_keys(source: CaseText) -> None:
             continue
         if name in KEYS:
             for section in source.blocks(name):
-                for key in section.table:
-                    if key not in KEYS[name]:
-                        section.report(f'unknown key "{key}" in {_in_brackets(name)}{key_hint(name, key)}', key)
+                section.check_keys(KEYS[name], f" in {_in_brackets(name)}", hint=partial(key_hint, name))
         elif shown := written(name, value):
             source.report(f"unknown section {shown}{_section_hint(name)}", name)
         else:

@@ -10,7 +10,7 @@ import contextlib
 import gc
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import as_toml, choice, instance, number, shortened, why_unreadable
 from fastpin.model.inputs import HDF5_SIGNATURE, open_input
-from fastpin.model.synonyms import meant
+from fastpin.model.synonyms import closest, meant
 
 MOST_BYTES = 4_000_000
 """Most bytes of a case file, a lug file, or a file of materials or outcomes. Python parses some 1 MB in a second.
@@ -270,6 +270,27 @@ class Section:
     def report(self, message: str, *key: str) -> None:
         """Add a fault of a key, or of the whole section if no key is given."""
         self._text.report(message, *self._place, *key)
+
+    def check_keys(
+        self, allowed: Collection[str], where: str, otherwise: str = "", hint: Callable[[str], str] | None = None
+    ) -> None:
+        """Report the keys that are not `allowed`.
+
+        Parameters
+        ----------
+        allowed : collection of str
+        where : str
+            Words on the table in the message, such as " in [pin]".
+        otherwise : str
+            The end of the message if no key is meant; all keys unless given.
+        hint : callable, optional
+            Gives the end of the message for a key in place of these rules.
+        """
+        known, usual = tuple(allowed), otherwise or f"; the keys are {', '.join(allowed)}"
+        for key in self.table:
+            if key not in known:
+                end = (closest(str(key), known) or usual) if hint is None else hint(key)
+                self.report(f'unknown key "{key}"{where}{end}', str(key))
 
     def require(self, key: str, hint: str = "") -> None:
         """Report the key if it is missing. The message ends with `hint`.

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from typing import Any
 
 from fastpin import report
 from fastpin.benchmarks import catalog, text
 from fastpin.cli.progress import Bar
-from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_files, write_text
+from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.version import __version__
 
@@ -53,14 +52,5 @@ def run(options: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         finished = f"benchmarks that are finished: {', '.join(documents)}" if documents else "no benchmark was finished"
         return fail(f"interrupted; {finished}", EXIT_INTERRUPTED)
-    return EXIT_OK if options.json is None else _write_json(documents, options.json)
-
-
-def _write_json(documents: dict[str, Any], path: str) -> int:
-    """Write or print the rows of all benchmarks."""
     document = {"fastpin": __version__, "benchmarks": documents}
-    words = json.dumps(report.summary.json_ready(document), indent=2, allow_nan=False) + "\n"
-    if path == "-":
-        sys.stdout.write(words)
-        return EXIT_OK
-    return write_files([(path, lambda file: write_text(file, words))])
+    return write_outputs([], options.json, lambda: report.summary.json_ready(document))

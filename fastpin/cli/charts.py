@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
 from pathlib import Path
 
 from fastpin import figures
 from fastpin.charts.lookups import CHARTS, CYCLE_PARAMETERS, chart_of, lookup
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import check_outputs, flag, say, write_files, write_text
+from fastpin.cli.terminal import check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.report.charts import chart_document, chart_list, formula_text, value_text, write_chart
 
@@ -30,22 +28,14 @@ def run(options: argparse.Namespace) -> int:
         found = lookup(chart.name, **given) if chart is not None and given else None
     except InputError as error:
         raise InputError(flag(error.field) if error.field in CYCLE_PARAMETERS else error.field, error.reason) from None
-    text = json.dumps(chart_document(chart, given, found), indent=2, allow_nan=False) + "\n"
-    if options.json == "-":
-        sys.stdout.write(text)
-    elif options.formulas:
+    if options.formulas and options.json != "-":
         say(*formula_text().split("\n"))
-    elif chart is not None and found is not None:
+    elif chart is not None and found is not None and options.json != "-":
         say(value_text(chart, found))
     elif options.csv is None and options.book is None and options.json is None:
         say(*chart_list().split("\n"))
-    return write_files(
-        [
-            (options.csv, lambda path: write_chart(chart_of(options.chart), path)),
-            (None if options.json == "-" else options.json, lambda path: write_text(path, text)),
-            (options.book, _write_book),
-        ]
-    )
+    files = [(options.csv, lambda path: write_chart(chart_of(options.chart), path)), (options.book, _write_book)]
+    return write_outputs(files, options.json, lambda: chart_document(chart, given, found))
 
 
 def _write_book(path: Path) -> None:

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
-from pathlib import Path
 
 from fastpin import casefile, figures, report, studies
 from fastpin.cli.progress import Bar
@@ -16,8 +13,7 @@ from fastpin.cli.terminal import (
     check_outputs,
     fail,
     say,
-    write_files,
-    write_text,
+    write_outputs,
 )
 from fastpin.errors import InputError
 
@@ -75,20 +71,11 @@ def _numbers(option: str, text: str) -> list[int]:
 
 def _write_study(study: studies.convergence.Convergence, options: argparse.Namespace, title: str) -> int:
     """Write the files, then print the tables. Printing comes last: the reader of the output may close it early."""
-    document = json.dumps(report.convergence.document(study, title), indent=2, allow_nan=False) + "\n"
-
-    def plot(path: Path) -> None:
-        figures.plot_convergence(study, path, title=title)
-
-    code = write_files(
-        [
-            (options.csv, lambda path: report.convergence.write_csv(study, path)),
-            (None if options.json == "-" else options.json, lambda path: write_text(path, document)),
-            (options.plot, plot),
-        ]
-    )
-    if options.json == "-":
-        sys.stdout.write(document)
-    else:
+    files = [
+        (options.csv, lambda path: report.convergence.write_csv(study, path)),
+        (options.plot, lambda path: figures.plot_convergence(study, path, title=title)),
+    ]
+    code = write_outputs(files, options.json, lambda: report.convergence.document(study, title))
+    if options.json != "-":
         say(*([title] if title else []), *report.convergence.text(study).split("\n"))
     return code

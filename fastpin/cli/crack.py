@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
-from collections.abc import Sequence
-from pathlib import Path
 
-from fastpin import casefile, cracks, damage, figures, report, storage
+from fastpin import casefile, figures, report, storage
+from fastpin.assess.crack import CrackStops
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import check_outputs, flag, say, write_files, write_text
+from fastpin.cli.terminal import check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
 from fastpin.model.growth import LAWS
-from fastpin.report.crack_growth import case_growth, growth_curve, growth_line, growth_table, spectrum_stops
+from fastpin.report.crack_growth import growth_curve, growth_line, growth_table
 from fastpin.report.curves import write_csv
-from fastpin.states.choice import NO_CYCLE, span_of
-from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 
 PLACES = "{whole} of {total} places"
@@ -28,55 +24,32 @@ PLACES = "{whole} of {total} places"
 def run(options: argparse.Namespace) -> int:
     """Print the growth of a crack, at one place or where a crack grows fastest, and draw it."""
     path, case = options.result, storage.stored_case(options.result)
-    states, corners = stored_stops(path, case, options.spectrum)
+    cycles = storage.load(path, states=[]).cycles
+
+    def between(first: int, last: int) -> list[State]:
+        return storage.load(path, storage.places_between(path, first, last)).states
+
+    stops = CrackStops.of(len(case.history), cycles, between, options.spectrum)
     outputs = {"--output": options.output, "--csv": options.csv, "--json": options.json}
     check_outputs(outputs, figures=("--output",))
     try:
         with Bar(1, PLACES) as bar:
-            found = cracks.planned_growth(states, _how(options, case), not corners, progress_to(bar))
+            found = stops.growth(_how(options, case), progress_to(bar))
     except InputError as error:
         name = "at" if error.field == "theta" else error.field
         raise InputError(flag(name) if hasattr(options, name) else name, error.reason) from None
-    text = json.dumps(report.summary.crack_document(case, found), indent=2, allow_nan=False) + "\n"
-    code = write_files(
-        [
-            (options.output, lambda path: figures.plot_crack_growth(found, path, case.title)),
-            (options.csv, lambda path: write_csv([growth_curve(found)], path)),
-            (None if options.json == "-" else options.json, lambda path: write_text(path, text)),
-        ]
-    )
-    if options.json == "-":
-        sys.stdout.write(text)
-    else:
+    files = [
+        (options.output, lambda path: figures.plot_crack_growth(found, path, case.title)),
+        (options.csv, lambda path: write_csv([growth_curve(found)], path)),
+    ]
+    code = write_outputs(files, options.json, lambda: report.summary.crack_document(case, found))
+    if options.json != "-":
         say(growth_line(found), "")
         say(*growth_table(found).split("\n"))
-    if len(states) == corners:
+    if not stops.is_spectrum and all(state.fraction == 1.0 for state in stops.states):
         words = "K between the corners is unknown: run --between 10 keeps states there"
-        say(f"note: the cycle has only its {len(states)} corners; {words}", file=sys.stderr)
+        say(f"note: the cycle has only its {len(stops.states)} corners; {words}", file=sys.stderr)
     return code
-
-
-def followed(states: list[State], cycles: Sequence[Cycle], case: Case) -> cracks.Growth:
-    """Follow the crack of a case. A bar shows the progress of a search for the fastest one."""
-    with Bar(1, PLACES) as bar:
-        return case_growth(states, cycles, case, progress_to(bar))
-
-
-def stored_stops(path: Path, case: Case, spectrum: bool = False) -> tuple[list[State], int]:
-    """Read the stops of the last cycle and the number of its corners; 0 for a whole history, which is a spectrum.
-
-    Raises
-    ------
-    InputError
-        If there is neither a cycle nor a spectrum, or states are missing.
-    """
-    cycles = () if spectrum else storage.load(path, states=[]).cycles
-    if cycles:
-        part = storage.load(path, states=storage.places_between(path, *span_of(cycles[-1])))
-        return damage.cycle_states(part, cycles[-1]), cycles[-1].length + 1
-    if not spectrum and len(case.history) < 3:
-        raise InputError("result", NO_CYCLE)
-    return spectrum_stops(storage.load(path).states, len(case.history)), 0
 
 
 def _how(options: argparse.Namespace, case: Case) -> CrackGrowth:

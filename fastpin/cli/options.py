@@ -289,7 +289,7 @@ def _add_interface(command: argparse.ArgumentParser) -> None:
     command.add_argument("--interface", choices=("pin", "seat"), default="pin", help=words)
 
 
-_ABOUT = {
+ABOUT = {
     "project": "project on the first page and in the head of each page",
     "author": "author, likewise",
     "revision": "revision of the report, likewise",
@@ -309,7 +309,7 @@ def add_report(commands: Any) -> None:
     words = "the report (html, pdf; default: the name with .html)"
     report.add_argument("-o", "--output", metavar="PAGE", type=Path, help=words)
     report.add_argument("--title", help="title of the page of a result (default: the title of the case)")
-    for name, words in _ABOUT.items():
+    for name, words in ABOUT.items():
         report.add_argument(f"--{name}", metavar="TEXT", help=f"{words} (default: that of the case)")
     report.add_argument("--case", metavar="FILE", type=Path, help="case file of an HDF5 file; the page shows its text")
     report.add_argument(

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fastpin import casefile, pages, solver, studies
+from fastpin.cli.options import ABOUT
 from fastpin.cli.progress import LOAD_POINTS, READ_POINTS, Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, EXIT_READING, fail, flag, say
 from fastpin.errors import CaseFileError, InputError, ReadingError
@@ -19,9 +20,6 @@ from fastpin.pages.writing import check_page
 
 SECTIONS = "section {n:.0f} of {total:.0f}"
 """Text of the progress bar of the page."""
-
-ABOUT = tuple(field.name for field in dataclasses.fields(About))
-"""Options that are fields of :class:`fastpin.model.About`."""
 
 
 def run(options: argparse.Namespace) -> int:

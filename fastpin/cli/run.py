@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import dataclasses
-import json
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
@@ -14,9 +13,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fastpin import casefile, cracks, figures, live, report, solver, storage
+from fastpin import assess, casefile, cracks, figures, live, report, solver, storage
 from fastpin.cli import wear
-from fastpin.cli.crack import followed, stored_stops
+from fastpin.cli.crack import PLACES
 from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.options import literal
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
@@ -29,7 +28,7 @@ from fastpin.cli.terminal import (
     fail,
     flag,
     say,
-    write_files,
+    write_outputs,
     write_text,
 )
 from fastpin.errors import InputError, ReadingError
@@ -52,15 +51,15 @@ from fastpin.report.states import (
     stored_rows,
     table_rows,
 )
-from fastpin.report.strength import StrengthFound, assess_strength, strength_lines
 from fastpin.runtime import beside
-from fastpin.states.choice import check_choice, last_cycle_states, span_of
+from fastpin.states.choice import check_choice, last_cycle_states, span_of, states_between
 from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
 from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.walking import walk_doubts
 
 if TYPE_CHECKING:  # they import compiled code
-    from fastpin.report.assessment import Assessed
+    from fastpin.assess.fatigue import Assessed
+    from fastpin.report.strength import StrengthFound
     from fastpin.states.load_cycle import LoadCycle
     from fastpin.states.state import State
 
@@ -333,10 +332,7 @@ class RunReport:
         document = None
         if options.json is not None:
             document = report.summary.document(case, result, error, *judged)
-        text = json.dumps(document, indent=2, allow_nan=False) + "\n"
         writers: list[tuple[Any, Callable[[Path], object]]] = []
-        if options.json != "-":
-            writers.append((options.json, lambda path: write_text(path, text)))
         if result is not None and len(result):
             writers.append((options.plot, lambda path: self._plot(options, path)))
             writers.append((options.record, lambda path: write_text(path, live.record_page(case, result, error or ""))))
@@ -345,10 +341,8 @@ class RunReport:
         elif options.cycles is not None:
             code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
         writers.append((options.cycle_csv, lambda path: report.cycle.write_csv(self._last_cycle(), path)))
-        code = write_files(writers) or code
-        if options.json == "-":  # last: the reader of the output may close it early
-            sys.stdout.write(text)
-        else:
+        code = write_outputs(writers, options.json, lambda: document) or code
+        if options.json != "-":
             self._print_states(read, judged)
         if document is not None:
             for name, reason in document["unread"].items():
@@ -362,7 +356,7 @@ class RunReport:
         from_file = self.part is not None and self.path is not None and self.result is not None
         with Bar(1.0, "damage of the spectrum") as progress_bar:
             whole = storage.load(self.path) if from_file and self.path is not None else self.result
-            return report.assessment.assess(self.case, whole, progress_to(progress_bar))
+            return assess.fatigue.assess(self.case, whole, progress_to(progress_bar))
 
     def _report_end(self) -> tuple[int, str | None]:
         """Print why the run ended early, and return the exit code and the reason."""
@@ -394,10 +388,17 @@ class RunReport:
         """Return the last cycle. :class:`InputError` says why there is none."""
         if self.result is None:
             raise InputError("cycle", "no state was reached")
-        if self.part is None or self.path is None or not self.result.cycles:
+        if not self.result.cycles:
             return self.result.cycle()
-        places = storage.places_between(self.path, *span_of(self.result.cycles[-1]))
-        return storage.load(self.path, states=places).cycle()
+        between = self._between(*span_of(self.result.cycles[-1]))
+        return dataclasses.replace(self.result, states=between).cycle()
+
+    def _between(self, first: int, last: int) -> list[State]:
+        """The kept states from one corner to another: of the file if `result` does not have all."""
+        assert self.result is not None
+        if self.part is None or self.path is None:
+            return states_between(self.result, first, last)
+        return storage.load(self.path, states=storage.places_between(self.path, first, last)).states
 
     def _crack(self) -> cracks.Growth | None:
         """Follow the crack of the case. None without one; a note says why it can't be followed."""
@@ -405,9 +406,9 @@ class RunReport:
         if case.crack is None or result is None or self.ended is not None:
             return None
         try:
-            if self.part is None or self.path is None:
-                return followed(result.states, result.cycles, case)
-            return followed(stored_stops(self.path, case)[0], result.cycles, case)
+            with Bar(1, PLACES) as bar:
+                stops = assess.crack.CrackStops.of(len(case.history), result.cycles, self._between)
+                return stops.growth(case.crack, progress_to(bar))
         except InputError as error:
             say(f"fastpin: note: no crack is followed: {error}", file=sys.stderr)
             return None
@@ -422,7 +423,7 @@ class RunReport:
         whole = result if self.part is None or self.path is None else storage.load(self.path)
         try:
             with Bar(len(whole), "state {n} of {total}") as progress_bar:
-                return assess_strength(case, whole.states, progress_to(progress_bar))
+                return report.strength.assess_strength(case, whole.states, progress_to(progress_bar))
         except InputError as error:
             say(f"fastpin: note: no strength is assessed: {error}", file=sys.stderr)
             return None
@@ -479,14 +480,17 @@ class RunReport:
         @cache
         def margins() -> list[Margin]:
             rows = static_margins(problem, extremes, lambda places: [found[place] for place in places])
-            if result.cycles or any(each is not None for each in judged[1:]):
-                rows += report.fatigue.life_margins(problem, states, result.cycles, *judged[1:])
+            asked: dict[str, Any] = {"fatigue": judged.fatigue, "crack": judged.crack, "strength": judged.strength}
+            if judged.strength is not None:
+                asked["strength"] = judged.strength.worst
+            if result.cycles or any(asked.values()):
+                rows = assess.margins.result_margins(problem, rows, states, result.cycles, **asked)
             return rows
 
         def lives() -> list[str]:
             over = over_yield(margins())
             if judged.fatigue is not None:
-                return report.assessment.assessment_lines(judged.fatigue, over)
+                return assess.fatigue.assessment_lines(judged.fatigue, over)
             if result.cycles:
                 return report.cycle.fatigue_lines(states, result.cycles[-1], over)
             damages = report.cycle.spectrum_damages(result.states, len(case.history)) if _is_spectrum(case) else []
@@ -501,7 +505,7 @@ class RunReport:
             "margins": lambda: margin_lines(problem, margins()),
             "fatigue": lives,
             "crack": lambda: [] if judged.crack is None else [growth_line(judged.crack, over_yield(margins()))],
-            "strength": lambda: [] if judged.strength is None else strength_lines(judged.strength),
+            "strength": lambda: [] if judged.strength is None else report.strength.strength_lines(judged.strength),
         }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
@@ -127,6 +128,22 @@ def write_files(writers: Iterable[tuple[str | Path | None, Callable[[Path], obje
             code = fail(str(trouble), EXIT_FAILED)
         except InputError as trouble:
             code = fail(f"can't write {path}: {trouble}", EXIT_FAILED)
+    return code
+
+
+def write_outputs(
+    writers: Iterable[tuple[str | Path | None, Callable[[Path], object]]],
+    to: str | Path | None,
+    document: Callable[[], object],
+) -> int:
+    """Call :func:`write_files`, then write a JSON document to a file, or to standard output for "-".
+
+    Standard output comes last: its reader may close it early.
+    """
+    text = "" if to is None else json.dumps(document(), indent=2, allow_nan=False) + "\n"
+    code = write_files([*writers, (None if to == "-" else to, lambda path: write_text(path, text))])
+    if to == "-":
+        sys.stdout.write(text)
     return code
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
 from pathlib import Path
 
 from fastpin import figures, report, studies
 from fastpin.cli.progress import READ_POINTS, Bar, progress_to
 from fastpin.cli.sweep import check_combination, fail_interrupted, print_summary, run_plan
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_files, write_text
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_outputs
 from fastpin.errors import InputError
 
 
@@ -68,15 +66,9 @@ def _write(options: argparse.Namespace, study: studies.tolerances.Tolerances, di
         return EXIT_OK
     rows = studies.sweep.rows(study.plan, directory)
     charts = [report.tolerances.tolerance_chart(study, rows, name) for name in shown]
-    document = json.dumps(report.tolerances.document(study, rows), indent=2, allow_nan=False) + "\n"
-    code = write_files(
-        [
-            (options.table, lambda path: report.sweep.write_csv(study.plan, rows, path)),
-            (None if options.json == "-" else options.json, lambda path: write_text(path, document)),
-            (options.plot, lambda path: figures.plot_tornado(charts, path)),
-            (options.scatter, lambda path: figures.plot_samples(charts, path)),
-        ]
-    )
-    if options.json == "-":  # last: the reader of the output may close it early
-        sys.stdout.write(document)
-    return code
+    files = [
+        (options.table, lambda path: report.sweep.write_csv(study.plan, rows, path)),
+        (options.plot, lambda path: figures.plot_tornado(charts, path)),
+        (options.scatter, lambda path: figures.plot_samples(charts, path)),
+    ]
+    return write_outputs(files, options.json, lambda: report.tolerances.document(study, rows))

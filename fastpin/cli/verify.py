@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import json
-import sys
 import time
 
 from fastpin import report, storage, verification
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_files, write_text
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_outputs
 from fastpin.runtime.threads import cores
 from fastpin.version import __version__
 
@@ -28,18 +26,12 @@ def run(options: argparse.Namespace) -> int:
         libraries = ", ".join(f"{name} {version}" for name, version in storage.versions().items())
         say(*report.checks.table(checks).split("\n"), "")
         say(f"{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {cores()} cores")
-    if options.json is not None:
-        document = {
-            "fastpin": __version__,
-            "versions": storage.versions(),
-            "cores": cores(),
-            "seconds": seconds,
-            "passed": code == EXIT_OK,
-            "checks": [{**dataclasses.asdict(check), "passed": check.passed} for check in checks],
-        }
-        text = json.dumps(report.summary.json_ready(document), indent=2, allow_nan=False) + "\n"
-        if options.json == "-":
-            sys.stdout.write(text)
-        else:
-            code = write_files([(options.json, lambda path: write_text(path, text))]) or code
-    return code
+    document = {
+        "fastpin": __version__,
+        "versions": storage.versions(),
+        "cores": cores(),
+        "seconds": seconds,
+        "passed": code == EXIT_OK,
+        "checks": [{**dataclasses.asdict(check), "passed": check.passed} for check in checks],
+    }
+    return write_outputs([], options.json, lambda: report.summary.json_ready(document)) or code

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -20,7 +18,7 @@ from fastpin.cli.terminal import (
     fail,
     flag,
     say,
-    write_files,
+    write_outputs,
     write_text,
 )
 from fastpin.errors import InputError
@@ -47,6 +45,7 @@ def run(options: argparse.Namespace) -> int:
     check_outputs({flag(name): getattr(options, name) for name in ("json", "record", "output")}, result="--output")
     settings: dict[str, Any] = {"nodes": options.nodes or case.options.nodes, "arc": case.options.arc}
     settings |= {"overwrite": options.overwrite, "resume": options.resume, "output": options.output}
+    settings |= {"fatigue": case.fatigue}
     result: solver.WearResult | None = None
     code, trouble = EXIT_OK, None
     with Bar(1, "{whole} of {total:,} cycles") as progress_bar:
@@ -83,18 +82,11 @@ def show(options: argparse.Namespace) -> int:
 
 def _write(result: solver.WearResult | None, options: argparse.Namespace, title: str, trouble: str | None) -> int:
     """Write the JSON, then print the table. Printing comes last: the reader of the output may close it early."""
-    text = ""
-    if options.json is not None:
-        text = json.dumps(report.wear.document(result, title, trouble), indent=2, allow_nan=False) + "\n"
     writers: list[tuple[Any, Callable[[Path], object]]] = []
-    if options.json != "-":
-        writers.append((options.json, lambda path: write_text(path, text)))
     if result is not None and len(result):
         writers.append((options.record, lambda path: write_text(path, live.record_life(result, title, trouble or ""))))
-    code = write_files(writers)
-    if options.json == "-":
-        sys.stdout.write(text)
-    elif result is not None:
+    code = write_outputs(writers, options.json, lambda: report.wear.document(result, title, trouble))
+    if options.json != "-" and result is not None:
         rows = [*result.summary().split("\n"), ""] if len(result) else []
         say(*([title, ""] if title else []), *rows, report.wear.reached_line(result))
     return code

@@ -82,6 +82,9 @@ class Growth(ReadOnly):
     per: ClassVar[str] = "cycle"
     """What is repeated: a cycle, or a spectrum."""
 
+    passes: ClassVar[str] = "cycles"
+    """What a life counts: cycles, or spectra."""
+
     def __repr__(self) -> str:
         place = from_bottom(self.crack.theta)
         return f"<Growth of a crack at {place:.2f} deg from the bottom: {self.words}>"
@@ -161,7 +164,7 @@ class Growth(ReadOnly):
         """A sentence on life, arrest and fracture."""
         length, fate = units(self.problem)["length"], self.fate
         first, last = length.text(float(self.length[0])), length.text(float(self.length[-1]))
-        passes = f"in {self.life:.3g} {'cycles' if self.per == 'cycle' else 'spectra'}"
+        passes = f"in {self.life:.3g} {self.passes}"
         if fate == CrackFate.NONE:
             return f"no growth at {first}"
         if fate == CrackFate.STOPS:
@@ -191,6 +194,7 @@ class SpectrumGrowth(Growth):
     counted: np.ndarray
 
     per: ClassVar[str] = "spectrum"
+    passes: ClassVar[str] = "spectra"
 
     @property
     def delta_K(self) -> np.ndarray:

@@ -109,8 +109,11 @@ class Fatigue(ReadOnly):
 
     @property
     def margin(self) -> np.ndarray | None:
-        """1 - parameter/limit: positive below the fatigue limit, 0 at the limit. None without a limit."""
-        return None if self.limit is None else 1.0 - self.parameter / self.limit
+        """limit/parameter - 1 as in all margins of safety; infinite where the parameter is 0. None without a limit."""
+        if self.limit is None:
+            return None
+        with np.errstate(divide="ignore"):
+            return np.asarray(self.limit / self.parameter - 1.0)
 
     @property
     def hot_spot(self) -> HotSpot:

@@ -6,6 +6,7 @@ import contextlib
 import math
 from collections.abc import Sequence
 
+from fastpin.damage.criteria import criterion_title
 from fastpin.damage.hole_strength import JointStrength
 from fastpin.damage.hot_spots import Fatigue, cycle_states
 from fastpin.damage.hot_spots import fatigue as fatigue_of
@@ -65,7 +66,8 @@ def fatigue_margins(problem: Problem, known: Sequence[Fatigue] | str, states: Se
                 remark += f"; life {life:.3g} cycles" if math.isfinite(life) else "; infinite life"
             kind = "stress times strain"
             owner, value = owner_of(problem, body), one.hot_spot.parameter
-            rows.append(Margin(f"{subject}, Smith-Watson-Topper", kind, value, remark=remark, owner=owner))
+            words = f"{subject}, {criterion_title(one.criterion)}"
+            rows.append(Margin(words, kind, value, remark=remark, owner=owner))
     return rows
 
 
@@ -89,7 +91,7 @@ def reserve_margins(reserves: Sequence[StressReserve], how: FatigueAssessment) -
     """
     return [
         Margin(
-            f"{edge_body(one.problem, one.body)}: {one.criterion.title()}, factor on all stresses",
+            f"{edge_body(one.problem, one.body)}: {criterion_title(one.criterion)}, factor on all stresses",
             "ratio", 1.0, one.factor, one.largest, _remark(one, how), one.loads, "fatigue",
             owner_of(one.problem, one.body), part_of(one.problem, owner_of(one.problem, one.body)),
         )

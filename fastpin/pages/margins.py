@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from fastpin.cracks.margins import crack_margins
-from fastpin.damage.margins import fatigue_margins, reserve_margins, strength_margins
+from fastpin.assess.margins import all_margins
+from fastpin.damage.margins import fatigue_margins
 from fastpin.model.points import edge_body
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, PageSection, Text
@@ -37,19 +37,16 @@ class PageParts:
     def margins(self) -> list[Margin]:
         """The margins of yield, bush, fatigue, crack and plies, the smallest one first."""
         source, problem = self.source, self.source.case.problem
-        found = list(source.static_margins)
         cycle = [] if source.cycle is None else source.cycle.states
-        found += walk_margins(cycle)
         judged = {edge_body(problem, one.body) for one in source.assessed.reserves} if source.assessed else set()
-        found += [
+        last_cycle = walk_margins(cycle) + [
             row
             for row in fatigue_margins(problem, source.fatigue, cycle)
             if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
         ]
-        found += [] if source.assessed is None else reserve_margins(source.assessed.reserves, source.assessed.how)
-        found += [] if isinstance(source.crack, str) else crack_margins(source.crack)
-        found += [] if isinstance(source.strength, str) else strength_margins(*source.strength.worst)
-        return in_order(found)
+        crack = None if isinstance(source.crack, str) else source.crack
+        worst = None if isinstance(source.strength, str) else source.strength.worst
+        return in_order(all_margins(source.static_margins, last_cycle, source.assessed, crack, worst))
 
 
 def sentence(line: str) -> str:

@@ -95,7 +95,7 @@ def write_report(
         raise InputError("convergence", "has no effect on the report of a life of wear")
     if case is not None:
         source = replace(source, case_text=_case_text(case, source))
-        if source.path is None and source.life is None:  # a result in memory does not know how it is to be judged
+        if source.path is None:  # a result in memory does not know how it is to be judged
             given = parse_case(source.case_text, str(case), Path(case).parent)
             source = replace(source, case=replace(source.case, fatigue=given.fatigue, crack=given.crack))
     named = replace(source.case, title=title or source.case.title, about=merged(source.case.about, about))

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 
 from fastpin import storage
+from fastpin.assess.crack import CrackStops
+from fastpin.assess.fatigue import Assessed, assess
 from fastpin.cracks import Growth
 from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
 from fastpin.damage.margins import MOST_STOPS
@@ -24,8 +26,6 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import edge_body, elastic_bodies
-from fastpin.report.assessment import Assessed, assess
-from fastpin.report.crack_growth import case_growth
 from fastpin.report.cycle import SWT, fatigue_bodies, spectrum_damages
 from fastpin.report.states import stored_rows
 from fastpin.report.strength import StrengthFound, assess_strength
@@ -124,7 +124,7 @@ class Source:
             origin += [("run in the index", path.stem), ("SHA-256 of the result", hashlib.sha256(content).hexdigest())]
         if storage.holds_wear(path):
             source = cls.of_life(storage.load_wear(path), stored.title)
-            case = replace(source.case, about=stored.about, options=stored.options)
+            case = replace(source.case, about=stored.about, options=stored.options, fatigue=stored.fatigue)
             return replace(source, case=case, origin=origin, error=error, path=path)
         result, points = storage.load(path, states=[]), storage.load_points(path)
         # The file holds the fractions of the states inside each step. Where they are equally spaced, their number gives
@@ -272,8 +272,7 @@ class Source:
             if not first:
                 return "no cycle of the history has ended"
         begin, end = (first, self.reached) if found is None else span_of(found)
-        places = np.flatnonzero((self.points >= begin) & (self.points <= end))
-        part = replace(self.result, states=self.read(places.tolist()))
+        part = replace(self.result, states=self._between(begin, end))
         try:
             return part.cycle() if found is not None else part.cycle(first=first, last=end)
         except InputError as error:
@@ -331,12 +330,10 @@ class Source:
         """The growth of the crack of the case over its last cycle or spectrum; or why it is not known."""
         if self.case.crack is None:
             return "The case has no crack: its section [crack] gives one."
-        whole = not self.result.cycles
-        if whole and self.points.size > MOST_OF_SPECTRUM:
+        if not self.result.cycles and self.points.size > MOST_OF_SPECTRUM:
             return f"The history has {self.points.size:,} states. Left to: fastpin crack {self.path or 'FILE'}"
-        states = self.read(range(self.points.size)) if whole or self.cycle is None else self.cycle.states
         try:
-            return case_growth(states, self.result.cycles, self.case)
+            return CrackStops.of(len(self.case.history), self.result.cycles, self._between).growth(self.case.crack)
         except InputError as error:
             return f"No crack is followed: {error.field} {error.reason}."
 
@@ -352,20 +349,33 @@ class Source:
 
     @cached_property
     def worn(self) -> list[WornFatigue]:
-        """Damage over a life of wear, of each body whose material has constants for a life."""
+        """Damage over a life of wear, of each body whose material has constants for a life, by each criterion."""
         found: list[WornFatigue] = []
         if self.life is None or len(self.life) < 2:
             return found
         cycles = [self.life[place] for place in even_choice(range(len(self.life)), MOST_SUMMED)]
-        for body in elastic_bodies(self.life.problem):
-            with contextlib.suppress(InputError):  # there are no such constants
-                found.append(worn_fatigue(cycles, SWT, body))
+        bodies = elastic_bodies(self.life.problem)
+        if self.case.fatigue is not None and self.case.fatigue.bodies is not None:
+            bodies = tuple(body for body in bodies if body in self.case.fatigue.bodies)
+        for criterion in self.criteria:
+            for body in bodies:
+                with contextlib.suppress(InputError):  # there are no such constants
+                    found.append(worn_fatigue(cycles, criterion, body))  # type: ignore[arg-type]
         return found
+
+    @property
+    def criteria(self) -> tuple[str, ...]:
+        """The criteria of the section [fatigue]; without one Smith, Watson and Topper's."""
+        return (SWT,) if self.case.fatigue is None else self.case.fatigue.criteria
 
     @property
     def last_cycle(self) -> Cycle | None:
         """The changes over the last cycle of repeated blocks; None without one."""
         return self.result.cycles[-1] if self.result.cycles else None
+
+    def _between(self, first: int, last: int) -> list[State]:
+        """The states from one corner to another."""
+        return self.read(np.flatnonzero((self.points >= first) & (self.points <= last)).tolist())
 
     def _closing_corner(self) -> int:
         """Return the latest corner with the loads of the last one, before it by two or more; 0 if there is none."""

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fastpin.damage import WornFatigue
+from fastpin.damage.criteria import criterion_title
 from fastpin.figures.damage import damage_of
 from fastpin.figures.scar import scar_plot, wear_plot
 from fastpin.figures.subjects import InMemory
@@ -32,7 +33,6 @@ from fastpin.pages.sections import (
     zones,
 )
 from fastpin.pages.source import Source
-from fastpin.report.cycle import SWT
 from fastpin.report.notes import way_on
 from fastpin.report.states import TableRows
 from fastpin.report.table import columns_at, printed_rows
@@ -61,10 +61,10 @@ def overview(page: PageParts) -> PageSection:
             f"{worn}{share}",
             f"largest contact pressure over a cycle: {pressures[0]} after {cycles_text(peak.cycle)}, "
             f"{pressures[1]} on the first profile",
-            f"friction dissipates {unit['energy'].text(last.energy_per_cycle, 4)} in a cycle on the last profile",
+            f"energy per cycle: {unit['energy'].text(last.energy_per_cycle, 4)} dissipated on the last profile",
         ]
         lines += [
-            f"damage of the {edge_body(life.problem, one.body)}: {one.words}"
+            f"damage of the {_subject(one)}: {one.words}"
             + over_yield_words(source.over_yield, owner_of(life.problem, one.body))
             for one in source.worn
         ]
@@ -140,19 +140,23 @@ def damage(page: PageParts) -> PageSection:
     """Return the damage of the material of all bodies with constants, and the race of crack and wear."""
     source, life = page.source, _life(page)
     if not source.worn:
-        words = f"Damage needs constants for a life by {SWT}: the key fatigue of a case file gives them."
+        words = f"Damage needs constants for a life by {' or '.join(source.criteria)}: the key fatigue of a case file "
+        words += "gives them."
         if len(life) < 2:
             words = "Damage needs the profile of cycle 0 and another one."
         return PageSection("damage", "Damage", [Text(words, "missing")])
     parts: list[SectionPart] = []
     for one in source.worn:
-        name = edge_body(life.problem, one.body)
         parts.append(page.album.figure(damage_of(life, one)))
-        parts.append(Facts(f"Race of crack and wear: {name}", _race(one), ("subject", "value")))
+        parts.append(Facts(f"Race of crack and wear: {_subject(one)}", _race(one), ("subject", "value")))
     summed = source.worn[0].cycles.size
     if summed < len(life):
         parts.append(Text(f"The damage is summed up from {summed} of {len(life):,} stored cycles.", "missing"))
     return PageSection("damage", "Damage", parts)
+
+
+def _subject(found: WornFatigue) -> str:
+    return f"{edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}"
 
 
 def _race(found: WornFatigue) -> list[tuple[str, str]]:

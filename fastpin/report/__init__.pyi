@@ -1,9 +1,9 @@
-from . import assessment as assessment
 from . import checks as checks
 from . import convergence as convergence
 from . import cycle as cycle
 from . import envelope as envelope
 from . import fatigue as fatigue
+from . import strength as strength
 from . import stress as stress
 from . import summary as summary
 from . import sweep as sweep

@@ -15,14 +15,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from fastpin.assess.outputs import ROUNDING
 from fastpin.model.problem import Problem
 from fastpin.model.units import DEGREE, named_loads, printed_loads, scaled, units
-from fastpin.report.cells import csv_cell
+from fastpin.report.curves import csv_cell
 from fastpin.report.summary import json_ready, unit_names
 from fastpin.report.table import Column, table
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
 from fastpin.storage.files import replacing
-from fastpin.studies.convergence import ROUNDING, Convergence, QuantitySeries, Study
+from fastpin.studies.convergence import Convergence, QuantitySeries, Study
 from fastpin.studies.extrapolate import Verdict
 from fastpin.version import __version__
 

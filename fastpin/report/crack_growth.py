@@ -3,53 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
 
-from fastpin import cracks, damage
+from fastpin import cracks
+from fastpin.assess.crack import LENGTHS
 from fastpin.cracks import CrackFate
-from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
-from fastpin.model.case import Case
-from fastpin.model.growth import Nasgro, Walker, law_entries
 from fastpin.model.points import owner_of
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
 from fastpin.report.table import table
-from fastpin.states.choice import missing_corners
-from fastpin.states.cycles import Cycle
 from fastpin.states.margins import over_yield_words
-from fastpin.states.state import State
-
-ROWS = 13
-"""Most lengths of a table, in equal steps of their logarithm."""
-
-
-def passes_of(growth: cracks.Growth) -> str:
-    """Return the name of the passes that are counted: "cycles" or "spectra"."""
-    return "cycles" if growth.per == "cycle" else "spectra"
 
 
 def growth_curve(growth: cracks.Growth) -> Curve:
     """Return length, stress intensities, range, threshold, rate and cycles of a crack, by its length."""
     unit = units(growth.problem)
-    length, intensity, rate = (unit[kind].name for kind in ("length", "stress intensity", "crack growth"))
-    rate, passes = rate.replace("cycle", growth.per), passes_of(growth)
-    return Curve(
-        {"mouth [deg]": from_bottom(growth.crack.theta), "body": growth.crack.body},
-        {
-            f"length [{length}]": growth.length,
-            f"K_I largest [{intensity}]": growth.K_max,
-            f"K_I smallest [{intensity}]": growth.K_min,
-            f"K_II [{intensity}]": growth.K_II,
-            f"range [{intensity}]": growth.delta_K,
-            f"threshold [{intensity}]": growth.threshold,
-            f"rate [{rate}]": growth.rate,
-            passes: growth.cycles,
-        },
-    )
+    columns = {each.column(unit).replace("cycle", growth.per): each.shown(growth, unit) for each in LENGTHS[:-1]}
+    mouth = {"mouth [deg]": from_bottom(growth.crack.theta), "body": growth.crack.body}
+    return Curve(mouth, columns | {growth.passes: growth.cycles})
 
 
 def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) -> str:
@@ -69,80 +43,16 @@ def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) 
     return f"{line}; numerical error of this {of} below {math.ceil(growth.error / 10.0**power):g}e{power:03d}{mark}"
 
 
-def spectrum_stops(states: Sequence[State], corners: int) -> list[State]:
-    """Return the states of a whole history of so many corners, which is a spectrum.
-
-    Raises
-    ------
-    InputError
-        If a corner was not kept, or there are less than two.
-    """
-    if len(states) < 2:
-        raise InputError("states", "a spectrum needs at least two kept states")
-    if missing_corners(states, 1, corners):
-        raise InputError("states", 'not all corners of the history are kept; keep = "all" keeps them')
-    return list(states)
-
-
-def case_growth(
-    states: Sequence[State], cycles: Sequence[Cycle], case: Case, progress: Callable[[float, float], None] | None = None
-) -> cracks.Growth:
-    """Return the growth of the crack of a case over its last cycle; without cycles over the history as a spectrum.
-
-    Raises
-    ------
-    InputError
-        If states are missing, or the crack can't be followed.
-    """
-    assert case.crack is not None
-    if cycles:
-        return cracks.planned_growth(damage.cycle_states(states, cycles[-1]), case.crack, progress=progress)
-    return cracks.planned_growth(spectrum_stops(states, len(case.history)), case.crack, True, progress)
-
-
-def document(growth: cracks.Growth) -> dict[str, Any]:
-    """Return a growth as a JSON-ready dict. A life without end is infinite, and a length that is not known is NaN."""
-    length, law = units(growth.problem)["length"].factor, growth.law
-    values = {
-        "first": growth.length[0],
-        "last": growth.length[-1],
-        "arrest": growth.arrest,
-        "fracture": growth.fracture,
-    }
-    return {
-        "angle_of_mouth": from_bottom(growth.crack.theta),
-        "direction": math.degrees(growth.crack.angle),
-        "body": growth.crack.body,
-        "law": law_entries(law) if isinstance(law, Walker | Nasgro) else None,
-        "repeated": growth.per,
-        "fate": growth.fate.words,
-        "life": growth.life,
-        "error": growth.error,
-        **{name: length * float(value) for name, value in values.items()},
-        "words": growth.words,
-        "doubts": [str(doubt) for doubt in growth.doubts],
-    }
-
-
 def growth_table(growth: cracks.Growth) -> str:
     """Return some lengths of a crack with its stress intensities, threshold, rate and cycles, as text."""
     unit = units(growth.problem)
-    rows = np.geomspace(growth.length[0], growth.length[-1], ROWS)
+    rows = np.geomspace(growth.length[0], growth.length[-1], 13)  # at most so many lengths
     at = np.unique(np.abs(np.log(growth.length[:, None] / rows)).argmin(axis=0))
-    columns = [
-        ("length", "length", growth.length),
-        ("K_I largest", "stress intensity", growth.K_max),
-        ("smallest", "stress intensity", growth.K_min),
-        ("K_II", "stress intensity", growth.K_II),
-        ("range", "stress intensity", growth.delta_K),
-        ("threshold", "stress intensity", growth.threshold),
-        ("growth", "crack growth", growth.rate),
-        (passes_of(growth), "life", growth.cycles),
-    ]
     cells = []
-    for name, kind, values in columns:
-        factor, label = unit[kind].scale([float(value) for _, same, each in columns if same == kind for value in each])
-        texts = [f"{factor * value:.4g}" for value in values[at].tolist()]
-        label = "" if kind == "life" else label.replace("cycle", growth.per)
-        cells.append((name, label, ["never" if text == "inf" else text for text in texts]))
+    for each in LENGTHS:
+        same = [float(value) for other in LENGTHS if other.kind == each.kind for value in other.of(growth)]
+        factor, label = unit[each.kind].scale(same) if each.kind else (1.0, "")
+        texts = [f"{factor * value:.4g}" for value in each.of(growth)[at].tolist()]
+        name = each.short or each.heading or each.name if each.kind else growth.passes
+        cells.append((name, label.replace("cycle", growth.per), ["never" if text == "inf" else text for text in texts]))
     return table(cells)

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.report.cells import csv_cell
 from fastpin.storage.files import replacing
 
 
@@ -55,6 +54,11 @@ def write_csv(curves: Sequence[Curve], path: Path, remarks: Sequence[str] = ()) 
             rows = zip(*curve.columns.values(), strict=True)
             for row in rows:
                 writer.writerow({**parameters, **dict(zip(curve.columns, map(_cell, row), strict=True))})
+
+
+def csv_cell(value: Any) -> Any:
+    """Return the value of a cell. A text that a spreadsheet would take for a formula begins with an apostrophe."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")) else value
 
 
 def _parameter(value: float | str) -> float | str:

@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess.cycle import CYCLE
+from fastpin.assess.outputs import document as document_of
 from fastpin.damage import Fatigue, cycle_states, fatigue
-from fastpin.damage.criteria import Criterion
+from fastpin.damage.criteria import Criterion, criterion_title
 from fastpin.damage.margins import MOST_STOPS as MOST_STOPS
 from fastpin.damage.spectrum import SpectrumDamage, bodies_with_lives, spectrum_damage
 from fastpin.errors import InputError
@@ -43,14 +45,20 @@ def cycle_line(cycle: LoadCycle) -> str:
     The places of the largest values stand beside them. Values that are rounding beside the sizes of
     :func:`natural_sizes` are 0.
     """
-    natural = natural_sizes(cycle)
+    natural, found = natural_sizes(cycle), document(cycle)
+    unit = units(cycle.states[0].problem)
+
+    def words(name: str, kind: str) -> str:
+        """The largest value of a quantity with its place; 0 if it is rounding."""
+        largest, label = found[f"largest_{name}"], name.replace("_", " ")
+        if not largest > ROUNDING * natural[kind]:
+            return f"{label} 0"
+        return f"{label} up to {unit[kind].text(largest, 4)} at {found[f'largest_{name}_angle']:z.2f} deg"
+
     regime = cycle.regime.words + ("" if cycle.has_exact_slip_range else " (read from the kept states)")
-    parts = [_in_words(cycle, "slip range", "displacement", natural)]
-    if not cycle.has_exact_slip_range:
-        parts[0] += " at the kept states"
+    parts = [words("slip_range", "displacement") + ("" if cycle.has_exact_slip_range else " at the kept states")]
     if cycle.friction_energy is not None:
-        parts.append(_in_words(cycle, "slip distance", "displacement", natural))
-        parts.append(_in_words(cycle, "friction energy", "energy density", natural))
+        parts += [words("slip_distance", "displacement"), words("friction_energy", "energy density")]
     return f"from corner {cycle.first:,} to {cycle.last:,}: {regime}, {', '.join(parts)}"
 
 
@@ -90,7 +98,7 @@ def spectrum_line(damage: SpectrumDamage, over: Mapping[str, float]) -> str:
     `over` is that of :func:`fatigue_lines`.
     """
     spot, edge = damage.hot_spot, edge_body(damage.problem, damage.body)
-    name = f"fatigue of the {edge} over the whole history as a spectrum, Smith-Watson-Topper"
+    name = f"fatigue of the {edge} over the whole history as a spectrum, {criterion_title(damage.criterion)}"
     if math.isnan(spot.theta):
         return f"{name}: none, no plane has both tension and a changing strain"
     words = f"life {spot.life:.3g} spectra at {from_bottom(spot.theta):z.2f} deg"
@@ -117,7 +125,7 @@ def hot_spot_line(found: Fatigue, states: Sequence[State], over: Mapping[str, fl
     is 0. `over` is that of :func:`fatigue_lines`.
     """
     spot, problem = found.hot_spot, found.problem
-    name = f"fatigue of the {edge_body(problem, found.body)} in the last cycle, Smith-Watson-Topper"
+    name = f"fatigue of the {edge_body(problem, found.body)} in the last cycle, {criterion_title(found.criterion)}"
     pressure = max((state.peak_pressure for state in states), default=0.0)
     if spot.parameter <= ROUNDING * problem.surfaces.beta_star * pressure**2:
         return f"{name}: none, no plane has both tension and a changing strain"
@@ -136,34 +144,16 @@ def natural_sizes(cycle: LoadCycle) -> dict[str, float]:
     return largest | {"energy density": largest["displacement"] * largest["traction"]}
 
 
-def _in_words(cycle: LoadCycle, label: str, kind: str, natural: dict[str, float]) -> str:
-    """Return the largest value of a quantity with its place; 0 if it is rounding.
-
-    `label` is the name of the quantity in words, `kind` the kind of its unit. `natural` has the natural sizes.
-    """
-    largest, angle = _largest(cycle, label.replace(" ", "_"))
-    if largest is None or angle is None or largest <= ROUNDING * natural[kind]:
-        return f"{label} 0"
-    return f"{label} up to {units(cycle.states[0].problem)[kind].text(largest, 4)} at {angle:z.2f} deg"
-
-
 def document(cycle: LoadCycle) -> dict[str, Any]:
     """Return the largest values of a cycle with their places, and its energies, as a dict.
 
-    A value that is not known is None. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load;
+    A value that is not known is NaN. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load;
     it is not known if only the ends of the cycle were kept.
     """
-    found: dict[str, Any] = {"first": cycle.first, "last": cycle.last, "closed": cycle.is_closed}
-    for name in ("slip_range", "slip_distance", "friction_energy", "pressure_range", "shear_range"):
-        found[f"largest_{name}"], found[f"largest_{name}_angle"] = _largest(cycle, name)
-    found["regime"] = cycle.regime.words
-    found["slip_range_is_exact"] = cycle.has_exact_slip_range
-    unit = units(cycle.states[0].problem)["energy"]
-    found["dissipation"] = unit.factor * cycle.dissipation
-    found["nodes"] = {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
-    inside = len(cycle.states) > 2
-    found["work"] = {name: unit.factor * loop.work if inside else None for name, loop in cycle.loops.items()}
-    return found
+    unit, inside = units(cycle.states[0].problem), len(cycle.states) > 2
+    nodes = {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
+    work = {name: unit["energy"].factor * loop.work if inside else None for name, loop in cycle.loops.items()}
+    return document_of(CYCLE, cycle, unit) | {"nodes": nodes, "work": work}
 
 
 def write_csv(cycle: LoadCycle, path: Path) -> None:
@@ -217,12 +207,3 @@ def cycles_curve(problem: Problem, cycles: Sequence[Cycle]) -> Curve:
         elif name != "solved":
             columns[name] = values
     return Curve({}, columns)
-
-
-def _largest(cycle: LoadCycle, name: str) -> tuple[float | None, float | None]:
-    """Return the largest value of a node and its angle; None if unknown."""
-    values: np.ndarray | None = getattr(cycle, name)
-    if values is None:
-        return None, None
-    angle = cycle.angle_of_largest(values)
-    return float(values.max()), None if np.isnan(angle) else from_bottom(angle)

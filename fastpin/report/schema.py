@@ -10,20 +10,20 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
+from fastpin.assess.crack import GROWTH
+from fastpin.assess.cycle import CYCLE
+from fastpin.assess.fatigue import DAMAGE, HOW
+from fastpin.assess.outputs import properties
+from fastpin.assess.strength import PLACE
+from fastpin.assess.wear import COUNTS, PROFILES, WORN
 from fastpin.bodies.compliance import FORMAT, VERSION
-from fastpin.cracks.fates import CRACK_FATES
-from fastpin.damage.hole_strength import JOINT_MODES
-from fastpin.damage.laminates import MODES
-from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA
 from fastpin.model.checks import choice
-from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.fields import FIELDS, Field
 from fastpin.model.laminate import MODULI, ORDER
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import METHODS, SolveOptions
 from fastpin.model.ply import CRITERION_NAMES
-from fastpin.model.points import BODIES, EDGES
 from fastpin.model.strength import LENGTHS
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
@@ -66,6 +66,8 @@ def json_schema(command: str) -> Schema:
 def _summary() -> Schema:
     extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
     sides = _object({"smallest": extreme, "largest": extreme})
+    counts = {"nodes": _map_of(_WHOLE, "number of nodes of each behaviour")}
+    cycle = _object(properties(CYCLE) | counts | {"work": _map_of(_UNKNOWN, "work of each load")})
     of_cycle = dict.fromkeys(Cycle._fields, _UNKNOWN)
     of_cycle |= {"corner": _WHOLE, "length": _WHOLE, "number": _WHOLE, "solved": _TRUTH}
     return _object(
@@ -89,24 +91,16 @@ def _summary() -> Schema:
             "margins": _margins(),
             "unread": _map_of(_TEXT, "why a quantity could not be read from the states, by quantity"),
             "cycles": _list_of(_object(of_cycle)),
-            "cycle": _or_null(_last_cycle()),
+            "cycle": _or_null(cycle),
             "fatigue": _or_null(_fatigue()),
-            "crack": _or_null(_crack()),
+            "crack": _or_null(_object(properties(GROWTH))),
             "strength": _or_null(_strength()),
         }
     )
 
 
 def _strength() -> Schema:
-    place = {
-        "load_point": _NUMBER,
-        "ratio": _UNKNOWN | {"description": "factor on the stresses at which the first ply fails; null: no stress"},
-        **dict.fromkeys(("angle", "depth", "ply_angle"), _NUMBER),
-        "ply": _WHOLE | {"description": "place in the stack, 0 for the lowest ply"},
-        "ply_mode": {"enum": list(MODES)},
-        "joint_mode": {"enum": ["", *JOINT_MODES]},
-    }
-    loads = _map_of(_NUMBER, "loads of the state that fails")
+    place, loads = properties(PLACE), _map_of(_NUMBER, "loads of the state that fails")
     return _object(
         {
             "criterion": {"enum": list(CRITERION_NAMES)},
@@ -136,28 +130,9 @@ def _crack_growth() -> Schema:
             "fastpin": _TEXT,
             "title": _TEXT,
             "units": _map_of(_TEXT, "unit of each kind of quantity"),
-            "crack": _crack(),
+            "crack": _object(properties(GROWTH)),
             "lengths": _map_of(_list_of(_UNKNOWN), "a column of numbers at all lengths, with its unit in its name"),
             "margins": _margins(),
-        }
-    )
-
-
-def _crack() -> Schema:
-    lengths = dict.fromkeys(("first", "last", "arrest", "fracture"), _UNKNOWN)
-    return _object(
-        {
-            "angle_of_mouth": _NUMBER,
-            "direction": _NUMBER,
-            "body": {"enum": list(EDGES)},
-            "law": _or_null({"type": "object"}),
-            "repeated": {"enum": ["cycle", "spectrum"]},
-            "fate": {"enum": list(CRACK_FATES.values())},
-            "life": _UNKNOWN | {"description": "cycles or spectra; null: no end"},
-            "error": _UNKNOWN | {"description": "numerical, in parts of the life or of the arrest; null: unknown"},
-            **lengths,
-            "words": _TEXT,
-            "doubts": _list_of(_TEXT),
         }
     )
 
@@ -248,50 +223,12 @@ def _state(seat: Schema | None = None) -> Schema:
     return _object(parts | {"seat": seat | words}, without=["seat"])
 
 
-def _last_cycle() -> Schema:
-    names = ("slip_range", "slip_distance", "friction_energy", "pressure_range", "shear_range")
-    largest = {f"largest_{name}{end}": _UNKNOWN for name in names for end in ("", "_angle")}
-    return _object(
-        {
-            "first": _WHOLE,
-            "last": _WHOLE,
-            "closed": _TRUTH,
-            **largest,
-            "regime": {"enum": list(REGIMES.values())},
-            "slip_range_is_exact": _TRUTH,
-            "dissipation": _UNKNOWN,
-            "nodes": _map_of(_WHOLE, "number of nodes of each behaviour"),
-            "work": _map_of(_UNKNOWN, "work of each load"),
-        }
-    )
-
-
 def _fatigue() -> Schema:
     numbers = dict.fromkeys(("start", "stop", "largest", "parameter", "damage"), _NUMBER)
     words = {"description": "counted cycles at the hot spot, the largest damage first; start and stop are load points"}
-    body = _object(
-        {
-            "criterion": {"enum": list(LIFE_CONSTANTS)},
-            "body": {"enum": list(BODIES)},
-            "damage": _NUMBER,
-            "life": _UNKNOWN | {"description": "spectra, or cycles over the last cycle; null without damage"},
-            **dict.fromkeys(("angle", "depth", "plane"), _UNKNOWN),
-            "cycles": _list_of(_object(numbers | {"times": _WHOLE})) | words,
-            "over_yield": _UNKNOWN,
-        }
-    )
-    return _object(
-        {
-            "criterion": _list_of({"enum": list(LIFE_CONSTANTS)}),
-            "over": {"enum": list(SPECTRA)},
-            "method": {"enum": list(DISTANCES)},
-            "small_cycles": {"enum": list(MINER_RULES)},
-            "knee": _UNKNOWN,
-            "life_asked": _UNKNOWN,
-            "error": _OPTIONAL_TEXT,
-            "bodies": _list_of(body),
-        }
-    )
+    cycles = _list_of(_object(numbers | {"times": _WHOLE})) | words
+    body = _object(properties(DAMAGE) | {"cycles": cycles, "over_yield": _UNKNOWN})
+    return _object(properties(HOW) | {"error": _OPTIONAL_TEXT, "bodies": _list_of(body)})
 
 
 def _convergence() -> Schema:
@@ -389,10 +326,8 @@ def _compliance() -> Schema:
 
 
 def _wear() -> Schema:
-    whole, plain = ("cycle", "next_jump", "solved"), ("tau", "depth", "volume", "pin_volume", "plate_volume")
-    arrays = dict.fromkeys(("pin_depth", "plate_depth", "pressure"), _list_of(_NUMBER))
-    numbers = (*plain, "energy_per_cycle", "dissipation", "removed", "peak_pressure")
-    cycle = _object(dict.fromkeys(whole, _WHOLE) | dict.fromkeys(numbers, _NUMBER) | arrays)
+    profiles = {name: _list_of(each) for name, each in properties(PROFILES).items()}
+    cycle = _object(properties(COUNTS) | {"tau": _NUMBER} | properties(WORN) | profiles)
     return _object(
         {
             "fastpin": _TEXT,

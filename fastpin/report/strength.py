@@ -7,13 +7,15 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from fastpin import damage, studies
+from fastpin.assess import outputs
+from fastpin.assess.asked import strength_words
+from fastpin.assess.strength import PLACE, WorstState
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.model.strength import LENGTHS, StrengthAssessment
 from fastpin.model.units import printed_loads, units
-from fastpin.report.case import strength_words
 from fastpin.solver.errors import SolveError
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
@@ -43,9 +45,9 @@ class StrengthFound(NamedTuple):
     reason: str
 
     @property
-    def worst(self) -> tuple[StrengthAssessment, State, damage.JointStrength]:
+    def worst(self) -> WorstState:
         """How it was assessed, the worst state and its strength."""
-        return self.how, self.state, self.strength
+        return WorstState(self.how, self.state, self.strength)
 
 
 def assess_strength(
@@ -101,33 +103,18 @@ def place_words(strength: damage.JointStrength) -> str:
 
 def document(found: StrengthFound) -> dict[str, Any]:
     """Return a strength as a JSON-ready dict. A ratio without stress is infinite."""
-    failure = found.failure
+    unit, failure = units(found.state.problem), None
+    lengths = {name: unit["length"].factor * value for name, value in found.how.lengths.items()}
+    if found.failure is not None:
+        load = printed_loads(found.state.problem, found.failure.state.load)
+        failure = {"factor": found.failure.factor, "load": load, "solved": found.failure.solved}
+        failure |= outputs.document(PLACE, found.failure, unit)
     return {
         "criterion": found.how.criterion,
         **dict.fromkeys(LENGTHS),
-        **{name: units(found.state.problem)["length"].factor * value for name, value in found.how.lengths.items()},
+        **lengths,
         "states": found.states,
-        **_place(found.state, found.strength),
-        "failure": None
-        if failure is None
-        else {
-            "factor": failure.factor,
-            "load": printed_loads(failure.state.problem, failure.state.load),
-            "solved": failure.solved,
-            **_place(failure.state, failure.strength),
-        },
+        **outputs.document(PLACE, found, unit),
+        "failure": failure,
         "error": found.reason or None,
-    }
-
-
-def _place(state: State, strength: damage.JointStrength) -> dict[str, Any]:
-    return {
-        "load_point": load_point(state),
-        "ratio": strength.least_ratio,
-        "angle": from_bottom(strength.angle),
-        "depth": units(state.problem)["length"].factor * float(strength.depth[strength.least]),
-        "ply": int(strength.ply[strength.least]),
-        "ply_angle": strength.ply_angle,
-        "ply_mode": strength.ply_mode,
-        "joint_mode": strength.joint_mode,
     }

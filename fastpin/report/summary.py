@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from fastpin import cracks
+from fastpin.assess import fatigue as fatigue_of
+from fastpin.assess import outputs
+from fastpin.assess.crack import GROWTH
+from fastpin.assess.fatigue import Assessed
+from fastpin.assess.margins import result_margins
 from fastpin.bodies.body import BodyBase
 from fastpin.cracks.margins import crack_margins
 from fastpin.errors import ReadingError, reading
@@ -21,11 +26,9 @@ from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
-from fastpin.report import assessment, crack_growth
+from fastpin.report import crack_growth
 from fastpin.report import cycle as cycle_report
 from fastpin.report import strength as strength_report
-from fastpin.report.assessment import Assessed
-from fastpin.report.fatigue import life_margins
 from fastpin.report.margins import document as margins_document
 from fastpin.report.strength import StrengthFound
 from fastpin.solver.result import Result
@@ -35,8 +38,6 @@ from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
 from fastpin.states.state import State
 from fastpin.version import __version__
-
-T = TypeVar("T")
 
 
 def document(
@@ -102,8 +103,8 @@ def document(
             for row in (() if result is None else result.cycles)
         ],
         "cycle": None if cycle is None else cycle_report.document(cycle),
-        "fatigue": None if fatigue is None else assessment.document(fatigue, over_yield(margins)),
-        "crack": None if crack is None else crack_growth.document(crack),
+        "fatigue": None if fatigue is None else fatigue_of.document(fatigue, over_yield(margins)),
+        "crack": None if crack is None else outputs.document(GROWTH, crack, unit),
         "strength": None if strength is None else strength_report.document(strength),
     }
     return json_ready(found)
@@ -153,7 +154,7 @@ def _state_summary(state: State, unread: dict[str, str]) -> dict[str, Any]:
     resultants, bars, plate = state.resultants, state.error_bars, state.problem.surfaces.plate
     unit = units(state.problem)
 
-    def known(name: str, read: Callable[[], T]) -> T | None:
+    def known(name: str, read: Callable[[], Any]) -> Any:
         try:
             with reading(name):
                 return read()
@@ -216,12 +217,10 @@ def _margins(
     result: Result, fatigue: Assessed | None, crack: cracks.Growth | None, strength: StrengthFound | None
 ) -> list[Margin]:
     """Return the margins over all states, and those of fatigue and of a crack where they are known."""
-    if len(result):
-        kept = KeptStates(result.states)
-        rows = static_margins(result.problem, marked_extremes(kept), kept.read)
-    else:
-        rows = static_margins(result.problem, Found(), lambda places: [])
-    return rows + life_margins(result.problem, result.states, result.cycles, fatigue, crack, strength)
+    kept = KeptStates(result.states)
+    static = static_margins(result.problem, marked_extremes(kept) if len(result) else Found(), kept.read)
+    worst, states = None if strength is None else strength.worst, result.states
+    return result_margins(result.problem, static, states, result.cycles, fatigue=fatigue, crack=crack, strength=worst)
 
 
 def crack_document(case: Case, growth: cracks.Growth) -> dict[str, Any]:
@@ -232,7 +231,7 @@ def crack_document(case: Case, growth: cracks.Growth) -> dict[str, Any]:
             "fastpin": __version__,
             "title": case.title,
             "units": unit_names(growth.problem),
-            "crack": crack_growth.document(growth),
+            "crack": outputs.document(GROWTH, growth, units(growth.problem)),
             "lengths": columns,
             "margins": margins_document(growth.problem, crack_margins(growth)),
         }

@@ -24,7 +24,7 @@ from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, Unit, scaled, units
 from fastpin.model.wear import Wear
 from fastpin.report.case import ROUNDING
-from fastpin.report.cells import csv_cell
+from fastpin.report.curves import csv_cell
 from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.field_words import field_kind, field_words

@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess.outputs import chosen
+from fastpin.assess.outputs import document as document_of
+from fastpin.assess.wear import COUNTS, PROFILES, WORN
 from fastpin.damage import WornFatigue
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import edge_body
@@ -15,7 +18,7 @@ from fastpin.model.wear import cycles_text
 from fastpin.report.curves import Curve
 from fastpin.report.summary import json_ready, unit_names
 from fastpin.report.table import Column, TableLine, columns_at, cut_lines, printed_rows, table_of_lines, with_rows
-from fastpin.solver.wear_result import WearResult, WornCycle
+from fastpin.solver.wear_result import WearResult
 from fastpin.version import __version__
 
 DEBRIS = "debris is not modelled"
@@ -45,15 +48,10 @@ def cycle_columns(result: WearResult) -> list[Column]:
     """Return the columns of the table of all chosen cycles."""
     unit = units(result.problem)
     columns: list[Column] = [("cycle", "", [f"{each.cycle:,}" for each in result])]
-    kinds = {
-        "depth": ("displacement", [each.depth for each in result]),
-        "volume": ("work per stress", [each.volume for each in result]),
-        "energy/cycle": ("energy", [each.energy_per_cycle for each in result]),
-        "largest p": ("traction", [each.largest_pressure for each in result]),
-    }
-    for name, (kind, values) in kinds.items():
-        factor, label = unit[kind].scale(values)
-        columns.append((name, label, [f"{factor * value:.5g}" for value in values]))
+    for each in chosen(WORN, ("depth", "volume", "energy_per_cycle", "largest_pressure")).values():
+        values = [each.of(one) for one in result]
+        factor, label = unit[each.kind].scale(values)
+        columns.append((each.short or each.name, label, [f"{factor * value:.5g}" for value in values]))
     shares = ["-" if np.isnan(each.pin_share) else f"{100.0 * each.pin_share:.3g}" for each in result]
     columns.append(("of the pin", "%", shares))
     columns.append(("solved", "", [f"{each.solved:,}" for each in result]))
@@ -114,17 +112,11 @@ def scar_curves(result: WearResult) -> list[Curve]:
     The pressure is that on the profile at the end of one more cycle.
     """
     unit = units(result.problem)
-    length, traction = unit["displacement"], unit["traction"]
     angles = np.array([from_bottom(angle) for angle in result.theta.tolist()])
     order = np.argsort(angles)
     curves = []
     for each in result:
-        columns = {
-            "angle [deg]": angles,
-            f"pin depth [{length.name}]": length.factor * each.pin_depth,
-            f"plate depth [{length.name}]": length.factor * each.plate_depth,
-            f"pressure [{traction.name}]": traction.factor * each.states[-1].pressure,
-        }
+        columns = {"angle [deg]": angles} | {one.column(unit): one.shown(each, unit) for one in PROFILES}
         curves.append(Curve({"cycle": each.cycle}, {name: values[order] for name, values in columns.items()}))
     return curves
 
@@ -132,18 +124,9 @@ def scar_curves(result: WearResult) -> list[Curve]:
 def cycles_curve(result: WearResult) -> Curve:
     """Return the numbers of all stored cycles."""
     unit = units(result.problem)
-    volume, length, energy, traction = (
-        unit[kind] for kind in ("work per stress", "displacement", "energy", "traction")
-    )
-    columns = {
-        "cycle": [float(each.cycle) for each in result],
-        f"pin volume [{volume.name}]": [volume.factor * each.volumes[0] for each in result],
-        f"plate volume [{volume.name}]": [volume.factor * each.volumes[1] for each in result],
-        f"depth [{length.name}]": [length.factor * each.depth for each in result],
-        f"energy of a cycle [{energy.name}]": [energy.factor * each.energy_per_cycle for each in result],
-        f"largest pressure [{traction.name}]": [traction.factor * each.largest_pressure for each in result],
-    }
-    return Curve({}, {name: np.array(values) for name, values in columns.items()})
+    names = ("cycle", "pin_volume", "plate_volume", "depth", "energy_per_cycle", "largest_pressure")
+    shown = chosen((*COUNTS, *WORN), names).values()
+    return Curve({}, {each.column(unit): np.array([float(each.shown(one, unit)) for one in result]) for each in shown})
 
 
 def damage_curve(damage: WornFatigue) -> Curve:
@@ -182,30 +165,10 @@ def document(result: WearResult | None, title: str = "", error: str | None = Non
         "pin_coefficient": pin.tolist(),
         "plate_coefficient": plate.tolist(),
         "statistics": result.statistics,
-        "cycles": [_cycle(result, each, tau) for each, tau in zip(result, result.tau.tolist(), strict=True)],
+        "cycles": [
+            document_of(COUNTS, each, unit) | {"tau": tau} | document_of((*WORN, *PROFILES), each, unit)
+            for each, tau in zip(result, (unit["wear coefficient"].factor * result.tau).tolist(), strict=True)
+        ],
     }
     ready: dict[str, Any] = json_ready(found)
     return ready
-
-
-def _cycle(result: WearResult, cycle: WornCycle, tau: float) -> dict[str, Any]:
-    unit = units(result.problem)
-    area, energy, length = (unit[kind].factor for kind in ("work per stress", "energy", "displacement"))
-    pin, plate = cycle.volumes
-    return {
-        "cycle": cycle.cycle,
-        "next_jump": cycle.next_jump,
-        "solved": cycle.solved,
-        "tau": unit["wear coefficient"].factor * tau,
-        "depth": length * cycle.depth,
-        "volume": area * cycle.volume,
-        "pin_volume": area * pin,
-        "plate_volume": area * plate,
-        "energy_per_cycle": energy * cycle.energy_per_cycle,
-        "dissipation": energy * cycle.dissipation,
-        "removed": energy * cycle.removed,
-        "peak_pressure": unit["traction"].factor * float(cycle.pressure.max()),
-        "pin_depth": (length * cycle.pin_depth).tolist(),
-        "plate_depth": (length * cycle.plate_depth).tolist(),
-        "pressure": (unit["traction"].factor * cycle.pressure).tolist(),
-    }

@@ -10,15 +10,17 @@ from __future__ import annotations
 import logging
 import time
 import uuid
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Unpack
+from typing import Any, Unpack
 
 import h5py
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.beside import checked_beside
 from fastpin.model.checks import check_callable, file_path, string, true_or_false
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
 from fastpin.model.grid import Grid
@@ -41,6 +43,7 @@ from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
 from fastpin.storage.layout import (
     append,
+    beside_attributes,
     check_format,
     check_growing,
     check_rows,
@@ -83,6 +86,7 @@ def wear(
     overwrite: bool = False,
     resume: bool = False,
     title: str = "",
+    fatigue: FatigueAssessment | None = None,
     grid: Grid | None = None,
     progress: RunProgress | None = None,
     **options: Unpack[OptionValues],
@@ -113,6 +117,8 @@ def wear(
         Continue the unfinished life in `output`, to the same bits. All other arguments must be those of its beginning.
     title : str
         Title of the result in the file.
+    fatigue : FatigueAssessment, optional
+        How ``fastpin report`` judges the life in the file: its criteria and bodies.
     grid : Grid, optional
         Ready, equally spaced nodes.
     progress : callable, optional
@@ -146,7 +152,7 @@ def wear(
         raise InputError("friction", "is a function of lives in memory: a file can't hold it, so leave output out")
     task = WearTask(problem, history, how, SolveOptions(**options), grid, progress, friction)
     warn_of([*doubts(problem, history, task.options), *wear_doubts(problem, how)], 2)
-    string("title", title)
+    title, judged = string("title", title), checked_beside(problem, {"fatigue": fatigue})
     for name, value in (("overwrite", overwrite), ("resume", resume)):
         if true_or_false(name, value) and output is None:
             raise InputError(name, "needs an output")
@@ -157,8 +163,8 @@ def wear(
     if resume:
         check_exists(path)
         if not is_empty(path):  # a killed life may have left a file without any transaction
-            return _resumed(path, task, title)
-    writer = WearFile(path, task, title)
+            return _resumed(WearFile(path, task, title, judged))
+    writer = WearFile(path, task, title, judged)
     check_overwriting(path, overwrite)
     with _closing(writer):
         task.follow(writer)
@@ -177,16 +183,15 @@ def _in_memory(task: WearTask) -> WearResult:
     return task.result(kept.grid, kept.cycles, kept.statistics)
 
 
-def _resumed(path: Path, task: WearTask, title: str) -> WearResult:
-    """Continue the life in a file. A life without a stored cycle begins anew, with this title."""
-    writer = WearFile(path, task, title)
+def _resumed(writer: WearFile) -> WearResult:
+    """Continue the life in a file. A life without a stored cycle begins anew, with the title of the writer."""
     place, grid = writer.reopen()
     with _closing(writer):
         if place is None:
-            task.follow(writer)
+            writer.task.follow(writer)
         else:
-            task.go_on(writer, place, grid, writer.stored)
-    return load_wear(path)
+            writer.task.go_on(writer, place, grid, writer.stored)
+    return load_wear(writer.path)
 
 
 @contextmanager
@@ -212,10 +217,12 @@ class WearFile:
     path : Path
     task : WearTask
     title : str
+    beside : mapping of str
+        The section [fatigue] of the case, if it has one, by its name.
     """
 
-    def __init__(self, path: Path, task: WearTask, title: str) -> None:
-        self.path, self._task, self._title = path, task, title
+    def __init__(self, path: Path, task: WearTask, title: str, beside: Mapping[str, Any]) -> None:
+        self.path, self.task, self._title, self._beside = path, task, title, beside
         self._file: JournaledFile | None = None
         self._h5: h5py.File
         self._name = ""
@@ -243,7 +250,7 @@ class WearFile:
             with reading(self.path, "resume"):
                 stored = hdf5.Group(self._h5)
                 check_format(stored, str(self.path))
-                _check_same(self.path, stored, self._task)
+                _check_same(self.path, stored, self.task)
                 grid = read_grid(stored)
                 check_growing(stored, grid.size)
                 for name, rows in _read_rows(stored, grid.size).items():
@@ -281,12 +288,13 @@ class WearFile:
         """Begin a new file."""
         self.abort()
         check_beside(checkpoint_of(self.path))
-        task, self._name = self._task, uuid.uuid4().hex
+        task, self._name = self.task, uuid.uuid4().hex
         self._file = JournaledFile(self.path, new=True)
         self._h5 = h5py.File(self._file, "w")
         self._h5.flush()
         nodes = task.options.nodes if task.grid is None else grid.size
         attributes = {**option_attributes(task.options), "nodes": nodes, "slip_sums": True, "title": self._title}
+        attributes |= beside_attributes(self._beside)
         write_head(self._h5, task.problem, task.stored_history, grid, attributes)
         self._h5.attrs["run"] = self._name
         group = self._h5.create_group("wear")

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fastpin.assess.outputs import ROUNDING
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, check_callable, items, whole_number
 from fastpin.model.doubts import doubts, doubts_given, warn_of
@@ -40,9 +41,6 @@ LEAST_NODES = 51
 
 LEAST_CLOSED = 10
 """Fewest nodes in contact. A coarser grid says nothing about the quantities of finer grids."""
-
-ROUNDING = 1e-9
-"""Largest difference of equal values, in parts of the quantity's size."""
 
 LEAST_REFERENCE = 1e-3
 """Least reference of relative differences, in parts of the quantity's size. A value near zero says nothing."""

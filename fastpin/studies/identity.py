@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess.kept import kept
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries
@@ -23,7 +24,6 @@ from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.studies.kept import kept
 from fastpin.version import __version__
 
 FIRST_LOADS = 6

@@ -20,42 +20,38 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from fastpin.assess.margins import LEAST, of_margin
+from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
 from fastpin.casefile.assessment import read_assessment
-from fastpin.casefile.cracks import read_crack
+from fastpin.casefile.beside import READERS
 from fastpin.casefile.profiles import read_wear
-from fastpin.casefile.strength import read_strength
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
-from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA, FatigueAssessment
+from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA
 from fastpin.model.beside import BESIDE
-from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
-from fastpin.model.crack import CRACK_KEYS, CrackGrowth
+from fastpin.model.checks import alternatives, as_toml, file_path, string
+from fastpin.model.crack import CRACK_KEYS
 from fastpin.model.points import BODIES
 from fastpin.model.profile import Profile
-from fastpin.model.strength import STRENGTH_KEYS, StrengthAssessment
+from fastpin.model.strength import STRENGTH_KEYS
 from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.margins import MARGINS
 from fastpin.states.quantities import QUANTITIES
-from fastpin.studies.crack_outcomes import CRACK_QUANTITIES, of_crack
-from fastpin.studies.fatigue_outcomes import FATIGUE_QUANTITIES, of_assessment, unit_of_life
-from fastpin.studies.margin_outcomes import LEAST, of_margin
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     INTERFACES,
     TAKES,
-    WEAR_QUANTITIES,
     FunctionOfFile,
     StudyOutcome,
     bar_of_taken,
     digest,
     of_last_cycle,
-    of_wear,
     taken,
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
-from fastpin.studies.strength_outcomes import STRENGTH_QUANTITIES, of_strength
+from fastpin.studies.section_outcomes import SECTION_OUTCOMES, of_section, unit_of_life
 
 Outcomes = dict[str, StudyOutcome]
 """Outcomes by the names that the user chose."""
@@ -71,6 +67,9 @@ KEYS = {
     "function": ("function", "classes"),
 }
 """The first key of an outcome says what is read. The others may stand beside it."""
+
+RENAMED = {"dissipation": "energy_per_cycle", "pressure": "largest_pressure"}
+"""Older names of quantities of wear, which plans may still have."""
 
 LONGEST_NAME = 64
 """Most characters in the name of an outcome."""
@@ -137,7 +136,7 @@ def outcomes_from(given: Mapping[str, Any], beside: Mapping[str, Any] = MappingP
         By name: a function of a result, a table as in a plan, such as ``{"quantity": "dx", "take": "largest"}``, or an
         :class:`StudyOutcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
     beside : mapping of str, optional
-        The values of the sections [wear], [fatigue], ... of the case by name, for outcomes that leave keys out.
+        What outcomes leave out, see :meth:`fastpin.studies.variation.BaseCase.beside`.
 
     Returns
     -------
@@ -238,19 +237,12 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
         section.report(f"must have one of the keys {', '.join(KEYS)}, such as {_EXAMPLE}")
         return None
     allowed = KEYS[first[0]]
-    for key in section.table:
-        if key not in allowed:
-            others = f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
-            hint = closest(str(key), allowed) or f"; beside {first[0]} there {others}"
-            section.report(f'unknown key "{key}"{hint}', str(key))
+    others = f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
+    section.check_keys(allowed, "", f"; beside {first[0]} there {others}")
     if first[0] == "wear":
-        return _of_wear(section, folder, beside.get("wear"))
-    if first[0] == "fatigue":
-        return _of_fatigue(section, beside.get("fatigue"))
-    if first[0] == "crack":
-        return _of_crack(source, section, beside.get("crack"))
-    if first[0] == "strength":
-        return _of_strength(source, section, beside.get("strength"))
+        return _of_wear(section, folder, beside)
+    if first[0] in SECTION_OUTCOMES:
+        return _of_section(first[0], source, section, beside)
     if first[0] == "margin":
         return _of_margin(section, beside)
     if first[0] == "function":
@@ -258,17 +250,10 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
     return _of_cycle(section) if first[0] == "cycle" else _of_quantity(section)
 
 
-def _choice(section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
-    """A word of a table; the first one allowed if its key is missing. None if the word is wrong (reported)."""
-    if key not in section:
-        return allowed[0]
-    return section.checked(key, choice, allowed)
-
-
 def _of_quantity(section: Section) -> StudyOutcome | None:
-    quantity = _choice(section, "quantity", tuple(QUANTITIES))
-    take, span = _choice(section, "take", TAKES), _choice(section, "over", SPECTRA)
-    interface = _choice(section, "interface", INTERFACES)
+    quantity = section.choice("quantity", tuple(QUANTITIES))
+    take, span = section.choice("take", TAKES), section.choice("over", SPECTRA)
+    interface = section.choice("interface", INTERFACES)
     if quantity is None or take is None or span is None or interface is None:
         return None
     kind = QUANTITIES[quantity].kind
@@ -291,7 +276,7 @@ def _of_quantity(section: Section) -> StudyOutcome | None:
 
 
 def _of_cycle(section: Section) -> StudyOutcome | None:
-    quantity, interface = _choice(section, "cycle", tuple(CYCLE_QUANTITIES)), _choice(section, "interface", INTERFACES)
+    quantity, interface = section.choice("cycle", tuple(CYCLE_QUANTITIES)), section.choice("interface", INTERFACES)
     if quantity is None or interface is None:
         return None
     kind, classes = CYCLE_QUANTITIES[quantity].kind, dict(CYCLE_QUANTITIES[quantity].classes)
@@ -299,13 +284,15 @@ def _of_cycle(section: Section) -> StudyOutcome | None:
     return StudyOutcome(kind, "", json.dumps(definition), partial(of_last_cycle, quantity, interface), classes)
 
 
-def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutcome | None:
+def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of the last cycle, followed on a profile that wears: as the case says, unless the table does."""
-    quantity = _choice(section, "wear", tuple(WEAR_QUANTITIES))
+    default: Wear | None = beside.get("wear")
+    quantity = RENAMED.get(str(section.table.get("wear"))) or section.choice("wear", (*WEAR_OUTCOMES, *RACE_OUTCOMES))
+    asked = beside["fatigue"].criteria if "fatigue" in beside else ()
     with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.counting is not None)
-    criterion = _choice(section, "criterion", with_life)
-    body: Any = _choice(section, "body", BODIES)
-    if quantity is not None and not WEAR_QUANTITIES[quantity].is_damage:
+    criterion = section.choice("criterion", (*asked, *(name for name in with_life if name not in asked)))
+    body: Any = section.choice("body", BODIES)
+    if quantity in WEAR_OUTCOMES:
         for key in ("criterion", "body"):
             if key in section:
                 section.report(f"{key}: has no effect on the {quantity.replace('_', ' ')}", key)
@@ -316,53 +303,46 @@ def _of_wear(section: Section, folder: Path, default: Wear | None) -> StudyOutco
         return None
     how = {name: value.entries() if isinstance(value, Profile) else value for name, value in wear.given.items()}
     definition = {"wear": quantity, "how": how, "criterion": criterion, "body": body}
-    kind, classes = WEAR_QUANTITIES[quantity].kind, dict(WEAR_QUANTITIES[quantity].classes)
-    read = partial(of_wear, quantity, wear, criterion, body)
-    return StudyOutcome(kind, "", json.dumps(definition, sort_keys=True), read, classes, wear=wear)
+    output, read = (WEAR_OUTCOMES | RACE_OUTCOMES)[quantity], partial(of_wear, quantity, wear, criterion, body)
+    return StudyOutcome(output.kind, "", json.dumps(definition, sort_keys=True), read, dict(output.classes), wear=wear)
 
 
-def _of_fatigue(section: Section, default: FatigueAssessment | None) -> StudyOutcome | None:
-    """Read a number of the worst hot spot by one criterion: as the case says, unless the table does."""
-    quantity = _choice(section, "fatigue", tuple(FATIGUE_QUANTITIES))
-    how = read_assessment(section, {} if default is None else default.given)
+def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
+    """Read a number of a section beside the problem: as the case says, unless the table does."""
+    quantity = section.choice(name, tuple(SECTION_OUTCOMES[name]))
+    read: Callable[..., Any] = READERS.get(name, read_assessment)
+    how = read(source, section, _entries(name, beside[name]) if name in beside else {})
     if quantity is None or how is None:
         return None
-    if "criterion" in section and len(how.criteria) > 1:
+    if name == "fatigue" and "criterion" in section and len(how.criteria) > 1:
         section.report(f"criterion: must be one criterion, not {len(how.criteria)}; each outcome has one", "criterion")
         return None
-    how = how.changed(criterion=how.criteria[0])
-    kind, unit = unit_of_life(how) if quantity == "life" else (FATIGUE_QUANTITIES[quantity].kind, "")
-    definition = json.dumps({"fatigue": quantity, "how": how.toml()}, sort_keys=True)
-    return StudyOutcome(kind, unit, definition, partial(of_assessment, quantity, how))
+    how = _alone(name, how)
+    definition = json.dumps({name: quantity, "how": _entries(name, how)}, sort_keys=True)
+    output, unit = SECTION_OUTCOMES[name][quantity].output, ""
+    kind = output.kind
+    if kind == "life":
+        kind, unit = unit_of_life(how.passes if name == "fatigue" else beside.get("passes", "cycles or spectra"))
+    return StudyOutcome(kind, unit, definition, partial(of_section, name, quantity, how), dict(output.classes))
 
 
-def _of_crack(source: CaseText, section: Section, default: CrackGrowth | None) -> StudyOutcome | None:
-    """Read a number of a crack that grows: as the case says, unless the table does."""
-    quantity = _choice(section, "crack", tuple(CRACK_QUANTITIES))
-    crack = read_crack(source, section, {} if default is None else default.entries())
-    if quantity is None or crack is None:
-        return None
-    definition = json.dumps({"crack": quantity, "how": crack.entries()}, sort_keys=True)
-    chosen = CRACK_QUANTITIES[quantity]
-    of = partial(of_crack, quantity, crack)
-    return StudyOutcome(chosen.kind, chosen.unit, definition, of, dict(chosen.classes))
+def _alone(name: str, how: Any) -> Any:
+    """Return what one outcome takes of a section: its first criterion, and no load at failure unless that is asked."""
+    if name == "fatigue":
+        return how.changed(criterion=how.criteria[0])
+    return replace(how, failure=False) if name == "strength" else how
 
 
-def _of_strength(source: CaseText, section: Section, default: StrengthAssessment | None) -> StudyOutcome | None:
-    """Read a number of the strength of a laminate: as the case says, unless the table does."""
-    quantity = _choice(section, "strength", tuple(STRENGTH_QUANTITIES))
-    how = read_strength(source, section, {} if default is None else default.entries())
-    if quantity is None or how is None:
-        return None
-    how = replace(how, failure=False)  # the outcome says whether the load at failure is looked for
-    definition = json.dumps({"strength": quantity, "how": how.entries()}, sort_keys=True)
-    return StudyOutcome(STRENGTH_QUANTITIES[quantity].kind, "", definition, partial(of_strength, quantity, how))
+def _entries(name: str, how: Any) -> dict[str, Any]:
+    """Return the keys and values of a section, for the definition of an outcome."""
+    entries: dict[str, Any] = how.toml() if name == "fatigue" else how.entries()
+    return entries
 
 
 def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read the smallest margin of safety, of all kinds or of one kind, with the sections of the case."""
-    name = _choice(section, "margin", (LEAST, *MARGINS))
-    owner = _choice(section, "body", ("pin", "bush", "plate")) if "body" in section else None
+    name = section.choice("margin", (LEAST, *MARGINS))
+    owner = section.choice("body", ("pin", "bush", "plate")) if "body" in section else None
     if name is None or ("body" in section and owner is None):
         return None
     # Some kinds of margins need a section of the case.
@@ -372,13 +352,8 @@ def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | No
         return None
     sections = {each: beside[each] for each in BESIDE if each in beside and (name == LEAST or each == needed)}
     if "strength" in sections:
-        sections["strength"] = replace(sections["strength"], failure=False)
-    written: dict[str, Callable[[Any], dict[str, Any]]] = {
-        "fatigue": FatigueAssessment.toml,
-        "crack": CrackGrowth.entries,
-        "strength": StrengthAssessment.entries,
-    }
-    definition = {"margin": name, "body": owner, **{each: written[each](value) for each, value in sections.items()}}
+        sections["strength"] = _alone("strength", sections["strength"])
+    definition = {"margin": name, "body": owner, **{each: _entries(each, value) for each, value in sections.items()}}
     text = json.dumps({key: value for key, value in definition.items() if value is not None}, sort_keys=True)
     return StudyOutcome("", "", text, partial(of_margin, name, owner, tuple(sections.items())), has_strengths=True)
 

@@ -12,20 +12,20 @@ import math
 import pickle
 import sys
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import MappingProxyType, ModuleType
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fastpin.assess.kept import kept
+from fastpin.assess.outputs import ROUNDING, Output
 from fastpin.damage.criteria import FATIGUE_CRITERIA
-from fastpin.damage.race import Race
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
-from fastpin.model.doubts import doubts_given
 from fastpin.model.points import Body, owner_of
 from fastpin.model.ties import top
 from fastpin.model.units import DEGREE, Unit
@@ -36,13 +36,10 @@ from fastpin.states.load_cycle import NodeBehaviour
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
-from fastpin.studies.kept import kept
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.damage.hot_spots import HotSpot
-    from fastpin.damage.worn import WornFatigue
     from fastpin.solver.result import Result
-    from fastpin.solver.wear_result import WearResult
 
 TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
 """Ways to take one number from the values of a quantity, see :func:`taken`."""
@@ -51,58 +48,32 @@ INTERFACES = ("pin", "seat")
 """Interfaces of a joint: the pin in the hole, and a bush that slips in its seat."""
 
 
-ROUNDING = 1e-9
-"""Largest slip range without slip, in parts of the natural size of displacements."""
+def _hot_spot_quantities(criterion: str, body: Body) -> Iterator[Output]:
+    """Yield parameter, angle and, if the criterion has one, life at the hot spot of a body."""
+    kind, counting = FATIGUE_CRITERIA[criterion].kind, FATIGUE_CRITERIA[criterion].counting
+    stem, end = criterion.replace("-", "_"), "" if body == "plate" else f"_{body}"
+    yield Output(f"{stem}{end}", kind, lambda result: _hot_spot(result, criterion, body).parameter)
+    yield Output(f"{stem}_angle{end}", "angle", lambda result: _hot_spot(result, criterion, body).theta)
+    if counting is not None:
+        yield Output(f"{stem}_life{end}", "life", lambda result: _life(result, criterion, body))
 
 
-class CycleQuantity(NamedTuple):
-    """A number of the last cycle of a result.
-
-    Attributes
-    ----------
-    kind : str
-        A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad), "class" or "" for
-        a plain number.
-    of : callable
-        Gives its value for a result with cycles, in SI units or in the units of a dimensionless problem.
-    classes : dict of int to str
-        Of the kind "class": the words of each value.
-    """
-
-    kind: str
-    of: Callable[[Result], float]
-    classes: Mapping[int, str] = MappingProxyType({})
-
-
-def _hot_spot_quantities(name: str, body: Body) -> dict[str, CycleQuantity]:
-    """Parameter, angle and, if the criterion has one, life at the hot spot of a body, by the end of their names."""
-    criterion = FATIGUE_CRITERIA[name]
-    quantities = {
-        "": CycleQuantity(criterion.kind, lambda result: _hot_spot(result, name, body).parameter),
-        "_angle": CycleQuantity("angle", lambda result: _hot_spot(result, name, body).theta),
-    }
-    if criterion.counting is not None:
-        quantities["_life"] = CycleQuantity("life", lambda result: _life(result, name, body))
-    return {ending if body == "plate" else f"{ending}_{body}": quantity for ending, quantity in quantities.items()}
-
-
-CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
-    "dissipation": CycleQuantity("energy", lambda result: result.cycles[-1].dissipation),
-    "rotation_change": CycleQuantity("rotation", lambda result: result.cycles[-1].rotation_change),
-    "pressure_change": CycleQuantity("", lambda result: result.cycles[-1].pressure_change),
-    "shear_change": CycleQuantity("", lambda result: result.cycles[-1].shear_change),
-    "largest_slip_range": CycleQuantity("displacement", lambda result: _slip_range(result)[0]),
-    "largest_slip_range_angle": CycleQuantity("angle", lambda result: _slip_range(result)[1]),
-    "largest_friction_energy": CycleQuantity("energy density", lambda result: _friction_energy(result)[0]),
-    "largest_friction_energy_angle": CycleQuantity("angle", lambda result: _friction_energy(result)[1]),
-    **{
-        f"{criterion.replace('-', '_')}{ending}": quantity
-        for body in ("plate", "seat")
-        for criterion in FATIGUE_CRITERIA
-        for ending, quantity in _hot_spot_quantities(criterion, body).items()
-    },
-    "regime": CycleQuantity("class", lambda result: _regime(result), REGIMES),
-    "sticking_part": CycleQuantity("", lambda result: _sticking_part(result)),
+CYCLE_QUANTITIES = {
+    each.name: each
+    for each in (
+        Output("dissipation", "energy", lambda result: result.cycles[-1].dissipation),
+        Output("rotation_change", "rotation", lambda result: result.cycles[-1].rotation_change),
+        Output("pressure_change", "", lambda result: result.cycles[-1].pressure_change),
+        Output("shear_change", "", lambda result: result.cycles[-1].shear_change),
+        Output("largest_slip_range", "displacement", lambda result: _slip_range(result)[0]),
+        Output("largest_slip_range_angle", "angle", lambda result: _slip_range(result)[1]),
+        Output("largest_friction_energy", "energy density", lambda result: _friction_energy(result)[0]),
+        Output("largest_friction_energy_angle", "angle", lambda result: _friction_energy(result)[1]),
+        *(one for criterion in FATIGUE_CRITERIA for one in _hot_spot_quantities(criterion, "plate")),
+        *(one for criterion in FATIGUE_CRITERIA for one in _hot_spot_quantities(criterion, "seat")),
+        Output("regime", "class", lambda result: _regime(result), classes=REGIMES),
+        Output("sticking_part", "", lambda result: _sticking_part(result)),
+    )
 }
 """The quantities of the last cycle, by name.
 
@@ -114,47 +85,6 @@ spot on the edge of the plate, see :func:`fastpin.damage.fatigue`. Names that en
 """
 
 
-class WearQuantity(NamedTuple):
-    """A number of a life of wear.
-
-    Attributes
-    ----------
-    kind : str
-        See :class:`CycleQuantity`.
-    of : callable
-        Gives its value for a :class:`fastpin.solver.WearResult`, or for its :class:`fastpin.damage.WornFatigue`.
-    is_damage : bool
-        Whether it is that of the fatigue.
-    classes : dict of int to str
-        See :class:`CycleQuantity`.
-    """
-
-    kind: str
-    of: Callable[[Any], float]
-    is_damage: bool = False
-    classes: Mapping[int, str] = MappingProxyType({})
-
-
-WEAR_QUANTITIES: dict[str, WearQuantity] = {
-    "volume": WearQuantity("work per stress", lambda life: life[-1].volume),
-    "depth": WearQuantity("displacement", lambda life: life[-1].depth),
-    "pin_share": WearQuantity("", lambda life: life[-1].pin_share),
-    "dissipation": WearQuantity("energy", lambda life: life[-1].energy_per_cycle),
-    "pressure": WearQuantity("traction", lambda life: life[-1].largest_pressure),
-    "life": WearQuantity("life", lambda found: _finite(found.life), is_damage=True),
-    "damage": WearQuantity("", lambda found: float(found.damage[-1].max()), is_damage=True),
-    "race": WearQuantity(
-        "class", lambda found: float(found.race), is_damage=True, classes={int(race): race.words for race in Race}
-    ),
-}
-"""The quantities of the last cycle of a result that is followed on a profile that wears, by name.
-
-The first five belong to the end of the wear: the last profile, and one cycle on it. "life" is the number of cycles
-until a crack starts, "damage" the largest sum of a material point, and "race" what wins, see
-:class:`fastpin.damage.Race`.
-"""
-
-
 @dataclass(frozen=True)
 class StudyOutcome:
     """One number that is read from a complete result.
@@ -162,7 +92,7 @@ class StudyOutcome:
     Attributes
     ----------
     kind : str
-        See :class:`CycleQuantity`; "" for a function of the user.
+        See :class:`fastpin.assess.outputs.Output`; "" for a function of the user.
     unit : str
         Unit of a function of the user, as it is to be shown; empty for a plain number.
     definition : str
@@ -411,24 +341,7 @@ def of_last_cycle(quantity: str, interface: str, result: Result) -> float:
     """
     _check_cycles(result)
     chosen = result if interface == "pin" else result.seat
-    return math.nan if chosen is None else CYCLE_QUANTITIES[quantity].of(chosen)
-
-
-def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Result) -> float:
-    """The value of a name in :data:`WEAR_QUANTITIES`; NaN without a crack. Lives are kept while the result lives."""
-    chosen = WEAR_QUANTITIES[quantity]
-    return chosen.of(_worn_fatigue(result, wear, criterion, body) if chosen.is_damage else _worn(result, wear))
-
-
-@kept
-def _worn(result: Result, wear: Wear) -> WearResult:
-    with doubts_given():
-        return result.wear(**wear.given)
-
-
-@kept
-def _worn_fatigue(result: Result, wear: Wear, criterion: str, body: Body) -> WornFatigue:
-    return _worn(result, wear).fatigue(criterion, body)
+    return math.nan if chosen is None else CYCLE_QUANTITIES[quantity].number(chosen)
 
 
 @dataclass(frozen=True)
@@ -552,17 +465,13 @@ def _hot_spot(result: Result, criterion: str, body: Body) -> HotSpot:
 
 
 def _life(result: Result, criterion: str, body: Body) -> float:
-    """The life at the hot spot, cycles; NaN if it is infinite."""
+    """The life at the hot spot, cycles."""
     life = _hot_spot(result, criterion, body).life
     if math.isnan(life):
         raise FastpinError(
             f"the {owner_of(result.problem, body)}'s material has no constants for a life by {criterion}"
         )
-    return _finite(life)
-
-
-def _finite(life: float) -> float:
-    return life if math.isfinite(life) else math.nan
+    return life
 
 
 def reason_of(error: BaseException) -> str:

@@ -166,7 +166,7 @@ class Plan:
         InputError
             With all faults. Also if the plan has another outcome of such a name.
         """
-        found = outcomes_from(outcomes, self._base.beside)
+        found = outcomes_from(outcomes, self._base.beside(self.fields))
         known = {name.lower(): outcome.definition for name, outcome in self.outcomes.items()}
         for name, outcome in found.items():
             if known.get(name.lower(), outcome.definition) != outcome.definition:
@@ -293,7 +293,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     count = max(len(rows), 1) * math.prod(len(values) for values in axes.values())
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
-    outcomes = outcomes_in_text(source, folder, {} if base is None else base.beside)
+    outcomes = outcomes_in_text(source, folder, {} if base is None else base.beside(places))
     labels = labels_in(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None

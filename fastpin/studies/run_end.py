@@ -20,9 +20,6 @@ from fastpin.studies.outcomes import OutcomeValue, bar_of_taken
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.solver.result import Result
 
-_PEAKS = ("peak_pressure", "peak_pressure_angle", "peak_shear", "peak_shear_angle")
-_OTHERS = ("contact_width", "stick_width", "rotation", "dx", "dy", "dissipation")
-
 
 def _kind(name: str) -> str:
     kind = QUANTITIES[name].kind
@@ -31,10 +28,10 @@ def _kind(name: str) -> str:
 
 KEY_FIGURES: dict[str, str] = {
     "states": "",
-    **{name: _kind(name) for name in _PEAKS},
+    **{name: _kind(name) for name in ("peak_pressure", "peak_pressure_angle", "peak_shear", "peak_shear_angle")},
     "contact_start": "angle",
     "contact_stop": "angle",
-    **{name: _kind(name) for name in _OTHERS},
+    **{name: _kind(name) for name in ("contact_width", "stick_width", "rotation", "dx", "dy", "dissipation")},
     "max_pressure": "traction",
     "max_shear": "traction",
     "residual": "",
@@ -81,7 +78,7 @@ def key_figures(result: Result) -> dict[str, Any]:
     last = result[-1]
     start, stop = interval_from_bottom(*last.contact[_widest(last.contact)]) if last.contact else (None, None)
     figures |= {
-        **{name: in_degrees(name, QUANTITIES[name].of(last)) for name in (*_PEAKS, *_OTHERS)},
+        **{name: in_degrees(name, QUANTITIES[name].of(last)) for name in KEY_FIGURES if name in QUANTITIES},
         "contact_start": start,
         "contact_stop": stop,
         "max_pressure": max(state.peak_pressure for state in result),
@@ -107,7 +104,7 @@ def key_bars(result: Result) -> dict[str, float]:
     bars = result[-1].error_bars
     assert bars is not None
     widest = _widest(ends) if (ends := result[-1].contact) else 0
-    found = {name: bar_in_degrees(name, bars[name]) for name in (*_PEAKS, *_OTHERS)}
+    found = {name: bar_in_degrees(name, bars[name]) for name in KEY_FIGURES if name in QUANTITIES}
     for end in ("start", "stop"):  # A contact all round has no ends.
         found[f"contact_{end}"] = math.degrees(bars.get(f"contact_{widest + 1}_{end}", math.nan))
     found["max_pressure"] = bar_of_taken("peak_pressure", "largest", "history", "pin", result)

@@ -9,11 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fastpin.assess.outputs import ROUNDING
+
 PERCENTS = (5, 50, 95)
 """Percentiles of the samples."""
-
-ROUNDING = 1e-9
-"""Differences below this part of the largest value are rounding: such a run lies not beyond the corners."""
 
 
 class Reached(NamedTuple):

@@ -243,7 +243,7 @@ def _study(source: CaseText, text: str, folder: Path, progress: SweepProgress | 
         limits |= {} if found is None else {name: found}
     if not places and not source.faults:
         source.report("no field has limits: give [tolerances], such as contact.friction = { from = 0.1, to = 0.6 }")
-    outcomes = outcomes_in_text(source, folder, {} if base is None else base.beside)
+    outcomes = outcomes_in_text(source, folder, {} if base is None else base.beside())
     for name, outcome in outcomes.items():
         if outcome.classes:
             source.report(_no_swing(name), "outcomes", name)

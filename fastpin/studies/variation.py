@@ -8,18 +8,19 @@ body replaces the keys of other kinds. A factor, ``loads`` or ``loads.P``, multi
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from fastpin.assess.crack import passes_of
 from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
 from fastpin.casefile.materials import known_materials
 from fastpin.casefile.profiles import PROFILES, varied
 from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.beside import BESIDE, beside_of
+from fastpin.model.beside import beside_of
 from fastpin.model.case import Case
 from fastpin.model.checks import number
 from fastpin.model.growth import law_entries
@@ -71,15 +72,18 @@ class BaseCase:
         blocks = self.text.root.value("load")
         return len(self.text.blocks("load")) if isinstance(blocks, list) else 0
 
-    @property
-    def beside(self) -> dict[str, Any]:
-        """The values of its sections [wear] and beside the problem, by name: outcomes leave their keys out."""
-        if not any(name in self.text.root for name in ("wear", *BESIDE)):
-            return {}
+    def beside(self, varied: Collection[str] = ()) -> dict[str, Any]:
+        """What outcomes leave out, by name: the values of its sections [wear] and beside the problem.
+
+        "passes" is the name of the passes that a crack counts, see :func:`fastpin.assess.crack.passes_of`. It is left
+        out if one of the `varied` fields is the number of repeats of a block.
+        """
         case = self.vary({})[1]
         if case is None:
             return {}
-        return ({} if case.wear is None else {"wear": case.wear}) | beside_of(case)
+        repeats = any(name.startswith("load.") and name.endswith(".repeat") for name in varied)
+        passes = {} if repeats else {"passes": passes_of(case.history)}
+        return passes | ({} if case.wear is None else {"wear": case.wear}) | beside_of(case)
 
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""

@@ -128,5 +128,5 @@ def test_a_written_section_is_read_back(how):
     case = parse_case(text_of())
     section = case_text(fastpin.Case(case.problem, case.history, fatigue=how)).split("[fatigue]")[1]
     source = CaseText(f"[fatigue]{section}")
-    assert read_assessment(source.section("fatigue")) == how
+    assert read_assessment(source, source.section("fatigue")) == how
     assert not source.faults

@@ -93,7 +93,8 @@ def test_refusals(stored, arguments, words):
 
 def test_a_result_without_a_cycle():
     fastpin.save(fastpin.solve(PROBLEM, [{"P": 3e6}], nodes=61), "joint.h5")
-    assert "no cycle of the history has ended" in refused("crack", "joint.h5", *LAW)
+    words = "history: has no cycle that has ended, and less than three corners; add repeat = 2 to a [[load]] block"
+    assert words in refused("crack", "joint.h5", *LAW)
 
 
 CASE = """

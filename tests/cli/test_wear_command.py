@@ -69,6 +69,16 @@ def test_check_describes_the_wear_and_doubts_its_coefficients():
     assert "fastpin: warning: coefficient: 1e-06 1/Pa is more than any surface wears" in said("check", "case.toml").err
 
 
+@pytest.mark.gate
+def test_a_stored_life_keeps_how_its_fatigue_is_assessed():
+    life = "fatigue_strength = 1.1e9, strength_exponent = -0.12, fatigue_ductility = 0.22, ductility_exponent = -0.6"
+    constants = f'material = "aluminium"\nfatigue = {{ {life} }}'
+    text = CASE.replace('material = "aluminium"', constants).replace("repeat = 12", "repeat = 2")
+    Path("case.toml").write_text(f'{text}[fatigue]\nbodies = "plate"\nlife = 100\n')
+    said("wear", "case.toml", "-o", "life.h5")
+    assert fastpin.storage.stored_case("life.h5").fatigue == fastpin.read_case("case.toml").fatigue
+
+
 def test_options_take_the_place_of_the_case():
     words = ["--cycles", "20", "--coefficient", "1e-13", "--at", "3,9", "--law", "energy", "--tolerance", "0.05"]
     document = json.loads(printed("wear", "case.toml", *words, "--nodes", "41", "--json"))

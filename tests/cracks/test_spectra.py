@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.assess import outputs
+from fastpin.assess.crack import GROWTH
 from fastpin.cracks import (
     Crack,
     CrackFate,
@@ -18,6 +20,7 @@ from fastpin.cracks import (
 )
 from fastpin.errors import InputError
 from fastpin.model import CrackGrowth
+from fastpin.model.units import units
 from fastpin.report import crack_growth as words_of
 from tests.support.cracks import LIKE, NASGRO, M, problem_of
 
@@ -143,7 +146,7 @@ def test_the_law_of_a_case_is_its_own_or_that_of_the_material(levels):
 
 def test_a_growth_becomes_a_document(levels):
     found = spectrum_growth(levels, BESIDE, LAW, 1e-4, 1e-3)
-    document = words_of.document(found)
+    document = outputs.document(GROWTH, found, units(found.problem))
     assert document["repeated"] == "spectrum"
     assert (document["fate"], document["life"]) == ("grows", found.life)
     assert document["law"] == {

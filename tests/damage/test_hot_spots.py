@@ -77,7 +77,7 @@ def test_every_criterion(fretting, cycle, criterion):
     else:
         assert found.life is None
         assert math.isnan(found.hot_spot.life)
-        np.testing.assert_allclose(found.margin, 1.0 - found.parameter / found.limit)
+        np.testing.assert_allclose(found.margin, found.limit / found.parameter - 1.0)
     mixed = damage.fatigue(cycle[::-1], criterion)
     np.testing.assert_allclose(mixed.parameter, found.parameter, rtol=1e-12)
 

@@ -6,10 +6,11 @@ from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
 
+from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
 from fastpin.paper import catalog
 from fastpin.studies import sweep
 from fastpin.studies.outcome_tables import KEYS
-from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES, WEAR_QUANTITIES
+from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
 from fastpin.studies.plan import parse_plan
 from fastpin.studies.run_end import KEY_FIGURES
 from scripts.inline import Inline
@@ -98,6 +99,6 @@ def test_the_plan_of_the_sweeps_can_be_run(tmp_path: Path) -> None:
 def test_every_way_to_an_outcome_and_every_column_of_the_index_are_explained() -> None:
     text = page_text("sweeps.md")
     columns = ("id", "status", "reason", "dimensionless", "seconds", "started", "host", "versions", "input")
-    quoted = (f'"{name}"' for name in (*CYCLE_QUANTITIES, *WEAR_QUANTITIES, *TAKES))
+    quoted = (f'"{name}"' for name in (*CYCLE_QUANTITIES, *WEAR_OUTCOMES, *RACE_OUTCOMES, *TAKES))
     listed = (f"`{name}`" for name in (*chain(*KEYS.values()), *KEY_FIGURES, *columns))
     assert [name for name in (*quoted, *listed) if name not in text] == []

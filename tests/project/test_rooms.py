@@ -20,6 +20,7 @@ MOST = {
     "constants of modules": 1_255,
     "hidden imports": 0,
     "lines of code": 48_809,
+    "places that say unknown key": 7,
 }
 """The most that each number may be. A smaller number takes its place here."""
 

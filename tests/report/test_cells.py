@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.report.cells import csv_cell
-from fastpin.report.curves import Curve, write_csv
+from fastpin.report.curves import Curve, csv_cell, write_csv
 
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-2+3", "@SUM(1)", "\tx", "\rx"])

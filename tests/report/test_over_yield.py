@@ -2,6 +2,7 @@
 
 import pytest
 
+from fastpin.assess import fatigue as assessment
 from fastpin.cracks import planned_growth
 from fastpin.damage import cycle_states
 from fastpin.damage.margins import reserve_margins
@@ -15,7 +16,6 @@ from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.pages.source import Source
-from fastpin.report import assessment
 from fastpin.report.crack_growth import growth_line
 from fastpin.report.cycle import fatigue_lines, spectrum_damages, spectrum_line
 from fastpin.report.margins import document, margin_rows

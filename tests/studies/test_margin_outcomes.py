@@ -5,6 +5,8 @@ import json
 import pytest
 
 import fastpin
+from fastpin import cracks, damage
+from fastpin.assess.fatigue import assess
 from fastpin.errors import CaseFileError
 from fastpin.report import summary
 from fastpin.storage import stored_case
@@ -80,8 +82,8 @@ def test_outcomes_are_the_margins_of_the_table(folder):
     case = plan.case(plan.points[0])
     result = fastpin.solve(case.problem, case.history, **case.options.keywords())
     values = {name: value_of(outcome, result).value for name, outcome in plan.outcomes.items()}
-    fatigue = fastpin.report.assessment.assess(case, result)
-    crack = fastpin.report.crack_growth.case_growth(result.states, result.cycles, case)
+    fatigue = assess(case, result)
+    crack = cracks.planned_growth(damage.cycle_states(result, result.cycles[-1]), case.crack)
     rows = summary.document(case, result, fatigue=fatigue, crack=crack)["margins"]
     least = {}
     for row in rows:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fastpin.assess.outputs import Output
 from fastpin.errors import CaseFileError, InputError
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import from_bottom
@@ -81,7 +82,7 @@ def test_every_quantity_can_be_an_outcome(result: Result) -> None:
 
 
 def test_a_new_cycle_quantity_takes_one_line(result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
-    entry = outcomes.CycleQuantity("width", lambda result: 0.5 * math.pi)
+    entry = Output("swept_arc", "width", lambda result: 0.5 * math.pi)
     monkeypatch.setitem(CYCLE_QUANTITIES, "swept_arc", entry)
     assert value({"cycle": "swept_arc"}, result) == 90.0
 

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
 from fastpin.damage import Race
 from fastpin.errors import CaseFileError
 from fastpin.solver.result import Result
 from fastpin.studies import sweep
 from fastpin.studies.outcome_tables import outcomes_from
-from fastpin.studies.outcomes import WEAR_QUANTITIES, value_of
+from fastpin.studies.outcomes import value_of
 from fastpin.studies.plan import Plan, parse_plan
 from scripts.inline import Inline
 from tests.support.faults import faults_of
@@ -76,13 +77,13 @@ def test_the_numbers_are_those_of_the_life(result: Result) -> None:
         "volume": last.volume,
         "depth": last.depth,
         "pin_share": 0.25,
-        "dissipation": last.energy_per_cycle,
-        "pressure": last.largest_pressure,
+        "energy_per_cycle": last.energy_per_cycle,
+        "largest_pressure": last.largest_pressure,
         "life": None,
         "damage": found.damage[-1].max(),
         "race": Race.OPEN,
     }
-    assert tuple(expected) == tuple(WEAR_QUANTITIES)
+    assert tuple(expected) == (*WEAR_OUTCOMES, *RACE_OUTCOMES)
     assert last.volume > 0.0
     assert 0.0 < found.damage[-1].max() < 1.0
     for quantity, number in expected.items():
@@ -117,7 +118,7 @@ def test_outcomes_share_a_life_and_its_damage(result: Result, monkeypatch: pytes
     monkeypatch.setattr(Result, "wear", wear)
     monkeypatch.setattr(fastpin.solver.WearResult, "fatigue", fatigue)
     how = HOW | {"cycles": 2000}
-    for quantity in WEAR_QUANTITIES:
+    for quantity in (*WEAR_OUTCOMES, *RACE_OUTCOMES):
         value({"wear": quantity, **how}, result)
     assert counts == {"wear": 1, "fatigue": 1}
     assert value_of(outcomes_from({"it": {"wear": "depth", **how, "pin": 2e-15}})["it"], result).value

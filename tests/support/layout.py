@@ -40,7 +40,7 @@ LEVELS = (
     ("reading",),
     ("states",),
     ("solver", "damage", "cracks"),
-    ("verification", "storage"),
+    ("verification", "storage", "assess"),
     ("studies", "charts"),
     ("report",),
     ("figures",),
@@ -77,7 +77,7 @@ HOMES = {
 PRINTS = "cli/terminal.py"
 """The only file that calls ``print``: its ``say`` escapes all that could steer a terminal."""
 
-OUTPUTS = ("report", "figures", "pages", "live", "cli")
+OUTPUTS = ("assess", "report", "figures", "pages", "live", "cli")
 """Folders that show numbers to people. Their units come from ``units``, with the thickness of a problem."""
 
 OPTIONAL = ("xarray", "pandas", "pylife", "distributed", "shtab", "typst")
@@ -107,7 +107,7 @@ MANY_PARAMETERS: dict[str, str] = {
     "solver/solving.py solve": "the options are spelt out for help and completion",
     "studies/convergence.py converge": "the choices of a study are spelt out for help and completion",
     "storage/recording.py record": "the arguments of solve, and three of the file",
-    "storage/wear_files.py wear": "the arguments of solve, those of wear, and four of the file",
+    "storage/wear_files.py wear": "the arguments of solve, those of wear, and five of the file",
     "figures/tractions.py plot_tractions": "the arguments of all figures, and two of its own",
     "figures/laminates.py plot_strength": "the arguments of all figures, and four of its own",
     "figures/stress.py plot_stress_profile": "the arguments of all figures, and three of its own",

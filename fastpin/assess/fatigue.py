@@ -1,29 +1,72 @@
-"""The fatigue of a history as the section [fatigue] of its case asks for it: text, and JSON."""
+"""The fatigue of a case as its section [fatigue] asks for it: the assessment, its outputs and its text."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
-from fastpin.damage import SpectrumDamage, StressReserve
+from fastpin.assess.asked import assessment_words
+from fastpin.assess.kept import kept
+from fastpin.assess.outputs import Output
+from fastpin.assess.outputs import document as document_of
+from fastpin.damage.criteria import criterion_title
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
-from fastpin.model.assessment import FatigueAssessment
+from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA, FatigueAssessment
 from fastpin.model.case import Case
-from fastpin.model.points import edge_body, owner_of
+from fastpin.model.doubts import doubts_given
+from fastpin.model.fatigue import LIFE_CONSTANTS
+from fastpin.model.points import BODIES, edge_body, owner_of
 from fastpin.model.units import units
-from fastpin.report.case import assessment_words
-from fastpin.solver.result import Result
 from fastpin.states.margins import over_yield_words
+
+if TYPE_CHECKING:  # they import compiled code, and a plan is read without it
+    from fastpin.damage import SpectrumDamage, StressReserve
+    from fastpin.solver.result import Result
 
 MOST_CYCLES = 3
 """Counted cycles that are printed for each body."""
 
 MOST_LISTED = 100
 """Counted cycles of each body in JSON: those that do the most damage."""
+
+HOW = (
+    Output("criterion", "texts", lambda how: list(how.criteria), allowed=LIFE_CONSTANTS),
+    Output("over", "text", lambda how: how.over, allowed=SPECTRA),
+    Output("method", "text", lambda how: how.method, allowed=DISTANCES),
+    Output("small_cycles", "text", lambda how: how.small_cycles, allowed=MINER_RULES),
+    Output("knee", "", lambda how: how.knee, optional=True),
+    Output("life_asked", "", lambda how: how.life, optional=True),
+)
+"""Outputs of a :class:`fastpin.model.FatigueAssessment`."""
+
+DAMAGE = (
+    Output("criterion", "text", lambda found: found.criterion, allowed=LIFE_CONSTANTS),
+    Output("body", "text", lambda found: found.body, allowed=BODIES),
+    Output("damage", "", lambda found: found.hot_spot.damage),
+    Output(
+        "life", "life", lambda found: found.hot_spot.life,
+        "spectra, or cycles over the last cycle; null without damage", optional=True,
+    ),
+    Output("angle", "angle", lambda found: found.hot_spot.theta, optional=True),
+    Output("depth", "length", lambda found: found.hot_spot.depth, optional=True),
+    Output("plane", "width", lambda found: found.hot_spot.plane, optional=True),
+)  # fmt: skip
+"""Outputs of a :class:`fastpin.damage.SpectrumDamage`: those of its hot spot. The plane's normal counts from +x."""
+
+
+@kept
+def worst_damage(result: Any, how: FatigueAssessment) -> Any:
+    """Return the largest damage by the first criterion. It is kept while the result lives.
+
+    Raises
+    ------
+    InputError
+        See :meth:`fastpin.Result.assessed_fatigue`.
+    """
+    with doubts_given():
+        return result.assessed_fatigue(how)[0]
 
 
 class Assessed(NamedTuple):
@@ -85,13 +128,13 @@ def assessment_lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]
 
 def _line(damage: SpectrumDamage, how: FatigueAssessment) -> str:
     spot, counted = damage.hot_spot, damage.cycles
-    name = f"fatigue of the {edge_body(damage.problem, damage.body)}, {damage.criterion.title()}"
+    name = f"fatigue of the {edge_body(damage.problem, damage.body)}, {criterion_title(damage.criterion)}"
     if math.isnan(spot.theta):
         return f"{name}: no damage"
     depth = "" if spot.depth == 0.0 else f", {units(damage.problem)['length'].text(spot.depth, 3)} below the edge"
     parts = [
         f"life {spot.life:.4g} {how.passes}, damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}",
-        f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x",
+        f"normal of the plane {math.degrees(spot.plane):z.2f} deg from +x",
     ]
     same: dict[frozenset[float], tuple[float, int, str]] = {}  # repeated states have the load points of the first ones
     for start, stop, times, done in zip(counted.start, counted.stop, counted.times, counted.damage, strict=True):
@@ -110,29 +153,10 @@ def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
 
     `over` is that of :func:`assessment_lines`. A body without damage has no angle, depth, plane and life: all None.
     """
-    how = assessed.how
-    return {
-        "criterion": list(how.criteria),
-        "over": how.over,
-        "method": how.method,
-        "small_cycles": how.small_cycles,
-        "knee": how.knee,
-        "life_asked": how.life,
-        "error": assessed.reason or None,
-        "bodies": [_body(one) | {"over_yield": over.get(owner_of(one.problem, one.body))} for one in assessed.found],
-    }
-
-
-def _body(damage: SpectrumDamage) -> dict[str, Any]:
-    spot, counted = damage.hot_spot, damage.cycles
-    columns = {name: getattr(counted, name)[:MOST_LISTED].tolist() for name in counted._fields}
-    return {
-        "criterion": damage.criterion,
-        "body": damage.body,
-        "damage": spot.damage,
-        "life": spot.life,
-        "angle": math.nan if math.isnan(spot.theta) else from_bottom(spot.theta),
-        "depth": units(damage.problem)["length"].factor * spot.depth,
-        "plane": math.degrees(spot.plane),
-        "cycles": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)],
-    }
+    bodies = []
+    for one in assessed.found:
+        cycles = {name: getattr(one.cycles, name)[:MOST_LISTED].tolist() for name in one.cycles._fields}
+        rows = [dict(zip(cycles, row, strict=True)) for row in zip(*cycles.values(), strict=True)]
+        over_yield = over.get(owner_of(one.problem, one.body))
+        bodies.append(document_of(DAMAGE, one, units(one.problem)) | {"cycles": rows, "over_yield": over_yield})
+    return document_of(HOW, assessed.how, {}) | {"error": assessed.reason or None, "bodies": bodies}
