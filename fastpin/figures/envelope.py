@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from functools import partial
-from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, line
 from fastpin.figures.sweep import MARKERS, fixed_parameters
 from fastpin.figures.words import quantity, shown_label
@@ -22,27 +19,12 @@ from fastpin.report.curves import Curve, write_csv
 from fastpin.report.envelope import BEARING, BYPASS
 
 
-def plot_envelope(
-    found: Sequence[Curve],
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 5.8,
-    dpi: float = 300.0,
-    *,
-    problem: Problem | None = None,
-    varied: Collection[str] = (),
-    ax: Axes | None = None,
-) -> Figure:
+def envelope_of(found: Sequence[Curve], problem: Problem | None = None, varied: Collection[str] = ()) -> Plot:
     """Draw the envelopes of :func:`fastpin.report.envelope.envelopes`: no ply fails below a line.
 
     The caption has the parameters of a `problem` without the `varied` fields of the sweep. See
     :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(envelope_of(found, problem, varied))
-
-
-def envelope_of(found: Sequence[Curve], problem: Problem | None = None, varied: Collection[str] = ()) -> Plot:
-    """Return envelopes of a sweep, see :func:`plot_envelope`."""
     each = instances("found", found, Curve, "a list of envelopes")
     if not 1 <= len(each) <= MAX_NAMED:
         raise InputError("found", f"must be 1 to {MAX_NAMED} envelopes, not {len(each)}")
@@ -52,7 +34,11 @@ def envelope_of(found: Sequence[Curve], problem: Problem | None = None, varied: 
         partial(write_csv, each),
         f"Line chart of the {words}.",
         f"{words[0].upper()}{words[1:]}.",
+        width=5.8,
     )
+
+
+plot_envelope = plotter("plot_envelope", envelope_of)
 
 
 def _draw(look: Look, curves: Sequence[Curve], parameters: str) -> Sheet:

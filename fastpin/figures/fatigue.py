@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.damage import CRITERIA, NO_CRACK, SPECTRUM_CRITERIA, Fatigue, SpectrumDamage, cycle_states, fatigue
@@ -18,13 +16,13 @@ from fastpin.damage.assessed import MOST_REFINED
 from fastpin.damage.criteria import Criterion
 from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import COLOURS, angle_axis, line
 from fastpin.figures.subjects import Subject, with_cycles
 from fastpin.figures.words import ANGLE, caption, quantity, short
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import FatigueAssessment
-from fastpin.model.checks import choice, instance, instances
+from fastpin.model.checks import choice, instances
 from fastpin.model.points import EDGES, Body, edge_body
 from fastpin.model.units import scaled, units
 from fastpin.report.case import assessment_words
@@ -37,30 +35,6 @@ PLANES = 40
 
 LEAST = 0.02
 """Least parameter with a plane, in parts of the largest."""
-
-
-def plot_fatigue(
-    found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[SpectrumDamage],
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw the parameter of a criterion along the edge, with its hot spot, and below it the life if it is known.
-
-    Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
-    is a crack that goes straight into the body.
-
-    Of a spectrum the damage takes the place of the parameter. The points lie at one depth. Several bodies, such as a
-    bush and the plate round it, share the panels.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
-    """
-    each = list(found) if isinstance(found, (list, tuple)) else [found]
-    plot = spectrum_of(each) if each and isinstance(each[0], SpectrumDamage) else fatigue_of(found)  # type: ignore[arg-type]
-    return Look(path, title, width, dpi, ax).drawn(plot)
 
 
 def fatigue_plot(
@@ -168,11 +142,20 @@ def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
     return sheet
 
 
-def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
-    """Return the fatigue of one body or of several, see :func:`plot_fatigue`."""
+def fatigue_of(found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[SpectrumDamage]) -> Plot:
+    """Draw the parameter of a criterion along the edge, with its hot spot, and below it the life if it is known.
+
+    Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
+    is a crack that goes straight into the body.
+
+    Of a spectrum the damage takes the place of the parameter. The points lie at one depth. Several bodies, such as a
+    bush and the plate round it, share the panels.
+    """
+    several: list[Any] = list(found) if isinstance(found, (list, tuple)) else [found]
+    if several and isinstance(several[0], SpectrumDamage):
+        return spectrum_of(several)
     wanted = "a fatigue result, such as result.fatigue(...)"
-    each = [instance("found", found, Fatigue, wanted)] if not isinstance(found, (list, tuple)) else list(found)
-    each = instances("found", each, Fatigue, wanted)
+    each = instances("found", several, Fatigue, wanted)
     if not each:
         raise InputError("found", f"must be {wanted}, not an empty list")
     _check_alike(each)
@@ -185,6 +168,9 @@ def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
         f"Parameter {each[0].criterion.title()} along the edge of the {edges}, with its hot spot{life}. Short lines "
         "are the worst planes.",
     )
+
+
+plot_fatigue = plotter("plot_fatigue", fatigue_of)
 
 
 def _check_alike(found: Sequence[Fatigue] | Sequence[SpectrumDamage]) -> None:

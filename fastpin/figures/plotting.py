@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS, SOURCES, kinds_with
-from fastpin.figures.sheet import WIDTH, Look, Plot
+from fastpin.figures.sheet import Look, Plot, draw_plot
 from fastpin.figures.subjects import InMemory, Subject, with_stored_cycles
 from fastpin.model.case import Case
 from fastpin.model.checks import choice
@@ -83,9 +83,7 @@ def plot_result(
     choice("kind", kind, [name for name, each in KINDS.items() if each.ending == "png"])
     if path in KINDS:
         raise InputError("path", f'must be the name of a file, not "{path}"; for this figure write kind="{path}"')
-    look = Look(path, title, WIDTH if width is None else width, dpi, ax)
     for name in options:
         if name not in KINDS[kind].options and kinds_with(name):
             raise InputError(name, f"has no effect on {kind}; it is for {kinds_with(name)}")
-    plot = plot_of(kind, InMemory(result), **options)
-    return (replace(look, width=plot.width) if width is None else look).drawn(plot)
+    return draw_plot(lambda: plot_of(kind, InMemory(result), **options), path, title, width, dpi, ax)

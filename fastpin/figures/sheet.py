@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
 import matplotlib as mpl
 import numpy as np
@@ -58,7 +59,7 @@ class Look:
     dpi : float
         Dots per inch of a bitmap.
     ax : Axes or None
-        Axes to draw in, instead of a new figure. A figure with several panels divides them.
+        Axes to draw in, instead of a new figure. Several panels divide them.
 
     Raises
     ------
@@ -82,6 +83,8 @@ class Look:
 
     def drawn(self, plot: Plot) -> Figure:
         """Draw a plot in the house style, save its figure if there is a path, and return the figure."""
+        if self.ax is not None and plot.alone:
+            raise InputError("ax", plot.alone)
         with house_style():
             with mpl.rc_context(None if self.ax is None else SMALL):
                 sheet: Sheet = plot.draw(self)
@@ -124,8 +127,12 @@ class Plot:
         The text below the figure on a page.
     notes, doubts : sequence of str
         Sentences for the terminal: on the drawn part of the result, and on doubts.
+    title : str
+        Title of a figure of :func:`plotter`, unless another one is given.
     width : float
-        Width of a new figure, inches.
+        Width of a new figure, inches, unless another one is given.
+    alone : str
+        Why given axes can't hold the figure; empty if they can.
     bitmap : bool
         Whether the figure is too large for a page as SVG.
     frames : int
@@ -138,13 +145,103 @@ class Plot:
     caption: str = ""
     notes: Sequence[str] = ()
     doubts: Sequence[str] = ()
+    title: str = ""
     width: float = WIDTH
+    alone: str = ""
     bitmap: bool = False
     frames: int = 0
 
     def save(self, path: Path, title: str = "", progress: Callable[[float, float], None] | None = None) -> None:
         """Draw the figure and write it to a file. `progress` follows the pictures of an animation."""
         Look(path, title, self.width).drawn(self)
+
+
+def draw_plot(
+    make: Callable[[], Plot],
+    path: str | Path | None = None,
+    title: str | None = None,
+    width: float | None = None,
+    dpi: float = 300.0,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw the plot that ``make()`` returns, after the look has been checked: some plots take long to make.
+
+    See :class:`Look` for the other arguments. Title and width are those of the plot unless they are given.
+    """
+    look = Look(path, "" if title is None else title, WIDTH if width is None else width, dpi, ax)
+    plot = make()
+    if title is None:
+        look = replace(look, title=plot.title)
+    return (replace(look, width=plot.width) if width is None else look).drawn(plot)
+
+
+Shown = TypeVar("Shown", contravariant=True)
+Made = TypeVar("Made")
+Options = ParamSpec("Options")
+
+
+class Plotter(Protocol[Shown, Options]):
+    """A function that draws figures: of a subject, with a look, and with options by name."""
+
+    def __call__(
+        self,
+        shown: Shown,
+        path: str | Path | None = None,
+        title: str | None = None,
+        width: float | None = None,
+        dpi: float = 300.0,
+        ax: Axes | None = None,
+        *args: Options.args,
+        **options: Options.kwargs,
+    ) -> Figure: ...
+
+
+LOOK_WORDS = """
+Notes
+-----
+With a `path` the figure is also saved; the suffix chooses the format. `width` is in inches, `dpi` in dots per inch of a
+bitmap. Axes of Matplotlib, `ax`, take the place of a new figure. Several panels divide them, and the figure of `ax` is
+returned. Without a `title` and a `width` the figure has its own. An argument out of range, an unknown format, and a
+file that can't be written raise :class:`InputError`.
+"""
+"""Words on the look, at the end of the docstring of each function of :func:`plotter`."""
+
+
+@overload
+def plotter(name: str, make: Callable[Concatenate[Shown, Options], Plot]) -> Plotter[Shown, Options]: ...
+@overload
+def plotter(
+    name: str, make: Callable[Concatenate[Made, Options], Plot], of: Callable[[Shown], Made]
+) -> Plotter[Shown, Options]: ...
+def plotter(name: str, make: Callable[..., Plot], of: Callable[..., Any] | None = None) -> Callable[..., Figure]:
+    """Return the public function `name` that draws the plots of ``make(subject, **options)``.
+
+    The look stands between the subject and the options: path, title, width, dpi and ax. The docstring is that of
+    `make`, with :data:`LOOK_WORDS`. ``of(given)`` makes the subject of what users give.
+    """
+    first, *options = inspect.signature(make, eval_str=True).parameters.values()
+    if of is not None:
+        (first,) = inspect.signature(of, eval_str=True).parameters.values()
+    needed = [first, *(option for option in options if option.default is option.empty)]
+    look = list(inspect.signature(draw_plot, eval_str=True).parameters.values())[1:]
+    by_name = [option.replace(kind=option.KEYWORD_ONLY) for option in options if option not in needed]
+    signature = inspect.Signature([*needed, *look, *by_name], return_annotation=Figure)
+
+    def draw(*arguments: Any, **keywords: Any) -> Figure:
+        given = signature.bind(*arguments, **keywords).arguments
+        looks = {each.name: given.pop(each.name) for each in look if each.name in given}
+
+        def plot() -> Plot:
+            shown = given.pop(first.name)
+            return make(shown if of is None else of(shown), **given)
+
+        return draw_plot(plot, **looks)
+
+    draw.__name__ = draw.__qualname__ = name
+    draw.__module__ = make.__module__
+    draw.__doc__ = inspect.cleandoc(make.__doc__ or "") + "\n" + LOOK_WORDS
+    draw.__signature__ = signature  # type: ignore[attr-defined]
+    return draw
 
 
 @dataclass(frozen=True, eq=False)

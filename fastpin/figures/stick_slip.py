@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.slip_extent import BOTH_WAYS, ExtentBox, MapColumn, columns_of, extent_boxes, load_ranges
 from fastpin.figures.states import DrawnStates, Frame
 from fastpin.figures.style import line
@@ -79,30 +77,14 @@ class ZoneBox(NamedTuple):
     status: int
 
 
-def plot_stick_slip(
-    result: Sequence[State] | State,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    states: StateChoice = None,
-    ax: Axes | None = None,
-) -> Figure:
+def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
     """Draw a map of stick and slip: angle round the hole against load point.
 
     Colours show where the contact sticks and in which direction the pin slips; white is open. A triangle marks a slip
     zone that is too narrow to be seen. Without friction all contact slips. The upper panel shows the loads that change.
     Of more than :data:`MOST_COLUMNS` states, a column joins the states of one cycle or of several. It shows which nodes
     slip, and in which direction, at some time in it.
-
-    See :func:`fastpin.plot_tractions` for the arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(stick_slip_plot(InMemory(result), states))
-
-
-def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
-    """Return the map of stick and slip, see :func:`plot_stick_slip`. The caption says if states are left out."""
     drawn = subject.states(states, most=MOST_COLUMNS, whole=True)
     first, last = (point_name(load_point(drawn[place])) for place in (0, -1))
     part = (
@@ -121,6 +103,9 @@ def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
         f"{part} and slip over the angle round the hole and the load point. White is open.",
         notes,
     )
+
+
+plot_stick_slip = plotter("plot_stick_slip", stick_slip_plot, InMemory)
 
 
 def _zone_columns(states: DrawnStates) -> dict[str, Any]:

@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
@@ -15,7 +14,6 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis as MatplotlibAxis
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm, Normalize
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.text import Text
@@ -24,10 +22,10 @@ from matplotlib.transforms import Bbox
 
 from fastpin.errors import InputError
 from fastpin.figures.class_map import class_patches, draw_classes
-from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet
+from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
 from fastpin.figures.words import caption, shown_label, wrapped
-from fastpin.model.checks import instance, instances
+from fastpin.model.checks import instances
 from fastpin.model.problem import Problem
 from fastpin.report.sweep import Axis, Chart
 
@@ -63,47 +61,6 @@ CAPTION_WORDS = {
 """Words with which the parts of a caption begin that belong to a field."""
 
 
-def plot_sweep(
-    chart: Chart | Sequence[Chart],
-    path: str | Path | None = None,
-    title: str | None = None,
-    width: float | None = None,
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw the figure of a sweep: maps over two fields, or curves over one field.
-
-    A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
-    at the geometric mean. Contour lines join equal values. Classes have colours, hatches and a legend instead, and
-    lines where two classes meet. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are
-    failed runs, too. Error bars are drawn at the points of curves. The error of an open point is not known: the nodes
-    do not resolve it. In a map error bars are dots in the cells whose bar is not known, or larger than the differences
-    to the cells beside them, or whose class is another one on the coarse grid. A line above the maps names the largest
-    bar. Positive values that differ by a factor of 30 or more have a logarithmic scale. Of more than
-    :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
-
-    The chart is made by :func:`fastpin.report.sweep.chart`. It gives the title and the width unless these are given.
-    Only curves or a single map go into `ax`. Several charts, of curves or of a single map each, stand side by side.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
-    """
-    if not isinstance(chart, Chart):
-        each = instances("chart", chart, Chart, "a Chart, or a list of charts")
-        if not each:
-            raise InputError("chart", "must hold at least one chart")
-        if ax is not None:
-            raise InputError("ax", "holds one chart; give a list of charts no axes")
-        look = Look(path, each[0].title if title is None else title, WIDE if width is None else width, dpi)
-        return look.drawn(sweeps_of(each))
-    plot = sweep_of(chart)
-    maps = 0 if chart.y is None else len(chart.parts)
-    if ax is not None and maps > 1:
-        raise InputError("ax", f"holds one map, but the chart has {maps}")
-    look = Look(path, chart.title if title is None else title, plot.width if width is None else width, dpi, ax)
-    return look.drawn(plot)
-
-
 def sweeps_of(charts: Sequence[Chart]) -> Plot:
     """Return several charts side by side, two in a row, see :func:`plot_sweep`."""
     for chart in charts:
@@ -115,7 +72,9 @@ def sweeps_of(charts: Sequence[Chart]) -> Plot:
         lambda look: _draw_beside(look, charts),
         instead=f"{'Curves' if charts[0].y is None else 'Maps'} of {names} over {_over(charts[0])}.",
         caption=" ".join([f"{names[0].upper()}{names[1:]} over {_over(charts[0])}.", *gaps]),
+        title=charts[0].title,
         width=WIDE,
+        alone="holds one chart; give a list of charts no axes",
     )
 
 
@@ -148,16 +107,43 @@ def _over(chart: Chart) -> str:
 
 
 def sweep_of(chart: Chart) -> Plot:
-    """Return maps or curves of a sweep, see :func:`plot_sweep`."""
-    instance("chart", chart, Chart, "a Chart")
-    over = _over(chart)
+    """Return the maps or the curves of one chart of a sweep, see :func:`plot_sweep`."""
+    over, maps = _over(chart), 0 if chart.y is None else len(chart.parts)
     missing = f" {chart.missing:,} points have no value." if chart.missing else ""
     return Plot(
         lambda look: _draw_curves(look, chart) if chart.y is None else _draw_maps(look, chart),
         instead=f"{'Curves' if chart.y is None else 'Map'} of {chart.label} over {over}.",
         caption=f"{chart.label[0].upper()}{chart.label[1:]} over {over}.{missing}",
+        title=chart.title,
         width=5.8 if chart.y is None else 5.4 if len(chart.parts) == 1 else 7.6,
+        alone="" if maps <= 1 else f"holds one map, but the chart has {maps}",
     )
+
+
+def _plot_of(chart: Chart | Sequence[Chart]) -> Plot:
+    """Draw the figure of a sweep: maps over two fields, or curves over one field.
+
+    A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
+    at the geometric mean. Contour lines join equal values. Classes have colours, hatches and a legend instead, and
+    lines where two classes meet. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are
+    failed runs, too. Error bars are drawn at the points of curves. The error of an open point is not known: the nodes
+    do not resolve it. In a map error bars are dots in the cells whose bar is not known, or larger than the differences
+    to the cells beside them, or whose class is another one on the coarse grid. A line above the maps names the largest
+    bar. Positive values that differ by a factor of 30 or more have a logarithmic scale. Of more than
+    :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
+
+    The chart is made by :func:`fastpin.report.sweep.chart`. Only curves or a single map go into `ax`. Several charts,
+    of curves or of a single map each, stand side by side.
+    """
+    if isinstance(chart, Chart):
+        return sweep_of(chart)
+    each = instances("chart", chart, Chart, "a Chart, or a list of charts")
+    if not each:
+        raise InputError("chart", "must hold at least one chart")
+    return sweeps_of(each)
+
+
+plot_sweep = plotter("plot_sweep", _plot_of)
 
 
 def cell_edges(axis: Axis) -> np.ndarray:
