@@ -5,7 +5,6 @@ from . import plotting as plotting
 from . import polar as polar
 from . import sheet as sheet
 from . import sketch as sketch
-from . import slip_extent as slip_extent
 from . import states as states
 from . import stick_slip as stick_slip
 from . import stress as stress
@@ -26,8 +25,8 @@ from .laminates import plot_strength as plot_strength
 from .load_cycle import plot_loops as plot_loops
 from .load_cycle import plot_slip as plot_slip
 from .lug import plot_lug as plot_lug
-from .notebook import result_html as result_html
-from .notebook import state_html as state_html
+from .plotting import result_html as result_html
+from .plotting import state_html as state_html
 from .polar import plot_polar as plot_polar
 from .sketch import plot_sketch as plot_sketch
 from .stick_slip import plot_stick_slip as plot_stick_slip

@@ -17,9 +17,9 @@ from fastpin.damage.criteria import Criterion
 from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.style import COLOURS, angle_axis, line
+from fastpin.figures.style import COLOURS, line
 from fastpin.figures.subjects import Subject, with_cycles
-from fastpin.figures.words import ANGLE, caption, quantity, short
+from fastpin.figures.words import caption, quantity, short
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import choice, instances
@@ -131,15 +131,7 @@ def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
         axes[1, 0].set_ylim(0.5 / highest, 1e4 / highest)
     axes[0, 0].set_ylabel(f"damage of a spectrum,\n{damages[0].criterion.title()}")
     axes[1, 0].set_ylabel("life (spectra)")
-    for panel in axes[:, 0]:
-        panel.set_xlim(-180.0, 180.0)
-        angle_axis(panel)
-    axes[-1, 0].set_xlabel(ANGLE)
-    sheet.figure.align_ylabels(axes)
-    sheet.legend(handles, min(len(handles), 3))
-    heading = "; ".join(f"{name}, {_depth_words(one)}" for name, one in zip(names, damages, strict=True))
-    sheet.head(look.title, heading, caption=caption(damages[0].problem))
-    return sheet
+    return _finish(sheet, look, damages, handles)
 
 
 def fatigue_of(found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[SpectrumDamage]) -> Plot:
@@ -205,13 +197,16 @@ def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
         shortest = min(float(np.nanmin(life)) for life in lives.values())
         axes[1, 0].set_ylabel("life (cycles)")
         axes[1, 0].set_ylim(0.5 * shortest, 1e4 * shortest)
-    for panel in axes[:, 0]:
-        panel.set_xlim(-180.0, 180.0)
-        angle_axis(panel)
-    axes[-1, 0].set_xlabel(ANGLE)
-    sheet.figure.align_ylabels(axes)
+    return _finish(sheet, look, found, handles)
+
+
+def _finish(
+    sheet: Sheet, look: Look, found: Sequence[Fatigue] | Sequence[SpectrumDamage], handles: Sequence[Line2D]
+) -> Sheet:
+    """Add the axes of angles, the legend and the heading with bodies and depths."""
+    sheet.go_round()
     sheet.legend(handles, min(len(handles), 3))
-    heading = "; ".join(f"{name}, {_depth_words(one)}" for name, one in zip(names, found, strict=True))
+    heading = "; ".join(f"{edge_body(one.problem, one.body)}, {_depth_words(one)}" for one in found)
     sheet.head(look.title, heading, caption=caption(found[0].problem))
     return sheet
 

@@ -7,9 +7,9 @@ from matplotlib.lines import Line2D
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.style import angle_axis, draw_zero, line
+from fastpin.figures.style import draw_zero, line
 from fastpin.figures.subjects import Subject, problem_of
-from fastpin.figures.words import ANGLE, caption, quantity
+from fastpin.figures.words import caption, quantity
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
 from fastpin.model.problem import LOOKED_AT, Problem
@@ -86,10 +86,7 @@ def _draw(look: Look, problem: Problem, curve: Curve) -> Sheet:
         last.plot(angle, values[-1], **line(5, 0))
         last.set_ylim(0.0, 1.08 * problem.most_friction)
         last.set_ylabel("friction coefficient")
-    last.set_xlim(-180.0, 180.0)
-    last.set_xlabel(ANGLE)
-    angle_axis(last)
-    sheet.figure.align_ylabels(sheet.axes)
+    sheet.go_round()
     sheet.head(look.title, caption=caption(problem))
     sheet.legend([Line2D([], [], label=name, **line(k, k)) for k, name in enumerate(gaps)], max(len(gaps), 1))
     return sheet

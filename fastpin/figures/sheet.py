@@ -17,7 +17,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from fastpin.errors import InputError
 from fastpin.figures.style import (
-    check_figure_text,
+    angle_axis,
     check_format,
     draw_grid,
     fitted_legend,
@@ -26,8 +26,8 @@ from fastpin.figures.style import (
     number_of_dots,
     save_figure,
 )
-from fastpin.figures.words import CAPTION_SIZE, wrapped, wrapped_parts
-from fastpin.model.checks import file_path, instance
+from fastpin.figures.words import ANGLE, CAPTION_SIZE, wrapped, wrapped_parts
+from fastpin.model.checks import file_path, instance, number, string
 
 WIDTH = 6.7
 """Width of most figures, inches."""
@@ -40,6 +40,9 @@ HEADING = 9.5
 
 SMALL: Any = {"font.size": 7.5}
 """Size of letters in given axes, points."""
+
+LONGEST_TITLE = 2_000
+"""Most characters of the title of a figure. The lines of ten times as many take seconds to draw."""
 
 GAP = 0.14
 """Gap between panels inside given axes, in parts of the axes. It holds the numbers of an axis."""
@@ -74,7 +77,10 @@ class Look:
     ax: Axes | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "width", check_figure_text(self.title, self.width))
+        if len(string("title", self.title)) > LONGEST_TITLE:
+            most = f"must have at most {LONGEST_TITLE:,} characters in a figure, not {len(self.title):,}"
+            raise InputError("title", most)
+        object.__setattr__(self, "width", number("width", self.width, 1.0, 12.0))
         object.__setattr__(self, "dpi", number_of_dots(self.dpi))
         if self.path is not None:
             check_format(file_path("path", self.path))
@@ -309,6 +315,14 @@ class Sheet:
             title_fontsize=6.5, loc="upper center", ncols=min(columns, 2), bbox_to_anchor=(0.5, 0.0),
             bbox_transform=host.transAxes + below, borderaxespad=0.0, alignment="left",
         )  # fmt: skip
+
+    def go_round(self) -> None:
+        """Make the horizontal axes of a column of panels the angle all round the hole, with words below the last."""
+        for panel in self.axes[:, 0]:
+            panel.set_xlim(-180.0, 180.0)
+            angle_axis(panel)
+        self.axes[-1, 0].set_xlabel(ANGLE)
+        self.figure.align_ylabels(self.axes)
 
     def grid(self, axis: Any = "both") -> None:
         """Draw light lines behind the curves of all panels."""

@@ -16,9 +16,9 @@ from matplotlib.patheffects import Normal, Stroke
 
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import HOOP, DrawnStates, name_states, state_lines
-from fastpin.figures.style import angle_axis, draw_zero, line
+from fastpin.figures.style import draw_zero, line
 from fastpin.figures.subjects import InMemory, Subject
-from fastpin.figures.words import ANGLE, caption, loads_text, point_text, points_text, quantity
+from fastpin.figures.words import caption, loads_text, point_text, points_text, quantity
 from fastpin.model.checks import choice, instance
 from fastpin.model.points import BODIES, Body, bodies_of, edge_body
 from fastpin.model.units import named_loads, units
@@ -86,10 +86,7 @@ def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Shee
         draw_zero(panel)
         words = edge_body(states[0].problem, body).replace("plate at", "plate\nat")
         panel.set_ylabel(quantity(f"hoop stress of the {words}", label))
-        panel.set_xlim(-180.0, 180.0)
-        angle_axis(panel)
-    axes[-1, 0].set_xlabel(ANGLE)
-    sheet.figure.align_ylabels(axes)
+    sheet.go_round()
     styles: list[Artist] = [_dot("largest of each state", "0.4")]
     if before in curves[0].columns:
         styles.append(

@@ -21,8 +21,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.errors import InputError
-from fastpin.model.checks import file_path, number, string
+from fastpin.model.checks import file_path, number
 from fastpin.storage.files import check_writable, no_figure, replacing
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#882255", "#777777")
@@ -45,9 +44,6 @@ DASHES: tuple[tuple[int, tuple[float, ...] | None], ...] = (
 
 MAX_NAMED = len(COLOURS)
 """Most curves that can be told apart in a panel."""
-
-LONGEST_TITLE = 2_000
-"""Most characters of the title of a figure. The lines of ten times as many take seconds to draw."""
 
 SCREEN_DPI = 110.0
 """Dots per inch of a picture in a notebook."""
@@ -104,19 +100,6 @@ def number_of_dots(dpi: float) -> float:
         If `dpi` is out of range.
     """
     return number("dpi", dpi, 10.0, 1200.0)  # the largest bitmap takes less than 1 GB of memory
-
-
-def check_figure_text(title: str, width: float) -> float:
-    """Check title and width of a figure, and return the width, inches.
-
-    Raises
-    ------
-    InputError
-        If `title` is no text or too long, or `width` is out of range.
-    """
-    if len(string("title", title)) > LONGEST_TITLE:
-        raise InputError("title", f"must have at most {LONGEST_TITLE:,} characters in a figure, not {len(title):,}")
-    return number("width", width, 1.0, 12.0)
 
 
 def spread(count: int, most: int) -> list[int]:
@@ -203,11 +186,6 @@ def add_legend(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
     blank = Line2D([], [], linestyle="none", label=" ")
     filled: list[Artist] = [row[k] if k < len(row) else blank for k in range(columns) for row in entries]
     fitted_legend(figure, filled, columns)
-
-
-def add_heading(figure: Figure, *lines: str) -> None:
-    """Add the lines that are not empty above the panels."""
-    figure.suptitle("\n".join(line for line in lines if line), fontsize=9.5, parse_math=False)
 
 
 def check_format(path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +12,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis as MatplotlibAxis
-from matplotlib.collections import QuadMesh
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
@@ -21,7 +21,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from matplotlib.transforms import Bbox
 
 from fastpin.errors import InputError
-from fastpin.figures.class_map import class_patches, draw_classes
 from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
 from fastpin.figures.words import caption, shown_label, wrapped
@@ -38,6 +37,21 @@ _ENDLESS: Any = {"marker": r"$\uparrow$", "markersize": 7.0, "linestyle": "none"
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
 MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 """Marks of the computed values, as many as colours. Crosses mark failed runs."""
+
+CLASS_LOOKS = (
+    ("#ECECEC", ""),
+    ("#A9D0EA", "..."),
+    ("#F2A541", "\\\\\\\\"),
+    ("#0B3C5D", ""),
+    ("#6FB58F", "////"),
+    ("#F4E58A", "+++"),
+    ("#C77CA6", "xxx"),
+    ("#7A5C3E", "ooo"),
+)
+"""Colour and hatch of each class, in the order of their numbers. They differ in grey, or by the hatch."""
+
+HATCH = "0.25"
+"""Grey of the hatches."""
 
 LEVELS = 7
 """Most contour lines of a map."""
@@ -159,50 +173,87 @@ def cell_edges(axis: Axis) -> np.ndarray:
 
 
 def _draw_maps(look: Look, chart: Chart) -> Sheet:
+    """Draw a map for each part of a chart. A bar tells the colours of numbers, and the legend those of classes."""
     assert chart.y is not None
     columns = min(len(chart.parts), 3)
-    rows = math.ceil(len(chart.parts) / columns)
-    sheet = look.sheet([3.4 if columns == 1 else 2.5] * rows, columns, 0.6)
-    if chart.classes:
-        return _draw_class_maps(sheet, chart, look.title)
-    known = _known_values(chart)
+    sheet = look.sheet([3.4 if columns == 1 else 2.5] * math.ceil(len(chart.parts) / columns), columns, 0.6)
+    known, x, y = _known_values(chart), cell_edges(chart.x), cell_edges(chart.y)
     scale = (LogNorm if _spans_decades(known) else Normalize)(known.min(), known.max())
-    levels, labels = _levels(known), []
+    levels, labels, mesh = _levels(known), list[Text](), None
     for panel, (name, numbers, failed), unsure in zip(sheet.axes.flat, chart.parts, _unsure(chart), strict=False):
-        mesh = _draw_map(panel, chart, numbers, failed, scale)
-        labels.append(_draw_contours(panel, chart, numbers, levels))
-        _dot_cells(panel, chart, unsure)
+        if chart.classes:
+            draw_classes(panel, x, y, numbers, chart.classes)
+        else:
+            shown = np.ma.masked_invalid(numbers)
+            mesh = panel.pcolormesh(x, y, shown, norm=scale, cmap="viridis", edgecolors="face", linewidth=0.2)
+            labels += _draw_contours(panel, chart, numbers, levels)
+        _draw_empty_cells(panel, x, y, numbers, failed)
+        rows, places = np.nonzero(unsure)
+        panel.plot(chart.x.values[places], chart.y.values[rows], **_UNSURE)
         _scale_axes(panel, chart)
         _set_title(sheet, panel, name)
     _label_panels(sheet, chart)
-    if any(np.isfinite(numbers).any() for _, numbers, _ in chart.parts):
+    has_bar = mesh is not None and any(np.isfinite(numbers).any() for _, numbers, _ in chart.parts)
+    if mesh is not None and has_bar:
         bar = sheet.figure.colorbar(mesh, ax=list(sheet.axes.flat), aspect=30, pad=0.02)
         bar.set_label(shown_label(chart.label), parse_math=False)
         bar.outline.set_linewidth(0.5)
         if isinstance(scale, LogNorm):
             round_numbers(bar.ax.yaxis, known)
-        sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
-    else:
-        sheet.head(look.title, shown_label(chart.label), caption=_fixed_parameters(chart))
+    heading = "" if has_bar else shown_label(chart.label)
+    sheet.head(look.title, heading, _bar_line(chart), caption=_fixed_parameters(chart))
     _explain(sheet, chart)
-    _thin_out(sheet, [label for part in labels for label in part])
+    if labels:
+        _thin_out(sheet, labels)
     return sheet
 
 
-def _draw_class_maps(sheet: Sheet, chart: Chart, title: str) -> Sheet:
-    """Draw maps of classes. The legend names the classes, and no bar of colours stands beside the maps."""
-    assert chart.y is not None
-    x, y = cell_edges(chart.x), cell_edges(chart.y)
-    for panel, (name, numbers, failed), unsure in zip(sheet.axes.flat, chart.parts, _unsure(chart), strict=False):
-        draw_classes(panel, x, y, numbers, chart.classes)
-        _draw_empty_cells(panel, x, y, numbers, failed)
-        _dot_cells(panel, chart, unsure)
-        _scale_axes(panel, chart)
-        _set_title(sheet, panel, name)
-    _label_panels(sheet, chart)
-    sheet.head(title, shown_label(chart.label), _bar_line(chart), caption=_fixed_parameters(chart))
-    _explain(sheet, chart)
-    return sheet
+def draw_classes(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.ndarray, classes: Mapping[int, str]) -> None:
+    """Draw the cells of a map, and a line wherever two classes meet.
+
+    Parameters
+    ----------
+    panel : Axes
+    x, y : ndarray, shape (columns + 1,), (rows + 1,)
+        Edges of the cells.
+    numbers : ndarray, shape (rows, columns)
+        Numbers of the classes; NaN without a value.
+    classes : dict of int to str
+        All classes, at most as many as :data:`CLASS_LOOKS`.
+    """
+    for number, (colour, hatch) in zip(classes, CLASS_LOOKS, strict=False):
+        cells = [
+            [(x[k], y[j]), (x[k + 1], y[j]), (x[k + 1], y[j + 1]), (x[k], y[j + 1])]
+            for j, k in np.argwhere(numbers == number)
+        ]
+        if cells:
+            panel.add_collection(
+                PolyCollection(cells, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False)
+            )
+        if cells and hatch:
+            panel.add_collection(PolyCollection(cells, facecolor="none", edgecolor=HATCH, linewidth=0.0, hatch=hatch))
+    panel.add_collection(LineCollection(class_borders(x, y, numbers), colors="black", linewidths=1.6))
+    panel.set_xlim(x[0], x[-1])
+    panel.set_ylim(y[0], y[-1])
+
+
+def class_borders(x: np.ndarray, y: np.ndarray, numbers: np.ndarray) -> list[list[tuple[float, float]]]:
+    """Return the sides that two cells of different classes share, as pairs of points."""
+    known = np.isfinite(numbers)
+    beside = known[:, :-1] & known[:, 1:] & (numbers[:, :-1] != numbers[:, 1:])
+    above = known[:-1] & known[1:] & (numbers[:-1] != numbers[1:])
+    upright = [[(x[k + 1], y[j]), (x[k + 1], y[j + 1])] for j, k in np.argwhere(beside)]
+    level = [[(x[k], y[j + 1]), (x[k + 1], y[j + 1])] for j, k in np.argwhere(above)]
+    return [*upright, *level]
+
+
+def class_patches(classes: Mapping[int, str], present: np.ndarray) -> list[Patch]:
+    """Return the entries of the legend for the classes whose numbers are `present`."""
+    return [
+        Patch(facecolor=colour, edgecolor=HATCH, hatch=hatch, linewidth=0.5, label=words)
+        for (number, words), (colour, hatch) in zip(classes.items(), CLASS_LOOKS, strict=False)
+        if np.any(present == number)
+    ]
 
 
 def _thin_out(sheet: Sheet, labels: Sequence[Text]) -> None:
@@ -215,16 +266,6 @@ def _thin_out(sheet: Sheet, labels: Sequence[Text]) -> None:
             label.remove()
         else:
             kept.append(space)
-
-
-def _draw_map(panel: Axes, chart: Chart, numbers: np.ndarray, failed: np.ndarray, scale: Normalize) -> QuadMesh:
-    """Draw the cells of a map, and return their mesh."""
-    assert chart.y is not None
-    x, y = cell_edges(chart.x), cell_edges(chart.y)
-    mesh = panel.pcolormesh(x, y, np.ma.masked_invalid(numbers), norm=scale, cmap="viridis", edgecolors="face")
-    mesh.set_linewidth(0.2)
-    _draw_empty_cells(panel, x, y, numbers, failed)
-    return mesh
 
 
 def _draw_empty_cells(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.ndarray, failed: np.ndarray) -> None:
@@ -255,13 +296,6 @@ def _unsure(chart: Chart) -> list[np.ndarray]:
         is_beyond = (bars > steps) & np.isfinite(np.maximum(steps, 0.0)) & (steps > -np.inf)
         found.append(known & (is_beyond | np.isinf(bars)))
     return found
-
-
-def _dot_cells(panel: Axes, chart: Chart, unsure: np.ndarray) -> None:
-    """Mark the cells of a map that are unsure."""
-    assert chart.y is not None
-    rows, columns = np.nonzero(unsure)
-    panel.plot(chart.x.values[columns], chart.y.values[rows], **_UNSURE)
 
 
 def _bar_line(chart: Chart) -> str:

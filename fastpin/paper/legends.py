@@ -10,13 +10,14 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
-from fastpin.figures.style import Line, add_heading, line
+from fastpin.figures.style import Line, line
 
 
 def head(figure: Figure, *sentences: str) -> None:
     """Write sentences above the panels of a figure, each on a new line, and long ones on several."""
     # A figure 7.2 inches wide has room for 95 characters.
-    add_heading(figure, *(part for text in sentences for part in wrap(text, 88, break_on_hyphens=False)))
+    lines = [line for text in sentences for line in wrap(text, 88, break_on_hyphens=False)]
+    figure.suptitle("\n".join(lines), fontsize=9.5, parse_math=False)
 
 
 def marked(colour: int, dashes: int = 0, width: float = 1.4) -> Line:
