@@ -6,25 +6,24 @@ import math
 
 import numpy as np
 
-from fastpin.elasticity.system import System
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS, complete_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.model.wear import Wear
 from fastpin.solver.configuration import elastic_energy
-from fastpin.solver.solving import MemoryRecorder
-from fastpin.solver.wear import KEPT_ON_DEMAND, CyclesInMemory, WearTask
+from fastpin.solver.wear import CyclesInMemory, WearTask
 from fastpin.solver.wear_path import WearRun
 from fastpin.solver.wear_result import WornCycle
-from fastpin.verification import interference, wear_limits
+from fastpin.verification import interference
 from fastpin.verification.finite_elements import LIKE, UNLIKE
-from fastpin.verification.gap_rows import WAVES
+from fastpin.verification.joint_rows import fretted, step, wearing
 from fastpin.verification.rows import Checks, Solving, difference_check, relative_check
+from tests.support.checks import wear_limits
+from tests.support.checks.gap_rows import WAVES
 
 FIT_NODES = Grid.circle(201)
 """Nodes of an interference fit that wears."""
@@ -36,23 +35,6 @@ WORN_FIT = Problem.from_load_parameter(
 
 LOAD_RATIO = 0.5
 """Q/(mu P) of partial slip in half-planes."""
-
-CYCLE = [{"Q": -0.275}, {"Q": 0.275}]
-"""A cycle of partial slip."""
-
-
-def wearing(problem: Problem, grid: Grid) -> WearRun:
-    """A run without load that can wear."""
-    options = SolveOptions(**KEPT_ON_DEMAND)  # type: ignore[arg-type]
-    return WearRun(LoadHistory([{}]), System.build(problem, grid, 1.0), options, MemoryRecorder())
-
-
-def step(run: WearRun, loads: dict[str, float]) -> tuple[np.ndarray, float]:
-    """Follow one step. Returns int N |ds| of each node, shape (n,), and the dissipated energy, dimensionless."""
-    given = np.array([loads.get(name, np.nan) for name in LOADS])
-    run.step_to(complete_load(given, run.load), kept=False)
-    latest = run.corner_log.latest
-    return latest.slip_tally.sums[4], latest.dissipation
 
 
 def fit(friction: float, solving: Solving) -> Checks:
@@ -135,28 +117,8 @@ def final_state(nodes: int, load_parameter: float) -> tuple[WornCycle, float]:
 
 def energy(solving: Solving) -> Checks:
     """The work of the loads along a wear path, against energy, dissipation and the material that goes."""
-    run, depth, _ = _fretted(121)
+    run, depth, _ = fretted(121)
     before = elastic_energy(run.system, run.now)
     removal = run.wear(20.0 * depth)
     given = before + removal.work
     yield relative_check("energy", elastic_energy(run.system, run.now) + removal.dissipation + removal.energy, given)
-
-
-def volume(solving: Solving) -> Checks:
-    """The volume against the energy that friction dissipates, over fat cycles."""
-    run, _, friction = _fretted(61)
-    coefficient, worn, dissipated = 1.4, np.zeros(61), 0.0
-    for loads in 7 * CYCLE:
-        rubbed, lost = step(run, loads)
-        worn, dissipated = worn + run.wear(coefficient * rubbed).depth, dissipated + lost
-    yield relative_check("volume", float(run.system.weights @ worn), coefficient / friction * dissipated)
-
-
-def _fretted(nodes: int) -> tuple[WearRun, np.ndarray, float]:
-    """A run after a cycle of partial slip, int N |ds| of its last piece, and its friction."""
-    friction = 0.5
-    problem = Problem.from_load_parameter(LIKE, 0.5, friction, "centre", "fixed")
-    run = wearing(problem, Grid.arc(BOTTOM - 1.1, BOTTOM + 1.1, nodes))
-    for loads in ({"P": 1.0}, CYCLE[1], *CYCLE):
-        rubbed, _ = step(run, loads)
-    return run, rubbed, friction

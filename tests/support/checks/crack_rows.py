@@ -8,9 +8,9 @@ from fastpin.cracks import Crack, stress_intensity
 from fastpin.model.growth import SMOOTH_EDGE
 from fastpin.model.problem import Problem
 from fastpin.states.state import State
-from fastpin.verification.body_cases import RING
 from fastpin.verification.finite_elements import LIKE
 from fastpin.verification.rows import Checks, Solving, relative_check
+from tests.support.checks.body_cases import RING
 
 LENGTHS = {"0.1 R": (0.1, 2.772722, 2.786499), "1 R": (1.0, 1.306096, 1.472125), "5 R": (5.0, 0.845527, 1.098221)}
 """Lengths, and K over s sqrt(pi a) of one crack and of two across a tension s of an open hole, to 1e-6."""
@@ -30,26 +30,17 @@ def open_hole(solving: Solving) -> Checks:
     yield relative_check("K", _factor(state, both[:1], 1e4) / 0.1, math.sqrt(0.5), "long")
 
 
-def pressure(solving: Solving) -> Checks:
-    """A fit whose pressure is in the crack, too: a biaxial tension of the same size."""
-    fit = _fitted(Problem.from_load_parameter(LIKE, -0.1, 0.3), solving)
-    p, crack = fit.peak_pressure, Crack(-0.3)
-    (open_state,) = solving(Problem.from_load_parameter(LIKE, 0.5, 0.3, "body"), [{"sxx": p, "syy": p}])
-    inside = stress_intensity(fit, crack, [0.1], residual_stress=lambda s: p).K_I[0, 0]
-    yield relative_check("K", float(inside), float(stress_intensity(open_state, crack, [0.1]).K_I[0, 0]))
-
-
 def ring(solving: Solving) -> Checks:
     """A pin that is gripped by a ring."""
     state = _fitted(Problem.from_load_parameter(LIKE, -0.1, 0.3, plate_body=RING.plate_body), solving)
     yield relative_check("K", _factor(state, [Crack(-0.3)], 0.1) / state.peak_pressure, RING_FACTOR)
 
 
-def _fitted(problem: Problem, solving: Solving) -> State:
-    """A fit, loaded a little and unloaded."""
-    return solving(problem, [{"P": 0.01}, {"P": 0.0}])[-1]
-
-
 def _factor(state: State, cracks: list[Crack], length: float) -> float:
     """K_I of the first of some cracks of one length, over sqrt(pi a)."""
     return float(stress_intensity(state, cracks, [length]).K_I[0, 0, 0]) / math.sqrt(math.pi * length)
+
+
+def _fitted(problem: Problem, solving: Solving) -> State:
+    """A fit, loaded a little and unloaded."""
+    return solving(problem, [{"P": 0.01}, {"P": 0.0}])[-1]

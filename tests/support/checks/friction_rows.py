@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-
-from fastpin.model.angles import BOTTOM
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.states.state import State
-from fastpin.verification import closed_forms
 from fastpin.verification.comparisons import residuals_away
-from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE
+from fastpin.verification.finite_elements import FRETTING, UNLIKE
+from fastpin.verification.joint_rows import PUSHED
 from fastpin.verification.rows import Check, Checks, Solving, difference_check, relative_check
 
 ROUGH = Problem.from_load_parameter(
     UNLIKE, 0.1, Profile((Harmonic(0, 0.35), Harmonic.from_bottom(3, 0.0, 0.2))), "centre", "fixed"
 )
 """A pin whose friction varies along the rim."""
-
-PUSHED = [{"P": 1.0}, {"Q": 0.2}]
 
 
 def along_the_rim(solving: Solving) -> Checks:
@@ -35,16 +28,6 @@ def along_the_rim(solving: Solving) -> Checks:
 def with_the_loads(solving: Solving) -> Checks:
     """The work of a step along which friction falls."""
     yield _work(solving(ROUGH, [*PUSHED, {"P": 0.8, "Q": -0.1, "friction_change": -0.6}], nodes=41)[-1])
-
-
-def at_constant_load(solving: Solving) -> Checks:
-    """In like half-planes a friction that has fallen leaves the state of a friction that was as low before."""
-    half = 1.4 * float(closed_forms.hertz_half_angle(200.0))
-    high, low = (Problem.from_load_parameter(LIKE, 200.0, friction, "centre", "fixed") for friction in (0.6, 0.3))
-    arc: dict[str, Any] = {"arc": (BOTTOM - half, BOTTOM + half), "nodes": 61}
-    ours, expected = solving(high, [*PUSHED, {"friction_change": -0.5}], **arc)[-1], solving(low, PUSHED, **arc)[-1]
-    difference = np.abs([ours.pressure - expected.pressure, ours.shear - expected.shear])
-    yield difference_check("N, T", float(difference.max()) / expected.peak_pressure, "peak N")
 
 
 def _work(state: State) -> Check:

@@ -15,12 +15,9 @@ import numpy as np
 from fastpin.model.grid import Grid
 from fastpin.model.laminate import Laminate, in_axes
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.points import Points
 from fastpin.model.problem import Problem
+from fastpin.verification.joint_rows import MODULI
 from fastpin.verification.rows import Checks, Solving, difference_check, relative_check
-
-MODULI = 135e9, 9e9, 5e9, 0.3
-"""E1, E2, G12, Pa, and nu12 of the ply of all cases."""
 
 ELEMENTS = {
     "[0] along P, mu = 0": ((0.0,), 90.0, 0.0, 1.060431),
@@ -60,15 +57,6 @@ def finite_elements(name: str, solving: Solving) -> Checks:
     pair = MaterialPair(MATERIALS["steel"], laminate(angles, axis), "strain")
     (state,) = solving(Problem.from_load_parameter(pair, 0.1, friction, "body"), [{"P": 1.0}])
     yield relative_check("peak N", state.peak_pressure, peak)
-
-
-def open_hole(solving: Solving) -> Checks:
-    """The stress concentration 1 + n of an open hole: Lekhnitskii."""
-    E1, E2, G12, nu12 = MODULI
-    pair = MaterialPair(MATERIALS["steel"], laminate((0.0,), 90.0), "stress")
-    (state,) = solving(Problem.from_load_parameter(pair, 10.0, 0.2), [{"syy": 1e-3}])
-    hoop = float(state.stress(Points.at_depth(0.0, 0.0)).hoop) / 1e-3
-    yield relative_check("hoop stress", hoop, 1.0 + math.sqrt(2.0 * (math.sqrt(E1 / E2) - nu12) + E1 / G12))
 
 
 def stuck(stress: float, solving: Solving) -> Checks:

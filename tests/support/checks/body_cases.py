@@ -17,6 +17,7 @@ from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.verification.finite_elements import LIKE, UNLIKE
+from fastpin.verification.joint_rows import BRONZE
 
 
 @dataclass(frozen=True)
@@ -41,9 +42,6 @@ class BodyCase:
     elements: float | None = None
     history: tuple[dict[str, float], ...] = ({"P": 1.0},)
 
-
-BRONZE = Material(110e9, 0.34)
-"""The material of bushes."""
 
 _THIN = partial(Problem.from_load_parameter, LIKE, pin_body=Tube(0.8), plate_body=Ring(1.5, "uniform"))
 _HALF = partial(Problem.from_load_parameter, LIKE, pin_load="body", plate_body=Ring(2.0, "half"))
@@ -79,10 +77,6 @@ CASES = {
 }  # fmt: skip
 """Joints by name. All pins rotate freely but the fretting one."""
 
-STUCK = Problem.from_load_parameter(
-    UNLIKE, -0.1, 0.5, pin_body=Tube(0.5), plate_body=Bushing(BRONZE, 1.3, inside=Ring(2.0, "uniform"))
-)
-"""An interference fit of a hollow pin in a bush in a ring."""
 
 RING = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body", plate_body=Ring(2.0, "normal"))
 """A ring whose compliance is known."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -57,15 +56,3 @@ def bonded(inside: PlateBody, solving: Solving) -> Checks:
     for name in ("ux", "uy"):
         moved = ours.joint_displacement(0.5, 2.0)[name], expected.joint_displacement(0.5, 2.0)[name]
         yield difference_check(name, abs(moved[0] - moved[1]), "F beta*")
-
-
-def torque(solving: Solving) -> Checks:
-    """A torque near the largest one that the seat holds: the pressure of the fit, times friction."""
-    bush = Bushing(BRONZE, OUTER, 0.3, friction=0.1, bonded=False)
-    joint = Problem.from_load_parameter(PAIR, -0.5, 1.0, plate_body=bush)
-    (assembled,) = solving(joint, [{}], nodes=NODES)
-    assert assembled.seat is not None
-    most = 2.0 * math.pi * OUTER**2 * 0.1 * float(assembled.seat.pressure.mean())
-    (turned,) = solving(joint, [{"M": (1.0 - 1e-9) * most}], nodes=NODES)
-    assert turned.seat is not None
-    yield relative_check("torque", turned.seat.resultants["M"], most)
