@@ -24,13 +24,14 @@ from matplotlib.figure import Figure
 from tqdm import tqdm
 
 from fastpin.errors import FastpinError
-from fastpin.figures.style import add_legend, line, panels, save_drawing
+from fastpin.figures.style import line
 from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import ALL_ROUND
 from fastpin.model.problem import Problem
+from fastpin.published.drawing import add_legend, panels, save_drawing
 from fastpin.solver.configuration import elastic_energy
 from fastpin.solver.errors import SolveError
 from fastpin.solver.increment import implicit_step

@@ -1,8 +1,13 @@
-"""Problems that others publish, beside fastpin's numbers, one file each.
+"""The old folder of the names of :mod:`fastpin.published`. They work here for one version, with a warning."""
 
-The public names stand in ``__init__.pyi``. They are loaded when first used.
-"""
+from typing import Any
 
-import lazy_loader
+from fastpin import published
+from fastpin.moved import with_moved
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+def _face(name: str) -> Any:
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+__getattr__ = with_moved(_face, lambda: published, ("half_angle", "load_term", "peak_pressure", "Outcome", "Row"))

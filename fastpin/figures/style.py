@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +18,9 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.model.checks import file_path, number
+from fastpin.model.checks import number
 from fastpin.storage.files import check_writable, no_figure, replacing
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#882255", "#777777")
@@ -150,42 +149,9 @@ def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
     return {"color": COLOURS[colour], "linestyle": DASHES[dashes], "linewidth": width}
 
 
-def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
-    """Draw the figure of ``draw(curves)`` in the house style, and save it.
-
-    Raises
-    ------
-    InputError
-        If `dpi` is out of range, the format is unknown, or the file can't be written. It comes before the figure is
-        drawn where possible.
-    """
-    resolution, target = number_of_dots(dpi), file_path("path", path)
-    check_format(target)
-    with house_style():
-        save_figure(draw(curves), target, resolution)
-
-
-def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:
-    """Return a new figure, `width` inches wide, and its panels, shape (rows, columns), each `height` inches high."""
-    figure = new_figure(width, rows * height + 0.6)
-    axes = figure.subplots(rows, columns, squeeze=False)
-    for panel in axes.flat:
-        draw_grid(panel)
-    return figure, axes
-
-
 def angle_axis(panel: Axes) -> None:
     """Put the ticks of an axis in degrees at whole parts of a right angle."""
     panel.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
-
-
-def add_legend(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
-    """Add a legend below the panels. Each of `rows` is a row of the legend: labels and their lines."""
-    columns = max(len(row) for row in rows)
-    entries = [[Line2D([], [], label=label, **style) for label, style in row] for row in rows]
-    blank = Line2D([], [], linestyle="none", label=" ")
-    filled: list[Artist] = [row[k] if k < len(row) else blank for k in range(columns) for row in entries]
-    fitted_legend(figure, filled, columns)
 
 
 def check_format(path: Path) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
 
-from fastpin.paper import catalog
+from fastpin.published import catalog
 from fastpin.studies import sweep
 from fastpin.studies.outcome_tables import KEYS
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES, WEAR_QUANTITIES

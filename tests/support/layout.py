@@ -44,7 +44,7 @@ LEVELS = (
     ("studies", "charts"),
     ("report",),
     ("figures",),
-    ("paper", "pages", "live"),
+    ("published", "pages", "live"),
     ("benchmarks",),
     ("cli",),
 )
@@ -59,7 +59,7 @@ HOMES = {
     "numba": ("runtime",),
     "llvmlite": ("runtime",),
     "ctypes": ("runtime",),
-    "matplotlib": ("figures", "paper", "benchmarks"),
+    "matplotlib": ("figures", "published"),
     "h5py": ("storage",),
     "tomllib": ("casefile",),
     "sqlite3": ("storage", "studies"),
