@@ -27,9 +27,9 @@ def test_the_map_has_a_box_for_each_zone_of_each_state():
     for state in result:
         mine = [box for box in boxes if box.point == state.step + 1]
         assert {(box.left, box.right) for box in mine} == {(state.step + 0.5, state.step + 1.5)}
-        (stick,) = (box for box in mine if box.status == STICK)
+        (stick,) = (box for box in mine if box.kind == STICK)
         assert (stick.start, stick.stop) == pytest.approx(tuple(np.degrees(state.stick[0]) + 90.0))
-        slips = {box.status: box for box in mine if box.status != STICK}
+        slips = {box.kind: box for box in mine if box.kind != STICK}
         assert slips[SLIP_POSITIVE].stop == pytest.approx(stick.start)
         assert slips[SLIP_NEGATIVE].start == pytest.approx(stick.stop)
 
