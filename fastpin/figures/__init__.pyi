@@ -1,5 +1,4 @@
 from . import animation as animation
-from . import envelope as envelope
 from . import load_cycle as load_cycle
 from . import plotting as plotting
 from . import polar as polar
@@ -10,6 +9,7 @@ from . import stick_slip as stick_slip
 from . import stress as stress
 from . import style as style
 from . import subjects as subjects
+from . import sweep as sweep
 from . import tractions as tractions
 from . import words as words
 from .animation import animate as animate

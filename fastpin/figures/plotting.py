@@ -90,7 +90,7 @@ def plot_result(
 ) -> Figure:
     """Draw a figure of a result, see :meth:`fastpin.Result.plot`, or of a life of wear."""
     choice("kind", kind, [name for name, each in KINDS.items() if each.ending == "png"])
-    if path in KINDS:
+    if isinstance(path, str) and path in KINDS:
         raise InputError("path", f'must be the name of a file, not "{path}"; for this figure write kind="{path}"')
     for name in options:
         if name not in KINDS[kind].options and kinds_with(name):

@@ -12,22 +12,22 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
 
 from fastpin.errors import InputError
 from fastpin.figures.style import (
     angle_axis,
-    check_format,
     draw_grid,
     fitted_legend,
     house_style,
     new_figure,
-    number_of_dots,
     save_figure,
 )
 from fastpin.figures.words import ANGLE, CAPTION_SIZE, wrapped, wrapped_parts
 from fastpin.model.checks import file_path, instance, number, string
+from fastpin.storage.files import check_writable, no_figure
 
 WIDTH = 6.7
 """Width of most figures, inches."""
@@ -81,9 +81,12 @@ class Look:
             most = f"must have at most {LONGEST_TITLE:,} characters in a figure, not {len(self.title):,}"
             raise InputError("title", most)
         object.__setattr__(self, "width", number("width", self.width, 1.0, 12.0))
-        object.__setattr__(self, "dpi", number_of_dots(self.dpi))
+        object.__setattr__(self, "dpi", number("dpi", self.dpi, 10.0, 1200.0))  # the largest bitmap takes 1 GB
         if self.path is not None:
-            check_format(file_path("path", self.path))
+            path = file_path("path", self.path)
+            if path.suffix[1:].lower() not in FigureCanvasAgg.get_supported_filetypes():
+                raise no_figure("path", path)
+            check_writable(path)
         if self.ax is not None:
             instance("ax", self.ax, Axes, "axes of Matplotlib")
 

@@ -20,8 +20,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.model.checks import number
-from fastpin.storage.files import check_writable, no_figure, replacing
+from fastpin.storage.files import replacing
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#882255", "#777777")
 """Colours that are distinct for all kinds of colour vision.
@@ -90,17 +89,6 @@ def save_figure(figure: Figure, path: Path, dpi: float) -> None:
         figure.savefig(temporary, dpi=dpi, metadata={dated: None} if dated else None)
 
 
-def number_of_dots(dpi: float) -> float:
-    """Check the dots per inch of a bitmap, and return them.
-
-    Raises
-    ------
-    InputError
-        If `dpi` is out of range.
-    """
-    return number("dpi", dpi, 10.0, 1200.0)  # the largest bitmap takes less than 1 GB of memory
-
-
 def spread(count: int, most: int) -> list[int]:
     """Return the indices of at most `most` of `count` items, evenly spread, with the first and the last one."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist() if count else []
@@ -152,13 +140,6 @@ def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
 def angle_axis(panel: Axes) -> None:
     """Put the ticks of an axis in degrees at whole parts of a right angle."""
     panel.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
-
-
-def check_format(path: Path) -> None:
-    """Raise :class:`InputError` if a figure can't be written to a file of this name, in a format of Matplotlib."""
-    if path.suffix[1:].lower() not in FigureCanvasAgg.get_supported_filetypes():
-        raise no_figure("path", path)
-    check_writable(path)
 
 
 def fitted_legend(figure: Figure, handles: list[Artist], columns: int, title: str = "") -> None:

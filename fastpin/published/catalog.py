@@ -11,10 +11,10 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, whole_number
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
 from fastpin.published import (
+    finite_bodies,
     fretting,
     half_plane,
     handbook_formulas,
-    hollow_pins,
     interference,
     klang,
     loaded_pins,
@@ -24,10 +24,8 @@ from fastpin.published import (
     regimes,
     remote_stress,
     rigid_pin,
-    rings,
     sliding_onset,
     steady_states,
-    supports,
     sweep,
     textbooks,
 )
@@ -41,7 +39,7 @@ FIGURES: dict[str, PaperFigure] = {
     figure.name: figure
     for subject in (
         monotonic, sweep, remote_stress, fretting, steady_states,
-        memory, sliding_onset, half_plane, rigid_pin, rings, supports, hollow_pins, rectangular_lug, interference,
+        memory, sliding_onset, half_plane, rigid_pin, finite_bodies, rectangular_lug, interference,
         regimes,
     )
     for figure in subject.FIGURES

@@ -14,18 +14,16 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
+from fastpin.figures.sheet import Look
 from fastpin.figures.style import (
     Line,
-    check_format,
     draw_grid,
     fitted_legend,
     house_style,
     line,
     new_figure,
-    number_of_dots,
     save_figure,
 )
-from fastpin.model.checks import file_path
 
 
 def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
@@ -37,10 +35,9 @@ def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, d
         If `dpi` is out of range, the format is unknown, or the file can't be written. It comes before the figure is
         drawn where possible.
     """
-    resolution, target = number_of_dots(dpi), file_path("path", path)
-    check_format(target)
+    look = Look(path, dpi=dpi)
     with house_style():
-        save_figure(draw(curves), target, resolution)
+        save_figure(draw(curves), Path(path), look.dpi)
 
 
 def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:

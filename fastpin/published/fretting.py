@@ -24,10 +24,9 @@ from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import line
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem, Rotation
-from fastpin.published.curves import traction_curve
 from fastpin.published.records import PaperFigure, Report, steps
 from fastpin.published.sweep import NODES_RATIO, gathered_grid
-from fastpin.published.tractions import NAMES, PAIRS, Panel, chosen, traction_figure, values_of
+from fastpin.published.tractions import NAMES, PAIRS, Panel, chosen, traction_curve, traction_figure, values_of
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 

@@ -21,10 +21,9 @@ from fastpin.figures.style import line
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.published.curves import traction_curve
 from fastpin.published.drawing import add_legend, head, panels
-from fastpin.published.records import PaperFigure, Report, steps
-from fastpin.published.tractions import ANGLE
+from fastpin.published.records import PaperFigure, Report, curves_of, steps
+from fastpin.published.tractions import ANGLE, traction_curve
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -85,14 +84,11 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Loads of both events against friction, one curve for each load of the pin; then tractions round the hole."""
     pin_loads: tuple[PinLoad, PinLoad] = ("centre", "body")
     cases = [(pin_load, friction) for pin_load in pin_loads for friction in FRICTION]
-    rows: dict[str, list[tuple[float, float, float, float]]] = {}
-    for pin_load, friction in steps(cases, progress):
-        rows.setdefault(pin_load, []).append((friction, *events(friction, pin_load, nodes)))
-    names = ("mu", "P_opens", "P_slips", "P_slips_closed_form")
-    curves = [
-        Curve({"pin_load": pin_load}, dict(zip(names, np.array(values).T, strict=True)))
-        for pin_load, values in rows.items()
+    rows = [
+        ({"pin_load": pin_load}, (friction, *events(friction, pin_load, nodes)))
+        for pin_load, friction in steps(cases, progress)
     ]
+    curves = curves_of(("mu", "P_opens", "P_slips", "P_slips_closed_form"), rows)
     problem = fitted(SHOWN_FRICTION)
     states = solve(problem, [{"P": stage} for stage in STAGES], grid=Grid.circle(nodes))
     for stage, state in zip(STAGES, states, strict=True):

@@ -19,7 +19,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.published.drawing import add_legend, grey, head, marked, panels
 from fastpin.published.fretting import FRICTION
-from fastpin.published.records import PaperFigure, Report, steps
+from fastpin.published.records import PaperFigure, Report, curves_of, steps
 from fastpin.published.tractions import PAIRS
 from fastpin.report.curves import Curve
 from fastpin.solver.result import Result
@@ -53,28 +53,24 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     shear over int mu N, of the pressure over int N.
     """
     cases = [(ratio, load_parameter) for ratio in AMPLITUDES for load_parameter in LOAD_PARAMETERS]
-    rows: dict[float, list[list[float]]] = {}
+    rows = []
     for ratio, load_parameter in steps(cases, progress):
         problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], load_parameter, FRICTION, "centre", "fixed")
         states = cycles(problem, ratio * FRICTION, nodes)  # P, +Q, -Q, +Q, ... +Q
         steady, back = states[-1], states[-2]
         normal = size(steady.pressure, steady)
         rubbing = FRICTION * normal
-        rows.setdefault(ratio, []).append(
-            [
-                load_parameter,
-                size(steady.shear + back.shear[::-1], steady) / rubbing,  # mirrored: -T(-theta)
-                size(steady.pressure - back.pressure[::-1], steady) / normal,
-                size(states[1].shear - steady.shear, steady) / rubbing,
-                size(states[2].shear - back.shear, steady) / rubbing,
-                size(states[3].shear - steady.shear, steady) / rubbing,
-            ]
-        )
+        numbers = [
+            load_parameter,
+            size(steady.shear + back.shear[::-1], steady) / rubbing,  # mirrored: -T(-theta)
+            size(steady.pressure - back.pressure[::-1], steady) / normal,
+            size(states[1].shear - steady.shear, steady) / rubbing,
+            size(states[2].shear - back.shear, steady) / rubbing,
+            size(states[3].shear - steady.shear, steady) / rubbing,
+        ]
+        rows.append(({"mu": FRICTION, "eta": ratio}, numbers))
     names = ("L_p", "memory_T", "memory_N", "first_forward_T", "first_reverse_T", "second_forward_T")
-    return [
-        Curve({"mu": FRICTION, "eta": ratio}, dict(zip(names, np.array(numbers).T, strict=True)))
-        for ratio, numbers in rows.items()
-    ]
+    return curves_of(names, rows)
 
 
 def draw(curves: Sequence[Curve]) -> Figure:

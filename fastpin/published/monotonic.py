@@ -22,9 +22,8 @@ from matplotlib.figure import Figure
 
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, line
-from fastpin.published.curves import traction_curve
 from fastpin.published.records import PaperFigure, Report, steps
-from fastpin.published.tractions import NAMES, Panel, chosen, pushed, traction_figure, values_of
+from fastpin.published.tractions import NAMES, Panel, chosen, pushed, traction_curve, traction_figure, values_of
 from fastpin.report.curves import Curve
 
 

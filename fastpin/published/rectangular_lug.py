@@ -19,11 +19,10 @@ from fastpin.figures.style import Line, angle_axis, line
 from fastpin.model.angles import BOTTOM
 from fastpin.model.lug import Lug, rectangle
 from fastpin.model.problem import Problem
-from fastpin.published.curves import traction_curve
 from fastpin.published.drawing import add_legend, grey, head, panels
-from fastpin.published.records import PaperFigure, Report, steps
-from fastpin.published.rings import CASE, INFINITE, LOAD_PARAMETER, PAIR
-from fastpin.published.tractions import ANGLE, QUANTITIES
+from fastpin.published.finite_bodies import CASE, INFINITE, LOAD_PARAMETER, PAIR
+from fastpin.published.records import PaperFigure, Report, curves_of, steps
+from fastpin.published.tractions import ANGLE, QUANTITIES, traction_curve
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
@@ -47,22 +46,19 @@ def lug_of(half_width: float) -> Compliance:
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Tractions and hoop stress of lug and infinite plate, then the peak pressure over the half-width."""
     curves: list[Curve] = []
-    peaks: dict[float, list[tuple[float, float]]] = {}
+    peaks = []
     for width in steps([math.inf, *HALF_WIDTHS], progress):
         body: Plate | Compliance = Plate() if math.isinf(width) else lug_of(width)
         for friction in FRICTION:
             problem = Problem.from_load_parameter(PAIR, LOAD_PARAMETER, friction, "body", plate_body=body)
             state = solve(problem, [{"P": 1.0}], nodes=nodes)[-1]
-            peaks.setdefault(friction, []).append((width, state.peak_pressure))
+            peaks.append(({"mu": friction}, (width, state.peak_pressure)))
             if width in (SHOWN, math.inf):
                 parameters: dict[str, Any] = {"plate": INFINITE if math.isinf(width) else LUG, "mu": friction}
                 theta = BOTTOM + np.linspace(-math.pi, math.pi, 361)
                 hoop = {"angle_deg": np.degrees(theta) + 90.0, "hoop": state.hoop_stress("plate", theta)}
                 curves += [traction_curve(state, **parameters), Curve(parameters, hoop)]
-    for friction, rows in peaks.items():
-        names = ("half_width", "N_max")
-        curves.append(Curve({"mu": friction}, dict(zip(names, np.array(rows).T, strict=True))))
-    return curves
+    return [*curves, *curves_of(("half_width", "N_max"), peaks)]
 
 
 def draw(curves: Sequence[Curve]) -> Figure:

@@ -12,9 +12,8 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
-from fastpin.published.curves import traction_curve
 from fastpin.published.records import PaperFigure, Report, steps
-from fastpin.published.tractions import NAMES, PAIRS, Panel, pushed, traction_figure
+from fastpin.published.tractions import NAMES, PAIRS, Panel, pushed, traction_curve, traction_figure
 from fastpin.report.curves import Curve
 
 PAIR = "Ti/Al"

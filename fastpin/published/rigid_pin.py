@@ -18,10 +18,9 @@ from fastpin.figures.style import Line, angle_axis
 from fastpin.model.angles import BOTTOM
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.published.curves import traction_curve
 from fastpin.published.drawing import add_legend, grey, head, marked, panels
 from fastpin.published.records import PaperFigure, Report, steps
-from fastpin.published.tractions import ANGLE, QUANTITIES
+from fastpin.published.tractions import ANGLE, QUANTITIES, traction_curve
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

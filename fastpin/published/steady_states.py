@@ -18,10 +18,9 @@ from matplotlib.figure import Figure
 from fastpin.figures.style import line
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
-from fastpin.published.curves import traction_curve
 from fastpin.published.fretting import FRICTION, RATIOS, case_lines
 from fastpin.published.records import PaperFigure, Report, steps
-from fastpin.published.tractions import PAIRS, Panel, chosen, traction_figure
+from fastpin.published.tractions import PAIRS, Panel, chosen, traction_curve, traction_figure
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 

@@ -15,9 +15,9 @@ from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.published import catalog, remote_stress, steady_states, sweep, tractions
-from fastpin.published import curves as curves_of_figures
-from fastpin.published.curves import traction_curve
+from fastpin.published import tractions as curves_of_figures
 from fastpin.published.records import steps
+from fastpin.published.tractions import traction_curve
 from fastpin.report.cells import csv_cell
 from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.solving import solve

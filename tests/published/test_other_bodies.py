@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
+from fastpin.bodies.ring import SUPPORTS
 from fastpin.elasticity import plates
 from fastpin.model.problem import Problem
-from fastpin.published import catalog, half_plane, hollow_pins, rectangular_lug, rigid_pin, supports
+from fastpin.published import catalog, finite_bodies, half_plane, rectangular_lug, rigid_pin
 from fastpin.report.curves import Curve
 
 pytestmark = pytest.mark.gate
@@ -49,11 +50,11 @@ def test_rings_have_the_pressures_of_the_support_table():
 
 
 def test_supports_tend_to_the_infinite_plate(monkeypatch):
-    monkeypatch.setattr(supports, "OUTER_RADII", (2.0, 200.0))
+    monkeypatch.setattr(finite_bodies, "OUTER_RADII", (2.0, 200.0))
     curves = catalog.figure("supports").compute(NODES)
     infinite = curve_of(curves, "N_max", support="infinite plate")[0]
     expected = {"held": 0.6219, "uniform": 0.4601, "normal": 0.4585, "half": 0.5197}
-    for support in supports.SUPPORTS:
+    for support in SUPPORTS:
         near, far = curve_of(curves, "N_max", support=support)
         assert near == pytest.approx(expected.get(support, near), abs=2e-4)
         slow = support == "half"  # its mean pressure falls like the radius, the others like the square
@@ -64,10 +65,10 @@ def test_supports_tend_to_the_infinite_plate(monkeypatch):
 
 
 def test_hollow_pins_tend_to_a_load_at_the_centre(monkeypatch):
-    monkeypatch.setattr(hollow_pins, "BORES", (0.0, 0.02, 0.5))
+    monkeypatch.setattr(finite_bodies, "BORES", (0.0, 0.02, 0.5))
     curves = catalog.figure("hollow-pins").compute(NODES)
-    for load in hollow_pins.LOADS:
-        for friction in hollow_pins.FRICTION:
+    for load in finite_bodies.BORE_LOADS:
+        for friction in finite_bodies.FRICTIONS:
             solid, narrow, hollow = curve_of(curves, "N_max", load=load, mu=friction)
             assert narrow == pytest.approx(solid, abs=1e-3)
             assert (hollow > solid) == (load == "held")
