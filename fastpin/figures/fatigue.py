@@ -206,14 +206,13 @@ def _finish(
     """Add the axes of angles, the legend and the heading with bodies and depths."""
     sheet.go_round()
     sheet.legend(handles, min(len(handles), 3))
-    heading = "; ".join(f"{edge_body(one.problem, one.body)}, {_depth_words(one)}" for one in found)
-    sheet.head(look.title, heading, caption=caption(found[0].problem))
+    parts, length = [], units(found[0].problem)["length"]
+    for one in found:
+        depth = float(one.depth.ravel()[0])
+        place = f"{short(depth, length)} below the edge" if depth else "on the edge"
+        parts.append(f"{edge_body(one.problem, one.body)}, {place}")
+    sheet.head(look.title, "; ".join(parts), caption=caption(found[0].problem))
     return sheet
-
-
-def _depth_words(found: Fatigue | SpectrumDamage) -> str:
-    depth = float(found.depth.ravel()[0])
-    return "on the edge" if depth == 0.0 else f"{short(depth, units(found.problem)['length'])} below the edge"
 
 
 def _by_angle(found: Fatigue | SpectrumDamage) -> tuple[np.ndarray, np.ndarray]:

@@ -63,7 +63,7 @@ def _cycle_of(cycle: LoadCycle | Result) -> LoadCycle:
     return instance("cycle", cycle, LoadCycle, "a result, or a load cycle such as result.cycle()")
 
 
-def _cycles_of(cycle: LoadCycle | Result | Sequence[LoadCycle]) -> list[LoadCycle]:
+def one_or_several(cycle: LoadCycle | Result | Sequence[LoadCycle]) -> list[LoadCycle]:
     """The cycles, or the last one of a result."""
     several = isinstance(cycle, Sequence) and not isinstance(cycle, Result)
     each: Sequence[Any] = cycle if several else [cycle]  # type: ignore[assignment]
@@ -230,7 +230,7 @@ def loops_of(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None, name
     )
 
 
-plot_loops = plotter("plot_loops", loops_of, _cycles_of)
+plot_loops = plotter("plot_loops", loops_of, one_or_several)
 
 
 def check_loops(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None) -> None:

@@ -148,7 +148,7 @@ def _draw_profile(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> S
     return sheet
 
 
-def _last_of(state: State | Result) -> InMemory:
+def last_state(state: State | Result) -> InMemory:
     """The state, or the last one of a result."""
     return InMemory(state if isinstance(state, Result) else instance("state", state, State, "a State"))
 
@@ -189,7 +189,7 @@ def map_plot(
     )
 
 
-plot_stress_field = plotter("plot_stress_field", map_plot, _last_of)
+plot_stress_field = plotter("plot_stress_field", map_plot, last_state)
 
 
 def _has_point(state: State) -> bool:

@@ -191,7 +191,9 @@ def _draw_maps(look: Look, chart: Chart) -> Sheet:
             shown = np.ma.masked_invalid(numbers)
             mesh = panel.pcolormesh(x, y, shown, norm=scale, cmap="viridis", edgecolors="face", linewidth=0.2)
             labels += _draw_contours(panel, chart, numbers, levels)
-        _draw_empty_cells(panel, x, y, numbers, failed)
+        for row, column in np.argwhere(np.isnan(numbers)):
+            size = x[column + 1] - x[column], y[row + 1] - y[row]
+            panel.add_patch(Rectangle((x[column], y[row]), *size, **(_FAILED if failed[row, column] else _OPEN)))
         rows, places = np.nonzero(unsure)
         panel.plot(chart.x.values[places], chart.y.values[rows], **_UNSURE)
         _scale_axes(panel, chart)
@@ -270,14 +272,6 @@ def _thin_out(sheet: Sheet, labels: Sequence[Text]) -> None:
             label.remove()
         else:
             kept.append(space)
-
-
-def _draw_empty_cells(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.ndarray, failed: np.ndarray) -> None:
-    """Draw the cells without a value."""
-    for row, column in np.argwhere(np.isnan(numbers)):
-        size = x[column + 1] - x[column], y[row + 1] - y[row]
-        style = _FAILED if failed[row, column] else _OPEN
-        panel.add_patch(Rectangle((x[column], y[row]), *size, **style))
 
 
 def _unsure(chart: Chart) -> list[np.ndarray]:

@@ -12,14 +12,14 @@ ROOT = Path(__file__).resolve().parents[2]
 MOST = {
     "files naming gauge_radius": 5,
     "files naming slip_sums": 10,
-    "files naming Ring": 8,
+    "files naming Ring": 7,
     "isinstance of bodies outside bodies/": 0,
     "drive is None, or not": 0,
     "classes defined twice": 0,
-    "small private functions used once": 75,
-    "constants of modules": 1_405,
+    "small private functions used once": 74,
+    "constants of modules": 1_380,
     "hidden imports": 0,
-    "lines of code": 49_200,
+    "lines of code": 48_211,
 }
 """The most that each number may be. A smaller number takes its place here."""
 

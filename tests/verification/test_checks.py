@@ -35,7 +35,8 @@ def only(monkeypatch: pytest.MonkeyPatch) -> object:
     """Leave out all topics but some."""
 
     def choose(*keys: str) -> None:
-        monkeypatch.setattr(installation, "TOPICS", {key: TOPICS[key] for key in keys})
+        known = FURTHER | TOPICS
+        monkeypatch.setattr(installation, "TOPICS", {key: known[key] for key in keys})
 
     return choose
 

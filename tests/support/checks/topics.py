@@ -1,9 +1,9 @@
-"""Checks of the accuracy of finite bodies, laminates, gaps, friction, wear and cracks: topics like `fastpin verify`."""
+"""Checks of accuracy: stresses, finite bodies, laminates, gaps, friction, wear and cracks, as in `fastpin verify`."""
 
 from functools import partial
 
 from fastpin.bodies import Plate
-from fastpin.verification.checks import Topic
+from fastpin.verification.checks import FREE, HELD, Topic
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from tests.support.checks import (
     body_cases,
@@ -13,10 +13,30 @@ from tests.support.checks import (
     gap_rows,
     laminate_rows,
     seat_rows,
+    stress_rows,
     wear_rows,
 )
 
 FURTHER = {
+    "strains": Topic(
+        "Hoop strains of pin and plate: gap and slip",
+        {
+            "free rotation": partial(stress_rows.strains, FREE, 1.75),
+            "held rotation": partial(stress_rows.strains, HELD, 1.2),
+        },
+        {"slip": 6e-5},
+    ),
+    "stresses, half-plane": Topic(
+        "Stresses of half-planes, half-angle 0.001: Hertz, Cattaneo, Mindlin",
+        {"P": stress_rows.hertz_stress, "P, Q": stress_rows.cattaneo_mindlin_stress},
+        {
+            "largest shear": 4e-3,
+            "its depth": 1.5e-3,
+            "stresses": 6e-3,
+            "peak hoop stress": 4e-3,
+            "its place": 6e-4,
+        },
+    ),
     "bodies": Topic(
         "Hollow pins, rings and bushes: 1,601 nodes, finite elements, Eq. (58), closed form",
         {name: partial(body_rows.finite_bodies, name) for name in body_cases.CASES}
