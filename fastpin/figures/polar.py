@@ -39,7 +39,7 @@ def polar_plot(subject: Subject, states: StateChoice = None) -> Plot:
 
     The left panel shows the pressure, outwards from the hole. The right panel shows the shear traction on the pin:
     outwards where it acts counter-clockwise, inwards where it acts clockwise. Without friction there is only the
-    pressure.
+    pressure. See :func:`fastpin.plot_tractions` for the `states`.
     """
     drawn = subject.states(states)
     curves = traction_curves(drawn)

@@ -110,7 +110,7 @@ def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
     Colours show where the contact sticks and in which direction the pin slips; white is open. A triangle marks a slip
     zone that is too narrow to be seen. Without friction all contact slips. The upper panel shows the loads that change.
     Of more than :data:`MOST_COLUMNS` states, a column joins the states of one cycle or of several. It shows which nodes
-    slip, and in which direction, at some time in it.
+    slip, and in which direction, at some time in it. See :func:`fastpin.plot_tractions` for the `states`.
     """
     drawn = subject.states(states, most=MOST_COLUMNS, whole=True)
     first, last = (point_name(load_point(drawn[place])) for place in (0, -1))

@@ -45,8 +45,8 @@ def hoop_plot(subject: Subject, states: StateChoice = None, body: str = "both") 
     A dot marks the largest hoop stress of each state; an open dot if the nodes do not resolve the peak. A dotted line
     is the part that the assembly leaves before any load, if something is pressed. Angles are in degrees from the bottom
     of the hole, counter-clockwise positive. Tension is positive. The `body` is "plate", "seat", "pin", or "both" for
-    all that the problem has, without rigid bodies. A rigid one raises :class:`InputError`. The other arguments are
-    those of :func:`fastpin.plot_tractions`.
+    all that the problem has, without rigid bodies. A rigid one raises :class:`InputError`. See
+    :func:`fastpin.plot_tractions` for the `states`.
     """
     drawn = subject.states(states, extremes=HOOP[choice("body", body, tuple(HOOP))])
     curves = hoop_curves(drawn, body)
@@ -113,7 +113,7 @@ def profile_plot(
 
     The `angle` is in degrees from the bottom. Unless given, it is the angle of each state's largest hoop stress. The
     largest `depth` is in units of the hole's radius; unless given, it is 0.5 in the pin and 1 elsewhere. A rigid `body`
-    raises :class:`InputError`.
+    raises :class:`InputError`. See :func:`fastpin.plot_tractions` for the `states`.
     """
     drawn = subject.states(states, extremes=HOOP[choice("body", body, BODIES)])
     usual = 0.5 if body == "pin" else 1.0
@@ -164,7 +164,8 @@ def map_plot(
     Parameters
     ----------
     state : State or Result
-        Of a result the last state.
+    states : str, number, sequence of numbers or slice, optional
+        See :func:`fastpin.plot_tractions`. The map shows the last one of them; unless given, of the result.
     component : str
         A name of :data:`fastpin.report.stress.FIELDS`.
     body : {"both", "plate", "pin"}
