@@ -21,11 +21,9 @@ from fastpin.published import (
     memory,
     monotonic,
     rectangular_lug,
-    regimes,
     remote_stress,
     rigid_pin,
     sliding_onset,
-    steady_states,
     sweep,
     textbooks,
 )
@@ -38,9 +36,9 @@ from fastpin.version import __version__
 FIGURES: dict[str, PaperFigure] = {
     figure.name: figure
     for subject in (
-        monotonic, sweep, remote_stress, fretting, steady_states,
+        monotonic, sweep, fretting,
         memory, sliding_onset, half_plane, rigid_pin, finite_bodies, rectangular_lug, interference,
-        regimes,
+        remote_stress,
     )
     for figure in subject.FIGURES
 }  # fmt: skip

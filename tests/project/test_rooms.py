@@ -17,9 +17,9 @@ MOST = {
     "drive is None, or not": 0,
     "classes defined twice": 0,
     "small private functions used once": 74,
-    "constants of modules": 1_380,
+    "constants of modules": 1_378,
     "hidden imports": 0,
-    "lines of code": 48_211,
+    "lines of code": 48_187,
 }
 """The most that each number may be. A smaller number takes its place here."""
 

@@ -14,7 +14,7 @@ from fastpin.errors import InputError
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.published import catalog, remote_stress, steady_states, sweep, tractions
+from fastpin.published import catalog, fretting, remote_stress, sweep, tractions
 from fastpin.published import tractions as curves_of_figures
 from fastpin.published.records import steps
 from fastpin.published.tractions import traction_curve
@@ -250,11 +250,11 @@ def test_remote_stresses_change_the_contact_as_the_text_says() -> None:
 
 def test_the_steady_state_is_reached_at_the_second_forward_load_and_mirrored() -> None:
     curves = computed("13")
-    for eta in steady_states.ETAS:
+    for eta in fretting.ETAS:
         steady = {
             (first, load): [one(curves, eta=eta, first=first, load=load, cycle=cycle)["T"] for cycle in (1, 2, 3)]
-            for first in steady_states.FIRST_LOADS
-            for load in steady_states.FIRST_LOADS
+            for first in fretting.FIRST_LOADS
+            for load in fretting.FIRST_LOADS
         }
         for (first, load), (cycle1, cycle2, cycle3) in steady.items():
             assert np.allclose(cycle2, cycle3, atol=1e-9)
