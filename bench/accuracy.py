@@ -24,13 +24,14 @@ from matplotlib.figure import Figure
 from tqdm import tqdm
 
 from fastpin.errors import FastpinError
-from fastpin.figures.style import add_legend, line, panels, save_drawing
+from fastpin.figures.style import line
 from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import ALL_ROUND
 from fastpin.model.problem import Problem
+from fastpin.published.drawing import add_legend, panels, save_drawing
 from fastpin.solver.configuration import elastic_energy
 from fastpin.solver.errors import SolveError
 from fastpin.solver.increment import implicit_step
@@ -40,14 +41,16 @@ from fastpin.states.curves import traction_patches, tractions_at
 from fastpin.states.quantities import QUANTITIES, ZONES, intervals, matching_values, quantity, size, sizes, values
 from fastpin.states.state import State
 from fastpin.studies.extrapolate import estimate
-from fastpin.verification import closed_forms, wear_limits
+from fastpin.verification import closed_forms
 from fastpin.verification.comparisons import cattaneo_mindlin_differences, residuals_away
 from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE, FiniteElements
-from fastpin.verification.friction_rows import ROUGH
+from fastpin.verification.joint_rows import step, wearing
 from fastpin.verification.rows import Solving
 from fastpin.verification.sliding import solve_sliding
-from fastpin.verification.wear_rows import half_planes, step, wearing
 from tests.support import joints
+from tests.support.checks import wear_limits
+from tests.support.checks.friction_rows import ROUGH
+from tests.support.checks.wear_rows import half_planes
 from tests.support.wear_cases import WEAR_CASES, lived, numbers_of, parts_of, ready_to_wear
 from tests.survey.histories import GENERATORS, RandomCase, generate
 

@@ -24,6 +24,7 @@ from tqdm import tqdm
 
 import fastpin
 from fastpin.figures import style
+from fastpin.published import drawing
 from fastpin.storage import store
 from fastpin.storage.recording import record
 
@@ -85,7 +86,7 @@ def follow(corners: int, nodes: int, keep: str, path: Path) -> list[tuple[float,
 
 def draw(columns: dict[str, np.ndarray]) -> Figure:
     """Draw memory, corners and size of the file against time."""
-    figure, axes = style.panels(1, 2, height=2.6)
+    figure, axes = drawing.panels(1, 2, height=2.6)
     minutes = columns["seconds"] / 60.0
     axes[0, 0].plot(minutes, columns["memory_mb"], **style.line(0))
     axes[0, 0].set_ylabel("resident memory  [MB]")
@@ -95,7 +96,7 @@ def draw(columns: dict[str, np.ndarray]) -> Figure:
     axes[0, 1].set_ylabel("thousand corners, MB")
     for panel in axes[0]:
         panel.set_xlabel("time  [min]")
-    style.add_legend(figure, [("thousand corners", style.line(0)), ("size of the file, MB", style.line(1, 1))])
+    drawing.add_legend(figure, [("thousand corners", style.line(0)), ("size of the file, MB", style.line(1, 1))])
     return figure
 
 
@@ -111,7 +112,7 @@ def main() -> None:
     options = parser.parse_args()
     if options.draw:
         table = np.loadtxt(RESULTS / "long.csv", delimiter=",", skiprows=1)
-        style.save_drawing(draw, dict(zip(NAMES, table.T, strict=True)), FIGURE)
+        drawing.save_drawing(draw, dict(zip(NAMES, table.T, strict=True)), FIGURE)
         return
     cases.steady_state(61)  # compiles
     with tempfile.TemporaryDirectory() as folder:
@@ -142,7 +143,7 @@ def main() -> None:
             writer = csv.writer(file)
             writer.writerow(NAMES)
             writer.writerows([f"{value:.5g}" for value in row] for row in rows)
-        style.save_drawing(draw, columns, FIGURE)
+        drawing.save_drawing(draw, columns, FIGURE)
 
 
 if __name__ == "__main__":

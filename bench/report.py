@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.figures import style
+from fastpin.published import drawing
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = Path(__file__).resolve().parent / "results"
@@ -244,7 +245,7 @@ def slopes_table(stored: Stored) -> str:
 
 def draw(stored: Stored) -> Any:
     """Draw times and numbers of events against the number of nodes, on logarithmic scales."""
-    figure, axes = style.panels(1, 2, height=3.4)
+    figure, axes = drawing.panels(1, 2, height=3.4)
     rows = []
     for panel, lines, label, styles in (
         (axes[0, 0], curves(stored), "seconds", [style.line(index, index) for index in range(5)]),
@@ -258,7 +259,7 @@ def draw(stored: Stored) -> Any:
         panel.set_xlabel("nodes n")
         panel.set_ylabel(label)
         rows.append(entries)
-    style.add_legend(figure, *rows)
+    drawing.add_legend(figure, *rows)
     return figure
 
 
@@ -293,7 +294,7 @@ def newest() -> Path:
 
 def save_figure(stored: Stored, path: Path) -> None:
     """Draw and save the figure."""
-    style.save_drawing(draw, stored, path)
+    drawing.save_drawing(draw, stored, path)
 
 
 def main() -> None:

@@ -32,7 +32,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.verification.finite_elements import LIKE, UNLIKE
-from fastpin.verification.wear_rows import step, wearing
+from fastpin.verification.joint_rows import step, wearing
 
 Corners = list[dict[str, float]]
 

@@ -1,8 +1,9 @@
-"""Problems that others publish, beside fastpin's numbers, one file each.
-
-The public names stand in ``__init__.pyi``. They are loaded when first used.
-"""
+"""The old folder of the names of :mod:`fastpin.published`. They work here for one version, with a warning."""
 
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+from fastpin import published
+from fastpin.moved import with_moved
+
+_face, __dir__, __all__ = lazy_loader.attach(__name__)
+__getattr__ = with_moved(_face, lambda: published, ("half_angle", "load_term", "peak_pressure", "Outcome", "Row"))

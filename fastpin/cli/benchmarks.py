@@ -7,10 +7,10 @@ import sys
 from typing import Any
 
 from fastpin import report
-from fastpin.benchmarks import catalog, text
 from fastpin.cli.progress import Bar
 from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_outputs
 from fastpin.errors import InputError
+from fastpin.published import catalog, records
 from fastpin.version import __version__
 
 
@@ -24,7 +24,7 @@ def run(options: argparse.Namespace) -> int:
     formats = list(dict.fromkeys(options.format or ("png",)))
     if options.output is not None:
         try:
-            catalog.check(names, options.output, formats)
+            catalog.check_benchmarks(names, options.output, formats)
         except InputError as error:
             raise InputError(f"--{error.field}", error.reason) from None
     elif options.format:
@@ -41,12 +41,12 @@ def run(options: argparse.Namespace) -> int:
 
                 chosen = catalog.BENCHMARKS[name]
                 outcome = chosen.compute(progress)
-                documents[name] = text.document(outcome.rows)
+                documents[name] = records.document(outcome.rows)
                 if options.json != "-":
-                    shown = text.table(chosen.title, chosen.statement, chosen.sources, outcome.rows)
+                    shown = records.table(chosen.title, chosen.statement, chosen.sources, outcome.rows)
                     progress_bar.write(*f"{name}: {shown}".split("\n"), "", file=sys.stdout)
                 if options.output is not None:
-                    files = catalog.write(name, outcome, options.output, formats)
+                    files = catalog.write_benchmark(name, outcome, options.output, formats)
                     to = sys.stderr if options.json == "-" else sys.stdout
                     progress_bar.write(f"{name}: {', '.join(map(str, files))}", "", file=to)
     except KeyboardInterrupt:

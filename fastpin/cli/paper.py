@@ -9,8 +9,7 @@ import time
 from fastpin.cli.progress import Bar
 from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, fail
 from fastpin.errors import InputError
-from fastpin.paper import catalog
-from fastpin.paper.files import FORMATS
+from fastpin.published import catalog
 
 
 def run(options: argparse.Namespace) -> int:
@@ -18,7 +17,7 @@ def run(options: argparse.Namespace) -> int:
     nodes = catalog.NODES if options.nodes is None else options.nodes
     try:
         names = list(dict.fromkeys(catalog.figure_name(name) for name in options.figure or catalog.PAPER))
-        formats = list(dict.fromkeys(options.format or FORMATS[:1]))
+        formats = list(dict.fromkeys(options.format or catalog.FORMATS[:1]))
         catalog.check(names, options.output, nodes, formats)
     except InputError as error:
         option = f"--{error.field}" if error.field in vars(options) else error.field

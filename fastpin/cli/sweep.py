@@ -202,7 +202,7 @@ def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path)
         found = report.envelope.envelopes(plan, rows, values[0])
         if found:
             problem = plan.case(plan.points[0]).problem
-            figures.envelope.plot_envelope(found, options.plot, title, problem=problem, varied=plan.fields)
+            figures.sweep.plot_envelope(found, options.plot, title, problem=problem, varied=plan.fields)
         missing = {"": len(rows) - sum(curve[report.envelope.BYPASS].size for curve in found)}
     else:
         charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]

@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterable
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import WIDE, Look, Plot, Sheet
+from fastpin.figures.sheet import WIDE, Look, Plot, Sheet, plotter
 from fastpin.figures.style import Line, line
 from fastpin.figures.words import caption, loads_text
 from fastpin.model.checks import as_toml, instance, whole_number
@@ -62,16 +60,7 @@ _METHODS = {
 _BAR: Line = {"marker": "_", "markersize": 11.0, "markeredgewidth": 2.0}
 
 
-def plot_convergence(
-    convergence: Convergence,
-    path: str | Path | None = None,
-    corner: int | None = None,
-    title: str = "",
-    dpi: float = 300.0,
-    *,
-    width: float = WIDE,
-    ax: Axes | None = None,
-) -> Figure:
+def convergence_of(convergence: Convergence, corner: int | None = None) -> Plot:
     """Draw the convergence at one corner, with up to nine panels, one for each outcome or quantity.
 
     A panel shows the distance of the values to the limit of their sequence, against the number of nodes or of
@@ -81,14 +70,7 @@ def plot_convergence(
     1 and 2. Quantities that are exact to rounding, or can't be compared, have no panel.
 
     The `corner` counts from 1; the last one of the study unless given.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(convergence_of(convergence, corner))
-
-
-def convergence_of(convergence: Convergence, corner: int | None = None) -> Plot:
-    """Return the convergence at one corner, see :func:`plot_convergence`."""
     instance("convergence", convergence, Convergence, "a Convergence")
     chosen = max(convergence.loads) if corner is None else whole_number("corner", corner, 1)
     if chosen not in convergence.loads:
@@ -100,6 +82,9 @@ def convergence_of(convergence: Convergence, corner: int | None = None) -> Plot:
         caption="Distance to the limit at the last corner. A dash at the last count is the error bar.",
         width=WIDE,
     )
+
+
+plot_convergence = plotter("plot_convergence", convergence_of)
 
 
 def _draw(look: Look, convergence: Convergence, corner: int) -> Sheet:

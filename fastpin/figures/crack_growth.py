@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.cracks import Growth
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import COLOURS, MAX_NAMED, draw_grid, line
 from fastpin.figures.words import caption, quantity
 from fastpin.model.angles import from_bottom
@@ -23,27 +20,12 @@ from fastpin.report.crack_growth import growth_curve
 from fastpin.report.curves import write_csv
 
 
-def plot_crack_growth(
-    found: Growth | Sequence[Growth],
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
+def crack_growth_of(found: Growth | Sequence[Growth]) -> Plot:
     """Draw the range of the stress intensity with the threshold over the length of a crack, and below it the growth.
 
     All axes are logarithmic. A dot marks the length at which a crack stops. Several cracks of one problem, or several
     laws, share the panels.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(crack_growth_of(found))
-
-
-def crack_growth_of(found: Growth | Sequence[Growth]) -> Plot:
-    """Return the growth of one crack or of several, see :func:`plot_crack_growth`."""
     each = instances("found", [found] if isinstance(found, Growth) else found, Growth, "a Growth, or a list of them")
     if not 1 <= len(each) <= MAX_NAMED:
         raise InputError("found", f"must be a Growth, or a list of 1 to {MAX_NAMED} of them, not of {len(each)}")
@@ -59,6 +41,9 @@ def crack_growth_of(found: Growth | Sequence[Growth]) -> Plot:
         "Range of the stress intensity over the length of a crack, with the threshold, and the growth in a cycle.",
         doubts=[str(doubt) for one in each for doubt in one.doubts],
     )
+
+
+plot_crack_growth = plotter("plot_crack_growth", crack_growth_of)
 
 
 def _place(growth: Growth) -> str:

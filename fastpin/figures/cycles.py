@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterSciNotation, LogLocator, MaxNLocator, NullLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, line
 from fastpin.figures.subjects import Subject, with_cycles
 from fastpin.figures.words import caption, quantity, without_rounding
@@ -46,15 +44,12 @@ CHANGES = {"pressure_change": "pressure", "shear_change": "shear"}
 """Changes of a cycle, and their words."""
 
 
-def plot_cycles(
-    result: Result,
-    path: str | Path | None = None,
-    width: float = 6.7,
-    title: str = "",
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
+def cycles_plot(subject: Subject) -> Plot:
+    """Return the changes of all cycles of a result."""
+    return cycles_of(with_cycles(subject))
+
+
+def cycles_of(result: Result) -> Plot:
     """Draw the changes that each cycle of a load history makes, from the beginning to the end of the cycle.
 
     Cycles count from 1 in the order of their ends, also those that contain others. The upper panel shows the largest
@@ -65,19 +60,7 @@ def plot_cycles(
     a sum of their own. A panel whose values are all 0 to rounding is left out.
 
     Without cycles this raises :class:`InputError`.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(cycles_of(result))
-
-
-def cycles_plot(subject: Subject) -> Plot:
-    """Return the changes of all cycles of a result."""
-    return cycles_of(with_cycles(subject))
-
-
-def cycles_of(result: Result) -> Plot:
-    """Return the changes of all cycles, see :func:`plot_cycles`."""
     instance("result", result, Result, "a Result")
     if not result.cycles:
         raise InputError("cycles", "the history has no repeated blocks")
@@ -87,6 +70,9 @@ def cycles_of(result: Result) -> Plot:
         f"Line charts of the changes that each of {len(result.cycles):,} cycles makes.",
         "Changes of the tractions over each cycle, its dissipation, and the rotation of the pin in all.",
     )
+
+
+plot_cycles = plotter("plot_cycles", cycles_of)
 
 
 def _draw(look: Look, result: Result) -> Sheet:

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.damage import CRITERIA, NO_CRACK, SPECTRUM_CRITERIA, Fatigue, SpectrumDamage, cycle_states, fatigue
@@ -18,13 +16,13 @@ from fastpin.damage.assessed import MOST_REFINED
 from fastpin.damage.criteria import Criterion
 from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
-from fastpin.figures.style import COLOURS, angle_axis, line
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
+from fastpin.figures.style import COLOURS, line
 from fastpin.figures.subjects import Subject, with_cycles
-from fastpin.figures.words import ANGLE, caption, quantity, short
+from fastpin.figures.words import caption, quantity, short
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import FatigueAssessment
-from fastpin.model.checks import choice, instance, instances
+from fastpin.model.checks import choice, instances
 from fastpin.model.points import EDGES, Body, edge_body
 from fastpin.model.units import scaled, units
 from fastpin.report.case import assessment_words
@@ -37,30 +35,6 @@ PLANES = 40
 
 LEAST = 0.02
 """Least parameter with a plane, in parts of the largest."""
-
-
-def plot_fatigue(
-    found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[SpectrumDamage],
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw the parameter of a criterion along the edge, with its hot spot, and below it the life if it is known.
-
-    Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
-    is a crack that goes straight into the body.
-
-    Of a spectrum the damage takes the place of the parameter. The points lie at one depth. Several bodies, such as a
-    bush and the plate round it, share the panels.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
-    """
-    each = list(found) if isinstance(found, (list, tuple)) else [found]
-    plot = spectrum_of(each) if each and isinstance(each[0], SpectrumDamage) else fatigue_of(found)  # type: ignore[arg-type]
-    return Look(path, title, width, dpi, ax).drawn(plot)
 
 
 def fatigue_plot(
@@ -157,22 +131,23 @@ def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
         axes[1, 0].set_ylim(0.5 / highest, 1e4 / highest)
     axes[0, 0].set_ylabel(f"damage of a spectrum,\n{damages[0].criterion.title()}")
     axes[1, 0].set_ylabel("life (spectra)")
-    for panel in axes[:, 0]:
-        panel.set_xlim(-180.0, 180.0)
-        angle_axis(panel)
-    axes[-1, 0].set_xlabel(ANGLE)
-    sheet.figure.align_ylabels(axes)
-    sheet.legend(handles, min(len(handles), 3))
-    heading = "; ".join(f"{name}, {_depth_words(one)}" for name, one in zip(names, damages, strict=True))
-    sheet.head(look.title, heading, caption=caption(damages[0].problem))
-    return sheet
+    return _finish(sheet, look, damages, handles)
 
 
-def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
-    """Return the fatigue of one body or of several, see :func:`plot_fatigue`."""
+def fatigue_of(found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[SpectrumDamage]) -> Plot:
+    """Draw the parameter of a criterion along the edge, with its hot spot, and below it the life if it is known.
+
+    Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
+    is a crack that goes straight into the body.
+
+    Of a spectrum the damage takes the place of the parameter. The points lie at one depth. Several bodies, such as a
+    bush and the plate round it, share the panels.
+    """
+    several: list[Any] = list(found) if isinstance(found, (list, tuple)) else [found]
+    if several and isinstance(several[0], SpectrumDamage):
+        return spectrum_of(several)
     wanted = "a fatigue result, such as result.fatigue(...)"
-    each = [instance("found", found, Fatigue, wanted)] if not isinstance(found, (list, tuple)) else list(found)
-    each = instances("found", each, Fatigue, wanted)
+    each = instances("found", several, Fatigue, wanted)
     if not each:
         raise InputError("found", f"must be {wanted}, not an empty list")
     _check_alike(each)
@@ -185,6 +160,9 @@ def fatigue_of(found: Fatigue | Sequence[Fatigue]) -> Plot:
         f"Parameter {each[0].criterion.title()} along the edge of the {edges}, with its hot spot{life}. Short lines "
         "are the worst planes.",
     )
+
+
+plot_fatigue = plotter("plot_fatigue", fatigue_of)
 
 
 def _check_alike(found: Sequence[Fatigue] | Sequence[SpectrumDamage]) -> None:
@@ -219,20 +197,22 @@ def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
         shortest = min(float(np.nanmin(life)) for life in lives.values())
         axes[1, 0].set_ylabel("life (cycles)")
         axes[1, 0].set_ylim(0.5 * shortest, 1e4 * shortest)
-    for panel in axes[:, 0]:
-        panel.set_xlim(-180.0, 180.0)
-        angle_axis(panel)
-    axes[-1, 0].set_xlabel(ANGLE)
-    sheet.figure.align_ylabels(axes)
+    return _finish(sheet, look, found, handles)
+
+
+def _finish(
+    sheet: Sheet, look: Look, found: Sequence[Fatigue] | Sequence[SpectrumDamage], handles: Sequence[Line2D]
+) -> Sheet:
+    """Add the axes of angles, the legend and the heading with bodies and depths."""
+    sheet.go_round()
     sheet.legend(handles, min(len(handles), 3))
-    heading = "; ".join(f"{name}, {_depth_words(one)}" for name, one in zip(names, found, strict=True))
-    sheet.head(look.title, heading, caption=caption(found[0].problem))
+    parts, length = [], units(found[0].problem)["length"]
+    for one in found:
+        depth = float(one.depth.ravel()[0])
+        place = f"{short(depth, length)} below the edge" if depth else "on the edge"
+        parts.append(f"{edge_body(one.problem, one.body)}, {place}")
+    sheet.head(look.title, "; ".join(parts), caption=caption(found[0].problem))
     return sheet
-
-
-def _depth_words(found: Fatigue | SpectrumDamage) -> str:
-    depth = float(found.depth.ravel()[0])
-    return "on the edge" if depth == 0.0 else f"{short(depth, units(found.problem)['length'])} below the edge"
 
 
 def _by_angle(found: Fatigue | SpectrumDamage) -> tuple[np.ndarray, np.ndarray]:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
-from fastpin.figures.style import angle_axis, draw_zero, line
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
+from fastpin.figures.style import draw_zero, line
 from fastpin.figures.subjects import Subject, problem_of
-from fastpin.figures.words import ANGLE, caption, quantity
+from fastpin.figures.words import caption, quantity
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
 from fastpin.model.problem import LOOKED_AT, Problem
@@ -26,31 +22,16 @@ BESIDE = 1e-6
 """Distance from a jump, rad, at which the values on both sides of it are drawn."""
 
 
-def plot_gap(
-    joint: Problem | Case | Result,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw the initial gaps of hole and pin, and the coefficient of friction, along the rim, as far as they vary.
-
-    A positive gap is missing material. A joint without profiles raises :class:`InputError`.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
-    """
-    return Look(path, title, width, dpi, ax).drawn(gap_of(joint))
-
-
 def gap_plot(subject: Subject) -> Plot:
     """Return the profiles along the rim of the joint of a result."""
     return gap_of(subject.result())
 
 
 def gap_of(joint: Problem | Case | Result) -> Plot:
-    """Return the profiles along the rim of a joint, see :func:`plot_gap`."""
+    """Draw the initial gaps of hole and pin, and the coefficient of friction, along the rim, as far as they vary.
+
+    A positive gap is missing material. A joint without profiles raises :class:`InputError`.
+    """
     problem = problem_of(joint)
     if not problem.profiles:
         raise InputError("gap", "there is no initial gap, and the friction is the same all round")
@@ -64,6 +45,9 @@ def gap_of(joint: Problem | Case | Result) -> Plot:
         f"{words[0].upper()}{words[1:]} along the rim."
         + (" A positive gap is missing material; the clearance adds to it." if problem.gap else ""),
     )
+
+
+plot_gap = plotter("plot_gap", gap_of)
 
 
 def profile_curve(problem: Problem) -> Curve:
@@ -102,10 +86,7 @@ def _draw(look: Look, problem: Problem, curve: Curve) -> Sheet:
         last.plot(angle, values[-1], **line(5, 0))
         last.set_ylim(0.0, 1.08 * problem.most_friction)
         last.set_ylabel("friction coefficient")
-    last.set_xlim(-180.0, 180.0)
-    last.set_xlabel(ANGLE)
-    angle_axis(last)
-    sheet.figure.align_ylabels(sheet.axes)
+    sheet.go_round()
     sheet.head(look.title, caption=caption(problem))
     sheet.legend([Line2D([], [], label=name, **line(k, k)) for k, name in enumerate(gaps)], max(len(gaps), 1))
     return sheet

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, Line, line
 from fastpin.figures.words import caption, quantity
 from fastpin.model.checks import instance, number_array
@@ -22,31 +21,14 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import units
 
 
-def plot_history(
-    problem: Problem,
-    history: LoadHistory,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    initial: Sequence[float] | np.ndarray | None = None,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
+def history_of(problem: Problem, history: LoadHistory, initial: Sequence[float] | np.ndarray | None = None) -> Plot:
     """Draw the loads of a history over its corners, with a panel for each kind of load.
 
     A repeated block is drawn once, shaded, with the number of times, and with the loads of the first time through. The
     history starts at corner 0, without load unless `initial` is given. The loads are linear between the corners.
 
     The `initial` load, shape (loads,), acts at corner 0 of a history that continues another one.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return Look(path, title, width, dpi, ax).drawn(history_of(problem, history, initial))
-
-
-def history_of(problem: Problem, history: LoadHistory, initial: Sequence[float] | np.ndarray | None = None) -> Plot:
-    """Return the loads of a history, see :func:`plot_history`."""
     instance("problem", problem, Problem, "a Problem")
     instance("history", history, LoadHistory, "a LoadHistory")
     first = np.zeros(len(LOADS)) if initial is None else number_array("initial", initial)
@@ -58,6 +40,9 @@ def history_of(problem: Problem, history: LoadHistory, initial: Sequence[float] 
         instead=f"Line chart of the loads over the {len(history):,} corners of the history.",
         caption="Load history. A shaded block is run through as many times as stands above it.",
     )
+
+
+plot_history: Callable[..., Figure] = plotter("plot_history", history_of)
 
 
 Folded = tuple[np.ndarray, list[int], list[tuple[int, int, int]]]

@@ -6,16 +6,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.damage.hole_strength import JointStrength, joint_strength, laminate_of
 from fastpin.damage.laminates import MODES
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import DrawnStates, name_states, state_lines
 from fastpin.figures.style import angle_axis, line
 from fastpin.figures.subjects import InMemory, Subject, problem_of
@@ -31,7 +29,6 @@ from fastpin.model.units import PASCAL, units
 from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
-from fastpin.states.state import State
 
 LEAST_APART = 10.0
 """Degrees between the names of two branches of a curve of strength."""
@@ -40,31 +37,16 @@ MOST_RATIO = 5.0
 """Largest strength ratio that is shown, in parts of the least one: beyond, plies are far from failure."""
 
 
-def plot_stiffness(
-    joint: Problem | Case | Result,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw Young's modulus and the shear modulus of a laminate in all directions, and the directions of its plies.
-
-    The bottom of the hole is at the bottom of the figure. An isotropic plate raises :class:`InputError`.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
-    """
-    return Look(path, title, width, dpi, ax).drawn(stiffness_of(joint))
-
-
 def stiffness_plot(subject: Subject) -> Plot:
     """Return the stiffness of the laminate of a result."""
     return stiffness_of(subject.result())
 
 
 def stiffness_of(joint: Problem | Case | Result) -> Plot:
-    """Return the stiffness of a laminate in all directions, see :func:`plot_stiffness`."""
+    """Draw Young's modulus and the shear modulus of a laminate in all directions, and the directions of its plies.
+
+    The bottom of the hole is at the bottom of the figure. An isotropic plate raises :class:`InputError`.
+    """
     problem = problem_of(joint)
     plate = laminate_of(problem)
     curve = stiffness_curve(plate, "1/beta*" if problem.dimensionless else PASCAL.name)
@@ -75,6 +57,9 @@ def stiffness_of(joint: Problem | Case | Result) -> Plot:
         f"Polar charts of {words}.",
         f"{words}. Thin lines show the directions of the plies.",
     )
+
+
+plot_stiffness = plotter("plot_stiffness", stiffness_of)
 
 
 def stiffness_curve(plate: Laminate, unit: str) -> Curve:
@@ -115,37 +100,30 @@ def from_label(angle: int) -> str:
     return f"{angle if angle <= 180 else angle - 360}".replace("-", "−")
 
 
-def plot_strength(
-    result: Sequence[State] | State,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
+def strength_plot(
+    subject: Subject, states: StateChoice = None, criterion: PlyCriterion | None = None, depth: float | None = None
+) -> Plot:
+    """Return the strength ratio round the hole as in the section [strength] of a stored case, see `plot_strength`."""
+    return _strength_plot(subject, states, criterion, depth, subject.beside("strength"))
+
+
+def _strength_plot(
+    subject: Subject,
     states: StateChoice = None,
     criterion: PlyCriterion | None = None,
     depth: float | None = None,
     how: StrengthAssessment | None = None,
-    ax: Axes | None = None,
-) -> Figure:
+) -> Plot:
     """Draw the strength ratio of the first ply round the hole.
 
     A ply fails where the ratio is 1 or less. The points lie as in `how`, by default on the edge. A `depth` below the
     edge, m, and a `criterion` replace those of `how`. See :func:`fastpin.damage.joint_strength` for the criteria, and
-    :func:`fastpin.plot_tractions` for the other arguments.
+    :func:`fastpin.plot_tractions` for the `states`.
     """
-    drawn = InMemory(result).states(states)
-    return Look(path, title, width, dpi, ax).drawn(strength_of(drawn, how, criterion, depth))
+    return strength_of(subject.states(states), how, criterion, depth)
 
 
-def strength_plot(
-    subject: Subject, states: StateChoice = None, criterion: PlyCriterion | None = None, depth: float | None = None
-) -> Plot:
-    """Return the strength ratio round the hole of some states, see :func:`plot_strength`.
-
-    The section [strength] of the case of a stored result takes the place of its argument `how`.
-    """
-    return strength_of(subject.states(states), subject.beside("strength"), criterion, depth)
+plot_strength = plotter("plot_strength", _strength_plot, InMemory)
 
 
 def strength_of(

@@ -6,19 +6,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any, Literal, get_args
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import Frame
 from fastpin.figures.style import MAX_NAMED, line, spread
 from fastpin.figures.subjects import Subject, with_cycles
@@ -58,25 +56,18 @@ Abscissa = Literal["prescribed", "pin"]
 """The displacement over which a reaction is drawn."""
 
 
-def plot_slip(
-    cycle: LoadCycle | Result,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw slip and friction energy of a cycle on the arc of the contact.
+def _cycle_of(cycle: LoadCycle | Result) -> LoadCycle:
+    """The cycle, or the last one of a result."""
+    if isinstance(cycle, Result):
+        return cycle.cycle()
+    return instance("cycle", cycle, LoadCycle, "a result, or a load cycle such as result.cycle()")
 
-    The upper panel shows the slip range, and the slip distance if it is known. The lower panel shows the friction
-    energy, or if that is not known the range of the shear traction. Nodes that slip or open at some time are shaded.
 
-    Of a result it is the last cycle.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
-    """
-    return Look(path, title, width, dpi, ax).drawn(slip_of(_cycle_of(cycle)))
+def one_or_several(cycle: LoadCycle | Result | Sequence[LoadCycle]) -> list[LoadCycle]:
+    """The cycles, or the last one of a result."""
+    several = isinstance(cycle, Sequence) and not isinstance(cycle, Result)
+    each: Sequence[Any] = cycle if several else [cycle]  # type: ignore[assignment]
+    return [_cycle_of(one) for one in each]
 
 
 def slip_plot(subject: Subject) -> Plot:
@@ -85,7 +76,13 @@ def slip_plot(subject: Subject) -> Plot:
 
 
 def slip_of(cycle: LoadCycle) -> Plot:
-    """Return slip and friction energy of a cycle, see :func:`plot_slip`."""
+    """Draw slip and friction energy of a cycle on the arc of the contact.
+
+    The upper panel shows the slip range, and the slip distance if it is known. The lower panel shows the friction
+    energy, or if that is not known the range of the shear traction. Nodes that slip or open at some time are shaded.
+
+    Of a result it is the last cycle.
+    """
     return Plot(
         lambda look: _draw_slip(look, cycle),
         partial(write_cycle, cycle),
@@ -94,11 +91,7 @@ def slip_of(cycle: LoadCycle) -> Plot:
     )
 
 
-def _cycle_of(cycle: LoadCycle | Result) -> LoadCycle:
-    """The cycle, or the last one of a result."""
-    if isinstance(cycle, Result):
-        return cycle.cycle()
-    return instance("cycle", cycle, LoadCycle, "a result, or a load cycle such as result.cycle()")
+plot_slip = plotter("plot_slip", slip_of, _cycle_of)
 
 
 def _draw_slip(look: Look, cycle: LoadCycle) -> Sheet:
@@ -172,50 +165,6 @@ def _shade(panel: Axes, cycle: LoadCycle, frame: Frame, slips: bool) -> list[Art
     return entries
 
 
-def plot_loops(
-    cycle: LoadCycle | Result | Sequence[LoadCycle],
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    abscissa: Abscissa | None = None,
-    names: Sequence[str] = (),
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw the hysteresis loops of a cycle, or of several: each load against the displacement on which it does work.
-
-    Each panel names the area of its loop, which is the work of the load. Over a closed cycle of a settled contact the
-    areas sum up to the dissipation. The heading names the dissipation of the exact path beside them. An area needs more
-    states than the ends of a line: see `between` of :func:`fastpin.solve`. Loops of several cycles lie over one
-    another, and the legend names them. A load whose displacement is always 0 has no panel.
-
-    Parameters
-    ----------
-    cycle : LoadCycle, Result or sequence of LoadCycle
-        From :meth:`fastpin.Result.cycle`; of a result the last cycle. At most
-        :data:`~fastpin.figures.style.MAX_NAMED` cycles of one problem.
-    abscissa : {"prescribed", "pin"}, optional
-        Displacement of a reaction P or Q: "prescribed" is ux or -uy, which holds the elastic deformation of pin and
-        plate between the two places too. "pin" is the displacement of the pin over the hole. Both loops of a settled
-        contact have the same area. Unless given, it is "prescribed" where a displacement is prescribed.
-    names : sequence of str
-        Names of several cycles in the legend, before their corners.
-    path, title, width, dpi, ax
-        See :func:`fastpin.plot_tractions`.
-
-    Raises
-    ------
-    InputError
-        If `cycle` is no load cycle, or a result without one, or if no load changes in it. Also see
-        :func:`fastpin.plot_tractions`.
-    """
-    look = Look(path, title, width, dpi, ax)
-    several = isinstance(cycle, Sequence) and not isinstance(cycle, Result)
-    each: Sequence[Any] = cycle if several else [cycle]  # type: ignore[assignment]
-    return look.drawn(loops_of([_cycle_of(one) for one in each], abscissa, names))
-
-
 def loops_plot(subject: Subject, cycle: str = "last", abscissa: Abscissa | None = None) -> Plot:
     """Return the hysteresis loops of chosen cycles, at most as many as a figure can show. Cycles count from 1.
 
@@ -247,7 +196,30 @@ def loops_plot(subject: Subject, cycle: str = "last", abscissa: Abscissa | None 
 
 
 def loops_of(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None, names: Sequence[str] = ()) -> Plot:
-    """Return the hysteresis loops of cycles, see :func:`plot_loops`."""
+    """Draw the hysteresis loops of a cycle, or of several: each load against the displacement on which it does work.
+
+    Each panel names the area of its loop, which is the work of the load. Over a closed cycle of a settled contact the
+    areas sum up to the dissipation. The heading names the dissipation of the exact path beside them. An area needs more
+    states than the ends of a line: see `between` of :func:`fastpin.solve`. Loops of several cycles lie over one
+    another, and the legend names them. A load whose displacement is always 0 has no panel.
+
+    Parameters
+    ----------
+    cycle : LoadCycle, Result or sequence of LoadCycle
+        From :meth:`fastpin.Result.cycle`; of a result the last cycle. At most
+        :data:`~fastpin.figures.style.MAX_NAMED` cycles of one problem.
+    abscissa : {"prescribed", "pin"}, optional
+        Displacement of a reaction P or Q: "prescribed" is ux or -uy, which holds the elastic deformation of pin and
+        plate between the two places too. "pin" is the displacement of the pin over the hole. Both loops of a settled
+        contact have the same area. Unless given, it is "prescribed" where a displacement is prescribed.
+    names : sequence of str
+        Names of several cycles in the legend, before their corners.
+
+    Raises
+    ------
+    InputError
+        If `cycle` is no load cycle, or a result without one, or if no load changes in it.
+    """
     check_loops(cycles, abscissa)
     named = [string("names", name) for name in items("names", names, "a list of names")]
     return Plot(
@@ -256,6 +228,9 @@ def loops_of(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None, name
         f"{cycles[0].last:,}.",
         caption="Hysteresis loops. The area of a loop is the work of its load.",
     )
+
+
+plot_loops = plotter("plot_loops", loops_of, one_or_several)
 
 
 def check_loops(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None) -> None:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import COLOURS, line
 from fastpin.figures.words import quantity
 from fastpin.model.checks import instance
@@ -26,21 +24,13 @@ ARROW = 0.08
 """Length of the longest arrow of a load, in parts of the plate's extent."""
 
 
-def plot_lug(
-    lug: Lug,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 5.0,
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw the outline with names of its parts, all holes, supports and loads. Lengths are in millimetres.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
-    """
+def lug_of(lug: Lug) -> Plot:
+    """Draw the outline with names of its parts, all holes, supports and loads. Lengths are in millimetres."""
     instance("lug", lug, Lug, "fastpin.model.Lug")
-    return Look(path, title, width, dpi, ax).drawn(Plot(lambda look: _draw(look, lug)))
+    return Plot(lambda look: _draw(look, lug), width=5.0)
+
+
+plot_lug = plotter("plot_lug", lug_of)
 
 
 def _draw(look: Look, lug: Lug) -> Sheet:

@@ -1,8 +1,12 @@
-"""Figures by the name of their kind."""
+"""Figures of a result by the name of their kind, and its HTML in a notebook."""
 
 from __future__ import annotations
 
+import base64
+import html
 import importlib
+import io
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,13 +16,18 @@ from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS, SOURCES, kinds_with
-from fastpin.figures.sheet import WIDTH, Look, Plot
+from fastpin.figures.sheet import Look, Plot, draw_plot
+from fastpin.figures.states import drawn_states
+from fastpin.figures.style import SCREEN_DPI
 from fastpin.figures.subjects import InMemory, Subject, with_stored_cycles
+from fastpin.figures.tractions import plot_tractions
 from fastpin.model.case import Case
-from fastpin.model.checks import choice
+from fastpin.model.checks import choice, instance
 from fastpin.model.wear import cycles_text
+from fastpin.report.states import state_table
 from fastpin.solver.result import Result
 from fastpin.solver.wear_result import WearResult
+from fastpin.states.state import State
 
 
 def plot_of(kind: str, subject: Subject, after: float | None = None, **options: Any) -> Plot:
@@ -81,11 +90,42 @@ def plot_result(
 ) -> Figure:
     """Draw a figure of a result, see :meth:`fastpin.Result.plot`, or of a life of wear."""
     choice("kind", kind, [name for name, each in KINDS.items() if each.ending == "png"])
-    if path in KINDS:
+    if isinstance(path, str) and path in KINDS:
         raise InputError("path", f'must be the name of a file, not "{path}"; for this figure write kind="{path}"')
-    look = Look(path, title, WIDTH if width is None else width, dpi, ax)
     for name in options:
         if name not in KINDS[kind].options and kinds_with(name):
             raise InputError(name, f"has no effect on {kind}; it is for {kinds_with(name)}")
-    plot = plot_of(kind, InMemory(result), **options)
-    return (replace(look, width=plot.width) if width is None else look).drawn(plot)
+    return draw_plot(lambda: plot_of(kind, InMemory(result), **options), path, title, width, dpi, ax)
+
+
+def state_html(state: State) -> str:
+    """Return the HTML of a state: a table with one row, and a figure of the tractions.
+
+    Another class than :class:`State` raises :class:`InputError`.
+    """
+    instance("state", state, State, "a State")
+    return _html([state], "")
+
+
+def result_html(result: Result) -> str:
+    """Return the HTML of a result: a table and a figure of the states of :func:`drawn_states`.
+
+    Another class than :class:`Result` raises :class:`InputError`.
+    """
+    instance("result", result, Result, "a Result")
+    if not len(result):
+        return f"<pre>{html.escape(repr(result))}</pre>"
+    states = drawn_states(result)
+    return _html(states, f"shown: {states.note}" if states.note else "")
+
+
+def _html(states: Sequence[State], note: str) -> str:
+    picture = io.BytesIO()
+    plot_tractions(states, width=5.6).savefig(picture, format="png", dpi=SCREEN_DPI)
+    image = base64.b64encode(picture.getvalue()).decode("ascii")
+    table = html.escape(state_table(states[0].problem, states))
+    caption = f"<p>{html.escape(note)}</p>" if note else ""
+    return (
+        f'<pre style="font-size: 80%; line-height: 1.25">{table}</pre>{caption}'
+        f'<img alt="pressure and shear traction round the hole" src="data:image/png;base64,{image}">'
+    )

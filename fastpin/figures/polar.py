@@ -6,17 +6,15 @@ import cmath
 import math
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import DrawnStates, name_states, state_lines
 from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.tractions import traction_curves
@@ -25,7 +23,6 @@ from fastpin.model.laminate import Laminate
 from fastpin.model.units import units
 from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
-from fastpin.states.state import State
 
 HEIGHT = 0.9
 """Height of the largest traction over the circle, in radii of the hole."""
@@ -37,32 +34,19 @@ RINGS = 2
 """Circles of round values, about."""
 
 
-def plot_polar(
-    result: Sequence[State] | State,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    states: StateChoice = None,
-    ax: Axes | None = None,
-) -> Figure:
+def polar_plot(subject: Subject, states: StateChoice = None) -> Plot:
     """Draw the tractions over the circle of the hole, as they lie in space.
 
     The left panel shows the pressure, outwards from the hole. The right panel shows the shear traction on the pin:
     outwards where it acts counter-clockwise, inwards where it acts clockwise. Without friction there is only the
-    pressure.
-
-    See :func:`fastpin.plot_tractions` for the arguments.
+    pressure. See :func:`fastpin.plot_tractions` for the `states`.
     """
-    return Look(path, title, width, dpi, ax).drawn(polar_plot(InMemory(result), states))
-
-
-def polar_plot(subject: Subject, states: StateChoice = None) -> Plot:
-    """Return the tractions of states over the circle of the hole, see :func:`plot_polar`."""
     drawn = subject.states(states)
     curves = traction_curves(drawn)
     return Plot(lambda look: _draw(look, drawn, curves), partial(write_csv, curves), notes=drawn.notes)
+
+
+plot_polar = plotter("plot_polar", polar_plot, InMemory)
 
 
 def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:

@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, overload
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
 
 from fastpin.errors import InputError
 from fastpin.figures.style import (
-    check_figure_text,
-    check_format,
+    angle_axis,
     draw_grid,
     fitted_legend,
     house_style,
     new_figure,
-    number_of_dots,
     save_figure,
 )
-from fastpin.figures.words import CAPTION_SIZE, wrapped, wrapped_parts
-from fastpin.model.checks import file_path, instance
+from fastpin.figures.words import ANGLE, CAPTION_SIZE, wrapped, wrapped_parts
+from fastpin.model.checks import file_path, instance, number, string
+from fastpin.storage.files import check_writable, no_figure
 
 WIDTH = 6.7
 """Width of most figures, inches."""
@@ -39,6 +40,9 @@ HEADING = 9.5
 
 SMALL: Any = {"font.size": 7.5}
 """Size of letters in given axes, points."""
+
+LONGEST_TITLE = 2_000
+"""Most characters of the title of a figure. The lines of ten times as many take seconds to draw."""
 
 GAP = 0.14
 """Gap between panels inside given axes, in parts of the axes. It holds the numbers of an axis."""
@@ -58,7 +62,7 @@ class Look:
     dpi : float
         Dots per inch of a bitmap.
     ax : Axes or None
-        Axes to draw in, instead of a new figure. A figure with several panels divides them.
+        Axes to draw in, instead of a new figure. Several panels divide them.
 
     Raises
     ------
@@ -73,15 +77,23 @@ class Look:
     ax: Axes | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "width", check_figure_text(self.title, self.width))
-        object.__setattr__(self, "dpi", number_of_dots(self.dpi))
+        if len(string("title", self.title)) > LONGEST_TITLE:
+            most = f"must have at most {LONGEST_TITLE:,} characters in a figure, not {len(self.title):,}"
+            raise InputError("title", most)
+        object.__setattr__(self, "width", number("width", self.width, 1.0, 12.0))
+        object.__setattr__(self, "dpi", number("dpi", self.dpi, 10.0, 1200.0))  # the largest bitmap takes 1 GB
         if self.path is not None:
-            check_format(file_path("path", self.path))
+            path = file_path("path", self.path)
+            if path.suffix[1:].lower() not in FigureCanvasAgg.get_supported_filetypes():
+                raise no_figure("path", path)
+            check_writable(path)
         if self.ax is not None:
             instance("ax", self.ax, Axes, "axes of Matplotlib")
 
     def drawn(self, plot: Plot) -> Figure:
         """Draw a plot in the house style, save its figure if there is a path, and return the figure."""
+        if self.ax is not None and plot.alone:
+            raise InputError("ax", plot.alone)
         with house_style():
             with mpl.rc_context(None if self.ax is None else SMALL):
                 sheet: Sheet = plot.draw(self)
@@ -124,8 +136,12 @@ class Plot:
         The text below the figure on a page.
     notes, doubts : sequence of str
         Sentences for the terminal: on the drawn part of the result, and on doubts.
+    title : str
+        Title of a figure of :func:`plotter`, unless another one is given.
     width : float
-        Width of a new figure, inches.
+        Width of a new figure, inches, unless another one is given.
+    alone : str
+        Why given axes can't hold the figure; empty if they can.
     bitmap : bool
         Whether the figure is too large for a page as SVG.
     frames : int
@@ -138,13 +154,103 @@ class Plot:
     caption: str = ""
     notes: Sequence[str] = ()
     doubts: Sequence[str] = ()
+    title: str = ""
     width: float = WIDTH
+    alone: str = ""
     bitmap: bool = False
     frames: int = 0
 
     def save(self, path: Path, title: str = "", progress: Callable[[float, float], None] | None = None) -> None:
         """Draw the figure and write it to a file. `progress` follows the pictures of an animation."""
         Look(path, title, self.width).drawn(self)
+
+
+def draw_plot(
+    make: Callable[[], Plot],
+    path: str | Path | None = None,
+    title: str | None = None,
+    width: float | None = None,
+    dpi: float = 300.0,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw the plot that ``make()`` returns, after the look has been checked: some plots take long to make.
+
+    See :class:`Look` for the other arguments. Title and width are those of the plot unless they are given.
+    """
+    look = Look(path, "" if title is None else title, WIDTH if width is None else width, dpi, ax)
+    plot = make()
+    if title is None:
+        look = replace(look, title=plot.title)
+    return (replace(look, width=plot.width) if width is None else look).drawn(plot)
+
+
+Shown = TypeVar("Shown", contravariant=True)
+Made = TypeVar("Made")
+Options = ParamSpec("Options")
+
+
+class Plotter(Protocol[Shown, Options]):
+    """A function that draws figures: of a subject, with a look, and with options by name."""
+
+    def __call__(
+        self,
+        shown: Shown,
+        path: str | Path | None = None,
+        title: str | None = None,
+        width: float | None = None,
+        dpi: float = 300.0,
+        ax: Axes | None = None,
+        *args: Options.args,
+        **options: Options.kwargs,
+    ) -> Figure: ...
+
+
+LOOK_WORDS = """
+Notes
+-----
+With a `path` the figure is also saved; the suffix chooses the format. `width` is in inches, `dpi` in dots per inch of a
+bitmap. Axes of Matplotlib, `ax`, take the place of a new figure. Several panels divide them, and the figure of `ax` is
+returned. Without a `title` and a `width` the figure has its own. An argument out of range, an unknown format, and a
+file that can't be written raise :class:`InputError`.
+"""
+"""Words on the look, at the end of the docstring of each function of :func:`plotter`."""
+
+
+@overload
+def plotter(name: str, make: Callable[Concatenate[Shown, Options], Plot]) -> Plotter[Shown, Options]: ...
+@overload
+def plotter(
+    name: str, make: Callable[Concatenate[Made, Options], Plot], of: Callable[[Shown], Made]
+) -> Plotter[Shown, Options]: ...
+def plotter(name: str, make: Callable[..., Plot], of: Callable[..., Any] | None = None) -> Callable[..., Figure]:
+    """Return the public function `name` that draws the plots of ``make(subject, **options)``.
+
+    The look stands between the subject and the options: path, title, width, dpi and ax. The docstring is that of
+    `make`, with :data:`LOOK_WORDS`. ``of(given)`` makes the subject of what users give.
+    """
+    first, *options = inspect.signature(make, eval_str=True).parameters.values()
+    if of is not None:
+        (first,) = inspect.signature(of, eval_str=True).parameters.values()
+    needed = [first, *(option for option in options if option.default is option.empty)]
+    look = list(inspect.signature(draw_plot, eval_str=True).parameters.values())[1:]
+    by_name = [option.replace(kind=option.KEYWORD_ONLY) for option in options if option not in needed]
+    signature = inspect.Signature([*needed, *look, *by_name], return_annotation=Figure)
+
+    def draw(*arguments: Any, **keywords: Any) -> Figure:
+        given = signature.bind(*arguments, **keywords).arguments
+        looks = {each.name: given.pop(each.name) for each in look if each.name in given}
+
+        def plot() -> Plot:
+            shown = given.pop(first.name)
+            return make(shown if of is None else of(shown), **given)
+
+        return draw_plot(plot, **looks)
+
+    draw.__name__ = draw.__qualname__ = name
+    draw.__module__ = make.__module__
+    draw.__doc__ = inspect.cleandoc(make.__doc__ or "") + "\n" + LOOK_WORDS
+    draw.__signature__ = signature  # type: ignore[attr-defined]
+    return draw
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,6 +318,14 @@ class Sheet:
             title_fontsize=6.5, loc="upper center", ncols=min(columns, 2), bbox_to_anchor=(0.5, 0.0),
             bbox_transform=host.transAxes + below, borderaxespad=0.0, alignment="left",
         )  # fmt: skip
+
+    def go_round(self) -> None:
+        """Make the horizontal axes of a column of panels the angle all round the hole, with words below the last."""
+        for panel in self.axes[:, 0]:
+            panel.set_xlim(-180.0, 180.0)
+            angle_axis(panel)
+        self.axes[-1, 0].set_xlabel(ANGLE)
+        self.figure.align_ylabels(self.axes)
 
     def grid(self, axis: Any = "both") -> None:
         """Draw light lines behind the curves of all panels."""

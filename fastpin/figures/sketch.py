@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle, Wedge
 
 from fastpin.bodies.body import Shape
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.stick_slip import zone_look, zone_patch
 from fastpin.figures.subjects import Subject
 from fastpin.figures.words import caption, point_text, range_text
@@ -86,29 +84,6 @@ class Scale(NamedTuple):
     beside: float
 
 
-def plot_sketch(
-    joint: Problem | Case | Result | State,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = WIDTH,
-    dpi: float = 300.0,
-    *,
-    history: LoadHistory | None = None,
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw pin, plate, ring or bush in their proportions, and the loads as arrows. The clearance is exaggerated.
-
-    A state has the arrows of its loads, and its contact as a thick arc. A case, a result or a problem with a history
-    has an arrow for each load of the history, with the range of its values; the arrow has two heads if the load changes
-    its sign.
-
-    The `history` gives a problem its loads.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
-    """
-    return Look(path, title, width, dpi, ax).drawn(sketch_of(joint, history))
-
-
 def sketch_plot(subject: Subject, states: StateChoice = None) -> Plot:
     """Return the sketch of the last one of some states; of the history's loads without a choice."""
     if states is None:
@@ -118,7 +93,14 @@ def sketch_plot(subject: Subject, states: StateChoice = None) -> Plot:
 
 
 def sketch_of(joint: Problem | Case | Result | State, history: LoadHistory | None = None) -> Plot:
-    """Return the sketch of a joint, see :func:`plot_sketch`."""
+    """Draw pin, plate, ring or bush in their proportions, and the loads as arrows. The clearance is exaggerated.
+
+    A state has the arrows of its loads, and its contact as a thick arc. A case, a result or a problem with a history
+    has an arrow for each load of the history, with the range of its values; the arrow has two heads if the load changes
+    its sign.
+
+    The `history` gives a problem its loads.
+    """
     if history is not None:
         instance("history", history, LoadHistory, "a LoadHistory")
         if not isinstance(joint, Problem):
@@ -136,6 +118,9 @@ def sketch_of(joint: Problem | Case | Result | State, history: LoadHistory | Non
         "loads with their ranges over the history.",
         width=WIDTH,
     )
+
+
+plot_sketch = plotter("plot_sketch", sketch_of)
 
 
 def load_ranges(loads: LoadHistory | Sequence[State]) -> dict[str, LoadRange]:

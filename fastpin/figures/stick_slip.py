@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from fastpin.figures.sheet import Look, Plot, Sheet
-from fastpin.figures.slip_extent import BOTH_WAYS, ExtentBox, MapColumn, columns_of, extent_boxes, load_ranges
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import DrawnStates, Frame
 from fastpin.figures.style import line
 from fastpin.figures.subjects import InMemory, Subject
 from fastpin.figures.words import caption, load_text, loads_by_change, short_load
-from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Status
+from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Status
 from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
 from fastpin.report.curves import Curve, write_csv
-from fastpin.states.choice import StateChoice
+from fastpin.states.choice import StateChoice, span_of
+from fastpin.states.cycles import Cycle, innermost_cycles
+from fastpin.states.load_cycle import NO_SLIP
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 
@@ -33,6 +33,12 @@ MOST_COLUMNS = 200
 
 ZoneLook = tuple[str, str, str]
 """Colour, hatch and words of a zone."""
+
+BOTH_WAYS = 9
+"""Extent of nodes that slip in both directions. The other extents are statuses."""
+
+GAP = 2.0
+"""Distance of two load points, in usual distances, from which on nothing is drawn between them."""
 
 LOOKS: dict[int, ZoneLook] = {
     STICK: ("#0B3C5D", "", "sticks"),
@@ -69,40 +75,43 @@ MOST_MARKS = 40
 
 
 class ZoneBox(NamedTuple):
-    """A zone of one state in the map: the sides of its rectangle, and the status of its nodes."""
+    """A zone in the map: the sides of its rectangle, load points and degrees from the bottom.
 
-    point: float
+    The kind is the status of a zone of one state, `point`, or an extent of :data:`EXTENTS` in a column of several.
+    """
+
     left: float
     right: float
     start: float
     stop: float
-    status: int
+    kind: int
+    point: float = math.nan
 
 
-def plot_stick_slip(
-    result: Sequence[State] | State,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    states: StateChoice = None,
-    ax: Axes | None = None,
-) -> Figure:
+class MapColumn(NamedTuple):
+    """A column of the map.
+
+    Attributes
+    ----------
+    left, right : float
+        Its sides, load points.
+    places : ndarray of int
+        Places of its states.
+    """
+
+    left: float
+    right: float
+    places: np.ndarray
+
+
+def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
     """Draw a map of stick and slip: angle round the hole against load point.
 
     Colours show where the contact sticks and in which direction the pin slips; white is open. A triangle marks a slip
     zone that is too narrow to be seen. Without friction all contact slips. The upper panel shows the loads that change.
     Of more than :data:`MOST_COLUMNS` states, a column joins the states of one cycle or of several. It shows which nodes
-    slip, and in which direction, at some time in it.
-
-    See :func:`fastpin.plot_tractions` for the arguments.
+    slip, and in which direction, at some time in it. See :func:`fastpin.plot_tractions` for the `states`.
     """
-    return Look(path, title, width, dpi, ax).drawn(stick_slip_plot(InMemory(result), states))
-
-
-def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
-    """Return the map of stick and slip, see :func:`plot_stick_slip`. The caption says if states are left out."""
     drawn = subject.states(states, most=MOST_COLUMNS, whole=True)
     first, last = (point_name(load_point(drawn[place])) for place in (0, -1))
     part = (
@@ -115,12 +124,15 @@ def stick_slip_plot(subject: Subject, states: StateChoice = None) -> Plot:
         columns, words = long_columns(drawn)
         notes.append(f"the figure shows {len(drawn):,} states in {len(columns)} columns: {words}")
     return Plot(
-        lambda look: _draw(look, drawn) if len(drawn) <= MOST_COLUMNS else _draw_long(look, drawn),
+        lambda look: _draw(look, drawn),
         lambda path: write_csv([Curve({}, _zone_columns(drawn))], path),
         f"Map of the zones that stick and slip, over angle and load point, from load point {first} to {last}.",
         f"{part} and slip over the angle round the hole and the load point. White is open.",
         notes,
     )
+
+
+plot_stick_slip = plotter("plot_stick_slip", stick_slip_plot, InMemory)
 
 
 def _zone_columns(states: DrawnStates) -> dict[str, Any]:
@@ -131,7 +143,7 @@ def _zone_columns(states: DrawnStates) -> dict[str, Any]:
             "load point": np.array([box.point for box in boxes]),
             "start [deg]": np.array([box.start for box in boxes]),
             "stop [deg]": np.array([box.stop for box in boxes]),
-            "status": np.array([Status(box.status).name.lower().replace("_", " ") for box in boxes]),
+            "status": np.array([Status(box.kind).name.lower().replace("_", " ") for box in boxes]),
         }
     joined = list(extent_boxes(states, long_columns(states)[0], Frame(states)))
     return {
@@ -139,7 +151,7 @@ def _zone_columns(states: DrawnStates) -> dict[str, Any]:
         "to": np.array([box.right for box in joined]),
         "start [deg]": np.array([box.start for box in joined]),
         "stop [deg]": np.array([box.stop for box in joined]),
-        "slip": np.array([extent_look(states[0].problem, box.extent)[2] for box in joined]),
+        "slip": np.array([extent_look(states[0].problem, box.kind)[2] for box in joined]),
     }
 
 
@@ -152,7 +164,7 @@ def zone_boxes(states: Sequence[State], frame: Frame | None = None) -> Iterator[
         zones = [(*zone, STICK) for zone in state.stick] + state.slip_zones
         for start, stop, status in zones:
             for first, length in axis.place(start, stop):
-                yield ZoneBox(point, left, right, first, first + length, int(status))
+                yield ZoneBox(left, right, first, first + length, int(status), point)
 
 
 def zone_look(problem: Problem, status: int) -> ZoneLook:
@@ -172,46 +184,40 @@ def column_ends(points: np.ndarray) -> np.ndarray:
 
 
 def _draw(look: Look, states: DrawnStates) -> Sheet:
-    problem, frame = states[0].problem, Frame(states)
-    boxes = list(zone_boxes(states, frame))
-    present = [status for status in LOOKS if any(box.status == status for box in boxes)]
-    differing = loads_by_change(states)[1]
-    sheet = _sheet(look, differing)
-    panel = sheet.axes[-1, 0]
-    for status in present:
-        _fill(panel, [box for box in boxes if box.status == status], zone_look(problem, status))
-    marked = not problem.frictionless and _draw_marks(panel, boxes, len(states), frame.limits)
-    panel.set_xlim(*column_ends(np.array([load_point(state) for state in states]))[[0, -1]])
-    if differing:
-        _draw_loads(sheet.axes[0, 0], states, differing)
-    note = f"; {len(states)} of {states.total:,} states drawn" if len(states) < states.total else ""
-    _add_words(sheet, states, frame, look.title, note)
-    handles: list[Patch | Line2D] = [zone_patch(zone_look(problem, status)) for status in present]
-    handles.append(_open_patch("open"))
-    if marked:
-        handles.append(Line2D([], [], label="narrow slip zone", **(_MARK | {"marker": "^"})))
-    sheet.legend(handles, len(handles))
-    return sheet
-
-
-def _draw_long(look: Look, states: DrawnStates) -> Sheet:
-    """Draw the map of more states than columns can be seen. They are joined in columns, see :func:`columns_of`."""
-    problem, frame = states[0].problem, Frame(states)
-    columns, words = long_columns(states)
-    boxes = list(extent_boxes(states, columns, frame))
-    present = [extent for extent in EXTENTS if any(box.extent == extent for box in boxes)]
-    differing = loads_by_change(states)[1]
-    sheet = _sheet(look, differing)
-    panel = sheet.axes[-1, 0]
-    for extent in present:
-        _fill(panel, [box for box in boxes if box.extent == extent], extent_look(problem, extent))
-    panel.set_xlim(columns[0].left, columns[-1].right)
-    if differing:
-        _draw_load_ranges(sheet.axes[0, 0], states, columns, differing)
+    """Draw the map, below the loads that change. More states than columns can be seen are joined in columns."""
+    problem, frame, is_long = states[0].problem, Frame(states), len(states) > MOST_COLUMNS
+    common, differing = loads_by_change(states)
+    sheet = look.sheet([1.0, 2.8] if differing else [2.8], extra=1.2, sharex=True)
+    panel, columns = sheet.axes[-1, 0], list[MapColumn]()
     some = f" of {states.total:,}" if len(states) < states.total else ""
-    _add_words(sheet, states, frame, look.title, f"; {len(states):,}{some} states; {words}")
-    handles = [zone_patch(extent_look(problem, extent)) for extent in present]
-    sheet.legend([*handles, _open_patch("open all the time")], 3)
+    if is_long:
+        columns, words = long_columns(states)
+        boxes, look_of, open_words = list(extent_boxes(states, columns, frame)), extent_look, "open all the time"
+        panel.set_xlim(columns[0].left, columns[-1].right)
+        note = f"; {len(states):,}{some} states; {words}"
+    else:
+        boxes, look_of, open_words = list(zone_boxes(states, frame)), zone_look, "open"
+        panel.set_xlim(*column_ends(np.array([load_point(state) for state in states]))[[0, -1]])
+        note = f"; {len(states)}{some} states drawn" if some else ""
+    present = [kind for kind in EXTENTS if any(box.kind == kind for box in boxes)]
+    for kind in present:
+        _fill(panel, [box for box in boxes if box.kind == kind], look_of(problem, kind))
+    if differing:
+        _draw_loads(sheet.axes[0, 0], states, differing, columns)
+        sheet.axes[0, 0].tick_params(labelbottom=False)
+    handles: list[Patch | Line2D] = [zone_patch(look_of(problem, kind)) for kind in present]
+    handles.append(Patch(facecolor="white", edgecolor="0.5", linewidth=0.6, label=open_words))
+    if len(states) <= MOST_MARKS and not problem.frictionless and _draw_marks(panel, boxes, frame.limits):
+        handles.append(Line2D([], [], label="narrow slip zone", **(_MARK | {"marker": "^"})))
+    frame.scale(panel, upright=True)
+    panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
+    panel.set_xlabel("load point (1: first corner of the history)")
+    panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True, min_n_ticks=1))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+    sheet.figure.align_ylabels(list(sheet.axes[:, 0]))
+    loads = ",  ".join(load_text(states, 0, name) for name in common)
+    sheet.head(look.title, loads, caption=f"{caption(problem, states)}{note}")
+    sheet.legend(handles, 3 if is_long else len(handles))
     return sheet
 
 
@@ -221,21 +227,16 @@ def long_columns(states: DrawnStates) -> tuple[list[MapColumn], str]:
     return columns_of(points, states.cycles, MOST_COLUMNS)
 
 
-def extent_look(problem: Problem, extent: int) -> ZoneLook:
-    """Colour, hatch and words of nodes in a column that joins several states."""
+def extent_look(problem: Problem, status: int) -> ZoneLook:
+    """Colour, hatch and words of nodes of this extent in a column that joins several states."""
     if problem.frictionless:
         return FRICTIONLESS
     both_ways = ("#6FB58F", "xxxx", "")
-    colour, hatch, words = LOOKS.get(extent, both_ways)
-    return colour, hatch, EXTENTS.get(extent, words).format(body=owner_of(problem, "pin"))
+    colour, hatch, words = LOOKS.get(status, both_ways)
+    return colour, hatch, EXTENTS.get(status, words).format(body=owner_of(problem, "pin"))
 
 
-def _sheet(look: Look, differing: Sequence[str]) -> Sheet:
-    """A sheet with the panel of the map, below the panel of the loads that change."""
-    return look.sheet([1.0, 2.8] if differing else [2.8], extra=1.2, sharex=True)
-
-
-def _fill(panel: Axes, boxes: Sequence[ZoneBox | ExtentBox], look: ZoneLook) -> None:
+def _fill(panel: Axes, boxes: Sequence[ZoneBox], look: ZoneLook) -> None:
     """Fill rectangles with a colour and a hatch."""
     colour, hatch, _ = look
     corners = [
@@ -246,78 +247,126 @@ def _fill(panel: Axes, boxes: Sequence[ZoneBox | ExtentBox], look: ZoneLook) -> 
         panel.add_collection(PolyCollection(corners, facecolor="none", edgecolor="0.25", linewidth=0.0, hatch=hatch))
 
 
-def _add_words(sheet: Sheet, states: DrawnStates, frame: Frame, title: str, note: str) -> None:
-    """Add the axes, the heading and the caption, which ends in the note."""
-    panel = sheet.axes[-1, 0]
-    frame.scale(panel, upright=True)
-    panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
-    panel.set_xlabel("load point (1: first corner of the history)")
-    panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True, min_n_ticks=1))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
-    for above in sheet.axes[:-1, 0]:
-        above.tick_params(labelbottom=False)
-    sheet.figure.align_ylabels(list(sheet.axes[:, 0]))
-    common = loads_by_change(states)[0]
-    text = f"{caption(states[0].problem, states)}{note}"
-    sheet.head(title, ",  ".join(load_text(states, 0, name) for name in common), caption=text)
-
-
-def _open_patch(words: str) -> Patch:
-    return Patch(facecolor="white", edgecolor="0.5", linewidth=0.6, label=words)
-
-
 def zone_patch(look: ZoneLook) -> Patch:
     """Return the entry of the legend for a look of :func:`zone_look`."""
     colour, hatch, words = look
     return Patch(facecolor=colour, edgecolor="0.25", linewidth=0.0, hatch=hatch, label=words)
 
 
-def _draw_marks(panel: Axes, boxes: Sequence[ZoneBox], columns: int, limits: tuple[float, float]) -> bool:
+def _draw_marks(panel: Axes, boxes: Sequence[ZoneBox], limits: tuple[float, float]) -> bool:
     """Mark slip zones that are narrower than 1.5 % of the axis, and return whether there are any."""
     least = 0.015 * (limits[1] - limits[0])
-    narrow = [box for box in boxes if box.status in MARKS and box.stop - box.start < least]
-    if columns > MOST_MARKS:
-        return False
+    narrow = [box for box in boxes if box.kind in MARKS and box.stop - box.start < least]
     for status, mark in MARKS.items():
-        mine = [box for box in narrow if box.status == status]
+        mine = [box for box in narrow if box.kind == status]
         if mine:
-            panel.plot(
-                [box.point for box in mine],
-                [0.5 * (box.start + box.stop) for box in mine],
-                **(_MARK | {"marker": mark}),
-            )
+            middles = [0.5 * (box.start + box.stop) for box in mine]
+            panel.plot([box.point for box in mine], middles, **(_MARK | {"marker": mark}))
     return bool(narrow)
 
 
-def _draw_load_ranges(panel: Axes, states: DrawnStates, columns: Sequence[MapColumn], names: Sequence[str]) -> None:
-    """Draw the range of each load that changes in each column, over its largest value."""
-    ends = np.array([[column.left, column.right] for column in columns]).ravel()
-    for k, name in enumerate(names):
-        lowest, highest = load_ranges(states, columns, name)
-        largest = float(max(np.abs(lowest).max(), np.abs(highest).max()))
-        style = line(k % 8, k % 8, 0.8)
-        label = f"{name}, largest {short_load(states[0].problem, name, largest)}"
-        lower, upper = np.repeat(lowest / largest, 2), np.repeat(highest / largest, 2)
-        panel.fill_between(ends, lower, upper, color=style["color"], alpha=0.25, linewidth=0.0)
-        panel.plot(ends, upper, label=label, **style)
-        panel.plot(ends, lower, **style)
-    _finish_loads(panel, "range of load\n/ largest")
-
-
-def _draw_loads(panel: Axes, states: DrawnStates, names: Sequence[str]) -> None:
-    """Draw the loads that change, each over its largest value. The legend names these values."""
+def _draw_loads(panel: Axes, states: DrawnStates, names: Sequence[str], columns: Sequence[MapColumn]) -> None:
+    """Draw the loads that change, each over its largest value, or its range in columns. The legend has the values."""
     points = [load_point(state) for state in states]
+    ends = np.array([[column.left, column.right] for column in columns]).ravel()
     for k, name in enumerate(names):
         values = np.array([state.load[name] for state in states])
         largest = float(np.abs(values).max())
-        marker = "o" if len(states) <= MOST_MARKS else ""
         label = f"{name}, largest {short_load(states[0].problem, name, largest)}"
-        panel.plot(points, values / largest, marker=marker, markersize=2.4, label=label, **line(k % 8, k % 8, 1.1))
-    _finish_loads(panel, "load / largest")
-
-
-def _finish_loads(panel: Axes, words: str) -> None:
+        if not columns:
+            marker, style = "o" if len(states) <= MOST_MARKS else "", line(k % 8, k % 8, 1.1)
+            panel.plot(points, values / largest, marker=marker, markersize=2.4, label=label, **style)
+            continue
+        style, parts = line(k % 8, k % 8, 0.8), [values[column.places] / largest for column in columns]
+        lower, upper = (np.repeat([extreme(part) for part in parts], 2) for extreme in (np.min, np.max))
+        panel.fill_between(ends, lower, upper, color=style["color"], alpha=0.25, linewidth=0.0)
+        panel.plot(ends, upper, label=label, **style)
+        panel.plot(ends, lower, **style)
     panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-    panel.set_ylabel(words)
+    panel.set_ylabel("range of load\n/ largest" if columns else "load / largest")
     panel.margins(y=0.12)
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.0, handlelength=2.4)
+
+
+def columns_of(points: np.ndarray, cycles: Sequence[Cycle], most: int) -> tuple[list[MapColumn], str]:
+    """Return the columns of a map, and words on what a column joins.
+
+    A column joins the states of one load cycle or of several, so that no column shows a part of a cycle. States outside
+    of all cycles stand for themselves, or are joined like cycles.
+
+    Parameters
+    ----------
+    points : ndarray, shape (states,)
+        Load points, increasing.
+    cycles : sequence of Cycle
+    most : int
+        Most columns.
+    """
+    units = np.arange(points.size) + 0.5  # a state is a unit of its own, and so is a cycle
+    spans = [span_of(cycle) for cycle in innermost_cycles(cycles)]
+    for begin, end in spans:
+        first, last = np.searchsorted(points, [begin, end], side="right")
+        units[first:last] = float(first)
+    _, number = np.unique(units, return_inverse=True)
+    joined = -(-int(number[-1] + 1) // most)
+    starts = np.flatnonzero(np.diff(number // joined, prepend=-1))
+    usual = float(np.median(np.diff(points))) if points.size > 1 else 1.0
+    columns, right = [], -np.inf
+    for places in np.split(np.arange(points.size), starts[1:]):
+        first = float(points[places[0]])
+        near = first - right <= GAP * max(usual, 1.0)
+        columns.append(MapColumn(right if near else max(first - usual, 0.0), float(points[places[-1]]), places))
+        right = columns[-1].right
+    single, several = "one cycle, or one state outside of cycles", "cycles, or states outside of cycles"
+    in_cycles = units % 1.0 == 0.0
+    if in_cycles.all():
+        single, several = "one cycle", "cycles"
+    elif not in_cycles.any():
+        single, several = "one state", "states"
+    return columns, f"each column is {single}" if joined == 1 else f"each column joins {joined} {several}"
+
+
+def extents(states: Sequence[State], before: State | None) -> np.ndarray:
+    """Return what each node does at some time between the state before and the last of the states, shape (n,).
+
+    A node slips where its slip changes between two states at which it is closed. If the states have slip distances,
+    slip forth and back counts too. Statuses count for nodes that were open before: a node at |T| = mu N may have the
+    status of slip and rest.
+
+    Parameters
+    ----------
+    states : sequence of State
+    before : State or None
+        The state from which the slip of the first one counts.
+    """
+    closed, up, down = np.zeros((3, states[0].grid.size), dtype=bool)
+    for state in states:
+        problem = state.problem
+        least = NO_SLIP * problem.hole_radius * problem.surfaces.beta_star * float(state.pressure.max())
+        known = state.status != OPEN
+        if before is not None and not problem.frictionless:
+            known = known & (before.status != OPEN)
+            net = np.where(known, state.slip - before.slip, 0.0)
+            distance = np.abs(net) if state.slip_distance is None else state.slip_distance
+            closed |= distance > least
+            up |= known & (distance + net > 2.0 * least)
+            down |= known & (distance - net > 2.0 * least)
+            known = ~known
+        closed |= state.status != OPEN
+        up |= known & (state.status == SLIP_POSITIVE)
+        down |= known & (state.status == SLIP_NEGATIVE)
+        before = state
+    return np.select([up & down, up, down, closed], [BOTH_WAYS, SLIP_POSITIVE, SLIP_NEGATIVE, STICK], OPEN)
+
+
+def extent_boxes(states: Sequence[State], columns: Sequence[MapColumn], frame: Frame) -> Iterator[ZoneBox]:
+    """Yield the rectangles of all columns, without open nodes. A node reaches halfway to the nodes beside it."""
+    middles = 0.5 * (frame.angle[1:] + frame.angle[:-1])
+    ends = np.r_[frame.angle[0], middles, frame.angle[-1]]
+    for column in columns:
+        first = int(column.places[0])
+        found = extents([states[place] for place in column.places], states[first - 1] if first else None)[frame.order]
+        bounds = np.r_[0, np.flatnonzero(np.diff(found)) + 1, found.size]
+        for begin, end in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
+            if found[begin] != OPEN:
+                yield ZoneBox(column.left, column.right, float(ends[begin]), float(ends[end]), int(found[begin]))

@@ -5,22 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import Normal, Stroke
 
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import HOOP, DrawnStates, name_states, state_lines
-from fastpin.figures.style import angle_axis, draw_zero, line
+from fastpin.figures.style import draw_zero, line
 from fastpin.figures.subjects import InMemory, Subject
-from fastpin.figures.words import ANGLE, caption, loads_text, point_text, points_text, quantity
+from fastpin.figures.words import caption, loads_text, point_text, points_text, quantity
 from fastpin.model.checks import choice, instance
 from fastpin.model.points import BODIES, Body, bodies_of, edge_body
 from fastpin.model.units import named_loads, units
@@ -41,30 +39,15 @@ FARTHEST = 0.995
 """Part of the points of a map whose values lie within the colours. The values beyond take the end colours."""
 
 
-def plot_hoop_stress(
-    result: Sequence[State] | State,
-    path: str | Path | None = None,
-    body: str = "both",
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    states: StateChoice = None,
-    ax: Axes | None = None,
-) -> Figure:
+def hoop_plot(subject: Subject, states: StateChoice = None, body: str = "both") -> Plot:
     """Draw the hoop stress round the hole, of the plate at the seat of a bush, and round the pin, a panel each.
 
     A dot marks the largest hoop stress of each state; an open dot if the nodes do not resolve the peak. A dotted line
     is the part that the assembly leaves before any load, if something is pressed. Angles are in degrees from the bottom
     of the hole, counter-clockwise positive. Tension is positive. The `body` is "plate", "seat", "pin", or "both" for
-    all that the problem has, without rigid bodies. A rigid one raises :class:`InputError`. The other arguments are
-    those of :func:`fastpin.plot_tractions`.
+    all that the problem has, without rigid bodies. A rigid one raises :class:`InputError`. See
+    :func:`fastpin.plot_tractions` for the `states`.
     """
-    return Look(path, title, width, dpi, ax).drawn(hoop_plot(InMemory(result), states, body))
-
-
-def hoop_plot(subject: Subject, states: StateChoice = None, body: str = "both") -> Plot:
-    """Return the hoop stress of states, see :func:`plot_hoop_stress`."""
     drawn = subject.states(states, extremes=HOOP[choice("body", body, tuple(HOOP))])
     curves = hoop_curves(drawn, body)
     seat = ", the seat of the bush" if "seat" in bodies_of(drawn[0].problem) else ""
@@ -75,6 +58,9 @@ def hoop_plot(subject: Subject, states: StateChoice = None, body: str = "both") 
         f"Hoop stress round the hole{seat} and the pin. Dots mark the largest value of each state.",
         drawn.notes,
     )
+
+
+plot_hoop_stress = plotter("plot_hoop_stress", hoop_plot, InMemory)
 
 
 def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
@@ -100,10 +86,7 @@ def _draw_hoop(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Shee
         draw_zero(panel)
         words = edge_body(states[0].problem, body).replace("plate at", "plate\nat")
         panel.set_ylabel(quantity(f"hoop stress of the {words}", label))
-        panel.set_xlim(-180.0, 180.0)
-        angle_axis(panel)
-    axes[-1, 0].set_xlabel(ANGLE)
-    sheet.figure.align_ylabels(axes)
+    sheet.go_round()
     styles: list[Artist] = [_dot("largest of each state", "0.4")]
     if before in curves[0].columns:
         styles.append(
@@ -119,35 +102,26 @@ def _dot(label: str, face: str) -> Line2D:
     return Line2D([], [], linestyle="none", marker="o", markersize=4.0, color="0.4", markerfacecolor=face, label=label)
 
 
-def plot_stress_profile(
-    result: Sequence[State] | State,
-    path: str | Path | None = None,
+def profile_plot(
+    subject: Subject,
+    states: StateChoice = None,
     body: Body = "plate",
     angle: float | None = None,
-    depth: float = 0.5,
-    title: str = "",
-    width: float = 6.7,
-    *,
-    states: StateChoice = None,
-    ax: Axes | None = None,
-) -> Figure:
+    depth: float | None = None,
+) -> Plot:
     """Draw radial, hoop, shear and von Mises stress below a place of the edge of a body.
 
     The `angle` is in degrees from the bottom. Unless given, it is the angle of each state's largest hoop stress. The
-    largest `depth` is in units of the hole's radius. A rigid `body` raises :class:`InputError`.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
+    largest `depth` is in units of the hole's radius; unless given, it is 0.5 in the pin and 1 elsewhere. A rigid `body`
+    raises :class:`InputError`. See :func:`fastpin.plot_tractions` for the `states`.
     """
-    return Look(path, title, width, ax=ax).drawn(profile_plot(InMemory(result), states, body, angle, depth))
-
-
-def profile_plot(
-    subject: Subject, states: StateChoice = None, body: Body = "plate", angle: float | None = None, depth: float = 1.0
-) -> Plot:
-    """Return stresses below the edge, see :func:`plot_stress_profile`."""
     drawn = subject.states(states, extremes=HOOP[choice("body", body, BODIES)])
-    curves = depth_curves(drawn, body, angle, depth)
+    usual = 0.5 if body == "pin" else 1.0
+    curves = depth_curves(drawn, body, angle, usual if depth is None else depth)
     return Plot(lambda look: _draw_profile(look, drawn, curves), partial(write_csv, curves), notes=drawn.notes)
+
+
+plot_stress_profile = plotter("plot_stress_profile", profile_plot, InMemory)
 
 
 def _draw_profile(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> Sheet:
@@ -174,28 +148,24 @@ def _draw_profile(look: Look, states: DrawnStates, curves: Sequence[Curve]) -> S
     return sheet
 
 
-def plot_stress_field(
-    state: State | Result,
-    path: str | Path | None = None,
-    component: str = "von_mises",
-    body: str = "both",
-    extent: float = 2.0,
-    title: str = "",
-    width: float = FIELD_WIDTH,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
+def last_state(state: State | Result) -> InMemory:
+    """The state, or the last one of a result."""
+    return InMemory(state if isinstance(state, Result) else instance("state", state, State, "a State"))
+
+
+def map_plot(
+    subject: Subject, states: StateChoice = None, component: str = "von_mises", body: str = "both", extent: float = 2.0
+) -> Plot:
     """Draw a map of one component of the stress in pin and plate.
 
     The hole's edge is a thin line, and the contact a thick one. The clearance is too narrow to be seen. Under a point
     force at the pin's centre the stress is infinite; the values near the force do not set the colours.
 
-    See :func:`fastpin.plot_tractions` for the other arguments.
-
     Parameters
     ----------
     state : State or Result
-        Of a result the last state.
+    states : str, number, sequence of numbers or slice, optional
+        See :func:`fastpin.plot_tractions`. The map shows the last one of them; unless given, of the result.
     component : str
         A name of :data:`fastpin.report.stress.FIELDS`.
     body : {"both", "plate", "pin"}
@@ -203,15 +173,6 @@ def plot_stress_field(
     extent : float
         Outer radius of the map, in units of the hole's radius.
     """
-    look = Look(path, title, width, ax=ax)
-    chosen = state if isinstance(state, Result) else instance("state", state, State, "a State")
-    return look.drawn(map_plot(InMemory(chosen), "last", component, body, extent))
-
-
-def map_plot(
-    subject: Subject, states: StateChoice = None, component: str = "von_mises", body: str = "both", extent: float = 2.0
-) -> Plot:
-    """Return a map of one component of the stress in the last one of some states, see :func:`plot_stress_field`."""
     drawn = subject.states("last" if states is None else states)
     state = drawn[-1]
     curves = field_curves(state, component, body, extent)
@@ -227,6 +188,9 @@ def map_plot(
         width=FIELD_WIDTH,
         bitmap=True,
     )
+
+
+plot_stress_field = plotter("plot_stress_field", map_plot, last_state)
 
 
 def _has_point(state: State) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +18,9 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.errors import InputError
-from fastpin.model.checks import file_path, number, string
-from fastpin.storage.files import check_writable, no_figure, replacing
+from fastpin.storage.files import replacing
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#882255", "#777777")
 """Colours that are distinct for all kinds of colour vision.
@@ -45,9 +42,6 @@ DASHES: tuple[tuple[int, tuple[float, ...] | None], ...] = (
 
 MAX_NAMED = len(COLOURS)
 """Most curves that can be told apart in a panel."""
-
-LONGEST_TITLE = 2_000
-"""Most characters of the title of a figure. The lines of ten times as many take seconds to draw."""
 
 SCREEN_DPI = 110.0
 """Dots per inch of a picture in a notebook."""
@@ -93,30 +87,6 @@ def save_figure(figure: Figure, path: Path, dpi: float) -> None:
     dated = {"svg": "Date", "pdf": "CreationDate"}.get(path.suffix[1:].lower())
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=dpi, metadata={dated: None} if dated else None)
-
-
-def number_of_dots(dpi: float) -> float:
-    """Check the dots per inch of a bitmap, and return them.
-
-    Raises
-    ------
-    InputError
-        If `dpi` is out of range.
-    """
-    return number("dpi", dpi, 10.0, 1200.0)  # the largest bitmap takes less than 1 GB of memory
-
-
-def check_figure_text(title: str, width: float) -> float:
-    """Check title and width of a figure, and return the width, inches.
-
-    Raises
-    ------
-    InputError
-        If `title` is no text or too long, or `width` is out of range.
-    """
-    if len(string("title", title)) > LONGEST_TITLE:
-        raise InputError("title", f"must have at most {LONGEST_TITLE:,} characters in a figure, not {len(title):,}")
-    return number("width", width, 1.0, 12.0)
 
 
 def spread(count: int, most: int) -> list[int]:
@@ -167,54 +137,9 @@ def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
     return {"color": COLOURS[colour], "linestyle": DASHES[dashes], "linewidth": width}
 
 
-def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
-    """Draw the figure of ``draw(curves)`` in the house style, and save it.
-
-    Raises
-    ------
-    InputError
-        If `dpi` is out of range, the format is unknown, or the file can't be written. It comes before the figure is
-        drawn where possible.
-    """
-    resolution, target = number_of_dots(dpi), file_path("path", path)
-    check_format(target)
-    with house_style():
-        save_figure(draw(curves), target, resolution)
-
-
-def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:
-    """Return a new figure, `width` inches wide, and its panels, shape (rows, columns), each `height` inches high."""
-    figure = new_figure(width, rows * height + 0.6)
-    axes = figure.subplots(rows, columns, squeeze=False)
-    for panel in axes.flat:
-        draw_grid(panel)
-    return figure, axes
-
-
 def angle_axis(panel: Axes) -> None:
     """Put the ticks of an axis in degrees at whole parts of a right angle."""
     panel.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
-
-
-def add_legend(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
-    """Add a legend below the panels. Each of `rows` is a row of the legend: labels and their lines."""
-    columns = max(len(row) for row in rows)
-    entries = [[Line2D([], [], label=label, **style) for label, style in row] for row in rows]
-    blank = Line2D([], [], linestyle="none", label=" ")
-    filled: list[Artist] = [row[k] if k < len(row) else blank for k in range(columns) for row in entries]
-    fitted_legend(figure, filled, columns)
-
-
-def add_heading(figure: Figure, *lines: str) -> None:
-    """Add the lines that are not empty above the panels."""
-    figure.suptitle("\n".join(line for line in lines if line), fontsize=9.5, parse_math=False)
-
-
-def check_format(path: Path) -> None:
-    """Raise :class:`InputError` if a figure can't be written to a file of this name, in a format of Matplotlib."""
-    if path.suffix[1:].lower() not in FigureCanvasAgg.get_supported_filetypes():
-        raise no_figure("path", path)
-    check_writable(path)
 
 
 def fitted_legend(figure: Figure, handles: list[Artist], columns: int, title: str = "") -> None:

@@ -1,21 +1,20 @@
-"""Figures of sweeps: maps over two fields, curves over one."""
+"""Figures of sweeps: maps over two fields, curves over one, and envelopes of bearing and bypass stress."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis as MatplotlibAxis
-from matplotlib.collections import QuadMesh
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm, Normalize
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.text import Text
@@ -23,12 +22,14 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from matplotlib.transforms import Bbox
 
 from fastpin.errors import InputError
-from fastpin.figures.class_map import class_patches, draw_classes
-from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet
+from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
-from fastpin.figures.words import caption, shown_label, wrapped
-from fastpin.model.checks import instance, instances
+from fastpin.figures.words import caption, quantity, shown_label, wrapped
+from fastpin.model.checks import instances
 from fastpin.model.problem import Problem
+from fastpin.model.units import PASCAL
+from fastpin.report.curves import Curve, write_csv
+from fastpin.report.envelope import BEARING, BYPASS
 from fastpin.report.sweep import Axis, Chart
 
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
@@ -40,6 +41,21 @@ _ENDLESS: Any = {"marker": r"$\uparrow$", "markersize": 7.0, "linestyle": "none"
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
 MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 """Marks of the computed values, as many as colours. Crosses mark failed runs."""
+
+CLASS_LOOKS = (
+    ("#ECECEC", ""),
+    ("#A9D0EA", "..."),
+    ("#F2A541", "\\\\\\\\"),
+    ("#0B3C5D", ""),
+    ("#6FB58F", "////"),
+    ("#F4E58A", "+++"),
+    ("#C77CA6", "xxx"),
+    ("#7A5C3E", "ooo"),
+)
+"""Colour and hatch of each class, in the order of their numbers. They differ in grey, or by the hatch."""
+
+HATCH = "0.25"
+"""Grey of the hatches."""
 
 LEVELS = 7
 """Most contour lines of a map."""
@@ -63,47 +79,6 @@ CAPTION_WORDS = {
 """Words with which the parts of a caption begin that belong to a field."""
 
 
-def plot_sweep(
-    chart: Chart | Sequence[Chart],
-    path: str | Path | None = None,
-    title: str | None = None,
-    width: float | None = None,
-    dpi: float = 300.0,
-    *,
-    ax: Axes | None = None,
-) -> Figure:
-    """Draw the figure of a sweep: maps over two fields, or curves over one field.
-
-    A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
-    at the geometric mean. Contour lines join equal values. Classes have colours, hatches and a legend instead, and
-    lines where two classes meet. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are
-    failed runs, too. Error bars are drawn at the points of curves. The error of an open point is not known: the nodes
-    do not resolve it. In a map error bars are dots in the cells whose bar is not known, or larger than the differences
-    to the cells beside them, or whose class is another one on the coarse grid. A line above the maps names the largest
-    bar. Positive values that differ by a factor of 30 or more have a logarithmic scale. Of more than
-    :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
-
-    The chart is made by :func:`fastpin.report.sweep.chart`. It gives the title and the width unless these are given.
-    Only curves or a single map go into `ax`. Several charts, of curves or of a single map each, stand side by side.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
-    """
-    if not isinstance(chart, Chart):
-        each = instances("chart", chart, Chart, "a Chart, or a list of charts")
-        if not each:
-            raise InputError("chart", "must hold at least one chart")
-        if ax is not None:
-            raise InputError("ax", "holds one chart; give a list of charts no axes")
-        look = Look(path, each[0].title if title is None else title, WIDE if width is None else width, dpi)
-        return look.drawn(sweeps_of(each))
-    plot = sweep_of(chart)
-    maps = 0 if chart.y is None else len(chart.parts)
-    if ax is not None and maps > 1:
-        raise InputError("ax", f"holds one map, but the chart has {maps}")
-    look = Look(path, chart.title if title is None else title, plot.width if width is None else width, dpi, ax)
-    return look.drawn(plot)
-
-
 def sweeps_of(charts: Sequence[Chart]) -> Plot:
     """Return several charts side by side, two in a row, see :func:`plot_sweep`."""
     for chart in charts:
@@ -115,7 +90,9 @@ def sweeps_of(charts: Sequence[Chart]) -> Plot:
         lambda look: _draw_beside(look, charts),
         instead=f"{'Curves' if charts[0].y is None else 'Maps'} of {names} over {_over(charts[0])}.",
         caption=" ".join([f"{names[0].upper()}{names[1:]} over {_over(charts[0])}.", *gaps]),
+        title=charts[0].title,
         width=WIDE,
+        alone="holds one chart; give a list of charts no axes",
     )
 
 
@@ -148,16 +125,43 @@ def _over(chart: Chart) -> str:
 
 
 def sweep_of(chart: Chart) -> Plot:
-    """Return maps or curves of a sweep, see :func:`plot_sweep`."""
-    instance("chart", chart, Chart, "a Chart")
-    over = _over(chart)
+    """Return the maps or the curves of one chart of a sweep, see :func:`plot_sweep`."""
+    over, maps = _over(chart), 0 if chart.y is None else len(chart.parts)
     missing = f" {chart.missing:,} points have no value." if chart.missing else ""
     return Plot(
         lambda look: _draw_curves(look, chart) if chart.y is None else _draw_maps(look, chart),
         instead=f"{'Curves' if chart.y is None else 'Map'} of {chart.label} over {over}.",
         caption=f"{chart.label[0].upper()}{chart.label[1:]} over {over}.{missing}",
+        title=chart.title,
         width=5.8 if chart.y is None else 5.4 if len(chart.parts) == 1 else 7.6,
+        alone="" if maps <= 1 else f"holds one map, but the chart has {maps}",
     )
+
+
+def _plot_of(chart: Chart | Sequence[Chart]) -> Plot:
+    """Draw the figure of a sweep: maps over two fields, or curves over one field.
+
+    A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
+    at the geometric mean. Contour lines join equal values. Classes have colours, hatches and a legend instead, and
+    lines where two classes meet. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are
+    failed runs, too. Error bars are drawn at the points of curves. The error of an open point is not known: the nodes
+    do not resolve it. In a map error bars are dots in the cells whose bar is not known, or larger than the differences
+    to the cells beside them, or whose class is another one on the coarse grid. A line above the maps names the largest
+    bar. Positive values that differ by a factor of 30 or more have a logarithmic scale. Of more than
+    :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
+
+    The chart is made by :func:`fastpin.report.sweep.chart`. Only curves or a single map go into `ax`. Several charts,
+    of curves or of a single map each, stand side by side.
+    """
+    if isinstance(chart, Chart):
+        return sweep_of(chart)
+    each = instances("chart", chart, Chart, "a Chart, or a list of charts")
+    if not each:
+        raise InputError("chart", "must hold at least one chart")
+    return sweeps_of(each)
+
+
+plot_sweep = plotter("plot_sweep", _plot_of)
 
 
 def cell_edges(axis: Axis) -> np.ndarray:
@@ -173,50 +177,89 @@ def cell_edges(axis: Axis) -> np.ndarray:
 
 
 def _draw_maps(look: Look, chart: Chart) -> Sheet:
+    """Draw a map for each part of a chart. A bar tells the colours of numbers, and the legend those of classes."""
     assert chart.y is not None
     columns = min(len(chart.parts), 3)
-    rows = math.ceil(len(chart.parts) / columns)
-    sheet = look.sheet([3.4 if columns == 1 else 2.5] * rows, columns, 0.6)
-    if chart.classes:
-        return _draw_class_maps(sheet, chart, look.title)
-    known = _known_values(chart)
+    sheet = look.sheet([3.4 if columns == 1 else 2.5] * math.ceil(len(chart.parts) / columns), columns, 0.6)
+    known, x, y = _known_values(chart), cell_edges(chart.x), cell_edges(chart.y)
     scale = (LogNorm if _spans_decades(known) else Normalize)(known.min(), known.max())
-    levels, labels = _levels(known), []
+    levels, labels, mesh = _levels(known), list[Text](), None
     for panel, (name, numbers, failed), unsure in zip(sheet.axes.flat, chart.parts, _unsure(chart), strict=False):
-        mesh = _draw_map(panel, chart, numbers, failed, scale)
-        labels.append(_draw_contours(panel, chart, numbers, levels))
-        _dot_cells(panel, chart, unsure)
+        if chart.classes:
+            draw_classes(panel, x, y, numbers, chart.classes)
+        else:
+            shown = np.ma.masked_invalid(numbers)
+            mesh = panel.pcolormesh(x, y, shown, norm=scale, cmap="viridis", edgecolors="face", linewidth=0.2)
+            labels += _draw_contours(panel, chart, numbers, levels)
+        for row, column in np.argwhere(np.isnan(numbers)):
+            size = x[column + 1] - x[column], y[row + 1] - y[row]
+            panel.add_patch(Rectangle((x[column], y[row]), *size, **(_FAILED if failed[row, column] else _OPEN)))
+        rows, places = np.nonzero(unsure)
+        panel.plot(chart.x.values[places], chart.y.values[rows], **_UNSURE)
         _scale_axes(panel, chart)
         _set_title(sheet, panel, name)
     _label_panels(sheet, chart)
-    if any(np.isfinite(numbers).any() for _, numbers, _ in chart.parts):
+    has_bar = mesh is not None and any(np.isfinite(numbers).any() for _, numbers, _ in chart.parts)
+    if mesh is not None and has_bar:
         bar = sheet.figure.colorbar(mesh, ax=list(sheet.axes.flat), aspect=30, pad=0.02)
         bar.set_label(shown_label(chart.label), parse_math=False)
         bar.outline.set_linewidth(0.5)
         if isinstance(scale, LogNorm):
             round_numbers(bar.ax.yaxis, known)
-        sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
-    else:
-        sheet.head(look.title, shown_label(chart.label), caption=_fixed_parameters(chart))
+    heading = "" if has_bar else shown_label(chart.label)
+    sheet.head(look.title, heading, _bar_line(chart), caption=_fixed_parameters(chart))
     _explain(sheet, chart)
-    _thin_out(sheet, [label for part in labels for label in part])
+    if labels:
+        _thin_out(sheet, labels)
     return sheet
 
 
-def _draw_class_maps(sheet: Sheet, chart: Chart, title: str) -> Sheet:
-    """Draw maps of classes. The legend names the classes, and no bar of colours stands beside the maps."""
-    assert chart.y is not None
-    x, y = cell_edges(chart.x), cell_edges(chart.y)
-    for panel, (name, numbers, failed), unsure in zip(sheet.axes.flat, chart.parts, _unsure(chart), strict=False):
-        draw_classes(panel, x, y, numbers, chart.classes)
-        _draw_empty_cells(panel, x, y, numbers, failed)
-        _dot_cells(panel, chart, unsure)
-        _scale_axes(panel, chart)
-        _set_title(sheet, panel, name)
-    _label_panels(sheet, chart)
-    sheet.head(title, shown_label(chart.label), _bar_line(chart), caption=_fixed_parameters(chart))
-    _explain(sheet, chart)
-    return sheet
+def draw_classes(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.ndarray, classes: Mapping[int, str]) -> None:
+    """Draw the cells of a map, and a line wherever two classes meet.
+
+    Parameters
+    ----------
+    panel : Axes
+    x, y : ndarray, shape (columns + 1,), (rows + 1,)
+        Edges of the cells.
+    numbers : ndarray, shape (rows, columns)
+        Numbers of the classes; NaN without a value.
+    classes : dict of int to str
+        All classes, at most as many as :data:`CLASS_LOOKS`.
+    """
+    for number, (colour, hatch) in zip(classes, CLASS_LOOKS, strict=False):
+        cells = [
+            [(x[k], y[j]), (x[k + 1], y[j]), (x[k + 1], y[j + 1]), (x[k], y[j + 1])]
+            for j, k in np.argwhere(numbers == number)
+        ]
+        if cells:
+            panel.add_collection(
+                PolyCollection(cells, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False)
+            )
+        if cells and hatch:
+            panel.add_collection(PolyCollection(cells, facecolor="none", edgecolor=HATCH, linewidth=0.0, hatch=hatch))
+    panel.add_collection(LineCollection(class_borders(x, y, numbers), colors="black", linewidths=1.6))
+    panel.set_xlim(x[0], x[-1])
+    panel.set_ylim(y[0], y[-1])
+
+
+def class_borders(x: np.ndarray, y: np.ndarray, numbers: np.ndarray) -> list[list[tuple[float, float]]]:
+    """Return the sides that two cells of different classes share, as pairs of points."""
+    known = np.isfinite(numbers)
+    beside = known[:, :-1] & known[:, 1:] & (numbers[:, :-1] != numbers[:, 1:])
+    above = known[:-1] & known[1:] & (numbers[:-1] != numbers[1:])
+    upright = [[(x[k + 1], y[j]), (x[k + 1], y[j + 1])] for j, k in np.argwhere(beside)]
+    level = [[(x[k], y[j + 1]), (x[k + 1], y[j + 1])] for j, k in np.argwhere(above)]
+    return [*upright, *level]
+
+
+def class_patches(classes: Mapping[int, str], present: np.ndarray) -> list[Patch]:
+    """Return the entries of the legend for the classes whose numbers are `present`."""
+    return [
+        Patch(facecolor=colour, edgecolor=HATCH, hatch=hatch, linewidth=0.5, label=words)
+        for (number, words), (colour, hatch) in zip(classes.items(), CLASS_LOOKS, strict=False)
+        if np.any(present == number)
+    ]
 
 
 def _thin_out(sheet: Sheet, labels: Sequence[Text]) -> None:
@@ -229,24 +272,6 @@ def _thin_out(sheet: Sheet, labels: Sequence[Text]) -> None:
             label.remove()
         else:
             kept.append(space)
-
-
-def _draw_map(panel: Axes, chart: Chart, numbers: np.ndarray, failed: np.ndarray, scale: Normalize) -> QuadMesh:
-    """Draw the cells of a map, and return their mesh."""
-    assert chart.y is not None
-    x, y = cell_edges(chart.x), cell_edges(chart.y)
-    mesh = panel.pcolormesh(x, y, np.ma.masked_invalid(numbers), norm=scale, cmap="viridis", edgecolors="face")
-    mesh.set_linewidth(0.2)
-    _draw_empty_cells(panel, x, y, numbers, failed)
-    return mesh
-
-
-def _draw_empty_cells(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.ndarray, failed: np.ndarray) -> None:
-    """Draw the cells without a value."""
-    for row, column in np.argwhere(np.isnan(numbers)):
-        size = x[column + 1] - x[column], y[row + 1] - y[row]
-        style = _FAILED if failed[row, column] else _OPEN
-        panel.add_patch(Rectangle((x[column], y[row]), *size, **style))
 
 
 def _unsure(chart: Chart) -> list[np.ndarray]:
@@ -269,13 +294,6 @@ def _unsure(chart: Chart) -> list[np.ndarray]:
         is_beyond = (bars > steps) & np.isfinite(np.maximum(steps, 0.0)) & (steps > -np.inf)
         found.append(known & (is_beyond | np.isinf(bars)))
     return found
-
-
-def _dot_cells(panel: Axes, chart: Chart, unsure: np.ndarray) -> None:
-    """Mark the cells of a map that are unsure."""
-    assert chart.y is not None
-    rows, columns = np.nonzero(unsure)
-    panel.plot(chart.x.values[columns], chart.y.values[rows], **_UNSURE)
 
 
 def _bar_line(chart: Chart) -> str:
@@ -499,3 +517,49 @@ def _label_panels(sheet: Sheet, chart: Chart) -> None:
     if chart.y is not None:
         for panel in sheet.axes[:, 0]:
             panel.set_ylabel(shown_label(chart.y.label))
+
+
+def envelope_of(found: Sequence[Curve], problem: Problem | None = None, varied: Collection[str] = ()) -> Plot:
+    """Draw the envelopes of :func:`fastpin.report.envelope.envelopes`: no ply fails below a line.
+
+    The caption has the parameters of a `problem` without the `varied` fields of the sweep. See
+    :func:`fastpin.plot_tractions` for the other arguments.
+    """
+    each = instances("found", found, Curve, "a list of envelopes")
+    if not 1 <= len(each) <= MAX_NAMED:
+        raise InputError("found", f"must be 1 to {MAX_NAMED} envelopes, not {len(each)}")
+    words = "bearing stress over the bypass stress at which the first ply fails"
+    return Plot(
+        lambda look: _draw_envelope(look, each, "" if problem is None else fixed_parameters(problem, varied)),
+        partial(write_csv, each),
+        f"Line chart of the {words}.",
+        f"{words[0].upper()}{words[1:]}.",
+        width=5.8,
+    )
+
+
+plot_envelope = plotter("plot_envelope", envelope_of)
+
+
+def _draw_envelope(look: Look, curves: Sequence[Curve], parameters: str) -> Sheet:
+    sheet = look.sheet([0.6 * look.width], extra=0.8)
+    (panel,) = sheet.axes[0]
+    largest = [float(np.abs(curve[name]).max()) for curve in curves for name in (BYPASS, BEARING)]
+    factor, label = PASCAL.scale(largest)
+    handles = []
+    for place, curve in enumerate(curves):
+        (drawn,) = panel.plot(
+            factor * curve[BYPASS], factor * curve[BEARING], marker=MARKERS[place], markersize=3.5,
+            label=shown_label(str(curve.parameters.get("case", ""))), **line(place),
+        )  # fmt: skip
+        handles.append(drawn)
+    panel.axvline(0.0, color="0.6", linewidth=0.8)
+    panel.set_ylim(bottom=0.0)
+    panel.set_xlabel(quantity("bypass stress", label))
+    panel.set_ylabel(quantity("bearing stress", label))
+    if any("case" in curve.parameters for curve in curves):
+        sheet.legend(handles, 2)
+    criterion = str(curves[0].parameters["criterion"]).replace(" um", " µm")
+    sheet.head(look.title, f"failure of the first ply by {criterion}", caption=parameters)
+    sheet.grid()
+    return sheet

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import WIDE, WIDTH, Look, Plot, Sheet
+from fastpin.figures.sheet import WIDE, Look, Plot, Sheet, plotter
 from fastpin.figures.style import COLOURS
 from fastpin.figures.sweep import round_numbers
 from fastpin.figures.words import shown_label, shown_unit
@@ -41,13 +39,16 @@ BEYOND_CHANCE = 2.0
 """Correlations above this number, divided by the root of the number of samples, are drawn darker."""
 
 
-def plot_tornado(
-    charts: ToleranceChart | Sequence[ToleranceChart],
-    path: str | Path | None = None,
-    title: str | None = None,
-    width: float = WIDTH,
-    dpi: float = 300.0,
-) -> Figure:
+def _charts_of(charts: ToleranceChart | Sequence[ToleranceChart]) -> Sequence[ToleranceChart]:
+    """One chart or several as a sequence."""
+    given = [charts] if isinstance(charts, ToleranceChart) else charts
+    each = instances("charts", given, ToleranceChart, "a ToleranceChart, or a list of them")
+    if not 1 <= len(each) <= MOST_OUTCOMES:
+        raise InputError("charts", f"must be 1 to {MOST_OUTCOMES} charts, not {len(each)}")
+    return each
+
+
+def tornado_of(charts: Sequence[ToleranceChart]) -> Plot:
     """Draw a tornado for each outcome: a bar for each field, from the outcome at one limit to that at the other.
 
     The fields stand in the order of their swings. Dots are values between the limits. Lines below the bars are the
@@ -58,42 +59,7 @@ def plot_tornado(
     ----------
     charts : ToleranceChart, or sequence of them
         From :func:`fastpin.report.tolerances.tolerance_chart`.
-
-    See :func:`fastpin.plot_tractions` for the other arguments.
     """
-    return _drawn(tornado_of, charts, Look(path, "" if title is None else title, width, dpi), title)
-
-
-def plot_samples(
-    charts: ToleranceChart | Sequence[ToleranceChart],
-    path: str | Path | None = None,
-    title: str | None = None,
-    width: float = WIDE,
-    dpi: float = 300.0,
-) -> Figure:
-    """Draw the outcomes of all samples over each field, with the rank correlations.
-
-    The fields stand in the order of their correlations. See :func:`plot_tornado` for the arguments.
-
-    Raises
-    ------
-    InputError
-        If the study has no samples.
-    """
-    return _drawn(samples_of, charts, Look(path, "" if title is None else title, width, dpi), title)
-
-
-def _drawn(plot: Any, charts: ToleranceChart | Sequence[ToleranceChart], look: Look, title: str | None) -> Figure:
-    given = [charts] if isinstance(charts, ToleranceChart) else charts
-    each = instances("charts", given, ToleranceChart, "a ToleranceChart, or a list of them")
-    if not 1 <= len(each) <= MOST_OUTCOMES:
-        raise InputError("charts", f"must be 1 to {MOST_OUTCOMES} charts, not {len(each)}")
-    heading = each[0].title if title is None else title
-    return Look(look.path, heading, look.width, look.dpi).drawn(plot(each))
-
-
-def tornado_of(charts: Sequence[ToleranceChart]) -> Plot:
-    """Return tornados of outcomes, see :func:`plot_tornado`."""
     names = ", ".join(chart.label for chart in charts)
     largest = charts[0].bars[0]
     lost = "".join(f" {chart.label}: {chart.missing:,} runs have no value." for chart in charts if chart.missing)
@@ -102,11 +68,23 @@ def tornado_of(charts: Sequence[ToleranceChart]) -> Plot:
         instead=f"Bars of {names} at the limits of each field.",
         caption=f"{names[0].upper()}{names[1:]} at the limits of each field alone. The largest swing of "
         f"{charts[0].label} comes from: {largest.words}.{lost}",
+        title=charts[0].title,
     )
 
 
+plot_tornado = plotter("plot_tornado", tornado_of, _charts_of)
+
+
 def samples_of(charts: Sequence[ToleranceChart]) -> Plot:
-    """Return the samples of outcomes, see :func:`plot_samples`."""
+    """Draw the outcomes of all samples over each field, with the rank correlations.
+
+    The fields stand in the order of their correlations. See :func:`plot_tornado` for the `charts`.
+
+    Raises
+    ------
+    InputError
+        If the study has no samples.
+    """
     if not len(charts[0].samples):
         raise InputError("charts", "the study has no samples: give samples = 200 in the plan")
     names = ", ".join(chart.label for chart in charts)
@@ -114,8 +92,12 @@ def samples_of(charts: Sequence[ToleranceChart]) -> Plot:
         lambda look: _draw_samples(look, charts),
         instead=f"Dots of {names} at {len(charts[0].samples):,} samples over each field.",
         caption=f"{names[0].upper()}{names[1:]} at {len(charts[0].samples):,} random samples between the limits.",
+        title=charts[0].title,
         width=WIDE,
     )
+
+
+plot_samples = plotter("plot_samples", samples_of, _charts_of)
 
 
 def _draw_tornado(look: Look, charts: Sequence[ToleranceChart]) -> Sheet:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from fastpin.errors import InputError
-from fastpin.figures.sheet import Look, Plot, Sheet
+from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.sketch import draw_sketch, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, name_states, state_lines
 from fastpin.figures.style import Line
@@ -40,18 +38,7 @@ _BAR = 0.46
 """Height of the bars of a zone, in parts of a row. The arrows of narrow zones stand between the bars."""
 
 
-def plot_tractions(
-    result: Sequence[State] | State,
-    path: str | Path | None = None,
-    title: str = "",
-    width: float = 6.7,
-    dpi: float = 300.0,
-    *,
-    states: StateChoice = None,
-    sketch: bool = False,
-    bars: bool = False,
-    ax: Axes | None = None,
-) -> Figure:
+def tractions_plot(subject: Subject, states: StateChoice = None, sketch: bool = False, bars: bool = False) -> Plot:
     """Draw pressure and shear traction round the hole.
 
     The upper panel shows the pressure N. The middle panel shows the shear traction T on the pin, counter-clockwise
@@ -63,13 +50,6 @@ def plot_tractions(
     ----------
     result : State, Result or sequence of State
         Of one problem and on one grid.
-    path : path, optional
-        Also save the figure; the suffix chooses the format.
-    title : str
-    width : float
-        Width in inches.
-    dpi : float
-        Dots per inch of a saved bitmap.
     states : str, number, sequence of numbers or slice, optional
         "last", "cycle" (the last one), "all", or load points, which count from 1 as in tables: 2, [2, 3.5] or "2,3.5".
         A slice chooses places in the result. Unless given, all states of a short history, or the last cycle of a long
@@ -78,20 +58,12 @@ def plot_tractions(
         Whether a small sketch of the joint with its loads stands beside the pressure.
     bars : bool
         Whether a light band shows the error bars of each curve; see :mod:`fastpin.states.traction_bars`.
-    ax : matplotlib axes, optional
-        Axes to draw in, instead of a new figure. Several panels divide them. The figure of `ax` is returned then.
 
     Raises
     ------
     InputError
-        If there is no such state, an argument is out of range, `bars` are asked for but the states have none, the
-        figure's format is unknown, or the file can't be written.
+        If there is no such state, or `bars` are asked for but the states have none.
     """
-    return Look(path, title, width, dpi, ax).drawn(tractions_plot(InMemory(result), states, sketch, bars))
-
-
-def tractions_plot(subject: Subject, states: StateChoice = None, sketch: bool = False, bars: bool = False) -> Plot:
-    """Return pressure and shear traction of states, see :func:`plot_tractions`."""
     drawn = subject.states(states)
     true_or_false("sketch", sketch)
     curves = traction_curves(drawn, true_or_false("bars", bars))
@@ -103,6 +75,9 @@ def tractions_plot(subject: Subject, states: StateChoice = None, sketch: bool = 
         "Pressure N and shear traction T on the pin, counter-clockwise positive; below, stick and slip of each state.",
         drawn.notes,
     )
+
+
+plot_tractions = plotter("plot_tractions", tractions_plot, InMemory)
 
 
 def _draw(look: Look, states: DrawnStates, curves: Sequence[Curve], sketch: bool, bars: bool) -> Sheet:

@@ -1,4 +1,4 @@
-"""Differences of solved states from closed forms, from the singular integral equations, and of stresses from slip.
+"""Differences of solved states from closed forms and from the singular integral equations.
 
 ``fastpin verify``, bench/accuracy.py, figures and the tests share these measures. Problems are dimensionless
 (R = F = beta* = 1).
@@ -82,34 +82,6 @@ def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[
     return differences
 
 
-def half_plane_stress_difference(
-    state: State, body: Body, now: float, most: float, branch: closed_forms.Branch
-) -> float:
-    """Largest difference of a stress component from Cattaneo and Mindlin's half-plane, in parts of the peak pressure.
-
-    The points lie up to two half-widths from the middle of the contact, at depths of 0.02 to 2 half-widths.
-
-    Parameters
-    ----------
-    state : State
-        See :func:`cattaneo_mindlin`.
-    body : {"plate", "pin"}
-    now, most, branch
-        See :func:`cattaneo_mindlin`.
-    """
-    half = float(closed_forms.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
-    x, depth = np.linspace(-2.0, 2.0, 41), np.linspace(0.02, 2.0, 21)[:, None]
-    stress = state.stress(Points.at_depth(half * depth, BOTTOM + half * x), body)
-    # The pin pushes the plate along +x on the loading branch, and the plate pushes the pin along -x. The depth is
-    # +r in the plate and -r in the pin: in the pin x and srt change their signs.
-    side = 1.0 if body == "plate" else -1.0
-    expected = closed_forms.cattaneo_mindlin_stress(
-        side * x, depth, 1.0, 1.0, state.problem.uniform_friction, now, most, branch
-    )
-    peak = float(closed_forms.hertz_peak_pressure(state.problem.load_parameter(state.load["P"])))
-    return float(np.abs(np.array([stress.hoop, stress.radial, stress.shear]) / peak - expected).max())
-
-
 def stress_resultant(state: State, body: Body, radius: float, count: int = 400) -> tuple[complex, float]:
     """Return the force Q - iP and the moment that the stress carries outwards through a circle about the centre.
 
@@ -131,38 +103,6 @@ def stress_resultant(state: State, body: Body, radius: float, count: int = 400) 
     stress = state.stress(Points.at_radius(radius, theta), body, straight=True)
     force = -2.0 * np.pi * radius * np.mean((stress.radial + 1j * stress.shear) * np.exp(1j * theta))
     return complex(force), -2.0 * np.pi * radius**2 * float(stress.shear.mean())
-
-
-def strain_slip_difference(state: State) -> float:
-    """Largest difference of the slip from the integral of the hoop strains along the nodes, over the largest slip.
-
-    On the edge the hoop strain of a body is u_r + dv/dtheta for the displacements u_r and v. The rigid motion drops
-    out. So the strains of plate less pin are the change of the gap less the derivative of the slip. The displacements
-    have kernels of their own: the stresses are not used in the solver.
-
-    Parameters
-    ----------
-    state : State
-        Its pin first rested at the bottom of the hole, where slip and gap count from.
-    """
-    theta, clearance = state.theta, state.problem.assembled_clearance
-    points, weights = np.polynomial.legendre.leggauss(4)
-    steps = np.diff(theta)
-    between = theta[:-1, None] + 0.5 * steps[:, None] * (points + 1.0)
-    strains = _hoop_strain(state, "plate", between) - _hoop_strain(state, "pin", between)
-    opened = np.interp(between, theta, state.gap) - clearance * (1.0 - np.cos(between - BOTTOM))
-    slip = np.append(0.0, np.cumsum(0.5 * steps * ((opened - strains) @ weights)))
-    return float(np.abs(slip - (state.slip - state.slip[0])).max() / np.abs(state.slip).max())
-
-
-def _hoop_strain(state: State, body: Body, theta: np.ndarray) -> np.ndarray:
-    pair = state.problem.surfaces
-    material, kolosov = (pair.plate, pair.plate_kolosov) if body == "plate" else (pair.pin, pair.pin_kolosov)
-    points = Points.at_depth(0.0, theta)
-    stress = state.stress(points, body, straight=True)
-    # the assembly is over before slip and gap count
-    hoop = stress.hoop - (state.assembly_stress(points, body).hoop if state.problem.is_pressed else 0.0)
-    return (hoop - 0.25 * (3.0 - kolosov) * (hoop + stress.radial)) / (2.0 * material.shear_modulus)
 
 
 def residuals_away(state: State, margin: float) -> tuple[float, float]:

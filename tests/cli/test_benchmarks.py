@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.benchmarks import catalog
+from fastpin.published import catalog
 from tests.support.commands import printed, refused, said
 
 

@@ -22,7 +22,7 @@ from fastpin import figures, solver
 from fastpin.casefile.reader import EXAMPLE, builtin_case
 from fastpin.cli.main import main
 from fastpin.model.loads import LATER
-from fastpin.paper import catalog
+from fastpin.published import catalog
 from fastpin.runtime import jit, machine
 from fastpin.solver import arc, solving
 from fastpin.solver.errors import Interrupted, NoEquilibriumError

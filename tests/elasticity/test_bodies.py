@@ -15,9 +15,9 @@ from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, REMOTE, SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
-from fastpin.verification.body_cases import ring_compliance
 from tests.support import walls
 from tests.support.bodies import JOINTS, UNLIKE, joint_problem
+from tests.support.checks.body_cases import ring_compliance
 from tests.support.potentials import first_harmonic, plate
 from tests.support.tiers import gate
 

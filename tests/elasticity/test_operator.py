@@ -15,7 +15,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.solver import path, shortcut
 from fastpin.solver.solving import solve
-from fastpin.verification.body_cases import ring_compliance
+from tests.support.checks.body_cases import ring_compliance
 from tests.support.kernels import python
 
 BOTTOM = -0.5 * np.pi

@@ -17,7 +17,7 @@ from fastpin.kernels import harmonics
 from fastpin.model.loads import SXX, SXY, SYY
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.verification.body_cases import ring_compliance
+from tests.support.checks.body_cases import ring_compliance
 
 UNLIKE = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2), "stress")
 BRONZE = Material(1.5, 0.34)

@@ -10,8 +10,7 @@ from matplotlib.patches import Circle, FancyArrowPatch, Rectangle, Wedge
 
 from fastpin import MATERIALS, Case, InputError, LoadHistory, MaterialPair, Problem, figures
 from fastpin.bodies import Bushing, Ring, Tube
-from fastpin.figures.slip_extent import BOTH_WAYS, columns_of
-from fastpin.figures.stick_slip import LOOKS, MOST_COLUMNS, zone_boxes
+from fastpin.figures.stick_slip import BOTH_WAYS, LOOKS, MOST_COLUMNS, columns_of, zone_boxes
 from fastpin.figures.style import COLOURS
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.states.cycles import Cycle
@@ -28,9 +27,9 @@ def test_the_map_has_a_box_for_each_zone_of_each_state():
     for state in result:
         mine = [box for box in boxes if box.point == state.step + 1]
         assert {(box.left, box.right) for box in mine} == {(state.step + 0.5, state.step + 1.5)}
-        (stick,) = (box for box in mine if box.status == STICK)
+        (stick,) = (box for box in mine if box.kind == STICK)
         assert (stick.start, stick.stop) == pytest.approx(tuple(np.degrees(state.stick[0]) + 90.0))
-        slips = {box.status: box for box in mine if box.status != STICK}
+        slips = {box.kind: box for box in mine if box.kind != STICK}
         assert slips[SLIP_POSITIVE].stop == pytest.approx(stick.start)
         assert slips[SLIP_NEGATIVE].start == pytest.approx(stick.stop)
 
@@ -131,10 +130,10 @@ def test_a_long_history_has_a_column_for_some_cycles_each_and_hides_no_extreme()
     ends = [column.right for column in columns[1:-1]]
     assert all((end - 1.0) % 2.0 == 0.0 for end in ends)  # no column ends inside a cycle
     (late,) = (column for column in columns if 650 in column.places)
-    found = figures.slip_extent.extents([states[k] for k in late.places], states[late.places[0] - 1])
+    found = figures.stick_slip.extents([states[k] for k in late.places], states[late.places[0] - 1])
     assert set(found[closed & ~outer]) == {SLIP_POSITIVE}  # and back in the next column
     usual = columns[20]
-    found = figures.slip_extent.extents([states[k] for k in usual.places], states[usual.places[0] - 1])
+    found = figures.stick_slip.extents([states[k] for k in usual.places], states[usual.places[0] - 1])
     assert set(found[outer]) == {BOTH_WAYS}
     assert set(found[closed & ~outer]) == {STICK}
     assert set(found[~closed]) == {OPEN}
@@ -158,7 +157,7 @@ def test_recorded_slip_counts_between_the_kept_states():
     still = [
         dataclasses.replace(state, slip=np.zeros(21), slip_distance=np.where(outer, 2e-6, 0.0)) for state in states
     ]
-    found = figures.slip_extent.extents(still[1:], still[0])
+    found = figures.stick_slip.extents(still[1:], still[0])
     assert set(found[outer]) == {BOTH_WAYS}
     assert set(found[closed & ~outer]) == {STICK}  # their status may be slip, at |T| = mu N
 

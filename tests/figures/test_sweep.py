@@ -14,9 +14,8 @@ from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
 from fastpin.figures import sweep as sweep_figure
-from fastpin.figures.class_map import LOOKS
 from fastpin.figures.style import MAX_NAMED
-from fastpin.figures.sweep import cell_edges, plot_sweep, sweeps_of
+from fastpin.figures.sweep import CLASS_LOOKS, cell_edges, plot_sweep, sweeps_of
 from fastpin.report.sweep import Axis, Chart, chart
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, parse_plan
@@ -213,9 +212,10 @@ def test_a_map_of_classes_has_names_and_one_line_between_two_classes() -> None:
 
 
 def test_classes_differ_in_grey_or_by_their_hatches() -> None:
-    greys = [0.299 * red + 0.587 * green + 0.114 * blue for red, green, blue in map(to_rgb, (c for c, _ in LOOKS))]
-    for one, other in itertools.combinations(range(len(LOOKS)), 2):
-        assert LOOKS[one][1] != LOOKS[other][1] or abs(greys[one] - greys[other]) > 0.3
+    colours = (to_rgb(colour) for colour, _ in CLASS_LOOKS)
+    greys = [0.299 * red + 0.587 * green + 0.114 * blue for red, green, blue in colours]
+    for one, other in itertools.combinations(range(len(CLASS_LOOKS)), 2):
+        assert CLASS_LOOKS[one][1] != CLASS_LOOKS[other][1] or abs(greys[one] - greys[other]) > 0.3
 
 
 def test_absent_classes_are_not_in_the_legend_but_failures_are() -> None:

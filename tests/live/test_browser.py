@@ -27,10 +27,9 @@ import fastpin
 from fastpin import casefile
 from fastpin.bodies import Ring
 from fastpin.live.contact import LiveContact
-from fastpin.live.life import record_life
 from fastpin.live.pictures import CURVE_ERROR
 from fastpin.live.protocol import CLASS
-from fastpin.live.recording import record_page
+from fastpin.live.recording import record_life, record_page
 from fastpin.live.server import Server
 from fastpin.model.units import units
 from fastpin.solver import WearResult

@@ -24,7 +24,7 @@ from fastpin.model import About, InitialGap, Profile, Wear
 from fastpin.model.angles import angle_at
 from fastpin.states.curves import traction_patches
 from fastpin.states.state import State
-from fastpin.verification.body_cases import ring_compliance
+from tests.support.checks.body_cases import ring_compliance
 from tests.support.live_pages import FREE, NODES, Page, contact, floats, solved
 from tests.support.tiers import some_survey
 

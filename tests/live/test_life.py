@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.live import life as life_module
-from fastpin.live.life import record_life
+from fastpin.live import recording as life_module
+from fastpin.live.recording import record_life
 from fastpin.solver import WearResult
 from tests.support.live_pages import floats, recorded
 from tests.support.lives import fretting

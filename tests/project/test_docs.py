@@ -7,7 +7,7 @@ from itertools import chain
 from pathlib import Path
 
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
-from fastpin.paper import catalog
+from fastpin.published import catalog
 from fastpin.studies import sweep
 from fastpin.studies.outcome_tables import KEYS
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES

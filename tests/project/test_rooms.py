@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MOST = {
     "files naming gauge_radius": 5,
     "files naming slip_sums": 10,
-    "files naming Ring": 8,
+    "files naming Ring": 7,
     "isinstance of bodies outside bodies/": 0,
     "drive is None, or not": 0,
     "classes defined twice": 0,

@@ -18,9 +18,10 @@ from fastpin.solver import fat_cycles
 from fastpin.solver.errors import SolveError
 from fastpin.solver.fat_cycles import FatCycles
 from fastpin.solver.wear_result import WearResult
+from fastpin.verification.joint_rows import step, wearing
 from fastpin.verification.rows import Solving
-from fastpin.verification.wear_limits import rigid_sliding
-from fastpin.verification.wear_rows import final_state, half_planes, step, wearing
+from tests.support.checks.wear_limits import rigid_sliding
+from tests.support.checks.wear_rows import final_state, half_planes
 from tests.support.slip_cases import LIKE, UNLIKE
 from tests.support.tiers import some_survey
 from tests.support.wear_cases import WEAR_CASES, WearCase, lived

@@ -1,7 +1,7 @@
 """Remote stress as a load like the others: it varies with time, in any order with the loads on the pin.
 
 Its displacements (42), and (44), (45) with the singular equations, are checked in test_integral_equations.py and
-test_theory.py, full sliding under it in test_sliding.py, figure 10 of the paper in paper/test_monotonic.py.
+test_theory.py, full sliding under it in test_sliding.py, figure 10 of the paper in published/test_monotonic.py.
 """
 
 import math

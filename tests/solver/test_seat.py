@@ -17,7 +17,7 @@ from fastpin.model.profile import InitialGap, Profile
 from fastpin.solver.errors import ArcError, ConvergenceError, NoEquilibriumError, ResolutionError
 from fastpin.solver.run import Run
 from fastpin.solver.solving import MemoryRecorder
-from fastpin.verification.body_cases import ring_compliance
+from tests.support.checks.body_cases import ring_compliance
 from tests.support.joints import ALUMINIUM, BRONZE, CASES, STEEL, joint, numbers, random_bush, turns
 from tests.support.programs import assert_same_bits
 from tests.support.tiers import gate, seeds, some_gate

@@ -15,7 +15,7 @@ from fastpin.solver.errors import ArcError
 from fastpin.solver.place import ROWS, Loads
 from fastpin.solver.run import Run
 from fastpin.states.state import State
-from fastpin.verification.body_cases import BRONZE
+from fastpin.verification.joint_rows import BRONZE
 from tests.support.programs import assert_same
 from tests.support.tiers import seeds
 

@@ -16,7 +16,7 @@ from fastpin.solver import first_contact
 from fastpin.solver.configuration import elastic_energy, worst_residual
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.solving import solve
-from fastpin.verification.wear_rows import step, wearing
+from fastpin.verification.joint_rows import step, wearing
 from tests.support.tiers import some_survey
 from tests.support.wear_cases import WEAR_CASES, lived, numbers_of, parts_of, ready_to_wear
 

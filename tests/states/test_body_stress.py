@@ -13,7 +13,8 @@ from fastpin.damage import fatigue, fatigue_at_distance
 from fastpin.model import FatigueConstants
 from fastpin.report.states import hoop_line
 from fastpin.report.stress import field_curves
-from fastpin.verification.comparisons import strain_slip_difference, stress_resultant
+from fastpin.verification.comparisons import stress_resultant
+from tests.support.checks.stress_rows import strain_slip_difference
 from tests.support.refusals import refused
 
 UNLIKE = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2), "stress")

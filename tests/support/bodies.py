@@ -7,7 +7,8 @@ import numpy as np
 from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
 from fastpin.model.materials import MATERIALS, Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
-from fastpin.verification.body_cases import BRONZE, ring_compliance
+from fastpin.verification.joint_rows import BRONZE
+from tests.support.checks.body_cases import ring_compliance
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])

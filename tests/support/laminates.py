@@ -5,7 +5,7 @@ from typing import NamedTuple
 from fastpin.model.laminate import Laminate
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.verification.laminate_rows import laminate
+from tests.support.checks.laminate_rows import laminate
 
 HARD = (0.0, 0.0, 45.0, -45.0)
 

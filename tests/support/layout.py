@@ -44,7 +44,7 @@ LEVELS = (
     ("studies", "charts"),
     ("report",),
     ("figures",),
-    ("paper", "pages", "live"),
+    ("published", "pages", "live"),
     ("benchmarks",),
     ("cli",),
 )
@@ -59,7 +59,7 @@ HOMES = {
     "numba": ("runtime",),
     "llvmlite": ("runtime",),
     "ctypes": ("runtime",),
-    "matplotlib": ("figures", "paper", "benchmarks"),
+    "matplotlib": ("figures", "published"),
     "h5py": ("storage",),
     "tomllib": ("casefile",),
     "sqlite3": ("storage", "studies"),
@@ -108,9 +108,6 @@ MANY_PARAMETERS: dict[str, str] = {
     "studies/convergence.py converge": "the choices of a study are spelt out for help and completion",
     "storage/recording.py record": "the arguments of solve, and three of the file",
     "storage/wear_files.py wear": "the arguments of solve, those of wear, and five of the file",
-    "figures/tractions.py plot_tractions": "the arguments of all figures, and two of its own",
-    "figures/laminates.py plot_strength": "the arguments of all figures, and four of its own",
-    "figures/stress.py plot_stress_profile": "the arguments of all figures, and three of its own",
     "verification/integral_equations.py residuals": "the quantities of the equations (46), (47)",
 }
 """Functions of more parameters, and why."""

@@ -13,9 +13,9 @@ from fastpin.kernels.status import STICK
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.paper.fretting import FRICTION as MU
-from fastpin.paper.remote_stress import stress_unit
-from fastpin.paper.tractions import PAIRS
+from fastpin.published.fretting import FRICTION as MU
+from fastpin.published.remote_stress import stress_unit
+from fastpin.published.tractions import PAIRS
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 

@@ -13,7 +13,7 @@ from fastpin.model.profile import NO_GAP, InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.solver.wear_path import Removal, WearRun
 from fastpin.solver.wear_result import WearResult
-from fastpin.verification.wear_rows import step, wearing
+from fastpin.verification.joint_rows import step, wearing
 from tests.support.slip_cases import LIKE, UNLIKE
 
 Loads = dict[str, float]

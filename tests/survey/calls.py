@@ -196,7 +196,8 @@ def _parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
             found += [Parameter(key, "", True, True) for key in valid_values.KEYWORDS.get(call.__qualname__, ())]
         elif one.kind != inspect.Parameter.VAR_POSITIONAL:
             is_optional = one.default is not inspect.Parameter.empty
-            annotation = one.annotation if isinstance(one.annotation, str) else getattr(one.annotation, "__name__", "")
+            text = one.annotation if isinstance(one.annotation, str) else inspect.formatannotation(one.annotation)
+            annotation = re.sub(r"\b(\w+\.)+", "", text)
             found.append(Parameter(name, annotation, is_optional, one.kind != inspect.Parameter.POSITIONAL_ONLY))
     return tuple(found)
 

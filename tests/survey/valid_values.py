@@ -13,7 +13,6 @@ import numpy as np
 
 import fastpin
 from fastpin import (
-    benchmarks,
     bodies,
     casefile,
     charts,
@@ -21,6 +20,7 @@ from fastpin import (
     damage,
     elasticity,
     model,
+    published,
     report,
     studies,
     verification,
@@ -169,7 +169,7 @@ class Valid:
             report.sweep.chart(plan, rows, "peak_pressure"), studies.sweep.status(plan, "sweep"),
             damage.findley(HISTORY, 0.3),
             report.convergence.reported_series(study, problem, study.series[0].corner)[0],
-            elasticity.PlateResult(compliance, 0.0, 0.0, 0.0, 100), benchmarks.Row("peak", "1", "0.5", 0.5),
+            elasticity.PlateResult(compliance, 0.0, 0.0, 0.0, 100), published.Row("peak", "1", "0.5", 0.5),
             Curve({"mu": 0.4}, {"angle (deg)": np.zeros(3)}), model.About("a project", revision="B"),
             fastpin.Session, verification.solve_sliding(_sliding_problem(pair), {"P": 1.0, "Q": 1.0}),
             model.Profile.ellipse(1e-5), model.InitialGap(pin=model.Profile.lobes(3, 1e-5)), model.Wear(1e-14), life,
@@ -194,7 +194,7 @@ class Valid:
             "BushFit": _always(bushed.bush_fit()),
             "GrowthLaw": _always(law),  # the class alone has no rate
             "Session": session.copy,
-            "Outcome": lambda: benchmarks.Outcome([benchmarks.Row("peak", "1", "0.5", 0.5)]),
+            "Outcome": lambda: published.Outcome([published.Row("peak", "1", "0.5", 0.5)]),
         }
         self._by_target = self._targets(result) | {"worn_fatigue.cycles": _always(life), "after.cycles": _always(1)}
         self._by_target["damage_ranking.states"] = _always(list(life[0].states))
@@ -398,7 +398,7 @@ class Valid:
             "characteristic_radius.theta": [0.0, 0.5],
             "characteristic_radius.tension": 0.1,
             "characteristic_radius.compression": 0.2,
-            "benchmarks.Outcome.rows": [benchmarks.Row("peak", "1", "0.5", 0.5)],
+            "published.Outcome.rows": [published.Row("peak", "1", "0.5", 0.5)],
         }
         return {name: _always(value) for name, value in values.items()}
 

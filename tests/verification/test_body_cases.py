@@ -9,8 +9,8 @@ from fastpin.bodies import Bushing
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
-from fastpin.verification.body_cases import CASES
 from tests.support.bodies import UNLIKE
+from tests.support.checks.body_cases import CASES
 from tests.support.tiers import some_survey
 
 FINE = (1601, 0.0)

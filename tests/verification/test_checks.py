@@ -19,6 +19,7 @@ from fastpin.verification import checks as installation
 from fastpin.verification import closed_forms, finite_elements, rows
 from fastpin.verification.checks import TOPICS
 from fastpin.verification.rows import Check
+from tests.support.checks.topics import FURTHER
 from tests.support.tiers import gate
 
 MOST_SLACK = 3.0
@@ -34,7 +35,8 @@ def only(monkeypatch: pytest.MonkeyPatch) -> object:
     """Leave out all topics but some."""
 
     def choose(*keys: str) -> None:
-        monkeypatch.setattr(installation, "TOPICS", {key: TOPICS[key] for key in keys})
+        known = FURTHER | TOPICS
+        monkeypatch.setattr(installation, "TOPICS", {key: known[key] for key in keys})
 
     return choose
 
@@ -47,14 +49,19 @@ def table_lines(capsys: pytest.CaptureFixture[str]) -> list[str]:
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("key", TOPICS)
-def test_a_topic_passes_with_tolerances_that_are_used_and_not_slack(only, key: str) -> None:
+@pytest.mark.parametrize(
+    ("topics", "key"),
+    [*((TOPICS, key) for key in TOPICS), *((FURTHER, key) for key in FURTHER)],
+    ids=[*TOPICS, *(f"further {key}" for key in FURTHER)],
+)
+def test_a_topic_passes_with_tolerances_that_are_used_and_not_slack(monkeypatch, topics: dict, key: str) -> None:
     """Tolerances of discretisation errors are at most three times the largest difference of their rows."""
-    only(*(("parts", "seats") if key == "conditions" else ()), key)  # these are conditions of other topics' states
-    checks = [check for check in installation.verify() if check.topic == TOPICS[key].title]
+    keys = ("parts", "seats", key) if key == "conditions" else (key,)  # these are conditions of other topics' states
+    monkeypatch.setattr(installation, "TOPICS", {each: topics[each] for each in keys})
+    checks = [check for check in installation.verify() if check.topic == topics[key].title]
     assert [check for check in checks if not check.passed] == []
     names = {name for check in checks for name in (check.quantity, f"{check.quantity}, {check.case}")}
-    assert set(TOPICS[key].tolerances) <= names
+    assert set(topics[key].tolerances) <= names
     largest: dict[tuple[str, float | None], float] = {}
     for check in checks:
         if check.reference is None or check.ours is None:
@@ -88,18 +95,22 @@ def test_a_table_in_columns(only) -> None:
 
 
 @pytest.mark.survey
-def test_the_document_shows_the_whole_table() -> None:
+@pytest.mark.parametrize(("place", "topics"), [(0, TOPICS), (1, FURTHER)], ids=["installation", "further"])
+def test_the_document_shows_the_whole_tables(monkeypatch, place: int, topics: dict) -> None:
     """But for what rounding may change: the values and their differences."""
+    monkeypatch.setattr(installation, "TOPICS", topics)
     checks = installation.verify()
-    assert {check.topic for check in checks} == {topic.title for topic in TOPICS.values()}
+    assert {check.topic for check in checks} == {topic.title for topic in topics.values()}
     document = (Path(__file__).parents[2] / "docs" / "accuracy-tables.md").read_text(encoding="utf-8")
-    (shown,) = re.findall(r"```text\n(.*?)\n```", document, re.DOTALL)
+    shown = re.findall(r"```text\n(.*?)\n```", document, re.DOTALL)
+    assert len(shown) == 2
     expected = table(checks).splitlines()
     head = next(line for line in expected if "tolerance" in line)
     values = slice(head.index("reference") - 1, head.index("tolerance"))
-    lines = shown.splitlines()
-    assert f"{len(checks)} of {len(checks)} within tolerance" in lines.pop()
-    assert lines.pop() == ""
+    lines = shown[place].splitlines()
+    if topics is TOPICS:
+        assert f"{len(checks)} of {len(checks)} within tolerance" in lines.pop()
+        assert lines.pop() == ""
     for line, true in zip(lines, expected, strict=True):
         assert line[: values.start] == true[: values.start]
         assert line[values.stop :] == true[values.stop :]

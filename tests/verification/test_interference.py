@@ -18,8 +18,8 @@ from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import interference
-from fastpin.verification.body_cases import BRONZE
 from fastpin.verification.comparisons import all_round_difference, event_load
+from fastpin.verification.joint_rows import BRONZE
 
 LIKE = MaterialPair(Material(70e9, 0.3), Material(70e9, 0.3))
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fastpin.verification.wear_limits import final_pressure, final_profile, final_volume, rigid_sliding
+from tests.support.checks.wear_limits import final_pressure, final_profile, final_volume, rigid_sliding
 
 
 def test_the_final_state_of_partial_slip_has_known_numbers() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.paper import catalog, half_plane, rigid_pin
+from fastpin.published import catalog, half_plane, rigid_pin
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms

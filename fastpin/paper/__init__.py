@@ -1,8 +1,0 @@
-"""The figures of the paper, and others beyond it, by subject.
-
-The public names stand in ``__init__.pyi``. They are loaded when first used.
-"""
-
-import lazy_loader
-
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

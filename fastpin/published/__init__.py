@@ -1,0 +1,8 @@
+"""What others publish, beside fastpin's numbers: the figures of the paper, others beyond it, and benchmarks.
+
+The public names stand in ``__init__.pyi``. They are loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,194 @@
+"""The records of what others publish, beside fastpin's numbers: figures and benchmarks, with the rows of these.
+
+A row has a published number as printed, fastpin's number, and what follows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from textwrap import wrap
+from typing import Any, TypeVar
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from fastpin.report.curves import Curve
+from fastpin.report.table import aligned
+
+AGREES = "agrees to the digits printed"
+"""The verdict on a number that differs by at most one unit of the last digit printed."""
+
+Report = Callable[[float], None]
+"""A callable that receives the computed fraction of a figure, 0 to 1."""
+
+Item = TypeVar("Item")
+
+
+@dataclass(frozen=True)
+class PaperFigure:
+    """A figure of the paper, or one beyond it.
+
+    Attributes
+    ----------
+    name : str
+        The number in the paper, or a name in lower case with dashes.
+    title : str
+        A description, the first line of the CSV file.
+    least_nodes : int
+        The fewest nodes that resolve the subject of the figure.
+    compute : callable
+        ``compute(nodes, progress)`` solves, and returns the curves.
+    draw : callable
+        ``draw(curves)`` draws the curves of `compute`.
+    """
+
+    name: str
+    title: str
+    least_nodes: int
+    compute: Callable[[int, Report | None], list[Curve]]
+    draw: Callable[[Sequence[Curve]], Figure]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One quantity of a benchmark.
+
+    Attributes
+    ----------
+    quantity, unit : str
+    published : str
+        The number as printed; empty if no number was seen.
+    ours : float
+        fastpin's number, in `unit`.
+    why : str
+        The verdict if the numbers differ. It begins with "differs", "open", "comparison only" or "misprint".
+    last_digit : float, optional
+        A unit of the last digit of the published number, where it is not a decimal one.
+    """
+
+    quantity: str
+    unit: str
+    published: str
+    ours: float
+    why: str = "differs"
+    last_digit: float | None = None
+
+    @property
+    def difference(self) -> float | None:
+        """fastpin's number minus the published one; None if there is none."""
+        return self.ours - float(self.published) if self.published else None
+
+    @property
+    def places(self) -> int:
+        """The number of decimal places of the published number."""
+        return len(self.published.partition(".")[2])
+
+    @property
+    def resolution(self) -> float:
+        """A unit of the last digit printed."""
+        return 10.0**-self.places if self.last_digit is None else self.last_digit
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the numbers differ by at most one unit of the last digit printed."""
+        # The difference of two decimal numbers is rounded.
+        return self.difference is not None and abs(self.difference) <= (1.0 + 1e-9) * self.resolution
+
+    @property
+    def verdict(self) -> str:
+        """What follows from the difference, in words."""
+        return AGREES if self.agrees else self.why
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The rows of a benchmark, and the curves of its figure, which may be none."""
+
+    rows: Sequence[Row]
+    curves: Sequence[Curve] = field(default=(), repr=False)
+
+
+@dataclass(frozen=True)
+class Benchmark:
+    """A problem that others publish.
+
+    Attributes
+    ----------
+    name, title : str
+    statement : str
+        Geometry, materials and loads.
+    sources : sequence of str
+    compute : callable
+        ``compute(progress)`` solves, and returns the outcome.
+    draw : callable, optional
+        ``draw(curves)`` draws the curves of the outcome.
+    """
+
+    name: str
+    title: str
+    statement: str
+    sources: Sequence[str]
+    compute: Callable[[Report | None], Outcome]
+    draw: Callable[[Sequence[Curve]], Figure] | None = None
+
+
+def steps(items: Sequence[Item], progress: Report | None) -> Iterator[Item]:
+    """Yield the items, and report the fraction that is done after each of them."""
+    for index, item in enumerate(items):
+        yield item
+        if progress is not None:
+            progress((index + 1) / len(items))
+
+
+def curves_of(columns: Sequence[str], rows: Iterable[tuple[dict[str, Any], Sequence[float]]]) -> list[Curve]:
+    """Return a curve for each set of parameters: of its rows, which have a number for each of the `columns`."""
+    found: dict[tuple[tuple[str, Any], ...], list[Sequence[float]]] = {}
+    for parameters, row in rows:
+        found.setdefault(tuple(parameters.items()), []).append(row)
+    return [
+        Curve(dict(parameters), dict(zip(columns, np.array(each).T, strict=True))) for parameters, each in found.items()
+    ]
+
+
+def table(title: str, statement: str, sources: Sequence[str], rows: Sequence[Row]) -> str:
+    """Return a benchmark as text: its statement, its sources, and a line for each row with its verdict.
+
+    fastpin's numbers have one digit more than the published ones.
+    """
+    words = [statement, *(f"source: {source}" for source in sources)]
+    lines = [f"  {line}" for paragraph in words for line in wrap(paragraph, 118, break_on_hyphens=False)]
+    cells = [("quantity", "unit", "published", "fastpin", "difference", "verdict")]
+    for row in rows:
+        places = row.places + 1 if row.published else 2
+        ours = f"{round(row.ours, places) + 0.0:.{places}f}"  # + 0.0 makes 0 of -0
+        difference = "" if row.difference is None else f"{row.difference:+.{places}f}"
+        cells.append((row.quantity, row.unit, row.published or "-", ours, difference, row.verdict))
+    return "\n".join([title, *lines, *aligned(cells, "llrrrl")])
+
+
+def row_curves(rows: Sequence[Row]) -> list[Curve]:
+    """Return a curve of one point for each row, for a CSV file."""
+    return [
+        Curve(
+            {"quantity": row.quantity, "unit": row.unit, "published": row.published, "verdict": row.verdict},
+            {"fastpin": np.array([row.ours]), "difference": np.array([row.difference], dtype=float)},
+        )
+        for row in rows
+    ]
+
+
+def document(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """Return the rows as a list for JSON."""
+    return [
+        {
+            "quantity": row.quantity,
+            "unit": row.unit,
+            "published": row.published or None,
+            "fastpin": row.ours,
+            "difference": row.difference,
+            "agrees": row.agrees,
+            "verdict": row.verdict,
+        }
+        for row in rows
+    ]
