@@ -112,12 +112,12 @@ def profile_plot(
     """Draw radial, hoop, shear and von Mises stress below a place of the edge of a body.
 
     The `angle` is in degrees from the bottom. Unless given, it is the angle of each state's largest hoop stress. The
-    largest `depth` is in units of the hole's radius; unless given, it is 0.5 in the pin and 1 elsewhere. A rigid `body`
-    raises :class:`InputError`. See :func:`fastpin.plot_tractions` for the `states`.
+    largest `depth` is in units of the hole's radius. Unless given, it is 0.5 in the pin and 1 elsewhere, but no more
+    than the wall, or than is known of a compliance. A rigid `body` raises :class:`InputError`. See
+    :func:`fastpin.plot_tractions` for the `states`.
     """
     drawn = subject.states(states, extremes=HOOP[choice("body", body, BODIES)])
-    usual = 0.5 if body == "pin" else 1.0
-    curves = depth_curves(drawn, body, angle, usual if depth is None else depth)
+    curves = depth_curves(drawn, body, angle, depth)
     return Plot(lambda look: _draw_profile(look, drawn, curves), partial(write_csv, curves), notes=drawn.notes)
 
 

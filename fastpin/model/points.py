@@ -127,7 +127,7 @@ class Points(ReadOnly):
             if far is not None and np.any(depth > wall + ROUNDING * max(1.0, wall)):
                 rim = "at least the bore" if body == "pin" else "at most the outer"
                 raise InputError("radius", f"must be {rim} radius of {far * radius:g} in the {body}")
-        known = known_radius(problem)
+        known = near + known_depth(problem, body)
         if body != "pin" and np.any(near + depth > known * (1.0 + ROUNDING)):
             reach = units(problem)["length"].text(known * radius)
             raise InputError("points", f"a compliance gives the stress near the hole only: up to the radius {reach}")
@@ -216,14 +216,16 @@ def near_rim(problem: Problem, body: Body) -> float:
     return problem.joint.bush or 1.0 if body == "seat" else 1.0
 
 
-def known_radius(problem: Problem) -> float:
-    """Largest radius in the plate at which the stress is known, over the hole's radius."""
-    return problem.plate_body.lug.reach * (problem.joint.bush or 1.0)
-
-
 def far_rim(problem: Problem, body: Body) -> float | None:
     """Radius of a body's other rim over the hole's radius; 0 for a solid pin, None for a plate without a rim."""
     if body == "pin":
         return problem.pin_body.bore_radius / problem.hole_radius
     outer = problem.plate_body.lug.outer_radius
     return outer / problem.hole_radius if math.isfinite(outer) else None
+
+
+def known_depth(problem: Problem, body: Body) -> float:
+    """Depth of a body below its edge, over the hole's radius, as far as its stress is known; infinite without a rim."""
+    near, far = near_rim(problem, body), far_rim(problem, body)
+    known = math.inf if body == "pin" else problem.plate_body.lug.reach * (problem.joint.bush or 1.0) - near
+    return known if far is None else min(known, abs(far - near))

@@ -19,9 +19,8 @@ from fastpin.model.points import (
     Points,
     elastic_bodies,
     far_rim,
-    known_radius,
+    known_depth,
     material_of,
-    near_rim,
 )
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
@@ -106,7 +105,7 @@ def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
 
 
 def depth_curves(
-    states: Sequence[State], body: Body = "plate", angle: float | None = None, depth: float = 1.0
+    states: Sequence[State], body: Body = "plate", angle: float | None = None, depth: float | None = None
 ) -> list[Curve]:
     """Radial, hoop, shear and von Mises stress below a place of the edge: a curve for each state.
 
@@ -116,8 +115,9 @@ def depth_curves(
     body : {"plate", "pin", "seat"}
     angle : float, optional
         Degrees from the bottom; the place of the state's largest hoop stress unless given.
-    depth : float
-        Largest depth, in units of the hole's radius; above 0, in the pin below 1.
+    depth : float, optional
+        Largest depth, in units of the hole's radius; above 0, in the pin below 1. Unless given, it is 0.5 in the pin and
+        1 elsewhere, but no more than the wall, or than is known of a compliance.
 
     Raises
     ------
@@ -125,7 +125,8 @@ def depth_curves(
         If an argument is out of range.
     """
     material_of(states[0].problem, body)
-    deepest = number("depth", depth)
+    usual = min(0.5 if body == "pin" else 1.0, known_depth(states[0].problem, body))
+    deepest = usual if depth is None else number("depth", depth)
     _check_depth(deepest, states[0].problem, body)
     unit = units(states[0].problem)
     radius, curves = states[0].problem.hole_radius, []
@@ -143,17 +144,15 @@ def depth_curves(
 
 def _check_depth(depth: float, problem: Problem, body: Body) -> None:
     """Check the depth of a profile, in hole radii."""
-    far = far_rim(problem, body)
-    wall = math.inf if far is None else abs(far - near_rim(problem, body))
-    known = math.inf if body == "pin" else known_radius(problem) - near_rim(problem, body)
-    if depth > known:
-        words = f"must be above 0 and at most {known:.3g} radii: a compliance gives the stress near its hole only"
-        raise InputError("depth", f"{words}; not {depth:g}")
+    far, wall = far_rim(problem, body), known_depth(problem, body)
     inside = depth < wall if far == 0.0 else depth <= wall * (1.0 + ROUNDING)  # a force may act at the centre of a pin
     if depth > 0.0 and inside:
         return
-    if far is None:
+    if math.isinf(wall):
         raise InputError("depth", f"must be above 0, not {depth:g}")
+    if far is None:
+        words = f"at most {wall:.3g} radii: a compliance gives the stress near its hole only"
+        raise InputError("depth", f"must be above 0 and {words}; not {depth:g}")
     if far == 0.0:
         raise InputError("depth", f"must be above 0 and below 1 radius, the centre of the pin, not {depth:g}")
     raise InputError("depth", f"must be above 0 and at most {wall:g} radii, the wall of the {body}, not {depth:g}")
@@ -193,12 +192,12 @@ def field_curves(
     drawn = tuple(each for each in bodies_of(state, body) if each != "seat")  # the plate has it
     if component == UTILIZATION:
         drawn = ("plate",)
-    known = known_radius(state.problem)
+    deepest = min(outer - 1.0, known_depth(state.problem, "plate"))
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
     for each in drawn:
         part, far = np.linspace(0.0, 1.0, fineness)[:, None], far_rim(state.problem, each)
         if each == "plate":
-            below = radius * (min(outer, known, math.inf if far is None else far) - 1.0) * part**2
+            below = radius * deepest * part**2
         else:  # The force may act at a solid pin's centre, where the stress is infinite.
             below = radius * (1.0 - (far or 0.001)) * (1.0 - part) ** 2
         found = state.stress(Points.at_depth(below, theta), each)

@@ -14,7 +14,7 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom
 from fastpin.model.grid import Grid
-from fastpin.model.points import Body, Points, elastic_bodies, far_rim, known_radius, material_of, near_rim
+from fastpin.model.points import Body, Points, elastic_bodies, known_depth, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.ties import top_angle
 from fastpin.model.units import units
@@ -64,21 +64,14 @@ def circles(problem: Problem) -> Iterator[Circle]:
             yield from (Circle("bush", "plate", depth, "bore of the bush") for depth in _depths(wall))
             yield Circle("bush", "plate", wall, "rim of the bush")
         if not problem.pair.plate.is_rigid:
-            yield from (Circle("plate", "seat", depth, "seat") for depth in _depths(_wall(problem, "seat")))
+            yield from (Circle("plate", "seat", depth, "seat") for depth in _depths(known_depth(problem, "seat")))
     elif not problem.surfaces.plate.is_rigid:
-        yield from (Circle("plate", "plate", depth, "hole") for depth in _depths(_wall(problem, "plate")))
+        yield from (Circle("plate", "plate", depth, "hole") for depth in _depths(known_depth(problem, "plate")))
     if "pin" in elastic_bodies(problem):
-        wall = _wall(problem, "pin")
+        wall = known_depth(problem, "pin")
         yield from (Circle("pin", "pin", depth, "pin") for depth in _depths(wall))
         if problem.pin_body.bore_radius:
             yield Circle("pin", "pin", wall, "bore of the pin")
-
-
-def _wall(problem: Problem, body: Body) -> float:
-    """Depth of a body in units of the hole's radius, as far as its stress is known."""
-    near, far = near_rim(problem, body), far_rim(problem, body)
-    known = math.inf if body == "pin" else known_radius(problem) - near
-    return known if far is None else min(known, abs(far - near))
 
 
 def _depths(wall: float) -> tuple[float, ...]:
