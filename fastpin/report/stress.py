@@ -116,8 +116,8 @@ def depth_curves(
     angle : float, optional
         Degrees from the bottom; the place of the state's largest hoop stress unless given.
     depth : float, optional
-        Largest depth, in units of the hole's radius; above 0, in the pin below 1. Unless given, it is 0.5 in the pin and
-        1 elsewhere, but no more than the wall, or than is known of a compliance.
+        Largest depth, in units of the hole's radius; above 0, in the pin below 1. Unless given, it is 0.5 in the pin
+        and 1 elsewhere, but no more than the wall, or than is known of a compliance.
 
     Raises
     ------
