@@ -196,10 +196,8 @@ def field_curves(
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
     for each in drawn:
         part, far = np.linspace(0.0, 1.0, fineness)[:, None], far_rim(state.problem, each)
-        if each == "plate":
-            below = radius * deepest * part**2
-        else:  # The force may act at a solid pin's centre, where the stress is infinite.
-            below = radius * (1.0 - (far or 0.001)) * (1.0 - part) ** 2
+        in_pin = radius * (1.0 - (far or 0.001)) * (1.0 - part) ** 2  # at a solid pin's centre the force may act
+        below = radius * deepest * part**2 if each == "plate" else in_pin
         found = state.stress(Points.at_depth(below, theta), each)
         if component == UTILIZATION:
             values, name = 1.0 / first_ply_failure(laminate_of(state.problem), found.in_plane).ratio, FIELDS[component]
