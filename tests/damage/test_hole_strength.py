@@ -49,7 +49,7 @@ def test_the_least_ratio_is_that_of_the_worst_point_and_ply():
     stress = state().stress(Points.at_depth(0.5e-3, found.theta))
     whole = np.stack([stress.sxx, stress.syy, stress.sxy], axis=-1)
     every = ply_failure(PLATE, whole, "hashin")
-    assert found.least_ratio == every.ratio.min()
+    assert found.least_ratio == pytest.approx(every.ratio.min(), rel=1e-13)  # products of other sizes
     ply, point = np.unravel_index(np.argmin(every.ratio), every.ratio.shape)
     assert found.theta[found.least] == found.theta[point]
     assert found.ply_angle == PLATE.plies[ply][1]
