@@ -209,7 +209,7 @@ def _draw_maps(look: Look, chart: Chart) -> Sheet:
     heading = "" if has_bar else shown_label(chart.label)
     sheet.head(look.title, heading, _bar_line(chart), caption=_fixed_parameters(chart))
     _explain(sheet, chart)
-    if labels:
+    if not chart.classes:
         _thin_out(sheet, labels)
     return sheet
 
