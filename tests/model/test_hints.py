@@ -46,7 +46,7 @@ def test_the_package_says_which_folder_has_a_name() -> None:
     for name, home in {"Bushing": "bodies", "Laminate": "model", "failure_load": "studies"}.items():
         with pytest.raises(AttributeError, match=f"there is fastpin.{home}.{name}$"):
             getattr(fastpin, name)
-    with pytest.raises(AttributeError, match=r"there is fastpin\.studies\.sweep or fastpin\.report\.sweep$"):
+    with pytest.raises(AttributeError, match=r"there is fastpin\.studies\.sweep or fastpin\.figures\.sweep or "):
         fastpin.sweep  # noqa: B018
     with pytest.raises(AttributeError, match=r"No fastpin attribute nothing$"):
         fastpin.nothing  # noqa: B018
