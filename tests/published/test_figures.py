@@ -18,8 +18,7 @@ from fastpin.published import catalog, fretting, remote_stress, sweep, tractions
 from fastpin.published import tractions as curves_of_figures
 from fastpin.published.records import steps
 from fastpin.published.tractions import traction_curve
-from fastpin.report.curves import csv_cell
-from fastpin.report.curves import Curve, write_csv
+from fastpin.report.curves import Curve, csv_cell, write_csv
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from tests.support.samples import sample_result, with_values
