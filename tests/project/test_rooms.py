@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 74,
     "constants of modules": 1_405,
     "hidden imports": 0,
-    "lines of code": 49_097,
+    "lines of code": 49_082,
     "places that say unknown key": 7,
 }
 """The most that each number may be. A smaller number takes its place here."""
