@@ -8,7 +8,7 @@ from pathlib import Path
 from fastpin import figures
 from fastpin.charts.lookups import CHARTS, CYCLE_PARAMETERS, chart_of, lookup
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import check_outputs, flag, say, write_outputs
+from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.report.charts import chart_document, chart_list, formula_text, value_text, write_chart
 
@@ -24,10 +24,8 @@ def run(options: argparse.Namespace) -> int:
     if options.book is not None and options.book.suffix.lower() != ".pdf":
         raise InputError("--book", f'must be the name of a PDF, which ends in .pdf, not "{options.book.name}"')
     check_outputs({"--csv": options.csv, "--json": options.json, "--book": options.book})
-    try:
+    with as_options(CYCLE_PARAMETERS):
         found = lookup(chart.name, **given) if chart is not None and given else None
-    except InputError as error:
-        raise InputError(flag(error.field) if error.field in CYCLE_PARAMETERS else error.field, error.reason) from None
     if options.formulas and options.json != "-":
         say(*formula_text().split("\n"))
     elif chart is not None and found is not None and options.json != "-":

@@ -9,7 +9,7 @@ from pathlib import Path
 from fastpin import casefile, figures, storage
 from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import check_outputs, flag, say, write_files
+from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_files
 from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS, kinds_with
 
@@ -77,11 +77,8 @@ def _plot(options: argparse.Namespace) -> figures.sheet.Plot:
         subject: figures.subjects.Subject = figures.subjects.InMemory(load_seat(options.result))
     else:
         subject = figures.subjects.stored_subject(options.result, progress_to(progress_bar))
-    try:
-        with progress_bar:  # it moves for the damage of a spectrum only
-            plot = figures.plotting.plot_of(options.kind, subject, **given)
-    except InputError as error:
-        raise InputError(flag(error.field) if error.field in given else error.field, error.reason) from None
+    with as_options(given), progress_bar:  # the bar moves for the damage of a spectrum only
+        plot = figures.plotting.plot_of(options.kind, subject, **given)
     say(*plot.notes)
     say(*(f"note: {doubt}" for doubt in plot.doubts), file=sys.stderr)
     return plot

@@ -11,7 +11,7 @@ from typing import Any
 from fastpin import casefile, pages, solver, studies
 from fastpin.cli.options import ABOUT
 from fastpin.cli.progress import LOAD_POINTS, READ_POINTS, Bar, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, EXIT_READING, fail, flag, say
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, EXIT_READING, as_options, fail, flag, say
 from fastpin.errors import CaseFileError, InputError, ReadingError
 from fastpin.model.case import About, Case
 from fastpin.pages.result import merged, write_source
@@ -34,10 +34,8 @@ def run(options: argparse.Namespace) -> int:
     page = Path(f"{options.source.resolve().stem}.html") if options.output is None else options.output
     check_page("--output", page)
     try:
-        code = _of_case(options, page) if kind == "case" else _of_stored(options, page)
-    except InputError as error:
-        named = error.field in ("title", "case", "plan", "error_bars", *ABOUT)
-        raise InputError(flag(error.field), error.reason) if named else error from None
+        with as_options(("title", "case", "plan", "error_bars", *ABOUT)):
+            code = _of_case(options, page) if kind == "case" else _of_stored(options, page)
     except ReadingError as error:  # the page says it, too
         code = fail(str(error), EXIT_READING)
     say(f"wrote {page}")

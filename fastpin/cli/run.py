@@ -6,7 +6,7 @@ import argparse
 import contextlib
 import dataclasses
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,6 +24,7 @@ from fastpin.cli.terminal import (
     EXIT_INTERRUPTED,
     EXIT_OK,
     Readings,
+    as_options,
     check_outputs,
     fail,
     flag,
@@ -80,7 +81,7 @@ def run(options: argparse.Namespace) -> int:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
     beside.module = first.MODULE  # compiles in a second process during a first run
-    with Bar(len(case.history), LOAD_POINTS) as progress_bar, _as_options(options):
+    with Bar(len(case.history), LOAD_POINTS) as progress_bar, as_options(_given(options)):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:
             ended = _ending(lambda: solved.append(solver.solve(case.problem, case.history, **keywords)))
@@ -152,7 +153,7 @@ def _with_options(case: Case, options: argparse.Namespace) -> Case:
     """Return the case with the solver's options of the command line in place of its own."""
     texts = {name: text for name in OPTIONS if (text := getattr(options, name)) is not None}
     given = {name: _value(text, name in ("arc", "between")) for name, text in texts.items()}  # these may be lists
-    with _as_options(options):
+    with as_options(_given(options)):
         changed = case.options.changed(**given)
         check_keep(case.history, changed)
     return dataclasses.replace(case, options=changed)
@@ -167,15 +168,9 @@ def _value(text: object, may_be_list: bool) -> Any:
     return literal(text)
 
 
-@contextlib.contextmanager
-def _as_options(options: argparse.Namespace) -> Iterator[None]:
-    """Name the option instead of the solver's field in errors raised within, if the command line has the option."""
-    try:
-        yield
-    except InputError as error:
-        if error.field in (*OPTIONS, "start") and getattr(options, error.field) is not None:
-            raise InputError(flag(error.field), error.reason) from None
-        raise
+def _given(options: argparse.Namespace) -> list[str]:
+    """The fields of the solver that the command line has."""
+    return [name for name in (*OPTIONS, "start") if getattr(options, name) is not None]
 
 
 def _check_combination(case: Case, options: argparse.Namespace) -> None:
@@ -198,10 +193,8 @@ def _check_shown(case: Case, options: argparse.Namespace) -> None:
         return
     if options.plot is None:
         raise InputError("--states", "chooses the states of a figure: it needs --plot FILE")
-    try:
+    with as_options(["states"]):
         check_choice(options.states, case.history)
-    except InputError as error:
-        raise InputError("--states", error.reason) from None
 
 
 def _corners(corners: int, text: str | None) -> list[int]:
@@ -223,10 +216,8 @@ def _start(options: argparse.Namespace) -> solver.Result | None:
         return None
     if options.output is not None and options.output.resolve() == options.start.resolve():
         raise InputError("--output", "is the file to start from; a branch needs a file of its own")
-    try:
+    with as_options(["after"]):
         start = storage.load(options.start, states=[], after=options.after)
-    except InputError as error:
-        raise InputError("--after" if error.field == "after" else error.field, error.reason) from None
     if start.restart is None:
         why = "its run has not finished: resume it, or say after which corner (--after)"
         if start.complete:
@@ -430,13 +421,11 @@ class RunReport:
 
     def _plot(self, options: argparse.Namespace, path: Path) -> None:
         """Draw the tractions. States that were not read before are read from the file."""
-        try:
+        with as_options(["states"]):
             if self.part is None:
                 drawn = figures.states.drawn_states(self.result or (), options.states)
             else:
                 drawn = figures.states.stored_states(options.output, options.states)
-        except InputError as error:
-            raise InputError("--states" if error.field == "states" else error.field, error.reason) from None
         figures.plot_tractions(drawn, path, title=self.case.title)
         if drawn.note:
             say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)

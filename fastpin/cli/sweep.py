@@ -14,7 +14,7 @@ from typing import Any
 from fastpin import figures, report, studies
 from fastpin.cli.options import literal
 from fastpin.cli.progress import READ_POINTS, Bar, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, as_options, check_outputs, fail, say
 from fastpin.errors import InputError
 from fastpin.figures.kinds import DEFAULT_KEY_FIGURE
 
@@ -58,14 +58,10 @@ def run_plan(
     """Solve the runs of a plan with a progress bar."""
     with _executor(options.dask) as executor, Bar(len(plan.points), "run {n} of {total}") as progress_bar:
         progress = progress_to(progress_bar)
-        try:
+        with as_options(["workers"]):
             return studies.sweep.run(
                 plan, directory, executor, options.workers, options.retry, shard, progress, options.files
             )
-        except InputError as error:
-            if error.field == "workers":
-                raise InputError("--workers", error.reason) from None
-            raise
 
 
 def fail_interrupted(plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None) -> int:

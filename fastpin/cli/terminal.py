@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TextIO, TypeVar
 
@@ -65,6 +66,17 @@ class Readings:
 def flag(name: str) -> str:
     """Return an option as it is written on the command line."""
     return f"--{name.replace('_', '-')}"
+
+
+@contextlib.contextmanager
+def as_options(fields: Collection[str]) -> Iterator[None]:
+    """Name the option in place of the field in errors raised within, if it is one of these fields."""
+    try:
+        yield
+    except InputError as error:
+        if error.field in fields:
+            raise InputError(flag(error.field), error.reason) from None
+        raise
 
 
 def check_figure(option: str, path: Path) -> None:

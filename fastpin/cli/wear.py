@@ -14,6 +14,7 @@ from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
     EXIT_OK,
+    as_options,
     check_outputs,
     fail,
     flag,
@@ -51,14 +52,11 @@ def run(options: argparse.Namespace) -> int:
     with Bar(1, "{whole} of {total:,} cycles") as progress_bar:
         settings |= {"progress": progress_to(progress_bar), "title": case.title}
         try:
-            result = storage.wear(case.problem, case.history, **how, **settings)
+            with as_options((*given, "nodes", "resume")):
+                result = storage.wear(case.problem, case.history, **how, **settings)
         except (solver.SolveError, solver.Interrupted) as ended:
             result, trouble = ended.result, str(ended)  # type: ignore[assignment]
             code = EXIT_FAILED if isinstance(ended, solver.SolveError) else EXIT_INTERRUPTED
-        except InputError as error:
-            if error.field in given or error.field in ("nodes", "resume"):
-                raise InputError(flag(error.field), error.reason) from None
-            raise
     if trouble is not None:
         go_on = options.output is not None and code == EXIT_INTERRUPTED
         fail(f"{trouble}{'; continue with the same command and --resume' if go_on else ''}", code)

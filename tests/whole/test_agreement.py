@@ -26,6 +26,7 @@ from tests.support.commands import said
 from tests.support.fatigue import CONSTANTS
 from tests.support.html import words_of
 from tests.support.lives import HISTORY, JOINT, sample_life
+from tests.support.tiers import some_gate
 
 HEAD = """
 pin.material = "steel"
@@ -133,7 +134,9 @@ class Told(NamedTuple):
     err: str
 
 
-@pytest.fixture(scope="module", params=[*CASES])
+@pytest.fixture(
+    scope="module", params=some_gate(CASES, "fatigue of a history", "fatigue of a cycle", "crack in a spectrum")
+)
 def told(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Told:
     path = tmp_path_factory.mktemp("agreement") / "case.toml"
     path.write_text(CASES[request.param])
@@ -200,6 +203,7 @@ def least(margins: list[dict[str, Any]], name: str) -> float:
     return min(row["margin"] for row in margins if row["name"] == name)
 
 
+@pytest.mark.gate
 def test_a_crack_that_is_not_followed_is_told_everywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fastpin.pages.result.SECTIONS", (crack,))
     (tmp_path / "case.toml").write_text(CASES["crack under two corners"])
