@@ -40,7 +40,7 @@ def test_without_wear_the_life_is_that_of_the_cycle(states):
     life = int(2 * today.life)
     found = worn_fatigue(_life(states, {0: 0.0, life // 3: 0.0, life: 0.0}))
     assert found.life == pytest.approx(today.life, rel=1e-14)
-    assert found.first_life == today.life
+    assert found.first_life == pytest.approx(today.life, rel=1e-14)  # products of other sizes
     assert (found.crack.theta, found.crack.depth) == (today.theta, 0.0)
     assert found.error < 1e-14
     assert not found.is_gone.any()
