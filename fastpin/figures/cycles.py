@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterSciNotation, LogLocator, MaxNLocator, NullLocator
 
+from fastpin.assess.outputs import ROUNDING
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, line
@@ -21,7 +22,6 @@ from fastpin.figures.words import caption, quantity, without_rounding
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import units
-from fastpin.report.case import ROUNDING
 from fastpin.report.curves import write_csv
 from fastpin.report.cycle import cycles_curve
 from fastpin.solver.result import Result

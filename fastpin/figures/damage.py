@@ -11,7 +11,7 @@ from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D
 
 from fastpin.damage import WornFatigue
-from fastpin.damage.criteria import Criterion
+from fastpin.damage.criteria import Criterion, criterion_title
 from fastpin.figures.scar import MARGIN, cycles_axis, life_caption
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.style import COLOURS, MAX_NAMED, Line, angle_axis, draw_grid, line
@@ -55,8 +55,8 @@ def damage_of(life: WearResult, found: WornFatigue) -> Plot:
         lambda path: write_csv([damage_curve(found)], path),
         f"Map of the damage under the first surface of the {edge_body(found.problem, found.body)}, and its largest "
         f"value over {cycles_text(life[-1].cycle)}: {found.words}.",
-        f"Damage by {found.criterion.title()} of the material under the first surface, and the largest damage of all "
-        "material that is still there. Damage goes with the material that wears off.",
+        f"Damage by {criterion_title(found.criterion)} of the material under the first surface, and the largest damage "
+        "of all material that is still there. Damage goes with the material that wears off.",
         bitmap=True,
     )
 
@@ -79,8 +79,8 @@ def _draw(look: Look, life: WearResult, found: WornFatigue) -> Sheet:
         Line2D([], [], label="of all material", **EVER),
     ]
     sheet.legend(handles, 2)
-    head = f"{edge_body(found.problem, found.body)}, {found.criterion.title()}: {found.words.replace(' um ', ' µm ')}"
-    head += "" if life.complete else f"; {followed_words(life)}"
+    words = found.words.replace(" um ", " µm ") + ("" if life.complete else f"; {followed_words(life)}")
+    head = f"{edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}: {words}"
     sheet.head(look.title, head, caption=life_caption(life))
     return sheet
 

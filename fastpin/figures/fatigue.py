@@ -11,9 +11,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from fastpin.assess.asked import assessment_words
 from fastpin.damage import CRITERIA, NO_CRACK, SPECTRUM_CRITERIA, Fatigue, SpectrumDamage, cycle_states, fatigue
 from fastpin.damage.assessed import MOST_REFINED
-from fastpin.damage.criteria import Criterion
+from fastpin.damage.criteria import Criterion, criterion_title
 from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
@@ -25,7 +26,6 @@ from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import choice, instances
 from fastpin.model.points import EDGES, Body, edge_body
 from fastpin.model.units import scaled, units
-from fastpin.report.case import assessment_words
 from fastpin.report.curves import write_csv
 from fastpin.report.cycle import fatigue_bodies
 from fastpin.report.fatigue import fatigue_curve, spectrum_curve
@@ -100,9 +100,9 @@ def spectrum_of(found: Sequence[SpectrumDamage]) -> Plot:
     return Plot(
         lambda look: _draw_spectrum(look, found),
         lambda path: write_csv([spectrum_curve(one) for one in found], path),
-        f"Line chart of the damage by {found[0].criterion.title()} along the edge of the {edges}.",
-        f"Damage of one spectrum by {found[0].criterion.title()} along the edge of the {edges}, with its hot spot, "
-        "and the life. Short lines are the worst planes.",
+        f"Line chart of the damage by {criterion_title(found[0].criterion)} along the edge of the {edges}.",
+        f"Damage of one spectrum by {criterion_title(found[0].criterion)} along the edge of the {edges}, with its hot "
+        "spot, and the life. Short lines are the worst planes.",
     )
 
 
@@ -129,7 +129,7 @@ def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
         handles.append(Line2D([], [], label="worst planes", color="0.3", linewidth=1.0))
         axes[0, 0].set_ylim(0.0, 1.15 * highest)
         axes[1, 0].set_ylim(0.5 / highest, 1e4 / highest)
-    axes[0, 0].set_ylabel(f"damage of a spectrum,\n{damages[0].criterion.title()}")
+    axes[0, 0].set_ylabel(f"damage of a spectrum,\n{criterion_title(damages[0].criterion)}")
     axes[1, 0].set_ylabel("life (spectra)")
     return _finish(sheet, look, damages, handles)
 
@@ -156,9 +156,9 @@ def fatigue_of(found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[Sp
     return Plot(
         lambda look: _draw(look, each),
         lambda path: write_csv([fatigue_curve(one) for one in each], path),
-        f"Line chart of the {each[0].criterion.title()} parameter along the edge of the {edges}.",
-        f"Parameter {each[0].criterion.title()} along the edge of the {edges}, with its hot spot{life}. Short lines "
-        "are the worst planes.",
+        f"Line chart of the {criterion_title(each[0].criterion)} parameter along the edge of the {edges}.",
+        f"Parameter {criterion_title(each[0].criterion)} along the edge of the {edges}, with its hot spot{life}. Short "
+        "lines are the worst planes.",
     )
 
 
@@ -189,7 +189,7 @@ def _draw(look: Look, found: Sequence[Fatigue]) -> Sheet:
         top.set_ylim(min(1.15 * lowest, 0.0), max(1.15 * highest, 0.0))
     else:
         top.set_yticks([0.0])  # no other value has a meaning
-    top.set_ylabel(quantity(f"parameter of\n{found[0].criterion.title()}", unit))
+    top.set_ylabel(quantity(f"parameter of\n{criterion_title(found[0].criterion)}", unit))
     for k, life in lives.items():
         angle, order = _by_angle(found[k])
         axes[1, 0].semilogy(angle, np.where(np.isfinite(life), life, np.nan)[order], **line(2 * k))

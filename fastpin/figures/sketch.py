@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle, Wedge
 
+from fastpin.assess.outputs import ROUNDING
 from fastpin.bodies.body import Shape
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
@@ -24,7 +25,6 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.points import edge_body
 from fastpin.model.problem import Problem
-from fastpin.report.case import ROUNDING
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from fastpin.assess.outputs import ROUNDING
 from fastpin.bodies.bushing import STUCK
 from fastpin.model.checks import shortened
 from fastpin.model.laminate import Laminate
@@ -17,7 +18,6 @@ from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import PASCAL, Unit, acting_loads, units
-from fastpin.report.case import ROUNDING
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fastpin.assess.fatigue import Assessed, assessment_lines
+from fastpin.assess.outputs import ROUNDING
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
 from fastpin.figures.crack_growth import crack_growth_of
@@ -38,7 +39,7 @@ from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPar
 from fastpin.pages.margins import PageParts, margins, sentence
 from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
-from fastpin.report.case import ROUNDING, case_rows, corner_columns
+from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.crack_growth import growth_line
 from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line

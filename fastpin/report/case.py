@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fastpin.assess.asked import assessment_words as assessment_words
-from fastpin.assess.asked import crack_words, strength_words
-from fastpin.assess.outputs import ROUNDING as ROUNDING
+from fastpin.assess.asked import assessment_words, crack_words, strength_words
+from fastpin.assess.outputs import ROUNDING
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.history import LoadHistory

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.assess.cycle import CYCLE
+from fastpin.assess.outputs import ROUNDING
 from fastpin.assess.outputs import document as document_of
 from fastpin.damage import Fatigue, cycle_states, fatigue
 from fastpin.damage.criteria import Criterion, criterion_title
@@ -22,7 +23,6 @@ from fastpin.model.loads import LOAD_KIND
 from fastpin.model.points import EDGES, Body, edge_body, elastic_bodies, material_of, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.report.case import ROUNDING
 from fastpin.report.curves import Curve
 from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fastpin.assess.outputs import ROUNDING
 from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.checks import instance, instances
 from fastpin.model.loads import LOADS
@@ -19,7 +20,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.ties import top
 from fastpin.model.units import Unit, units
 from fastpin.reading.zones import is_all_round
-from fastpin.report.case import ROUNDING, load_columns
+from fastpin.report.case import load_columns
 from fastpin.report.table import (
     MAX_ROWS,
     Column,

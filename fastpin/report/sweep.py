@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess.outputs import ROUNDING
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
@@ -23,7 +24,6 @@ from fastpin.model.profile_terms import TERMS
 from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, Unit, scaled, units
 from fastpin.model.wear import Wear
-from fastpin.report.case import ROUNDING
 from fastpin.report.curves import csv_cell
 from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
