@@ -86,7 +86,8 @@ def test_integrals(timed: Timed, nodes: int, way: str) -> None:
     """Time the integrals by expansions of far blocks, and by the closed form summed over all nodes."""
     blocks = cases.steady_state(nodes)[-1].refined.tractions
     plain = Tractions(blocks.patches)
-    plain.__dict__["tree"] = dataclasses.replace(blocks.tree, radii=np.full(blocks.tree.radii.shape, np.inf))
+    *tree, radii, moments = blocks.tree
+    plain.__dict__["tree"] = (*tree, np.full_like(radii, np.inf), moments)
     theta, depth = places(SUMMED)
     chosen = blocks if way == "blocks" else plain
     found = timed(lambda: cauchy_integrals(chosen, theta, np.log1p(depth), True), nodes, threads=1, points=SUMMED)
