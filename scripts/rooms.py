@@ -92,7 +92,7 @@ count("fastpin run", lambda: main(["run", "case.toml", "--nodes", "101"]))
 if WHOLE:
     main(["run", "case.toml", "--nodes", "101", "-o", "result.h5"])
     count("fastpin show", lambda: main(["show", "result.h5"]))
-    count("fastpin report", lambda: main(["report", "result.h5", "-o", "page.html", "--overwrite"]))
+    count("fastpin report", lambda: main(["report", "result.h5", "-o", "page.html"]))
 sys.stdout = sys.__stdout__
 print(json.dumps(found))
 """
