@@ -138,7 +138,7 @@ def plate_compliance(
         computed, tried = min(2 * computed, MOST_CHOSEN), tried + 1
     kept = order
     if kept is None:
-        kept = max(LEAST_ORDER, int(np.flatnonzero(harmonic_sizes(rough) > KEPT)[-1]))
+        kept = max(4, int(np.flatnonzero(harmonic_sizes(rough) > KEPT)[-1]))  # the last one shows that they decay
     fine = respond(lug, kept, FINE, share(0.1 * (tried + 1), 0.9 - 0.1 * tried))
     cut = 2 + 4 * kept
     whole = fine.projected()
