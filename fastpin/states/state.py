@@ -14,7 +14,7 @@ import numpy as np
 from fastpin import reading
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import from_bottom, interval_from_bottom, near_bottom
-from fastpin.model.checks import true_or_false
+from fastpin.model.checks import instance, true_or_false
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
@@ -146,7 +146,7 @@ class State(ReadOnly):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.seat is not None:  # how the pin is pressed into the bush is a matter of both
-            self.seat.__dict__["_joint"] = self.problem, self.grid
+            instance("seat", self.seat, State, "a State").__dict__["_joint"] = self.problem, self.grid
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields alone: everything else is computed from them."""

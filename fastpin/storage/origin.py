@@ -87,9 +87,9 @@ def stored_walk_doubts(path: str | Path, problem: Problem) -> list[InputWarning]
     Raises
     ------
     InputError
-        See :func:`fastpin.load`.
+        See :func:`fastpin.load`, and for objects of another kind.
     """
-    if problem.seat is None or not (cycles := load(path, states=[]).cycles):
+    if instance("problem", problem, Problem, "a Problem").seat is None or not (cycles := load(path, states=[]).cycles):
         return []
     states = load(path, states=places_between(path, *span_of(cycles[-1]))).states
     return walk_doubts(states, cycles)
