@@ -52,7 +52,7 @@ SECTION_OUTCOMES = {
         grown,
         chosen(GROWTH, ("fate", "life", "arrest"))
         | {
-            "theta": GROWTH[0],
+            "theta": chosen(GROWTH, ("angle_of_mouth",))["angle_of_mouth"],
             "largest_K": Output("largest_K", "stress intensity", lambda found: found.K_max.max()),
         },
     ),
