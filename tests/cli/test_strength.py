@@ -9,20 +9,12 @@ import pytest
 import fastpin
 from fastpin import damage, studies
 from fastpin.report import json_schema
+from tests.support.case_texts import STEEL_IN_LAMINATE
 from tests.support.commands import printed, said
 
 jsonschema = pytest.importorskip("jsonschema")
 
-CASE = """\
-pin.material = "steel"
-plate = { layup = "[0/45/-45/90]2s", ply = "T300/914" }
-[contact]
-plane = "stress"
-hole_radius = 3e-3
-clearance = 20e-6
-friction = 0.2
-thickness = 2e-3
-[[load]]
+CASE = f"""{STEEL_IN_LAMINATE}[[load]]
 P = [2e3, 1e3, 0]
 [solve]
 nodes = 61

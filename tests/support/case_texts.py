@@ -50,3 +50,15 @@ knee = 1e6
 nodes = 31
 """
 """A pin that a repeated force Q moves in a sheet, with a section of fatigue."""
+
+STEEL_IN_LAMINATE = """\
+pin.material = "steel"
+plate = { layup = "[0/45/-45/90]2s", ply = "T300/914" }
+[contact]
+plane = "stress"
+hole_radius = 3e-3
+clearance = 20e-6
+friction = 0.2
+thickness = 2e-3
+"""
+"""Bodies and contact of a steel pin in a laminate, without loads."""

@@ -22,6 +22,7 @@ from fastpin.report.wear import cycle_columns, cycles_curve, scar_curves
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import value_of
 from fastpin.studies.plan import parse_plan
+from tests.support.case_texts import STEEL_IN_LAMINATE
 from tests.support.commands import said
 from tests.support.fatigue import CONSTANTS
 from tests.support.html import words_of
@@ -61,16 +62,7 @@ TURNS = "[[load]]\nP = [3e6, 3e5, 15e5, 3e5]\n"
 CYCLES = "[[load]]\nP = [3e6, 3e5]\nrepeat = 2\n"
 IN_N = "[[load]]\nP = [15e3, 15e2, 75e2, 15e2]\n"
 CRACK = "[crack]\nfirst = 1e-4\nlast = 1e-3\ntheta = 66\n"
-STRENGTH = """
-pin.material = "steel"
-plate = { layup = "[0/45/-45/90]2s", ply = "T300/914" }
-[contact]
-plane = "stress"
-hole_radius = 3e-3
-clearance = 20e-6
-friction = 0.2
-thickness = 2e-3
-[[load]]
+STRENGTH = f"""{STEEL_IN_LAMINATE}[[load]]
 P = [2e3, 1e3]
 [solve]
 nodes = 41
