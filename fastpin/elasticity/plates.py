@@ -10,7 +10,7 @@ to 4e-7, in 10 s. The integral equations reach 1e-10 in 2 s. They need neither a
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -200,14 +200,19 @@ def hole_compliance(order: int, kolosov: float) -> np.ndarray:
     return matrix
 
 
-def respond(lug: Lug, order: int, fineness: Fineness, progress: Callable[[float], None]) -> Response:
-    """Solve the integral equations for the harmonics up to `order` and for the loads."""
-    edges = Edges(_loops(lug, order), fineness)
+def respond(
+    lug: Lug, order: int, fineness: Fineness, progress: Callable[[float], None], pinned: Collection[str] = ()
+) -> Response:
+    """Solve the integral equations for the harmonics up to `order` on the edges with pins, and for the loads.
+
+    `pinned` names further holes with a pin. Their radius is that of the first hole.
+    """
+    edges = Edges(_loops(lug, order, pinned), fineness)
     held, frame = _supports(lug, edges)
     # At 1 (nu = 0.5 in plane strain) the pressure on an outline that is held all round moves nothing, and the equations
     # have no unique solution. The matrix changes by 1e-7.
     kolosov = max(lug.kolosov, 1.0 + 1e-7)
-    tractions, loads = _tractions(lug, edges, order)
+    tractions, loads = _tractions(lug, edges, order, pinned)
     with threadpool_limits(limits=1, user_api="blas"):  # the same bits with any number of cores
         # With this unit of length no plate has the size at which a purely logarithmic equation for held edges has no
         # unique solution.
@@ -238,7 +243,7 @@ def _dot(along: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return found
 
 
-def _loops(lug: Lug, order: int) -> list[Boundary]:
+def _loops(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Boundary]:
     """All edges in hole radii; the first one is the edge of the pin's hole."""
 
     def marks(name: str) -> object:
@@ -254,9 +259,9 @@ def _loops(lug: Lug, order: int) -> list[Boundary]:
         ([part.name for part in lug.outline], lug.outline),
         *(([hole.name] * len(hole.parts), hole.parts) for hole in lug.holes),
     ]:
-        loops.append(
-            Boundary(scaled(parts), tuple(map(marks, names)), tuple(name not in lug.supports for name in names))
-        )
+        free = tuple(name not in lug.supports for name in names)
+        finest = turn if names[0] in pinned and len(set(names)) == 1 else Boundary.turn
+        loops.append(Boundary(scaled(parts), tuple(map(marks, names)), free, finest))
     return loops
 
 
@@ -279,25 +284,40 @@ def _supports(lug: Lug, edges: Edges) -> tuple[np.ndarray, np.ndarray]:
     return held, frame
 
 
-def _tractions(lug: Lug, edges: Edges, order: int) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Tractions of unit harmonics and loads, complex, shape (nodes, 2 + 4 K + loads), and the names of the loads."""
+def _tractions(
+    lug: Lug, edges: Edges, order: int, pinned: Collection[str]
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Tractions of unit harmonics on each edge with a pin, and of loads, and the names of the loads.
+
+    The tractions are complex, shape (nodes, edges with a pin x (2 + 4 K) + loads).
+    """
     loads = tuple(sorted({load.name for load in lug.loads}))
-    found = np.zeros((edges.z.size, 2 + 4 * order + len(loads)), dtype=complex)
-    on_hole = edges.part_of_node < len(lug.contact_edge)
-    radial = edges.z[on_hole] / np.abs(edges.z[on_hole])
-    waves = radial[:, None] ** np.arange(order + 1)
-    waves[:, 0] = math.sqrt(0.5)
-    r, along = radial[:, None], 1j * radial[:, None]
-    harmonics = np.empty((radial.size, 2 + 4 * order), dtype=complex)
-    harmonics[:, :2] = waves[:, :1] * np.hstack([r, along])
-    for place, (base, values) in enumerate(
-        ((r, waves.real), (r, waves.imag), (along, waves.real), (along, waves.imag))
-    ):
-        harmonics[:, 2 + place :: 4] = base * values[:, 1:]
-    found[on_hole, : 2 + 4 * order] = harmonics
+    contacts = [(edges.part_of_node < len(lug.contact_edge), 0j)]
+    contacts += [
+        (_on_parts(lug, edges, hole.name), hole.centre / lug.hole_radius) for hole in lug.holes if hole.name in pinned
+    ]
+    each = 2 + 4 * order
+    found = np.zeros((edges.z.size, each * len(contacts) + len(loads)), dtype=complex)
+    for place, (on_hole, centre) in enumerate(contacts):
+        found[on_hole, each * place : each * place + each] = _harmonics(edges.z[on_hole] - centre, order)
     for load in lug.loads:
         for name in load.parts:
             on = _on_parts(lug, edges, name)
-            column = 2 + 4 * order + loads.index(load.name)
+            column = each * len(contacts) + loads.index(load.name)
             found[on, column] += complex(load.x, load.y) + load.normal * edges.normals[on]
     return found, loads
+
+
+def _harmonics(z: np.ndarray, order: int) -> np.ndarray:
+    """The basis of a compliance at points (k,) on the edge of a hole round 0, complex, shape (k, 2 + 4 K)."""
+    radial = z / np.abs(z)
+    waves = radial[:, None] ** np.arange(order + 1)
+    waves[:, 0] = math.sqrt(0.5)
+    r, along = radial[:, None], 1j * radial[:, None]
+    found = np.empty((radial.size, 2 + 4 * order), dtype=complex)
+    found[:, :2] = waves[:, :1] * np.hstack([r, along])
+    for place, (base, values) in enumerate(
+        ((r, waves.real), (r, waves.imag), (along, waves.real), (along, waves.imag))
+    ):
+        found[:, 2 + place :: 4] = base * values[:, 1:]
+    return found

@@ -1,0 +1,267 @@
+"""The matrices of a joint of several pins and plates.
+
+An interface is a pin in the hole of one plate. Each is a :class:`fastpin.elasticity.system.System` of its own, of a pin
+in an infinite plate; a plate couples the interfaces of its holes through few harmonics. The unknown motions are, for
+each interface, the motion (c_x, c_y, omega) of the pin over the plate, and the displacement of each plate that is not
+held. The conditions are the equilibrium of every pin and plate, and the coherence of a pin in its plates:
+
+    first plate of a pin    sum over its plates of t (F + e c) = force on the pin, for x and y
+    each further plate      D_before - D + flexibility times the force between both plates = 0, for x and y
+    rotations               one moment for all plates of a pin; equal rotations
+    plate that moves        sum over its holes of t (F + e c) + force on the plate = 0
+
+F is the force of the pin on the plate per thickness, t the thickness, and D = c + plate's displacement + g F - k J the
+displacement of the pin's section, (T29) of docs/theory.md. A weak spring of stiffness e centres every pin in its holes
+until it touches; it changes forces by 1e-6.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from fastpin.bodies.compliance import basis
+from fastpin.elasticity.drive import Drive
+from fastpin.elasticity.interfaces import TURN, Nodes
+from fastpin.elasticity.operator import DenseOperator
+from fastpin.elasticity.several_holes import HolesCompliance
+from fastpin.elasticity.system import Interface, System
+from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS, P, Q
+from fastpin.model.problem import Problem
+
+CENTRING = 1e-6
+"""Stiffness e of the springs that centre the pins, times beta*. Forces change by as much. With 1e-7 a path was lost
+where a loose pin touches; with 1e-12 the first matrix is singular."""
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A pin in one plate.
+
+    Attributes
+    ----------
+    pin, plate : int
+        Places of both among the pins and plates.
+    hole : int
+        Place of the hole among those of its plate.
+    problem : Problem
+        The pin in an infinite plate of this material.
+    thickness : float
+        Thickness of the plate, in units of the first one.
+    flexibility : float
+        Displacement of this section over the one before, per force between them, dimensionless; 0 for the first one.
+    """
+
+    pin: int
+    plate: int
+    hole: int
+    problem: Problem
+    thickness: float
+    flexibility: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class JointLoads:
+    """What the loads of a joint do, dimensionless and in their order.
+
+    Attributes
+    ----------
+    pins : ndarray, shape (pins, 2, loads)
+        Force on each pin along x and y per unit of each load.
+    moving : sequence of (int, complex)
+        Plates that move, and the direction of the motion, a unit vector.
+    plates : ndarray, shape (moving, loads)
+        Force on these plates along their directions.
+    columns : sequence of (int, str, int)
+        Loads within plates: the plate, the name of its column, the place of the load.
+    fit : ndarray, shape (sections,)
+        How far the last load opens the gap of each section, over R.
+    """
+
+    pins: np.ndarray
+    moving: Sequence[tuple[int, complex]]
+    plates: np.ndarray
+    columns: Sequence[tuple[int, str, int]]
+    fit: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class PinsSystem(System):
+    """The system of several pins in several plates. The loads of the joint stand behind those of a single pin.
+
+    Attributes
+    ----------
+    nodes : Nodes
+    sections : tuple of Section
+        The interfaces, pin by pin and through the thickness.
+    given : JointLoads
+    integrals : tuple of ndarray, shape (2 + 4 K, 2n)
+        Coefficients of the traction of each section in the basis of a compliance, per traction at its nodes.
+    """
+
+    nodes: Nodes = field(kw_only=True)
+    sections: tuple[Section, ...] = field(kw_only=True)
+    given: JointLoads = field(kw_only=True)
+    integrals: tuple[np.ndarray, ...] = field(kw_only=True)
+
+    @property
+    def is_toeplitz(self) -> bool:
+        return False
+
+    @property
+    def _acting(self) -> int:  # type: ignore[override]
+        return self.loads.shape[1]
+
+    @cached_property
+    def interfaces(self) -> tuple[Interface, ...]:
+        parts = enumerate(zip(self.sections, self.nodes.grids, self.nodes.parts, strict=True))
+        return tuple(Interface(each.problem, grid, nodes, 3 * place, 1.0) for place, (each, grid, nodes) in parts)
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        return np.zeros(self.nodes.size, dtype=bool)
+
+    @cached_property
+    def pins(self) -> list[list[int]]:
+        """The sections of each pin."""
+        count = 1 + max(each.pin for each in self.sections)
+        return [[place for place, each in enumerate(self.sections) if each.pin == pin] for pin in range(count)]
+
+    def is_smooth(self, pin: int) -> bool:
+        """Whether a pin has no friction in any of its plates: then nothing turns it."""
+        return all(self.sections[place].problem.frictionless for place in self.pins[pin])
+
+    @cached_property
+    def turning(self) -> tuple[slice, ...]:
+        parts = self.nodes.parts
+        return tuple(
+            slice(parts[of[0]].start, parts[of[-1]].stop) for pin, of in enumerate(self.pins) if not self.is_smooth(pin)
+        )
+
+    @cached_property
+    def of_pins(self) -> np.ndarray:
+        """Whether a condition is the equilibrium of a pin, bool, shape (m,). It stands with the pin's first section."""
+        found = np.zeros(self.motions, dtype=bool)
+        for members in self.pins:
+            found[3 * members[0] : 3 * members[0] + 3] = True
+        return found
+
+    def passed(self, tractions: np.ndarray) -> np.ndarray:
+        """Force along x and y and moment of each section on its plate per thickness, shape (sections, 3)."""
+        found: np.ndarray = (self.resultants @ tractions).reshape(-1, 3)
+        return found
+
+
+def build(
+    sections: Sequence[Section],
+    plates: Sequence[HolesCompliance],
+    given: JointLoads,
+    grids: Sequence[Grid],
+    force: float,
+) -> PinsSystem:
+    """Fill the matrices of a joint with reference force `force`, N/m.
+
+    Parameters
+    ----------
+    sections : sequence of Section
+        Pin by pin, and through the thickness.
+    plates : sequence of HolesCompliance
+    given : JointLoads
+    grids : sequence of Grid
+        The nodes of each section, all round.
+    force : float
+    """
+    nodes = Nodes(tuple(grids))
+    alone = [System.build(each.problem, grid, force) for each, grid in zip(sections, grids, strict=True)]
+    scales, size = alone[0].scales, nodes.size
+    stretch = [system.scales.displacement / scales.displacement for system in alone]
+    matrix = np.zeros((2 * size, 2 * size), order="F")
+    motion = np.zeros((2 * size, 3 * len(sections) + len(given.moving)))
+    loads = np.zeros((2 * size, len(LOADS) + given.pins.shape[2]))
+    bases = [basis(plates[each.plate].block(0, 0), grid) for each, grid in zip(sections, grids, strict=True)]
+    for a, (one, system) in enumerate(zip(sections, alone, strict=True)):
+        own, plate = nodes.rows(a), plates[one.plate]
+        unit = force / (one.problem.pair.plate.shear_modulus * scales.displacement)
+        local = system.operator.entries()  # the forces of the pins are no loads here: their columns join the operator
+        local += system.loads[:, [Q, P]] @ (system.equilibrium[:2] * [[1.0], [-1.0]])
+        matrix[np.ix_(own, own)] = stretch[a] * local
+        motion[own, 3 * a : 3 * a + 3] = system.motion
+        for b, other in enumerate(sections):
+            if other.plate == one.plate:
+                block = plate.block(one.hole, other.hole)
+                matrix[np.ix_(own, nodes.rows(b))] += unit * (bases[a][0] @ (block @ bases[b][1]))
+        for of, name, place in given.columns:
+            if of == one.plate:
+                loads[own, len(LOADS) + place] += unit * (bases[a][0] @ plate.column(name, one.hole))
+        loads[own[: own.size // 2], -1] = given.fit[a] * one.problem.hole_radius / scales.displacement
+    beta = scales.displacement / force
+    equilibrium, rows, forces = _conditions(sections, alone, nodes, given, beta)
+    loose = [np.maximum(s * each.concentric_gap, 0.0) for s, each in zip(stretch, alone, strict=True)]
+    return PinsSystem(
+        problem=sections[0].problem, grid=nodes, scales=scales, rest_clearance=0.0,  # type: ignore[arg-type]
+        operator=DenseOperator(matrix), motion=motion, loads=loads, equilibrium=equilibrium, motion_rows=rows,
+        forces=forces, plate=0.0, drive=Drive(motion[:, :2], loads), nodes=nodes, sections=tuple(sections), given=given,
+        integrals=tuple(each[1] for each in bases), friction=np.concatenate([each.friction for each in alone]),
+        initial_gap=np.concatenate(loose), weights=np.concatenate([each.weights for each in alone]),
+    )  # fmt: skip
+
+
+def _conditions(
+    sections: Sequence[Section], alone: Sequence[System], nodes: Nodes, given: JointLoads, beta: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The conditions of equilibrium and coherence: of the tractions, of the motion, and of the loads."""
+    count, size = 3 * len(sections), 2 * nodes.size
+    equilibrium, rows = np.zeros((count + len(given.moving), size)), np.zeros((count + len(given.moving),) * 2)
+    forces = np.zeros((len(rows), len(LOADS) + given.pins.shape[2]))
+
+    def add_force(row: int, place: int, axis: int, factor: float) -> None:
+        """Add the force of a pin on a plate, with the spring that centres it."""
+        equilibrium[row, nodes.rows(place)] += factor * alone[place].equilibrium[axis]
+        rows[row, 3 * place + axis] += factor * CENTRING
+
+    def add_displacement(row: int, place: int, axis: int, sign: float) -> None:
+        """Add the displacement of a section, (T29)."""
+        g = k = 1.0 / (8.0 * math.pi * sections[place].problem.pair.pin.shear_modulus * beta)
+        cos, sin = nodes.grids[place].trig_moments()
+        integral = (np.r_[cos, -sin], np.r_[sin, cos])[axis]
+        equilibrium[row, nodes.rows(place)] += sign * (g * alone[place].equilibrium[axis] - k * integral)
+        rows[row, 3 * place + axis] += sign
+        for number, (plate, way) in enumerate(given.moving):
+            if plate == sections[place].plate:
+                rows[row, count + number] += sign * (way.real, way.imag)[axis]
+
+    for pin in range(len(given.pins)):
+        members = [place for place, each in enumerate(sections) if each.pin == pin]
+        head = 3 * members[0]
+        forces[head : head + 2, len(LOADS) :] = given.pins[pin]
+        if all(sections[place].problem.frictionless for place in members):
+            rows[head + TURN, head + TURN] = 1.0  # nothing turns it
+        else:
+            for place in members:
+                shear = nodes.rows(place)[nodes.grids[place].size :]
+                equilibrium[head + TURN, shear] -= sections[place].thickness * alone[place].weights
+                rows[head + TURN, 3 * place + TURN] += sections[place].thickness * CENTRING
+        for axis in (0, 1):
+            for place in members:
+                add_force(head + axis, place, axis, sections[place].thickness)
+            for step, (before, place) in enumerate(zip(members, members[1:], strict=False), start=1):
+                add_displacement(3 * place + axis, before, axis, 1.0)
+                add_displacement(3 * place + axis, place, axis, -1.0)
+                for earlier in members[:step]:
+                    add_force(3 * place + axis, earlier, axis, sections[place].flexibility * sections[earlier].thickness)
+                outside = given.pins[pin, axis] * sections[place].flexibility  # acts on the first section
+                forces[3 * place + axis, len(LOADS) :] += outside
+        for before, place in zip(members, members[1:], strict=False):
+            rows[3 * place + TURN, [3 * before + TURN, 3 * place + TURN]] = 1.0, -1.0
+    for number, (plate, way) in enumerate(given.moving):
+        for place, each in enumerate(sections):
+            if each.plate == plate:
+                for axis in (0, 1):
+                    add_force(count + number, place, axis, each.thickness * (way.real, way.imag)[axis])
+        forces[count + number, len(LOADS) :] = -given.plates[number]
+    return equilibrium, rows, forces
