@@ -6,8 +6,7 @@ import argparse
 import sys
 
 from fastpin import figures, joints, report
-from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.run import LOAD_POINTS
+from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.solver import Interrupted, SolveError

@@ -454,7 +454,7 @@ def add_joint(commands: Any) -> None:
     joint.add_argument("file", type=Path, nargs="?", help="joint file (TOML): plates, pins and loads")
     joint.add_argument("--example", action="store_true", help="print a commented joint file")
     joint.add_argument("--nodes", metavar="N", type=literal, help="nodes of each contact (default: those of the file)")
-    joint.add_argument("--plot", metavar="FILE", type=Path, help="draw all holes at the last load point (png, pdf, svg)")
+    joint.add_argument("--plot", metavar="FILE", type=Path, help="draw all holes at the last load point")
     joint.add_argument("--shares", metavar="FILE", type=Path, help="draw the force of each pin at all load points")
     _add_json(joint, "write all states as JSON")
 

@@ -284,9 +284,7 @@ def _supports(lug: Lug, edges: Edges) -> tuple[np.ndarray, np.ndarray]:
     return held, frame
 
 
-def _tractions(
-    lug: Lug, edges: Edges, order: int, pinned: Collection[str]
-) -> tuple[np.ndarray, tuple[str, ...]]:
+def _tractions(lug: Lug, edges: Edges, order: int, pinned: Collection[str]) -> tuple[np.ndarray, tuple[str, ...]]:
     """Tractions of unit harmonics on each edge with a pin, and of loads, and the names of the loads.
 
     The tractions are complex, shape (nodes, edges with a pin x (2 + 4 K) + loads).

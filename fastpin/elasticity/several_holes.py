@@ -81,10 +81,13 @@ def holes_in_infinite_plate(kolosov: float, centres: np.ndarray, order: int) -> 
             w = radial + (centres[j] - centres[i])
             on_edge, displaced = _fields(potentials, w, radial, kolosov)
             rows = slice(each * j, each * j + each)
-            tractions[rows, own], moved[rows, own] = _projected(on_edge, theta, order), _projected(displaced, theta, order)
+            tractions[rows, own], moved[rows, own] = (
+                _projected(on_edge, theta, order),
+                _projected(displaced, theta, order),
+            )
     compliance = np.linalg.solve(tractions.T, moved.T).T
     columns = {}
-    for place, (mean, deviator) in {SXX: (0.25, -0.5), SYY: (0.25, 0.5), SXY: (0.0, 0.5j)}.items():
+    for place, (mean, deviator) in {SXX: (0.25, -0.5), SYY: (0.25, 0.5), SXY: (0.0, 1j)}.items():
         remote_traction, remote_moved = np.empty((2, count * each))
         for j in range(count):
             rows, z = slice(each * j, each * j + each), radial + centres[j]
@@ -119,9 +122,7 @@ def _potentials(order: int, kolosov: float) -> np.ndarray:
     return np.array([A, B])
 
 
-def _fields(
-    potentials: np.ndarray, w: np.ndarray, radial: np.ndarray, kolosov: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _fields(potentials: np.ndarray, w: np.ndarray, radial: np.ndarray, kolosov: float) -> tuple[np.ndarray, np.ndarray]:
     """Traction on the plate and displacement G v/R, in r and theta as a complex number, shape (points, 2 + 4 K).
 
     `w` (points,) are the places seen from the hole of the potentials, `radial` their normals.

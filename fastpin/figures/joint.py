@@ -104,16 +104,28 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
         panel.set_title(f"{plate.name}{words}", fontsize=8.5, loc="left", parse_math=False)
     sheet.axes[-1, 0].set_xlabel(quantity("x", "mm"))
     mappable = sheet.axes[0, 0].collections[0]
-    sheet.figure.colorbar(mappable, ax=list(sheet.axes[:, 0]), label=quantity("hoop stress", unit), shrink=0.8, pad=0.02)
+    sheet.figure.colorbar(
+        mappable, ax=list(sheet.axes[:, 0]), label=quantity("hoop stress", unit), shrink=0.8, pad=0.02
+    )
     style: Any = {"linewidth": 3.0}
-    entries = [Line2D([], [], color="black", label="sticks", **style), Line2D([], [], color=COLOURS[1], label="slips", **style)]
+    entries = [
+        Line2D([], [], color="black", label="sticks", **style),
+        Line2D([], [], color=COLOURS[1], label="slips", **style),
+    ]
     sheet.legend([*entries, Line2D([], [], color="black", marker=">", label=f"largest force {_newton(longest)}")], 3)
     sheet.head(look.title)
     return sheet
 
 
 def _draw_hole(
-    panel: Axes, state: JointState, place: int, centre: complex, theta: np.ndarray, hoop: np.ndarray, norm: Any, longest: float
+    panel: Axes,
+    state: JointState,
+    place: int,
+    centre: complex,
+    theta: np.ndarray,
+    hoop: np.ndarray,
+    norm: Any,
+    longest: float,
 ) -> None:
     """Draw one hole: the ring of the hoop stress, the zones of contact, the force and the name of its pin."""
     contact, (pin, _) = state.contacts[place], state.joint.sections[place]
@@ -139,7 +151,9 @@ def _draw_hole(
         head = centre + 0.8 * radius * force
         style: Any = {"arrowstyle": "-|>", "color": "black", "linewidth": 1.2, "shrinkA": 0.0, "shrinkB": 0.0}
         panel.annotate("", xy=(head.real, head.imag), xytext=(centre.real, centre.imag), arrowprops=style)
-    panel.text(centre.real, centre.imag - 0.55 * radius, pin.name, ha="center", va="center", fontsize=7.5, parse_math=False)
+    panel.text(
+        centre.real, centre.imag - 0.55 * radius, pin.name, ha="center", va="center", fontsize=7.5, parse_math=False
+    )
 
 
 def _millimetres_an_inch(panel: Axes) -> float:
@@ -157,11 +171,20 @@ def _draw_shares(look: Look, result: JointResult) -> Sheet:
     joint, points = result.joint, 1.0 + np.arange(len(result))
     sheet = look.sheet([2.6])
     panel = sheet.axes[0, 0]
-    forces = {pin.name: [float(np.hypot(*state.forces[joint.place(pin.name, pin.plates[0])])) for state in result] for pin in joint.pins}
+    forces = {
+        pin.name: [float(np.hypot(*state.forces[joint.place(pin.name, pin.plates[0])])) for state in result]
+        for pin in joint.pins
+    }
     factor, unit = scaled([max(values) for values in forces.values()], "N")
     few = len(points) <= 60
     for k, (_, values) in enumerate(forces.items()):
-        panel.plot(points, factor * np.array(values), marker="o" if few else "", markersize=3.5, **line(k % MAX_NAMED, k // MAX_NAMED))
+        panel.plot(
+            points,
+            factor * np.array(values),
+            marker="o" if few else "",
+            markersize=3.5,
+            **line(k % MAX_NAMED, k // MAX_NAMED),
+        )
     draw_grid(panel)
     panel.set_xlabel("load point")
     panel.set_ylabel(quantity("force of the pin", unit))

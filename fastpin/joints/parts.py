@@ -118,7 +118,9 @@ class Plate:
         """
         first = centres[0]
         shifted = tuple(
-            Part(part.name, part.start - first, part.end - first, None if part.through is None else part.through - first)
+            Part(
+                part.name, part.start - first, part.end - first, None if part.through is None else part.through - first
+            )
             for part in self.outline
         )
         free = tuple(Hole(hole.name, hole.centre - first, hole.radius) for hole in self.holes)
@@ -180,7 +182,9 @@ class Pin:
         check_fields(self, point, "at")
         instance("material", self.material, Material, "a Material")
         check_fields(self, positive, "radius")
-        set_fields(self, plates=tuple(string("plates", name) for name in items("plates", self.plates, "a list of names")))
+        set_fields(
+            self, plates=tuple(string("plates", name) for name in items("plates", self.plates, "a list of names"))
+        )
         if not self.plates:
             raise InputError("plates", f"pin {self.name} goes through no plate")
         if len(set(self.plates)) < len(self.plates):
@@ -228,31 +232,36 @@ class Joint:
         set_fields(self, plates=tuple(instances("plates", self.plates, Plate, "a list of plates")))
         set_fields(self, pins=tuple(instances("pins", self.pins, Pin, "a list of pins")))
         check_fields(self, choice, "plane", PLANES)
-        for field_, most, values in (("plates", MOST_PLATES, self.plates), ("pins", MOST_PINS, self.pins)):
-            if not 1 <= len(values) <= most:
-                raise InputError(field_, f"must be 1 to {most}, not {len(values)}")
-        names = [each.name for each in (*self.plates, *self.pins)]
+        for kind, most, count in (("plates", MOST_PLATES, len(self.plates)), ("pins", MOST_PINS, len(self.pins))):
+            if not 1 <= count <= most:
+                raise InputError(kind, f"must be 1 to {most}, not {count}")
+        names = [*(plate.name for plate in self.plates), *(pin.name for pin in self.pins)]
         if twice := [name for name in names if names.count(name) > 1]:
             raise InputError("name", f"two parts are called {as_toml(twice[0])}")
         for pin in self.pins:
-            for plate in pin.plates:
-                known_name("plates", plate, [each.name for each in self.plates])
+            for name in pin.plates:
+                known_name("plates", name, names[: len(self.plates)])
             if not math.isclose(pin.radius, self.radius, rel_tol=1e-9):
                 words = f"all pins of a joint must have one radius: {pin.name} has {pin.radius:g} m"
                 raise InputError("radius", f"{words}, {self.pins[0].name} has {self.radius:g} m")
         for plate in self.plates:
-            through = [pin for pin in self.pins if plate.name in pin.plates]
-            if not through:
-                raise InputError("plates", f"no pin goes through the plate {plate.name}")
-            for one, other in combinations(through, 2):
-                if is_above(2.0 * LEAST_PITCH * self.radius, abs(one.at - other.at)):
-                    words = f"the holes of {one.name} and {other.name} in {plate.name} are {abs(one.at - other.at):.4g} m"
-                    least = 2.0 * LEAST_PITCH * self.radius
-                    raise InputError("at", f"{words} apart; they need {LEAST_PITCH:g} diameters, {least:.4g} m")
-            if not plate.is_infinite:
-                plate.lug([pin.at for pin in through], self.radius, self.plane)
-        for pin, plate_ in self.sections:
-            self.problem(pin, plate_)
+            self._check_holes(plate)
+        for pin, plate in self.sections:
+            self.problem(pin, plate)
+
+    def _check_holes(self, plate: Plate) -> None:
+        """Check that the pinned holes of a plate keep apart and lie inside it."""
+        through = [pin for pin in self.pins if plate.name in pin.plates]
+        if not through:
+            raise InputError("plates", f"no pin goes through the plate {plate.name}")
+        least = 2.0 * LEAST_PITCH * self.radius
+        for one, other in combinations(through, 2):
+            apart = abs(one.at - other.at)
+            if is_above(least, apart):
+                words = f"the holes of {one.name} and {other.name} in {plate.name} are {apart:.4g} m apart"
+                raise InputError("at", f"{words}; they need {LEAST_PITCH:g} diameters, {least:.4g} m")
+        if not plate.is_infinite:
+            plate.lug([pin.at for pin in through], self.radius, self.plane)
 
     @property
     def radius(self) -> float:
@@ -296,9 +305,7 @@ class Joint:
             raise InputError(error.field, f"pin {pin.name} in {plate.name}: {error.reason}") from None
 
 
-def tate_rosenfeld(
-    diameter: float, pin: Material, one: tuple[Material, float], other: tuple[Material, float]
-) -> float:
+def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], other: tuple[Material, float]) -> float:
     """The flexibility of a fastener by shear and bending, m/N, of Tate and Rosenfeld's formula.
 
     The bearing terms of the formula are left out: the contact has them. Source: Tate, M. B. and Rosenfeld, S. J.,

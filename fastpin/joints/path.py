@@ -23,7 +23,7 @@ from fastpin.solver.configuration import (
     slip_tally_between,
     worst_residual,
 )
-from fastpin.solver.errors import UNHELD, ConvergenceError, NoEquilibriumError, SolveError
+from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.settling import FiniteStep
@@ -31,7 +31,7 @@ from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.snap import MOST_STEPS, SOFTER, STIFFER, STIFFEST
 from fastpin.solver.tableau import TableauMemory
 
-JUMPS = (1e-6, 1e-4, 1e-3, 1e-2, 5e-2)
+JUMPS = (1e-6, 1e-4, 1e-3, 1e-2)
 """Parts of a step at which a state beyond a snap is looked for."""
 
 MOST_SNAPS = 200
@@ -105,36 +105,46 @@ def _first_of_neat(system: PinsSystem, start: Configuration, load: np.ndarray) -
     neat = start.gap == 0.0
     begun = replace(start, status=np.where(neat, resting_status(system), OPEN).astype(np.int8))
     for part in (1.0, 1e-1, 1e-2, 1e-3, 1e-4) if neat.all() else (1e-4, 1e-5, 1e-6):
-        found = _settled(system, begun, start.load + part * (load - start.load), patient=True)
-        if found is not None:
-            return found, part
+        found = implicit_step(system, begun, start.load + part * (load - start.load))
+        accepted = None if found is None else _accepted(system, start, found)
+        if accepted is not None:
+            return accepted, part
     return start, 0.0
 
 
 def _beyond(
     system: PinsSystem, now: Configuration, before: np.ndarray, after: np.ndarray, done: float
 ) -> tuple[Configuration, float] | None:
-    """A state a little beyond a snap, and the fraction of the step at which it lies; None if none was found."""
-    for jump in JUMPS:
-        reached = min(done + jump, 1.0)
-        load = before + reached * (after - before)
-        found = _settled(system, now, load) or _creep(system, now, load)
-        if found is not None:
-            return found, reached
+    """A state a little beyond a snap, and the fraction of the step at which it lies; None if none was found.
+
+    Lemke's method takes most of the time, so it comes last.
+    """
+    for way in (_settled, _creep):
+        for jump in JUMPS:
+            reached = min(done + jump, 1.0)
+            found = way(system, now, before + reached * (after - before))
+            if found is not None:
+                return found, reached
     return None
 
 
 def _settled(
-    system: PinsSystem, start: Configuration, load: np.ndarray, patient: bool = False
+    system: PinsSystem, start: Configuration, load: np.ndarray, by_lemke: bool = False
 ) -> Configuration | None:
-    """A finite step to `load`, with its dissipation: an increment, or by Lemke's method where that fails."""
-    for by_lemke in (False, True):
-        after = FiniteStep(system, start).to(load) if by_lemke else implicit_step(system, start, load, patient)
-        if after is not None and worst_residual(system, after) <= MAX_RESIDUAL:
-            add_dissipation(system, start, after)
-            after.slip_tally = slip_tally_between(start, after)
-            return after
-    return None
+    """A finite step to `load`, with its dissipation: an increment, or by Lemke's method if that fails."""
+    after = implicit_step(system, start, load, patient=False)
+    if by_lemke and (after is None or worst_residual(system, after) > MAX_RESIDUAL):
+        after = FiniteStep(system, start).to(load)
+    return None if after is None else _accepted(system, start, after)
+
+
+def _accepted(system: PinsSystem, start: Configuration, after: Configuration) -> Configuration | None:
+    """A configuration with the dissipation and slip since `start`; None if it violates the contact conditions."""
+    if not worst_residual(system, after) <= MAX_RESIDUAL:
+        return None
+    add_dissipation(system, start, after)
+    after.slip_tally = slip_tally_between(start, after)
+    return after
 
 
 def _creep(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
@@ -149,15 +159,13 @@ def _creep(system: PinsSystem, start: Configuration, load: np.ndarray) -> Config
             stiffness *= STIFFER
             continue
         last, stiffness = crept, stiffness * SOFTER
-        beyond = _settled(system, last, load)
+        beyond = _settled(system, last, load, by_lemke=True)
         if beyond is not None:
             return beyond
     return None
 
 
-def _on_springs(
-    system: PinsSystem, start: Configuration, load: np.ndarray, stiffness: float
-) -> Configuration | None:
+def _on_springs(system: PinsSystem, start: Configuration, load: np.ndarray, stiffness: float) -> Configuration | None:
     """A finite step of the pins on springs that are slack at `start`: a load of their own that acts with the size 1."""
     springs = np.where(system.of_pins, stiffness, 0.0)
     forces = np.column_stack([system.forces, springs * start.motion])
@@ -166,5 +174,5 @@ def _on_springs(
         system, motion_rows=system.motion_rows + np.diag(springs), forces=forces, loads=columns,
         drive=replace(system.drive, columns=columns),
     )  # fmt: skip
-    after = _settled(held, replace(start, load=np.r_[start.load, 0.0]), np.r_[load, 1.0])
+    after = _settled(held, replace(start, load=np.r_[start.load, 0.0]), np.r_[load, 1.0], by_lemke=True)
     return None if after is None else replace(after, load=load.copy())

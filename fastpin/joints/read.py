@@ -6,6 +6,7 @@ All faults of a file are reported at once, each with its line. :data:`JOINT_EXAM
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -142,7 +143,7 @@ def _plate(source: CaseText, block: Section) -> Plate | None:
     material = read_material(source, block, MATERIALS, may_be_rigid=False)
     supports = block.value("supports") or {}
     if not isinstance(supports, dict):
-        block.report(f"supports: must be a table {{ part = \"both\" }}, not {as_toml(supports)}", "supports")
+        block.report(f'supports: must be a table {{ part = "both" }}, not {as_toml(supports)}', "supports")
         return None
     outline = _outline(block)
     values = {"name": block.value("name"), "thickness": block.value("thickness"), "moves": block.value("moves") or ""}
@@ -225,7 +226,7 @@ def _flexibility(
         return 0.0
     values = {
         tate_rosenfeld(diameter, material, (a.material, a.thickness), (b.material, b.thickness))
-        for a, b in zip(of, of[1:], strict=False)
+        for a, b in itertools.pairwise(of)
     }
     if len(values) > 1:
         block.report("flexibility: the formula gives several values for plates of unlike thickness; give a number, m/N")

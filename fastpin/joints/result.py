@@ -65,7 +65,9 @@ class JointState:
         NaN where the pins do not load the plate together. An unknown plate raises :class:`InputError`.
         """
         known_name("plate", plate, [each.name for each in self.joint.plates])
-        found = {pin.name: self.forces[place] for place, (pin, of) in enumerate(self.joint.sections) if of.name == plate}
+        found = {
+            pin.name: self.forces[place] for place, (pin, of) in enumerate(self.joint.sections) if of.name == plate
+        }
         whole = np.sum(list(found.values()), axis=0)
         size = float(whole @ whole)
         largest = max(float(force @ force) for force in found.values())
@@ -102,7 +104,7 @@ class JointResult(Sequence[JointState]):
     def __len__(self) -> int:
         return len(self.states)
 
-    def __getitem__(self, place):  # type: ignore[no-untyped-def, override]
+    def __getitem__(self, place):  # type: ignore[no-untyped-def]
         return self.states[place]
 
     def __iter__(self) -> Iterator[JointState]:

@@ -195,7 +195,10 @@ def _joint_system(
 ) -> tuple[PinsSystem, np.ndarray]:
     """The system of a joint, and the unit of each load, SI. The last load of the system is the fit, from 0 to 1."""
     names, thick, radius = joint.load_names, joint.plates[0].thickness, joint.radius
-    places, pins = {plate.name: k for k, plate in enumerate(joint.plates)}, {pin.name: k for k, pin in enumerate(joint.pins)}
+    places, pins = (
+        {plate.name: k for k, plate in enumerate(joint.plates)},
+        {pin.name: k for k, pin in enumerate(joint.pins)},
+    )
     beta = joint.problem(*joint.sections[0]).surfaces.beta_star
     holes, sections = dict.fromkeys(places, 0), []
     for pin, plate in joint.sections:

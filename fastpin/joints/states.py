@@ -18,7 +18,6 @@ from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.model.loads import LOADS
 from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, contact_residuals
 from fastpin.solver.errors import ConvergenceError
-from fastpin.solver.slip_tally import SlipTally
 from fastpin.states.state import State
 
 ROUNDED = 1e-13

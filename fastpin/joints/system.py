@@ -17,6 +17,7 @@ until it touches; it changes forces by 1e-6.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -114,7 +115,7 @@ class PinsSystem(System):
         return False
 
     @property
-    def _acting(self) -> int:  # type: ignore[override]
+    def _acting(self) -> int:
         return self.loads.shape[1]
 
     @cached_property
@@ -249,14 +250,16 @@ def _conditions(
         for axis in (0, 1):
             for place in members:
                 add_force(head + axis, place, axis, sections[place].thickness)
-            for step, (before, place) in enumerate(zip(members, members[1:], strict=False), start=1):
+            for step, (before, place) in enumerate(itertools.pairwise(members), start=1):
                 add_displacement(3 * place + axis, before, axis, 1.0)
                 add_displacement(3 * place + axis, place, axis, -1.0)
                 for earlier in members[:step]:
-                    add_force(3 * place + axis, earlier, axis, sections[place].flexibility * sections[earlier].thickness)
+                    add_force(
+                        3 * place + axis, earlier, axis, sections[place].flexibility * sections[earlier].thickness
+                    )
                 outside = given.pins[pin, axis] * sections[place].flexibility  # acts on the first section
                 forces[3 * place + axis, len(LOADS) :] += outside
-        for before, place in zip(members, members[1:], strict=False):
+        for before, place in itertools.pairwise(members):
             rows[3 * place + TURN, [3 * before + TURN, 3 * place + TURN]] = 1.0, -1.0
     for number, (plate, way) in enumerate(given.moving):
         for place, each in enumerate(sections):

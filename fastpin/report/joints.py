@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.errors import InputError
 from fastpin.joints import JointResult, JointState
 from fastpin.model.angles import from_bottom
 from fastpin.model.ties import top
@@ -26,7 +25,7 @@ def describe(result: JointResult) -> str:
     joint = result.joint
     orders = ", ".join(dict.fromkeys(f"{order}" for order in result.harmonics))
     head = [
-        f"{len(joint.pins)} pins, {len(joint.plates)} plates, {result.nodes} nodes a contact, {orders} harmonics a hole",
+        f"{len(joint.pins)} pins, {len(joint.plates)} plates, {result.nodes} nodes a contact, {orders} harmonics",
         "A loose pin stays in the middle of its holes until it touches. Secondary bending is not modelled.",
     ]
     if result.snaps:
@@ -155,12 +154,3 @@ def _state_document(state: JointState) -> dict[str, Any]:
     moved = {plate.name: by.tolist() for plate, by in zip(joint.plates, state.moved, strict=True)}
     found = {"load_point": state.step + 1, "loads": state.load, "moved": moved, "contacts": contacts}
     return found | {"residuals": state.residuals}
-
-
-def check_result(result: object) -> JointResult:
-    """Return the result of a joint. Another class, or no state, raises :class:`InputError`."""
-    if not isinstance(result, JointResult):
-        raise InputError("result", "must be a JointResult, as fastpin.joints.solve_joint returns it")
-    if not len(result):
-        raise InputError("result", "has no state")
-    return result
