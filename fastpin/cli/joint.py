@@ -19,8 +19,8 @@ def run(options: argparse.Namespace) -> int:
         return EXIT_OK
     if options.file is None:
         raise InputError("file", "the joint file is missing; start with: fastpin joint --example > joint.toml")
-    check_outputs({"--plot": options.plot, "--shares": options.shares, "--json": options.json}, ("--plot", "--shares"))
     case = joints.read_joint(options.file)
+    check_outputs({"--plot": options.plot, "--shares": options.shares, "--json": options.json}, ("--plot", "--shares"))
     nodes = case.nodes if options.nodes is None else options.nodes
     code = EXIT_OK
     try:
