@@ -1,8 +1,8 @@
 """The way of a joint from one load to the next: exact paths, and creep where the contact of a pin snaps.
 
 Which pin touches first, and when, is an ordinary event of the path. A pin that is nearly unloaded may lose its last
-nodes, or be pinched between two holes and slip out. No state is near then. The pin creeps to the next one, as a pin
-that snaps does; see :mod:`fastpin.solver.snap`.
+nodes, or be pinched between two holes and slip out. No state is near then. Such a pin is released, and stays where it is
+until it touches again. Other pins creep to the next state, as a pin that snaps does; see :mod:`fastpin.solver.snap`.
 """
 
 from __future__ import annotations
@@ -34,17 +34,21 @@ from fastpin.solver.tableau import TableauMemory
 JUMPS = (1e-6, 1e-4, 1e-3, 1e-2)
 """Parts of a step at which a state beyond a snap is looked for."""
 
+NEGLIGIBLE = 1e-3
+"""Force of a pin that may be released, in parts of the largest one."""
+
 MOST_SNAPS = 200
 """Snaps of one step, at most."""
 
 
 def unloaded(system: PinsSystem) -> Configuration:
     """The joint before any load and fit: all pins concentric, open or without pressure."""
-    n, zeros = system.grid.size, np.zeros(system.grid.size)
+    n, zeros, load = system.grid.size, np.zeros(system.grid.size), np.zeros(system.loads.shape[1])
+    load[-1] = 1.0
     gap = np.maximum(system.initial_gap, 0.0)
     return Configuration(
         pressure=zeros.copy(), shear=zeros.copy(), gap=gap, slip=zeros.copy(), status=np.full(n, OPEN, dtype=np.int8),
-        motion=np.zeros(system.motions), load=np.zeros(system.loads.shape[1]), origin=np.zeros(2), rest=np.zeros(2),
+        motion=np.zeros(system.motions), load=load, origin=np.zeros(2), rest=np.zeros(system.motions),
         rest_gap=gap.copy(), rest_slip=zeros.copy(), slip_tally=SlipTally.empty(n),
     )  # fmt: skip
 
@@ -73,7 +77,7 @@ def follow(
     while done < 1.0:
         begin, step = done, None
         try:
-            step = PathStep(system, now, load, memory)
+            step = PathStep(system.resting(now.rest), now, load, memory)
             now = step.follow(1.0, lambda part, begin=begin: report(begin + part * (1.0 - begin)))  # type: ignore[misc]
             now.load = load.copy()
             return now, snaps
@@ -119,10 +123,10 @@ def _beyond(
 
     Lemke's method takes most of the time, so it comes last.
     """
-    for way in (_settled, _creep):
+    for way in (_settled, _released, _creep):
         for jump in JUMPS:
             reached = min(done + jump, 1.0)
-            found = way(system, now, before + reached * (after - before))
+            found = way(system.resting(now.rest), now, before + reached * (after - before))
             if found is not None:
                 return found, reached
     return None
@@ -145,6 +149,21 @@ def _accepted(system: PinsSystem, start: Configuration, after: Configuration) ->
     add_dissipation(system, start, after)
     after.slip_tally = slip_tally_between(start, after)
     return after
+
+
+def _released(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
+    """A state at `load` in which the pins that carried next to nothing have let go; they rest where they are."""
+    forces = np.abs(system.passed(start.tractions)[:, :2]).max(axis=1)
+    loose, rest = start.copy(), start.rest.copy()
+    for members in system.pins:
+        if 0.0 < forces[members].max() <= NEGLIGIBLE * forces.max():
+            for place in members:
+                own, nodes = slice(3 * place, 3 * place + 3), system.nodes.parts[place]
+                rest[own], loose.status[nodes] = start.motion[own], OPEN
+                loose.pressure[nodes] = loose.shear[nodes] = 0.0
+    if np.array_equal(loose.status, start.status):
+        return None
+    return _settled(system.resting(rest), replace(loose, rest=rest), load)
 
 
 def _creep(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
@@ -172,7 +191,7 @@ def _on_springs(system: PinsSystem, start: Configuration, load: np.ndarray, stif
     columns = np.column_stack([system.loads, np.zeros(len(system.loads))])
     held = replace(
         system, motion_rows=system.motion_rows + np.diag(springs), forces=forces, loads=columns,
-        drive=replace(system.drive, columns=columns),
+        drive=replace(system.drive, columns=columns), held_as=None,
     )  # fmt: skip
     after = _settled(held, replace(start, load=np.r_[start.load, 0.0]), np.r_[load, 1.0], by_lemke=True)
     return None if after is None else replace(after, load=load.copy())

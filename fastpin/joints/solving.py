@@ -106,9 +106,9 @@ def solve_joint(
         maker, memory, now = StateMaker(joint, system, plates), TableauMemory(system), unloaded(system)
         try:
             if system.given.fit.any():
-                now, snaps = follow(system, now, np.r_[now.load[:-1], 1.0], memory, lambda part: report(0.0))
+                now, snaps = follow(system, now, np.r_[now.load[:-2], 1.0, 1.0], memory, lambda part: report(0.0))
             for step, corner in enumerate(values):
-                load = np.r_[np.zeros(len(LOADS)), corner / unit, now.load[-1]]
+                load = np.r_[np.zeros(len(LOADS)), corner / unit, now.load[-2:]]
                 begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size))
                 now, more = follow(system, begun, load, memory, report)
                 snaps += more
@@ -193,7 +193,7 @@ def harmonics_needed(centres: np.ndarray) -> int:
 def _joint_system(
     joint: Joint, plates: list[HolesCompliance], values: np.ndarray, nodes: int
 ) -> tuple[PinsSystem, np.ndarray]:
-    """The system of a joint, and the unit of each load, SI. The last load of the system is the fit, from 0 to 1."""
+    """The system of a joint, and the unit of each load, SI."""
     names, thick, radius = joint.load_names, joint.plates[0].thickness, joint.radius
     places, pins = (
         {plate.name: k for k, plate in enumerate(joint.plates)},
@@ -215,7 +215,7 @@ def _joint_system(
     sizes = np.abs(values).max(axis=0) * np.where(stresses, radius, 1.0 / thick)
     force = 2.0 ** math.ceil(math.log2(float(sizes.max()) or float(np.abs(clearances).max()) / beta or 1.0))
     moving = [(places[plate.name], way) for plate in joint.plates for way in MOVES[plate.moves]]
-    on_pins, on_plates = np.zeros((len(pins), 2, len(names) + 1)), np.zeros((len(moving), len(names) + 1))
+    on_pins, on_plates = np.zeros((len(pins), 2, len(names))), np.zeros((len(moving), len(names)))
     columns = []
     for place, name in enumerate(names):
         part, what = name.rsplit(".", 1)

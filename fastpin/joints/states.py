@@ -48,7 +48,7 @@ class StateMaker:
             If the configuration violates the contact conditions, or the equilibrium of a pin or a plate.
         """
         system, scales = self._system, self._system.scales
-        residuals = contact_residuals(system, now, system.elastic(now.tractions))
+        residuals = contact_residuals(system.resting(now.rest), now, system.elastic(now.tractions))
         residuals["bodies"] = unbalanced(system, now)
         worst = max(residuals, key=lambda name: residuals[name])
         if not residuals[worst] <= MAX_RESIDUAL:
@@ -121,10 +121,10 @@ class StateMaker:
 def unbalanced(system: PinsSystem, now: Configuration) -> float:
     """The largest force or moment that is left on a pin or a plate, relative to what the contacts and loads carry.
 
-    It is recomputed from the tractions and the springs that centre the pins, without the conditions of the solver.
+    It is recomputed from the tractions and the springs of loose pins, without the conditions of the solver.
     """
-    load, count = now.load[len(LOADS) :], len(system.sections)
-    passed, motion = system.passed(now.tractions), now.motion[: 3 * count].reshape(count, 3)
+    load, count = now.load[len(LOADS) : -2], len(system.sections)
+    passed, motion = system.passed(now.tractions), (now.motion - now.rest)[: 3 * count].reshape(count, 3)
     pushed = np.array([[each.thickness] for each in system.sections]) * (passed + CENTRING * motion)
     left = []
     for pin, members in enumerate(system.pins):
@@ -134,5 +134,5 @@ def unbalanced(system: PinsSystem, now: Configuration) -> float:
     for (plate, way), force in zip(system.given.moving, system.given.plates @ load, strict=True):
         on = [place for place, each in enumerate(system.sections) if each.plate == plate]
         left.append(float((pushed[on, :2] @ [way.real, way.imag]).sum() + force))
-    size = max(float(np.abs(passed).max()), float(np.abs(load).max()))
+    size = float((np.abs(system.resultants) @ np.abs(now.tractions)).max())
     return float(np.abs(left).max()) / size if size else 0.0

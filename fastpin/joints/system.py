@@ -11,8 +11,9 @@ held. The conditions are the equilibrium of every pin and plate, and the coheren
     plate that moves        sum over its holes of t (F + e c) + force on the plate = 0
 
 F is the force of the pin on the plate per thickness, t the thickness, and D = c + plate's displacement + g F - k J the
-displacement of the pin's section, (T29) of docs/theory.md. A weak spring of stiffness e centres every pin in its holes
-until it touches; it changes forces by 1e-6.
+displacement of the pin's section, (T29) of docs/theory.md. A weak spring of stiffness e holds every pin in the middle of
+its holes until it touches, and later where it was released. In the conditions c counts from there. The spring changes
+forces by 1e-6.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -36,7 +37,7 @@ from fastpin.model.loads import LOADS, P, Q
 from fastpin.model.problem import Problem
 
 CENTRING = 1e-6
-"""Stiffness e of the springs that centre the pins, times beta*. Forces change by as much. With 1e-7 a path was lost
+"""Stiffness e of the springs that hold loose pins, times beta*. Forces change by as much. With 1e-7 a path was lost
 where a loose pin touches; with 1e-12 the first matrix is singular."""
 
 
@@ -81,7 +82,9 @@ class JointLoads:
     columns : sequence of (int, str, int)
         Loads within plates: the plate, the name of its column, the place of the load.
     fit : ndarray, shape (sections,)
-        How far the last load opens the gap of each section, over R.
+        How far the fit opens the gap of each section, over R.
+
+    Two more loads follow: the fit, from 0 to 1, and the springs of loose pins, which is always 1.
     """
 
     pins: np.ndarray
@@ -95,6 +98,8 @@ class JointLoads:
 class PinsSystem(System):
     """The system of several pins in several plates. The loads of the joint stand behind those of a single pin.
 
+    The load vector ends with the fit and with the springs, see :class:`JointLoads`.
+
     Attributes
     ----------
     nodes : Nodes
@@ -103,12 +108,15 @@ class PinsSystem(System):
     given : JointLoads
     integrals : tuple of ndarray, shape (2 + 4 K, 2n)
         Coefficients of the traction of each section in the basis of a compliance, per traction at its nodes.
+    springs : ndarray, shape (m, m)
+        The part of ``motion_rows`` that the springs of loose pins give.
     """
 
     nodes: Nodes = field(kw_only=True)
     sections: tuple[Section, ...] = field(kw_only=True)
     given: JointLoads = field(kw_only=True)
     integrals: tuple[np.ndarray, ...] = field(kw_only=True)
+    springs: np.ndarray = field(kw_only=True)
 
     @property
     def is_toeplitz(self) -> bool:
@@ -152,6 +160,12 @@ class PinsSystem(System):
             found[3 * members[0] : 3 * members[0] + 3] = True
         return found
 
+    def resting(self, rest: np.ndarray) -> PinsSystem:
+        """The same system with springs that are slack at the motion `rest` (m,)."""
+        forces = self.forces.copy()
+        forces[:, -1] = self.springs @ rest
+        return replace(self, forces=forces, held_as=self.held_as or self)
+
     def passed(self, tractions: np.ndarray) -> np.ndarray:
         """Force along x and y and moment of each section on its plate per thickness, shape (sections, 3)."""
         found: np.ndarray = (self.resultants @ tractions).reshape(-1, 3)
@@ -183,7 +197,7 @@ def build(
     stretch = [system.scales.displacement / scales.displacement for system in alone]
     matrix = np.zeros((2 * size, 2 * size), order="F")
     motion = np.zeros((2 * size, 3 * len(sections) + len(given.moving)))
-    loads = np.zeros((2 * size, len(LOADS) + given.pins.shape[2]))
+    loads = np.zeros((2 * size, len(LOADS) + given.pins.shape[2] + 2))
     bases = [basis(plates[each.plate].block(0, 0), grid) for each, grid in zip(sections, grids, strict=True)]
     for a, (one, system) in enumerate(zip(sections, alone, strict=True)):
         own, plate = nodes.rows(a), plates[one.plate]
@@ -199,31 +213,33 @@ def build(
         for of, name, place in given.columns:
             if of == one.plate:
                 loads[own, len(LOADS) + place] += unit * (bases[a][0] @ plate.column(name, one.hole))
-        loads[own[: own.size // 2], -1] = given.fit[a] * one.problem.hole_radius / scales.displacement
+        loads[own[: own.size // 2], -2] = given.fit[a] * one.problem.hole_radius / scales.displacement
     beta = scales.displacement / force
-    equilibrium, rows, forces = _conditions(sections, alone, nodes, given, beta)
+    equilibrium, rows, springs, forces = _conditions(sections, alone, nodes, given, beta)
     loose = [np.maximum(s * each.concentric_gap, 0.0) for s, each in zip(stretch, alone, strict=True)]
     return PinsSystem(
         problem=sections[0].problem, grid=nodes, scales=scales, rest_clearance=0.0,  # type: ignore[arg-type]
         operator=DenseOperator(matrix), motion=motion, loads=loads, equilibrium=equilibrium, motion_rows=rows,
         forces=forces, plate=0.0, drive=Drive(motion[:, :2], loads), nodes=nodes, sections=tuple(sections), given=given,
-        integrals=tuple(each[1] for each in bases), friction=np.concatenate([each.friction for each in alone]),
+        integrals=tuple(each[1] for each in bases), springs=springs, friction=np.concatenate([each.friction for each in alone]),
         initial_gap=np.concatenate(loose), weights=np.concatenate([each.weights for each in alone]),
     )  # fmt: skip
 
 
 def _conditions(
     sections: Sequence[Section], alone: Sequence[System], nodes: Nodes, given: JointLoads, beta: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The conditions of equilibrium and coherence: of the tractions, of the motion, and of the loads."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The conditions of equilibrium and coherence: of the tractions, the motion, the springs in it, and the loads."""
     count, size = 3 * len(sections), 2 * nodes.size
-    equilibrium, rows = np.zeros((count + len(given.moving), size)), np.zeros((count + len(given.moving),) * 2)
-    forces = np.zeros((len(rows), len(LOADS) + given.pins.shape[2]))
+    total = count + len(given.moving)
+    equilibrium, rows, springs = np.zeros((total, size)), np.zeros((total, total)), np.zeros((total, total))
+    user = slice(len(LOADS), len(LOADS) + given.pins.shape[2])
+    forces = np.zeros((total, user.stop + 2))
 
     def add_force(row: int, place: int, axis: int, factor: float) -> None:
         """Add the force of a pin on a plate, with the spring that centres it."""
         equilibrium[row, nodes.rows(place)] += factor * alone[place].equilibrium[axis]
-        rows[row, 3 * place + axis] += factor * CENTRING
+        springs[row, 3 * place + axis] += factor * CENTRING
 
     def add_displacement(row: int, place: int, axis: int, sign: float) -> None:
         """Add the displacement of a section, (T29)."""
@@ -239,14 +255,14 @@ def _conditions(
     for pin in range(len(given.pins)):
         members = [place for place, each in enumerate(sections) if each.pin == pin]
         head = 3 * members[0]
-        forces[head : head + 2, len(LOADS) :] = given.pins[pin]
+        forces[head : head + 2, user] = given.pins[pin]
         if all(sections[place].problem.frictionless for place in members):
             rows[head + TURN, head + TURN] = 1.0  # nothing turns it
         else:
             for place in members:
                 shear = nodes.rows(place)[nodes.grids[place].size :]
                 equilibrium[head + TURN, shear] -= sections[place].thickness * alone[place].weights
-                rows[head + TURN, 3 * place + TURN] += sections[place].thickness * CENTRING
+                springs[head + TURN, 3 * place + TURN] += sections[place].thickness * CENTRING
         for axis in (0, 1):
             for place in members:
                 add_force(head + axis, place, axis, sections[place].thickness)
@@ -258,7 +274,7 @@ def _conditions(
                         3 * place + axis, earlier, axis, sections[place].flexibility * sections[earlier].thickness
                     )
                 outside = given.pins[pin, axis] * sections[place].flexibility  # acts on the first section
-                forces[3 * place + axis, len(LOADS) :] += outside
+                forces[3 * place + axis, user] += outside
         for before, place in itertools.pairwise(members):
             rows[3 * place + TURN, [3 * before + TURN, 3 * place + TURN]] = 1.0, -1.0
     for number, (plate, way) in enumerate(given.moving):
@@ -266,5 +282,5 @@ def _conditions(
             if each.plate == plate:
                 for axis in (0, 1):
                     add_force(count + number, place, axis, each.thickness * (way.real, way.imag)[axis])
-        forces[count + number, len(LOADS) :] = -given.plates[number]
-    return equilibrium, rows, forces
+        forces[count + number, user] = -given.plates[number]
+    return equilibrium, rows + springs, springs, forces
