@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.lines import Line2D
 
@@ -77,7 +76,7 @@ def _draw_map(look: Look, state: JointState, extent: tuple[float, float, float, 
     joint = state.joint
     left, right, bottom, top = extent
     height = max((look.width - 1.6) * (top - bottom) / (right - left), 0.8)
-    sheet = look.sheet([min(height, 6.0)] * len(joint.plates), extra=1.0, sharex=True)
+    sheet = look.sheet([min(height, 6.0)] * len(joint.plates), extra=1.3, sharex=True)
     theta = np.linspace(-np.pi, np.pi, AROUND)
     hoops = [contact.hoop_stress("plate", theta) for contact in state.contacts]
     factor, unit = scaled([float(np.abs(hoop).max()) for hoop in hoops], "Pa")
@@ -130,14 +129,10 @@ def _draw_hole(
     """Draw one hole: the ring of the hoop stress, the zones of contact, the force and the name of its pin."""
     contact, (pin, _) = state.contacts[place], state.joint.sections[place]
     radius = 1e3 * pin.radius
-    ring = centre + 0.5 * (1.0 + RING) * radius * np.exp(1j * theta)
-    points = np.column_stack([ring.real, ring.imag])
-    width = (RING - 1.0) * radius
-    band = LineCollection(
-        [points[k : k + 3] for k in range(0, theta.size - 2, 2)], cmap="RdBu_r", norm=norm, array=hoop[:-2:2],
-        linewidths=72.0 * width / max(_millimetres_an_inch(panel), 1e-9), capstyle="butt",
-    )  # fmt: skip
-    panel.add_collection(band)
+    ring = centre + radius * np.multiply.outer([1.0, RING], np.exp(1j * theta))
+    panel.pcolormesh(
+        ring.real, ring.imag, np.vstack([hoop, hoop]), cmap="RdBu_r", norm=norm, shading="gouraud", rasterized=True
+    )
     edge = centre + radius * np.exp(1j * theta)
     panel.plot(edge.real, edge.imag, color="0.2", linewidth=0.8)
     half = 0.5 * float(np.diff(contact.theta[:2])[0])
@@ -154,12 +149,6 @@ def _draw_hole(
     panel.text(
         centre.real, centre.imag - 0.55 * radius, pin.name, ha="center", va="center", fontsize=7.5, parse_math=False
     )
-
-
-def _millimetres_an_inch(panel: Axes) -> float:
-    """Millimetres of the plate in an inch of paper."""
-    left, right = panel.get_xlim()
-    return (right - left) / panel.get_window_extent().width * panel.figure.dpi
 
 
 def _newton(force: float) -> str:

@@ -34,7 +34,7 @@ from fastpin.solver.tableau import TableauMemory
 JUMPS = (1e-6, 1e-4, 1e-3, 1e-2)
 """Parts of a step at which a state beyond a snap is looked for."""
 
-NEGLIGIBLE = 1e-3
+NEGLIGIBLE = 1e-2
 """Force of a pin that may be released, in parts of the largest one."""
 
 MOST_SNAPS = 200
