@@ -1,8 +1,8 @@
 """The way of a joint from one load to the next: exact paths, and creep where the contact of a pin snaps.
 
 Which pin touches first, and when, is an ordinary event of the path. A pin that is nearly unloaded may lose its last
-nodes, or be pinched between two holes and slip out. No state is near then. Such a pin is released, and stays where it is
-until it touches again. Other pins creep to the next state, as a pin that snaps does; see :mod:`fastpin.solver.snap`.
+nodes, or be pinched between two holes and slip out. No state is near then. Such a pin is released, and stays where it
+is until it touches again. Others creep to the next state, as a pin that snaps does; see :mod:`fastpin.solver.snap`.
 """
 
 from __future__ import annotations

@@ -89,7 +89,7 @@ class JointResult(Sequence[JointState]):
     harmonics : tuple of int
         Highest harmonic of the holes of each plate.
     snaps : int
-        Times that a pin snapped to a new place.
+        Times that a pin was released, or snapped to a new place.
     seconds : float
         Time of the solution.
     """

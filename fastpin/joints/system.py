@@ -11,9 +11,8 @@ held. The conditions are the equilibrium of every pin and plate, and the coheren
     plate that moves        sum over its holes of t (F + e c) + force on the plate = 0
 
 F is the force of the pin on the plate per thickness, t the thickness, and D = c + plate's displacement + g F - k J the
-displacement of the pin's section, (T29) of docs/theory.md. A weak spring of stiffness e holds every pin in the middle of
-its holes until it touches, and later where it was released. In the conditions c counts from there. The spring changes
-forces by 1e-6.
+displacement of the pin's section, (T29) of docs/theory.md. A weak spring of stiffness e holds every pin in the middle
+of its holes until it touches, and later where it was released: c of e c counts from there. It changes forces by 1e-6.
 """
 
 from __future__ import annotations
@@ -221,7 +220,8 @@ def build(
         problem=sections[0].problem, grid=nodes, scales=scales, rest_clearance=0.0,  # type: ignore[arg-type]
         operator=DenseOperator(matrix), motion=motion, loads=loads, equilibrium=equilibrium, motion_rows=rows,
         forces=forces, plate=0.0, drive=Drive(motion[:, :2], loads), nodes=nodes, sections=tuple(sections), given=given,
-        integrals=tuple(each[1] for each in bases), springs=springs, friction=np.concatenate([each.friction for each in alone]),
+        integrals=tuple(each[1] for each in bases), springs=springs,
+        friction=np.concatenate([each.friction for each in alone]),
         initial_gap=np.concatenate(loose), weights=np.concatenate([each.weights for each in alone]),
     )  # fmt: skip
 

@@ -29,7 +29,7 @@ def describe(result: JointResult) -> str:
         "A loose pin stays in the middle of its holes until it touches. Secondary bending is not modelled.",
     ]
     if result.snaps:
-        head.append(f"{result.snaps} times a nearly unloaded pin snapped to a new place.")
+        head.append(f"{result.snaps} times a nearly unloaded pin was released or snapped to a new place.")
     if not len(result):
         return "\n".join(head)
     return "\n".join([*head, "", forces_table(result), "", largest_table(result)])
