@@ -21,14 +21,13 @@ from fastpin.model.checks import (
     not_negative,
     number,
     point,
-    positive,
     set_fields,
     string,
 )
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.lug import Hole, Lug, Part, PartLoad
 from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
-from fastpin.model.problem import Problem
+from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
 from fastpin.model.read_only import ReadOnlyDict
 
 MOST_PINS, MOST_PLATES = 40, 20
@@ -85,7 +84,7 @@ class Plate:
     def __post_init__(self) -> None:
         check_fields(self, _name, "name")
         instance("material", self.material, Material, "a Material")
-        check_fields(self, positive, "thickness")
+        check_fields(self, number, "thickness", LEAST_RADIUS, MOST_RADIUS)
         set_fields(self, outline=tuple(instances("outline", self.outline, Part, "a list of parts")))
         set_fields(self, holes=tuple(instances("holes", self.holes, Hole, "a list of holes")))
         set_fields(self, loads=tuple(instances("loads", self.loads, PartLoad, "a list of loads")))
@@ -181,7 +180,7 @@ class Pin:
         check_fields(self, _name, "name")
         check_fields(self, point, "at")
         instance("material", self.material, Material, "a Material")
-        check_fields(self, positive, "radius")
+        check_fields(self, number, "radius", LEAST_RADIUS, MOST_RADIUS)
         set_fields(
             self, plates=tuple(string("plates", name) for name in items("plates", self.plates, "a list of names"))
         )
@@ -323,10 +322,10 @@ def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], 
     Raises
     ------
     InputError
-        If a length is not positive.
+        If a length is out of range.
     """
-    d, (_, a), (_, b) = positive("diameter", diameter), one, other
-    a, b = positive("thickness", a), positive("thickness", b)
+    d, (_, a), (_, b) = number("diameter", diameter, LEAST_RADIUS, MOST_RADIUS), one, other
+    a, b = (number("thickness", each, LEAST_RADIUS, MOST_RADIUS) for each in (a, b))
     area, inertia = 0.25 * math.pi * d * d, math.pi * d**4 / 64.0
     shear = 4.0 * (a + b) / (9.0 * pin.shear_modulus * area)
     bending = (a**3 + 5.0 * a * a * b + 5.0 * a * b * b + b**3) / (40.0 * pin.E * inertia)

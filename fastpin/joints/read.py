@@ -196,7 +196,7 @@ def _pins(source: CaseText, block: Section, plates: list[Plate | None]) -> list[
         block.require(key)
     material = read_material(source, block, MATERIALS, may_be_rigid=False)
     names, places = block.checked("name", _names), block.checked("at", _points)
-    diameter, through = block.checked("diameter", positive), block.value("plates")
+    diameter, through = block.checked("diameter", positive), block.checked("plates", _names)
     if material is None or names is None or places is None or diameter is None or through is None:
         return [None]
     if len(names) != len(places):
@@ -212,7 +212,7 @@ def _pins(source: CaseText, block: Section, plates: list[Plate | None]) -> list[
 
 
 def _flexibility(
-    block: Section, material: Any, diameter: float, through: object, plates: list[Plate | None]
+    block: Section, material: Any, diameter: float, through: list[str], plates: list[Plate | None]
 ) -> float | None:
     """The flexibility of a pin, m/N; None if it is wrong (reported)."""
     given = block.value("flexibility")
@@ -221,7 +221,7 @@ def _flexibility(
     if block.checked("flexibility", choice, ("rigid", "tate-rosenfeld")) is None:
         return None
     by_name = {plate.name: plate for plate in plates if plate is not None}
-    of = [by_name[name] for name in through if name in by_name] if isinstance(through, list) else []
+    of = [by_name[name] for name in through if name in by_name]
     if given == "rigid" or len(of) < 2:
         return 0.0
     values = {
