@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg
@@ -79,12 +80,16 @@ class Response:
         The given tractions, along x and y.
     loads : tuple of str
         Names of the loads.
+    resultants : ndarray, shape (3, 2 + 4 K + loads), or None
+        Force along x and y, and moment about 0, of the given tractions on a plate that floats. The outline balances
+        them by tractions that grow linearly.
     """
 
     edges: Edges
     u: np.ndarray
     t: np.ndarray
     loads: tuple[str, ...]
+    resultants: np.ndarray | None = None
 
     def projected(self) -> np.ndarray:
         """Coefficients G v/R on the hole's edge, shape (2 + 4 K, 2 + 4 K + loads)."""
@@ -213,6 +218,10 @@ def respond(
     # have no unique solution. The matrix changes by 1e-7.
     kolosov = max(lug.kolosov, 1.0 + 1e-7)
     tractions, loads = _tractions(lug, edges, order, pinned)
+    modes = resultants = None
+    if lug.floats:
+        modes = _rigid_modes(lug, edges)
+        tractions, resultants = _balanced(tractions, modes)
     with threadpool_limits(limits=1, user_api="blas"):  # the same bits with any number of cores
         # With this unit of length no plate has the size at which a purely logarithmic equation for held edges has no
         # unique solution.
@@ -225,6 +234,8 @@ def respond(
             matrix[:, :, 1] = turned
         size = 2 * edges.z.size
         U, T = both.reshape(2, size, size)
+        if modes is not None:  # the mean of the outline moves no more
+            T += modes.of_nodes @ np.linalg.solve(modes.gram, modes.on_outline.T)
         along = np.stack([_dot(frame, tractions), _dot(1j * frame, tractions)])
         along[held] = 0.0
         right = U @ along.reshape(size, -1)
@@ -235,7 +246,47 @@ def respond(
     found[held] = 0.0
     c, s = frame.real[:, None], frame.imag[:, None]
     u = np.stack([c * found[0] - s * found[1], s * found[0] + c * found[1]])
-    return Response(edges, u, np.stack([tractions.real, tractions.imag]), loads)
+    return Response(edges, u, np.stack([tractions.real, tractions.imag]), loads, resultants)
+
+
+class RigidModes(NamedTuple):
+    """Two translations and a rotation about 0 at all nodes, both components, shape (2 nodes, 3).
+
+    Attributes
+    ----------
+    of_nodes : ndarray
+    on_outline : ndarray
+        Times the lengths that belong to nodes of the outline; 0 at other nodes.
+    weighted : ndarray
+        Times the lengths that belong to all nodes.
+    gram : ndarray, shape (3, 3)
+        Integrals of products along the outline.
+    """
+
+    of_nodes: np.ndarray
+    on_outline: np.ndarray
+    weighted: np.ndarray
+    gram: np.ndarray
+
+
+def _rigid_modes(lug: Lug, edges: Edges) -> RigidModes:
+    z, first = edges.z, len(lug.contact_edge)
+    modes = np.stack([np.ones_like(z), np.full_like(z, 1j), 1j * z], axis=1)
+    both = np.concatenate([modes.real, modes.imag])
+    outer = (edges.part_of_node >= first) & (edges.part_of_node < first + len(lug.outline))
+    weights = np.tile(edges.weights, 2)[:, None]
+    on_outline = both * weights * np.tile(outer, 2)[:, None]
+    return RigidModes(both, on_outline, both * weights, on_outline.T @ both)
+
+
+def _balanced(tractions: np.ndarray, modes: RigidModes) -> tuple[np.ndarray, np.ndarray]:
+    """Tractions (nodes, columns) in balance by linear tractions on the outline, and their resultants before, (3, ...)."""
+    both = np.concatenate([tractions.real, tractions.imag])
+    resultants = modes.weighted.T @ both
+    factors = np.linalg.solve(modes.gram, resultants)
+    spread = np.where(modes.on_outline.any(axis=1)[:, None], modes.of_nodes, 0.0)
+    x, y = np.split(both - spread @ factors, 2)
+    return x + 1j * y, resultants
 
 
 def _dot(along: np.ndarray, vectors: np.ndarray) -> np.ndarray:
@@ -259,7 +310,9 @@ def _loops(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Boundary]
         ([part.name for part in lug.outline], lug.outline),
         *(([hole.name] * len(hole.parts), hole.parts) for hole in lug.holes),
     ]:
-        free = tuple(name not in lug.supports for name in names)
+        free = tuple(
+            name not in lug.supports and not lug.floats for name in names
+        )  # a floating outline balances the pins
         finest = turn if names[0] in pinned and len(set(names)) == 1 else Boundary.turn
         loops.append(Boundary(scaled(parts), tuple(map(marks, names)), free, finest))
     return loops

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -31,11 +31,14 @@ class HolesCompliance:
         Displacement G v/R per unit of a load of the plate, by the name of the load.
     holes : int
         H.
+    resultants : dict of str to ndarray, shape (3,)
+        Force along x and y and moment about the first hole of each load, per thickness, of a plate that floats.
     """
 
     matrix: np.ndarray
     columns: dict[str, np.ndarray]
     holes: int
+    resultants: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def order(self) -> int:
@@ -60,7 +63,9 @@ def holes_in_outline(lug: Lug, pinned: Sequence[str], order: int) -> HolesCompli
     whole = response.projected()
     square = whole[:, : each * count]
     matrix = 0.5 * (square + square.T) - np.kron(np.eye(count), hole_compliance(order, lug.kolosov))
-    return HolesCompliance(matrix, dict(zip(response.loads, whole[:, each * count :].T, strict=True)), count)
+    columns = dict(zip(response.loads, whole[:, each * count :].T, strict=True))
+    carried = () if response.resultants is None else response.resultants[:, each * count :].T
+    return HolesCompliance(matrix, columns, count, dict(zip(response.loads, carried, strict=False)))
 
 
 def holes_in_infinite_plate(kolosov: float, centres: np.ndarray, order: int) -> HolesCompliance:

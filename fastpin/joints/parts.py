@@ -33,8 +33,8 @@ from fastpin.model.read_only import ReadOnlyDict
 MOST_PINS, MOST_PLATES = 40, 20
 """Most pins and plates of a joint."""
 
-MOVES = {"": (), "x": (1.0 + 0j,), "y": (1j,), "xy": (1.0 + 0j, 1j)}
-"""Directions in which the supports of a plate may move, by the word."""
+MOVES = {"": (), "x": (1.0 + 0j,), "y": (1j,), "xy": (1.0 + 0j, 1j), "free": (1.0 + 0j, 1j, 0j)}
+"""Directions in which a plate may move, by the word; 0 is a rotation."""
 
 LEAST_PITCH = 1.1
 """Least distance of the centres of two holes, in diameters. Nearer ones need more harmonics than are taken."""
@@ -57,9 +57,10 @@ class Plate:
         A closed curve, see :class:`fastpin.model.lug.Lug`. An empty one is an infinite plate.
     supports : mapping of str to str
         What is held of a part of the outline, by its name, as in a lug.
-    moves : {"", "x", "y", "xy"}
+    moves : {"", "x", "y", "xy", "free"}
         The supports of a plate may move along x or y, all together and without turning. Then the plate has the loads
-        "name.x" and "name.y": the force on its supports, N.
+        "name.x" and "name.y": the force on its supports, N. A plate that is free has no supports: it floats between its
+        pins, of which it needs two.
     holes : sequence of Hole
         Holes without a pin.
     loads : sequence of PartLoad
@@ -108,7 +109,13 @@ class Plate:
     def load_names(self) -> tuple[str, ...]:
         """Names of the loads that act on the plate."""
         edges = REMOTE_NAMES if self.is_infinite else tuple(sorted({load.name for load in self.loads}))
-        return tuple(f"{self.name}.{name}" for name in (*self.moves, *edges))
+        pulled = "" if self.floats else self.moves
+        return tuple(f"{self.name}.{name}" for name in (*pulled, *edges))
+
+    @property
+    def floats(self) -> bool:
+        """Whether only its pins hold the plate."""
+        return self.moves == "free"
 
     def lug(self, centres: Sequence[complex], radius: float, plane: Plane) -> tuple[Lug, tuple[str, ...]]:
         """The plate as a lug round its first pinned hole, and the names of its further pinned holes.
@@ -133,7 +140,8 @@ class Plate:
         pinned = tuple(Hole(name, centre - first, radius) for name, centre in zip(names, centres[1:], strict=True))
         material = self.material
         try:
-            made = Lug(material.nu, plane, radius, shifted, self.supports, self.loads, (*free, *pinned))
+            holes = (*free, *pinned)
+            made = Lug(material.nu, plane, radius, shifted, self.supports, self.loads, holes, self.floats)
         except InputError as error:
             raise InputError(f"plate {self.name}", f"{error}; points count from its first pin") from None
         return made, tuple(names)
@@ -253,6 +261,8 @@ class Joint:
         through = [pin for pin in self.pins if plate.name in pin.plates]
         if not through:
             raise InputError("plates", f"no pin goes through the plate {plate.name}")
+        if plate.floats and len(through) < 2:
+            raise InputError("moves", f"the plate {plate.name} is free and has one pin: nothing keeps it from turning")
         least = 2.0 * LEAST_PITCH * self.radius
         for one, other in combinations(through, 2):
             apart = abs(one.at - other.at)

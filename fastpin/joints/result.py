@@ -30,8 +30,9 @@ class JointState:
         rested on the hole. Work and energy are NaN: they belong to the whole joint.
     forces : ndarray, shape (sections, 2)
         Force of the pin on the plate along x and y, N.
-    moved : ndarray, shape (plates, 2)
-        Displacement of the supports of each plate along x and y, m; 0 where they are fixed.
+    moved : ndarray, shape (plates, 3)
+        Displacement of the supports of each plate along x and y, m, and its rotation, rad; 0 where they are fixed. Of a
+        plate that is free it is the mean motion of the outline, at the place of its first pin.
     residuals : dict of str to float
         Largest violations of the contact conditions and of the equilibrium of every pin and plate, relative, recomputed
         from the matrices.

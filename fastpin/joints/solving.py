@@ -17,7 +17,7 @@ from fastpin.joints.parts import MOVES, Joint, Plate
 from fastpin.joints.path import follow, unloaded
 from fastpin.joints.result import JointResult, JointState
 from fastpin.joints.states import StateMaker
-from fastpin.joints.system import JointLoads, PinsSystem, Section, build
+from fastpin.joints.system import JointLoads, Motion, PinsSystem, Section, build
 from fastpin.model.angles import BOTTOM
 from fastpin.model.checks import as_toml, check_callable, instance, items, known_name, number, whole_number
 from fastpin.model.grid import Grid
@@ -200,12 +200,14 @@ def _joint_system(
         {pin.name: k for k, pin in enumerate(joint.pins)},
     )
     beta = joint.problem(*joint.sections[0]).surfaces.beta_star
+    first = {plate.name: pin.at for pin, plate in reversed(joint.sections)}
     holes, sections = dict.fromkeys(places, 0), []
     for pin, plate in joint.sections:
         is_first = plate.name == pin.plates[0]
         sections.append(
             Section(
-                pins[pin.name], places[plate.name], holes[plate.name], joint.problem(pin, plate),
+                pins[pin.name], places[plate.name], holes[plate.name], (pin.at - first[plate.name]) / radius,
+                joint.problem(pin, plate),
                 plate.thickness / thick, 0.0 if is_first else pin.flexibility * thick / beta,
             )
         )  # fmt: skip
@@ -214,17 +216,21 @@ def _joint_system(
     stresses = np.array([joint.is_stress(name) for name in names])
     sizes = np.abs(values).max(axis=0) * np.where(stresses, radius, 1.0 / thick)
     force = 2.0 ** math.ceil(math.log2(float(sizes.max()) or float(np.abs(clearances).max()) / beta or 1.0))
-    moving = [(places[plate.name], way) for plate in joint.plates for way in MOVES[plate.moves]]
+    moving = [Motion(places[plate.name], way) for plate in joint.plates for way in MOVES[plate.moves]]
     on_pins, on_plates = np.zeros((len(pins), 2, len(names))), np.zeros((len(moving), len(names)))
     columns = []
     for place, name in enumerate(names):
         part, what = name.rsplit(".", 1)
         if stresses[place]:
             columns.append((places[part], what, place))
+            for row, motion in enumerate(moving):
+                if motion.plate == places[part] and what in plates[motion.plate].resultants:
+                    share = joint.plates[motion.plate].thickness / thick
+                    on_plates[row, place] = share * (motion.at(0j) @ plates[motion.plate].resultants[what])
         elif part in pins:
             on_pins[pins[part], "xy".index(what), place] = 1.0
         else:
-            on_plates[moving.index((places[part], 1.0 + 0j if what == "x" else 1j)), place] = 1.0
+            on_plates[moving.index(Motion(places[part], 1.0 + 0j if what == "x" else 1j)), place] = 1.0
     given = JointLoads(on_pins, moving, on_plates, columns, np.minimum(clearances, 0.0) / radius)
     system = build(sections, plates, given, [Grid.circle(nodes, BOTTOM)] * len(sections), force)
     return system, np.where(stresses, force / radius, force * thick)

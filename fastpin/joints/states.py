@@ -57,9 +57,10 @@ class StateMaker:
         passed = system.passed(now.tractions)
         contacts = [self._contact(now, step, place, passed[place], residuals) for place in range(len(passed))]
         thickness = np.array([[each.problem.thickness] for each in system.sections], dtype=float)
-        moved = np.zeros((len(self._plates), 2))
-        for (plate, way), by in zip(system.given.moving, now.motion[3 * len(passed) :], strict=True):
-            moved[plate] += by * scales.displacement * np.array([way.real, way.imag])
+        moved = np.zeros((len(self._plates), 3))
+        units = np.array([scales.displacement, scales.displacement, scales.rotation])
+        for motion, by in zip(system.given.moving, now.motion[3 * len(passed) :], strict=True):
+            moved[motion.plate] += by * units * motion.at(0j)
         forces = passed[:, :2] * scales.force * thickness
         return JointState(self._joint, step, load, tuple(contacts), forces, moved, residuals)
 
@@ -131,8 +132,8 @@ def unbalanced(system: PinsSystem, now: Configuration) -> float:
         total = pushed[members].sum(axis=0)
         total[:2] -= system.given.pins[pin] @ load
         left += [*total[:2], 0.0 if system.is_smooth(pin) else total[2]]
-    for (plate, way), force in zip(system.given.moving, system.given.plates @ load, strict=True):
-        on = [place for place, each in enumerate(system.sections) if each.plate == plate]
-        left.append(float((pushed[on, :2] @ [way.real, way.imag]).sum() + force))
+    for motion, force in zip(system.given.moving, system.given.plates @ load, strict=True):
+        of = zip(system.sections, pushed, strict=True)
+        left.append(float(sum(push @ motion.at(each.at) for each, push in of if each.plate == motion.plate) + force))
     size = float((np.abs(system.resultants) @ np.abs(now.tractions)).max())
     return float(np.abs(left).max()) / size if size else 0.0

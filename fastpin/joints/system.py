@@ -2,13 +2,12 @@
 
 An interface is a pin in the hole of one plate. Each is a :class:`fastpin.elasticity.system.System` of its own, of a pin
 in an infinite plate; a plate couples the interfaces of its holes through few harmonics. The unknown motions are, for
-each interface, the motion (c_x, c_y, omega) of the pin over the plate, and the displacement of each plate that is not
-held. The conditions are the equilibrium of every pin and plate, and the coherence of a pin in its plates:
+each interface, the motion (c_x, c_y, omega) of the pin over the plate, and the motions of each plate that is not held. The conditions are the equilibrium of every pin and plate, and the coherence of a pin in its plates:
 
     first plate of a pin    sum over its plates of t (F + e c) = force on the pin, for x and y
     each further plate      D_before - D + flexibility times the force between both plates = 0, for x and y
     rotations               one moment for all plates of a pin; equal rotations
-    plate that moves        sum over its holes of t (F + e c) + force on the plate = 0
+    plate that moves        the work of all t (F + e c) and moments on each of its motions + that of its loads = 0
 
 F is the force of the pin on the plate per thickness, t the thickness, and D = c + plate's displacement + g F - k J the
 displacement of the pin's section, (T29) of docs/theory.md. A weak spring of stiffness e holds every pin in the middle
@@ -22,6 +21,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -50,6 +50,8 @@ class Section:
         Places of both among the pins and plates.
     hole : int
         Place of the hole among those of its plate.
+    at : complex
+        Its centre, counted from the first hole of the plate, over R.
     problem : Problem
         The pin in an infinite plate of this material.
     thickness : float
@@ -61,9 +63,29 @@ class Section:
     pin: int
     plate: int
     hole: int
+    at: complex
     problem: Problem
     thickness: float
     flexibility: float = 0.0
+
+
+class Motion(NamedTuple):
+    """A motion of a plate: a displacement everywhere, a unit vector, or a rotation about its first hole.
+
+    Attributes
+    ----------
+    plate : int
+    way : complex
+        0 for a rotation.
+    """
+
+    plate: int
+    way: complex
+
+    def at(self, place: complex) -> tuple[float, float, float]:
+        """Displacement along x and y and rotation at a place of the plate, counted from its first hole."""
+        way = self.way or 1j * place
+        return way.real, way.imag, 0.0 if self.way else 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,10 +96,10 @@ class JointLoads:
     ----------
     pins : ndarray, shape (pins, 2, loads)
         Force on each pin along x and y per unit of each load.
-    moving : sequence of (int, complex)
-        Plates that move, and the direction of the motion, a unit vector.
+    moving : sequence of Motion
+        Motions of the plates that are not held.
     plates : ndarray, shape (moving, loads)
-        Force on these plates along their directions.
+        Work of each load on these motions.
     columns : sequence of (int, str, int)
         Loads within plates: the plate, the name of its column, the place of the load.
     fit : ndarray, shape (sections,)
@@ -87,7 +109,7 @@ class JointLoads:
     """
 
     pins: np.ndarray
-    moving: Sequence[tuple[int, complex]]
+    moving: Sequence[Motion]
     plates: np.ndarray
     columns: Sequence[tuple[int, str, int]]
     fit: np.ndarray
@@ -248,9 +270,15 @@ def _conditions(
         integral = (np.r_[cos, -sin], np.r_[sin, cos])[axis]
         equilibrium[row, nodes.rows(place)] += sign * (g * alone[place].equilibrium[axis] - k * integral)
         rows[row, 3 * place + axis] += sign
-        for number, (plate, way) in enumerate(given.moving):
-            if plate == sections[place].plate:
-                rows[row, count + number] += sign * (way.real, way.imag)[axis]
+        for number, motion in enumerate(given.moving):
+            if motion.plate == sections[place].plate:
+                rows[row, count + number] += sign * motion.at(sections[place].at)[axis]
+
+    def add_moment(row: int, place: int, factor: float) -> None:
+        """Add the moment of a pin on a plate, with the spring."""
+        shear = nodes.rows(place)[nodes.grids[place].size :]
+        equilibrium[row, shear] -= factor * alone[place].weights
+        springs[row, 3 * place + TURN] += factor * CENTRING
 
     for pin in range(len(given.pins)):
         members = [place for place, each in enumerate(sections) if each.pin == pin]
@@ -260,9 +288,7 @@ def _conditions(
             rows[head + TURN, head + TURN] = 1.0  # nothing turns it
         else:
             for place in members:
-                shear = nodes.rows(place)[nodes.grids[place].size :]
-                equilibrium[head + TURN, shear] -= sections[place].thickness * alone[place].weights
-                springs[head + TURN, 3 * place + TURN] += sections[place].thickness * CENTRING
+                add_moment(head + TURN, place, sections[place].thickness)
         for axis in (0, 1):
             for place in members:
                 add_force(head + axis, place, axis, sections[place].thickness)
@@ -276,11 +302,18 @@ def _conditions(
                 outside = given.pins[pin, axis] * sections[place].flexibility  # acts on the first section
                 forces[3 * place + axis, user] += outside
         for before, place in itertools.pairwise(members):
-            rows[3 * place + TURN, [3 * before + TURN, 3 * place + TURN]] = 1.0, -1.0
-    for number, (plate, way) in enumerate(given.moving):
+            for sign, of in ((1.0, before), (-1.0, place)):
+                rows[3 * place + TURN, 3 * of + TURN] += sign
+                for number, motion in enumerate(given.moving):
+                    if motion.plate == sections[of].plate:
+                        rows[3 * place + TURN, count + number] += sign * motion.at(0j)[TURN]
+    for number, motion in enumerate(given.moving):
         for place, each in enumerate(sections):
-            if each.plate == plate:
-                for axis in (0, 1):
-                    add_force(count + number, place, axis, each.thickness * (way.real, way.imag)[axis])
+            if each.plate == motion.plate:
+                x, y, turned = motion.at(each.at)
+                add_force(count + number, place, 0, each.thickness * x)
+                add_force(count + number, place, 1, each.thickness * y)
+                if turned:
+                    add_moment(count + number, place, each.thickness)
         forces[count + number, user] = -given.plates[number]
     return equilibrium, rows + springs, springs, forces

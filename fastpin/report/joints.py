@@ -44,8 +44,10 @@ def forces_table(result: JointResult) -> str:
         if any(values):
             columns.append(_column(name, values, "Pa" if joint.is_stress(name) else "N"))
     for place, plate in enumerate(joint.plates):
-        for axis in plate.moves:
-            values = [float(state.moved[place, "xy".index(axis)]) for state in states]
+        for k, axis in enumerate("xy"):
+            values = [float(state.moved[place, k]) for state in states]
+            if axis not in plate.moves and not plate.floats:
+                continue
             columns.append(_column(f"u {plate.name}.{axis}", values, "m"))
     for pin in joint.pins:
         place = joint.place(pin.name, pin.plates[0])

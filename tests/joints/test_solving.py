@@ -109,6 +109,32 @@ def test_a_lap_of_three_pins_has_the_shares_of_finite_elements() -> None:
     np.testing.assert_allclose(neat[0].forces[::2, 0] / FORCE, [1.10200, 0.79600, 1.10200], atol=2e-3)
 
 
+@pytest.mark.gate
+def test_a_free_cover_takes_a_part_of_the_load_of_a_sheet() -> None:
+    """A doubler on an infinite sheet under tension: it floats between its three pins."""
+    cover = Plate("cover", ALUMINIUM, 1.0, rectangle((-10.0, 10.0), (-4.0, 4.0)), moves="free")
+    unit = BETA * FORCE
+    pins = [
+        Pin(f"p{k}", at, STEEL, 1.0, ("sheet", "cover"), 0.02 * unit, 0.3, 0.15 * BETA)
+        for k, at in enumerate((-6.0, 0.0, 6.0))
+    ]
+    result = solve_joint(Joint((SHEET, cover), tuple(pins)), [{"sheet.sxx": 0.3 * FORCE}], nodes=64)
+    np.testing.assert_allclose(result[0].forces[::2, 0] / FORCE, [0.29178, 0.0, -0.29178], atol=1e-4)
+    assert peaks(result, 0)[:3:2] == pytest.approx([0.2747, 0.106], abs=5e-3)
+    assert hoop_at_top(result, 0) == pytest.approx(1.10, abs=0.01)
+    assert dissipated(result, 0) == pytest.approx(0.00465, abs=2e-5)
+    np.testing.assert_allclose(result[0].moved[1], 0.0, atol=1e-9 * unit)
+
+
+def test_a_plate_that_only_its_own_pins_hold_is_a_mechanism() -> None:
+    strip = Plate("strip", ALUMINIUM, 1.0, rectangle((-5.0, 9.0), (-4.0, 4.0)), moves="free")
+    pins = [Pin(name, at, STEEL, 1.0, ("strip",), 1e-6 * BETA * FORCE, 0.3) for name, at in (("a", 0.0), ("b", 4.0))]
+    with pytest.raises(fastpin.NoEquilibriumError, match="nothing holds a pin or a plate: the joint is a mechanism"):
+        solve_joint(Joint((strip,), tuple(pins)), [{"a.x": FORCE}], nodes=16, harmonics=4)
+    with pytest.raises(InputError, match="moves: the plate strip is free and has one pin"):
+        Joint((strip,), (pins[0],))
+
+
 # -- exact solutions ---------------------------------------------------------------------------------------------------
 
 
