@@ -280,11 +280,11 @@ def _rigid_modes(lug: Lug, edges: Edges) -> RigidModes:
 
 
 def _balanced(tractions: np.ndarray, modes: RigidModes) -> tuple[np.ndarray, np.ndarray]:
-    """Tractions (nodes, columns) in balance by linear tractions on the outline, and their resultants before, (3, ...)."""
+    """Tractions (nodes, columns) that linear ones on the outline balance, and their resultants before, (3, columns)."""
     both = np.concatenate([tractions.real, tractions.imag])
     resultants = modes.weighted.T @ both
     factors = np.linalg.solve(modes.gram, resultants)
-    spread = np.where(modes.on_outline.any(axis=1)[:, None], modes.of_nodes, 0.0)
+    spread = modes.of_nodes * (modes.on_outline != 0.0)
     x, y = np.split(both - spread @ factors, 2)
     return x + 1j * y, resultants
 

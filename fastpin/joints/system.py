@@ -2,7 +2,8 @@
 
 An interface is a pin in the hole of one plate. Each is a :class:`fastpin.elasticity.system.System` of its own, of a pin
 in an infinite plate; a plate couples the interfaces of its holes through few harmonics. The unknown motions are, for
-each interface, the motion (c_x, c_y, omega) of the pin over the plate, and the motions of each plate that is not held. The conditions are the equilibrium of every pin and plate, and the coherence of a pin in its plates:
+each interface, the motion (c_x, c_y, omega) of the pin over the plate, and the motions of each plate that is not held.
+The conditions are the equilibrium of every pin and plate, and the coherence of a pin in its plates:
 
     first plate of a pin    sum over its plates of t (F + e c) = force on the pin, for x and y
     each further plate      D_before - D + flexibility times the force between both plates = 0, for x and y

@@ -126,6 +126,7 @@ def test_a_free_cover_takes_a_part_of_the_load_of_a_sheet() -> None:
     np.testing.assert_allclose(result[0].moved[1], 0.0, atol=1e-9 * unit)
 
 
+@pytest.mark.gate
 def test_a_plate_that_only_its_own_pins_hold_is_a_mechanism() -> None:
     strip = Plate("strip", ALUMINIUM, 1.0, rectangle((-5.0, 9.0), (-4.0, 4.0)), moves="free")
     pins = [Pin(name, at, STEEL, 1.0, ("strip",), 1e-6 * BETA * FORCE, 0.3) for name, at in (("a", 0.0), ("b", 4.0))]
