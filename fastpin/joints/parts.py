@@ -54,7 +54,8 @@ class Plate:
     thickness : float
         m.
     outline : sequence of Part
-        A closed curve, see :class:`fastpin.model.lug.Lug`. An empty one is an infinite plate.
+        A closed curve, see :class:`fastpin.model.lug.Lug`. An empty one is an infinite plate. All other plates of its
+        joint must be free: under a net force an infinite plate moves without limit.
     supports : mapping of str to str
         What is held of a part of the outline, by its name, as in a lug.
     moves : {"", "x", "y", "xy", "free"}
@@ -253,6 +254,10 @@ class Joint:
                 raise InputError("radius", f"{words}, {self.pins[0].name} has {self.radius:g} m")
         for plate in self.plates:
             self._check_holes(plate)
+            others = [other for other in self.plates if plate.is_infinite and other is not plate and not other.floats]
+            if others:
+                words = f"the plate {plate.name} is infinite, so {others[0].name} must be free"
+                raise InputError("moves", f"{words}: under a net force an infinite plate moves without limit")
         for pin, plate in self.sections:
             self.problem(pin, plate)
 
