@@ -35,7 +35,7 @@ JUMPS = (1e-6, 1e-4, 1e-3, 1e-2)
 """Parts of a step at which a state beyond a snap is looked for."""
 
 NEGLIGIBLE = 1e-2
-"""Force of a pin that may be released, in parts of the largest one."""
+"""Force of a contact that may be released, in parts of the largest one."""
 
 MOST_SNAPS = 200
 """Snaps of one step, at most."""
@@ -152,17 +152,16 @@ def _accepted(system: PinsSystem, start: Configuration, after: Configuration) ->
 
 
 def _released(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
-    """A state at `load` in which the pins that carried next to nothing have let go; they rest where they are."""
+    """A state at `load` in which contacts that carried next to nothing have let go; their pins rest where they are."""
     forces = np.abs(system.passed(start.tractions)[:, :2]).max(axis=1)
-    loose, rest = start.copy(), start.rest.copy()
-    for members in system.pins:
-        if 0.0 < forces[members].max() <= NEGLIGIBLE * forces.max():
-            for place in members:
-                own, nodes = slice(3 * place, 3 * place + 3), system.nodes.parts[place]
-                rest[own], loose.status[nodes] = start.motion[own], OPEN
-                loose.pressure[nodes] = loose.shear[nodes] = 0.0
-    if np.array_equal(loose.status, start.status):
+    light = np.flatnonzero((forces > 0.0) & (forces <= NEGLIGIBLE * forces.max()))
+    if not light.size:
         return None
+    loose, rest = start.copy(), start.rest.copy()
+    for place in light:
+        own, nodes = slice(3 * place, 3 * place + 3), system.nodes.parts[place]
+        rest[own], loose.status[nodes] = start.motion[own], OPEN
+        loose.pressure[nodes] = loose.shear[nodes] = 0.0
     return _settled(system.resting(rest), replace(loose, rest=rest), load)
 
 

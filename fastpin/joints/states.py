@@ -116,7 +116,9 @@ class StateMaker:
                 pair.plate.nu, pair.plane, problem.hole_radius, matrix, incoming=incoming * scales.traction
             )
         except InputError as error:
-            raise InputError("harmonics", f"too few for the plate {section.plate + 1}: {error.reason}") from None
+            raise InputError(
+                "harmonics", f"too few for {self._joint.plates[section.plate].name}: {error.reason}"
+            ) from None
 
 
 def unbalanced(system: PinsSystem, now: Configuration) -> float:

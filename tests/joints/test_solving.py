@@ -32,7 +32,7 @@ def in_sheet(*centres: complex, clearance: float = 0.1, friction: float = 0.3, m
 
 def with_cover(*pins: Pin, thickness: float = 0.5) -> Joint:
     """Pins that join a free cover to an infinite sheet."""
-    cover = Plate("cover", ALUMINIUM, thickness, rectangle((-4.0, 10.0), (-4.0, 4.0)), moves="free")
+    cover = Plate("cover", ALUMINIUM, thickness, rectangle((-4.0, 16.0), (-4.0, 4.0)), moves="free")
     return Joint((SHEET, cover), pins)
 
 
@@ -186,15 +186,15 @@ def test_one_pin_is_the_contact_of_the_solver(friction: float, allowed: float) -
 def test_the_first_touch_is_an_ordinary_event_and_a_loose_pin_comes_later() -> None:
     """The cover of a sheet under tension has one loose pin: with little load it carries nothing."""
     joint = with_cover(
-        *(through_both(name, at, each) for name, at, each in (("a", 0, 0.02), ("b", 3, 0.02), ("c", 6, 0.3)))
+        *(through_both(name, at, each) for name, at, each in (("a", 0, 0.02), ("b", 6, 0.02), ("c", 12, 0.3)))
     )
-    result = solve_joint(joint, [{"sheet.sxx": size * FORCE} for size in (0.05, 0.5, 2.0)], nodes=32, harmonics=6)
-    assert result.first_touches["a", "sheet"] == 0
-    assert result.first_touches["c", "sheet"] == 2
+    result = solve_joint(joint, [{"sheet.sxx": size * FORCE} for size in (0.2, 2.0)], nodes=32, harmonics=6)
+    assert result.first_touches["a", "cover"] == 0
+    assert result.first_touches["c", "cover"] == 1
     carried = [[float(np.hypot(*state.forces[2 * k])) for k in range(3)] for state in result]
-    assert carried[1][2] < 1e-5 * carried[1][0]
-    assert carried[2][2] > 0.1 * carried[2][0]
-    for state in result:  # two of three pins pull one way, and the shares still add up
+    assert carried[0][2] < 1e-5 * carried[0][0]
+    assert carried[1][2] > 0.5 * carried[1][0]
+    for state in result:
         np.testing.assert_allclose(state.forces[::2].sum(axis=0), 0.0, atol=1e-5 * FORCE)
 
 
@@ -220,7 +220,6 @@ def test_every_pin_and_contact_is_in_equilibrium() -> None:
         assert set(state.residuals) == {"gap", "slip", "cone", "equilibrium", "bodies"}
 
 
-@pytest.mark.gate
 def test_a_flexible_pin_takes_less_of_the_load() -> None:
     rigid, soft = (
         solve_joint(
