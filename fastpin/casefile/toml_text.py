@@ -49,6 +49,7 @@ KINDS = {
     "plan": (("grid", "list"), "sweep"),
     "tolerance plan": (("tolerances",), "tolerances"),
     "lug file": (("outline",), "compliance"),
+    "joint file": (("joint",), "joint"),
 }
 """The sections that only one kind of file has, and the command for such a file."""
 

@@ -72,6 +72,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_sweep(commands)
     add_tolerances(commands)
     add_compliance(commands)
+    add_joint(commands)
     add_paper(commands)
     add_benchmarks(commands)
     add_charts(commands)
@@ -445,6 +446,17 @@ def add_compliance(commands: Any) -> None:
     compliance.add_argument(
         "--plot", metavar="FILE", type=Path, help="draw outline, supports and loads (png, pdf, svg)"
     )
+
+
+def add_joint(commands: Any) -> None:
+    """Add ``joint``."""
+    joint = _command(commands, "joint", "joint", "run", "solve a joint of several pins and plates")
+    joint.add_argument("file", type=Path, nargs="?", help="joint file (TOML): plates, pins and loads")
+    joint.add_argument("--example", action="store_true", help="print a commented joint file")
+    joint.add_argument("--nodes", metavar="N", type=literal, help="nodes of each contact (default: those of the file)")
+    joint.add_argument("--plot", metavar="FILE", type=Path, help="draw all holes at the last load point")
+    joint.add_argument("--shares", metavar="FILE", type=Path, help="draw the force of each pin at all load points")
+    _add_json(joint, "write all states as JSON")
 
 
 def add_paper(commands: Any) -> None:

@@ -10,8 +10,9 @@ to 4e-7, in 10 s. The integral equations reach 1e-10 in 2 s. They need neither a
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg
@@ -79,12 +80,16 @@ class Response:
         The given tractions, along x and y.
     loads : tuple of str
         Names of the loads.
+    resultants : ndarray, shape (3, 2 + 4 K + loads), or None
+        Force along x and y, and moment about 0, of the given tractions on a plate that floats. The outline balances
+        them by tractions that grow linearly.
     """
 
     edges: Edges
     u: np.ndarray
     t: np.ndarray
     loads: tuple[str, ...]
+    resultants: np.ndarray | None = None
 
     def projected(self) -> np.ndarray:
         """Coefficients G v/R on the hole's edge, shape (2 + 4 K, 2 + 4 K + loads)."""
@@ -200,14 +205,23 @@ def hole_compliance(order: int, kolosov: float) -> np.ndarray:
     return matrix
 
 
-def respond(lug: Lug, order: int, fineness: Fineness, progress: Callable[[float], None]) -> Response:
-    """Solve the integral equations for the harmonics up to `order` and for the loads."""
-    edges = Edges(_loops(lug, order), fineness)
+def respond(
+    lug: Lug, order: int, fineness: Fineness, progress: Callable[[float], None], pinned: Collection[str] = ()
+) -> Response:
+    """Solve the integral equations for the harmonics up to `order` on the edges with pins, and for the loads.
+
+    `pinned` names further holes with a pin. Their radius is that of the first hole.
+    """
+    edges = Edges(_loops(lug, order, pinned), fineness)
     held, frame = _supports(lug, edges)
     # At 1 (nu = 0.5 in plane strain) the pressure on an outline that is held all round moves nothing, and the equations
     # have no unique solution. The matrix changes by 1e-7.
     kolosov = max(lug.kolosov, 1.0 + 1e-7)
-    tractions, loads = _tractions(lug, edges, order)
+    tractions, loads = _tractions(lug, edges, order, pinned)
+    modes = resultants = None
+    if lug.floats:
+        modes = _rigid_modes(lug, edges)
+        tractions, resultants = _balanced(tractions, modes)
     with threadpool_limits(limits=1, user_api="blas"):  # the same bits with any number of cores
         # With this unit of length no plate has the size at which a purely logarithmic equation for held edges has no
         # unique solution.
@@ -220,6 +234,8 @@ def respond(lug: Lug, order: int, fineness: Fineness, progress: Callable[[float]
             matrix[:, :, 1] = turned
         size = 2 * edges.z.size
         U, T = both.reshape(2, size, size)
+        if modes is not None:  # the mean of the outline moves no more
+            T += modes.of_nodes @ np.linalg.solve(modes.gram, modes.on_outline.T)
         along = np.stack([_dot(frame, tractions), _dot(1j * frame, tractions)])
         along[held] = 0.0
         right = U @ along.reshape(size, -1)
@@ -230,7 +246,47 @@ def respond(lug: Lug, order: int, fineness: Fineness, progress: Callable[[float]
     found[held] = 0.0
     c, s = frame.real[:, None], frame.imag[:, None]
     u = np.stack([c * found[0] - s * found[1], s * found[0] + c * found[1]])
-    return Response(edges, u, np.stack([tractions.real, tractions.imag]), loads)
+    return Response(edges, u, np.stack([tractions.real, tractions.imag]), loads, resultants)
+
+
+class RigidModes(NamedTuple):
+    """Two translations and a rotation about 0 at all nodes, both components, shape (2 nodes, 3).
+
+    Attributes
+    ----------
+    of_nodes : ndarray
+    on_outline : ndarray
+        Times the lengths that belong to nodes of the outline; 0 at other nodes.
+    weighted : ndarray
+        Times the lengths that belong to all nodes.
+    gram : ndarray, shape (3, 3)
+        Integrals of products along the outline.
+    """
+
+    of_nodes: np.ndarray
+    on_outline: np.ndarray
+    weighted: np.ndarray
+    gram: np.ndarray
+
+
+def _rigid_modes(lug: Lug, edges: Edges) -> RigidModes:
+    z, first = edges.z, len(lug.contact_edge)
+    modes = np.stack([np.ones_like(z), np.full_like(z, 1j), 1j * z], axis=1)
+    both = np.concatenate([modes.real, modes.imag])
+    outer = (edges.part_of_node >= first) & (edges.part_of_node < first + len(lug.outline))
+    weights = np.tile(edges.weights, 2)[:, None]
+    on_outline = both * weights * np.tile(outer, 2)[:, None]
+    return RigidModes(both, on_outline, both * weights, on_outline.T @ both)
+
+
+def _balanced(tractions: np.ndarray, modes: RigidModes) -> tuple[np.ndarray, np.ndarray]:
+    """Tractions (nodes, columns) that linear ones on the outline balance, and their resultants before, (3, columns)."""
+    both = np.concatenate([tractions.real, tractions.imag])
+    resultants = modes.weighted.T @ both
+    factors = np.linalg.solve(modes.gram, resultants)
+    spread = modes.of_nodes * (modes.on_outline != 0.0)
+    x, y = np.split(both - spread @ factors, 2)
+    return x + 1j * y, resultants
 
 
 def _dot(along: np.ndarray, vectors: np.ndarray) -> np.ndarray:
@@ -238,7 +294,7 @@ def _dot(along: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return found
 
 
-def _loops(lug: Lug, order: int) -> list[Boundary]:
+def _loops(lug: Lug, order: int, pinned: Collection[str] = ()) -> list[Boundary]:
     """All edges in hole radii; the first one is the edge of the pin's hole."""
 
     def marks(name: str) -> object:
@@ -254,9 +310,11 @@ def _loops(lug: Lug, order: int) -> list[Boundary]:
         ([part.name for part in lug.outline], lug.outline),
         *(([hole.name] * len(hole.parts), hole.parts) for hole in lug.holes),
     ]:
-        loops.append(
-            Boundary(scaled(parts), tuple(map(marks, names)), tuple(name not in lug.supports for name in names))
-        )
+        free = tuple(
+            name not in lug.supports and not lug.floats for name in names
+        )  # a floating outline balances the pins
+        finest = turn if names[0] in pinned and len(set(names)) == 1 else Boundary.turn
+        loops.append(Boundary(scaled(parts), tuple(map(marks, names)), free, finest))
     return loops
 
 
@@ -279,25 +337,38 @@ def _supports(lug: Lug, edges: Edges) -> tuple[np.ndarray, np.ndarray]:
     return held, frame
 
 
-def _tractions(lug: Lug, edges: Edges, order: int) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Tractions of unit harmonics and loads, complex, shape (nodes, 2 + 4 K + loads), and the names of the loads."""
+def _tractions(lug: Lug, edges: Edges, order: int, pinned: Collection[str]) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Tractions of unit harmonics on each edge with a pin, and of loads, and the names of the loads.
+
+    The tractions are complex, shape (nodes, edges with a pin x (2 + 4 K) + loads).
+    """
     loads = tuple(sorted({load.name for load in lug.loads}))
-    found = np.zeros((edges.z.size, 2 + 4 * order + len(loads)), dtype=complex)
-    on_hole = edges.part_of_node < len(lug.contact_edge)
-    radial = edges.z[on_hole] / np.abs(edges.z[on_hole])
-    waves = radial[:, None] ** np.arange(order + 1)
-    waves[:, 0] = math.sqrt(0.5)
-    r, along = radial[:, None], 1j * radial[:, None]
-    harmonics = np.empty((radial.size, 2 + 4 * order), dtype=complex)
-    harmonics[:, :2] = waves[:, :1] * np.hstack([r, along])
-    for place, (base, values) in enumerate(
-        ((r, waves.real), (r, waves.imag), (along, waves.real), (along, waves.imag))
-    ):
-        harmonics[:, 2 + place :: 4] = base * values[:, 1:]
-    found[on_hole, : 2 + 4 * order] = harmonics
+    contacts = [(edges.part_of_node < len(lug.contact_edge), 0j)]
+    contacts += [
+        (_on_parts(lug, edges, hole.name), hole.centre / lug.hole_radius) for hole in lug.holes if hole.name in pinned
+    ]
+    each = 2 + 4 * order
+    found = np.zeros((edges.z.size, each * len(contacts) + len(loads)), dtype=complex)
+    for place, (on_hole, centre) in enumerate(contacts):
+        found[on_hole, each * place : each * place + each] = _harmonics(edges.z[on_hole] - centre, order)
     for load in lug.loads:
         for name in load.parts:
             on = _on_parts(lug, edges, name)
-            column = 2 + 4 * order + loads.index(load.name)
+            column = each * len(contacts) + loads.index(load.name)
             found[on, column] += complex(load.x, load.y) + load.normal * edges.normals[on]
     return found, loads
+
+
+def _harmonics(z: np.ndarray, order: int) -> np.ndarray:
+    """The basis of a compliance at points (k,) on the edge of a hole round 0, complex, shape (k, 2 + 4 K)."""
+    radial = z / np.abs(z)
+    waves = radial[:, None] ** np.arange(order + 1)
+    waves[:, 0] = math.sqrt(0.5)
+    r, along = radial[:, None], 1j * radial[:, None]
+    found = np.empty((radial.size, 2 + 4 * order), dtype=complex)
+    found[:, :2] = waves[:, :1] * np.hstack([r, along])
+    for place, (base, values) in enumerate(
+        ((r, waves.real), (r, waves.imag), (along, waves.real), (along, waves.imag))
+    ):
+        found[:, 2 + place :: 4] = base * values[:, 1:]
+    return found

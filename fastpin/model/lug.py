@@ -198,6 +198,8 @@ class Lug:
     loads : sequence of PartLoad
     holes : sequence of Hole
         Further holes.
+    floats : bool
+        Whether nothing holds the plate: its motion counts from the mean of its outline. It has no supports then.
 
     Raises
     ------
@@ -213,6 +215,7 @@ class Lug:
     supports: Mapping[str, str] = field(default_factory=dict)
     loads: Sequence[PartLoad] = ()
     holes: tuple[Hole, ...] = ()
+    floats: bool = False
 
     def __post_init__(self) -> None:
         check_fields(self, number, "nu", 0.0, 0.5)
@@ -237,7 +240,9 @@ class Lug:
             for name in load.parts:
                 check_name("load", name, names)
             check_not_held(load, self.supports)
-        motion = self.rigid_motion
+        motion = "" if self.floats else self.rigid_motion
+        if self.floats and self.supports:
+            raise InputError("supports", "a plate that floats has none")
         if motion:
             raise InputError("support", f"the supports leave a rigid motion: the plate can {motion}; hold more of it")
 

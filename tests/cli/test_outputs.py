@@ -14,6 +14,7 @@ import fastpin
 from fastpin.casefile.lug import LUG_EXAMPLE
 from fastpin.casefile.reader import EXAMPLE
 from fastpin.cli.options import parser
+from fastpin.joints import JOINT_EXAMPLE
 from fastpin.storage.files import INDEX
 from fastpin.studies.index import Index
 from fastpin.studies.plan import read_plan
@@ -33,6 +34,7 @@ COMMANDS = {
     "sweep": ["sweep", "plan.toml"],
     "tolerances": ["tolerances", "tolerances.toml"],
     "compliance": ["compliance", "lug.toml"],
+    "joint": ["joint", "joint.toml"],
     "benchmarks": ["benchmarks", "kirsch"],
     "charts": ["charts", "kt_bearing"],
     "verify": ["verify"],
@@ -54,6 +56,7 @@ TEXTS: dict[str, dict[str, str]] = {
     "sweep": {"--table": ".csv", "--plot": ".png"},
     "tolerances": {"--table": ".csv", "--plot": ".png", "--scatter": ".svg", "--json": ".json"},
     "compliance": {"--output": ".json", "--plot": ".png"},
+    "joint": {"--json": ".json", "--plot": ".png", "--shares": ".svg"},
     "benchmarks": {"--json": ".json"},
     "charts": {"--json": ".json", "--csv": ".csv", "--book": ".pdf"},
     "verify": {"--json": ".json"},
@@ -82,6 +85,7 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("samples")
     (folder / "case.toml").write_text(CASE)
     (folder / "lug.toml").write_text(LUG_EXAMPLE)
+    (folder / "joint.toml").write_text(JOINT_EXAMPLE)
     (folder / "plan.toml").write_text('case = "case.toml"\n[grid]\nsolve.nodes = [41]\ncontact.friction = [0.2, 0.3]\n')
     (folder / "tolerances.toml").write_text(
         'case = "case.toml"\nsamples = 2\n[tolerances]\ncontact.friction = { from = 0.2, to = 0.5 }\n'
@@ -96,7 +100,7 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(samples: Path, tmp_path: Path) -> Path:
-    for name in ("case.toml", "lug.toml", "plan.toml", "tolerances.toml", "r.h5"):
+    for name in ("case.toml", "lug.toml", "joint.toml", "plan.toml", "tolerances.toml", "r.h5"):
         shutil.copyfile(samples / name, tmp_path / name)
     return tmp_path
 

@@ -96,6 +96,7 @@ WITHOUT_UNITS = {
     "verify": "is dimensionless, and says so in its first line",
     "benchmarks": "has problems per thickness",
     "charts": "is dimensionless",
+    "joint": "always has thicknesses; its own tests compare text and JSON",
     "completion": "prints a script",
     "schema": "prints the form of documents",
 }

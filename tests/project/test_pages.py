@@ -37,6 +37,7 @@ HOW_TO = [
     "sweeps",
     "cluster",
     "bodies",
+    "joints",
     "interference",
     "compliance",
     "superposition",

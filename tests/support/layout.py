@@ -40,7 +40,7 @@ LEVELS = (
     ("reading",),
     ("states",),
     ("solver", "damage", "cracks"),
-    ("verification", "storage", "assess"),
+    ("verification", "storage", "assess", "joints"),
     ("studies", "charts"),
     ("report",),
     ("figures",),

@@ -1,9 +1,9 @@
 """Change input files at random: does fastpin answer with a result or one sentence, and leave the files alone?
 
 :func:`examine` changes a case file, a CSV history, a result, an unfinished result with its journal, the index of a
-sweep, a plan, or a lug file. Some changes are random, and some are hostile (hostile.py). It reads the changed file
-through Python and the command line, in a process of its own. A finding is a raw error of Python, a traceback, a crash,
-a run without an end, too much memory, a long or empty message, or a file that was changed without a right to it.
+sweep, a plan, a lug or a joint file. Some changes are random, and some are hostile (hostile.py). It reads the changed
+file through Python and the command line, in a process of its own. A finding is a raw error of Python, a traceback, a
+crash, a run without an end, too much memory, a long or empty message, or a file that was changed without a right to it.
 Reading may change, make or remove no file at all, also not in the folder beside. Changed bytes can crash the HDF5
 library itself, or catch it in a loop. Such cases are counted apart: no code of Python can prevent them.
 """
@@ -41,6 +41,7 @@ from fastpin.casefile.lug import LUG_EXAMPLE, read_lug
 from fastpin.casefile.reader import EXAMPLE
 from fastpin.cli.main import main as fastpin_command
 from fastpin.errors import FastpinError, InputWarning
+from fastpin.joints import JOINT_EXAMPLE, read_joint
 from fastpin.storage import export, recording, store
 from fastpin.storage.journal import JournaledFile
 from fastpin.studies import plan as plans
@@ -163,6 +164,7 @@ def prepare(folder: Path) -> None:
         (folder / f"case{number}.toml").write_text(text)
     (folder / "loads.csv").write_text(CSV)
     (folder / "lug.toml").write_text(LUG_EXAMPLE)
+    (folder / "joint.toml").write_text(JOINT_EXAMPLE)
     pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["aluminium"])
     problem = fastpin.Problem.from_load_parameter(pair, 0.1, 0.4)
     history = fastpin.LoadHistory([{"P": 1.0}]) + fastpin.LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).repeated(4)
@@ -448,6 +450,11 @@ def change_lug(rng: np.random.Generator, folder: Path, seen: Examination) -> Pat
     return _change_text_file(rng, folder / "lug.toml")
 
 
+def change_joint(rng: np.random.Generator, folder: Path, seen: Examination) -> Path:
+    """Change a joint file."""
+    return _change_text_file(rng, folder / "joint.toml")
+
+
 def _change_text_file(rng: np.random.Generator, path: Path) -> Path:
     if rng.random() < 0.3:
         path.write_bytes(change_bytes(rng, path.read_bytes()))
@@ -539,6 +546,11 @@ def try_csv(rng: np.random.Generator, path: Path, seen: Examination) -> None:
 def try_lug(rng: np.random.Generator, path: Path, seen: Examination) -> None:
     """Read a lug file."""
     seen.python("read_lug", lambda: read_lug(path))
+
+
+def try_joint(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+    """Read a joint file."""
+    seen.python("read_joint", lambda: read_joint(path))
 
 
 def try_unfinished(rng: np.random.Generator, path: Path, seen: Examination) -> None:
@@ -635,6 +647,7 @@ KINDS = {
     "unfinished": Kind("unfinished.h5", change_unfinished, try_unfinished),
     "index": Kind("sweep/index.sqlite", change_sweep, try_sweep),
     "lug": Kind("lug.toml", change_lug, try_lug),
+    "joint": Kind("joint.toml", change_joint, try_joint),
     "plan": Kind("plan.toml", change_plan, try_plan),
 }
 """The kinds of files."""

@@ -1,0 +1,48 @@
+"""``fastpin joint``: the load shares and contacts of several pins in several plates."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from fastpin import figures, joints, report
+from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_outputs
+from fastpin.errors import InputError
+from fastpin.solver import Interrupted, SolveError
+
+
+def run(options: argparse.Namespace) -> int:
+    """Solve a joint file and print, draw and write its result; or print a commented joint file."""
+    if options.example:
+        sys.stdout.write(joints.JOINT_EXAMPLE)
+        return EXIT_OK
+    if options.file is None:
+        raise InputError("file", "the joint file is missing; start with: fastpin joint --example > joint.toml")
+    case = joints.read_joint(options.file)
+    check_outputs({"--plot": options.plot, "--shares": options.shares, "--json": options.json}, ("--plot", "--shares"))
+    nodes = case.nodes if options.nodes is None else options.nodes
+    code = EXIT_OK
+    try:
+        with Bar(len(case.corners), LOAD_POINTS) as bar:
+            result = joints.solve_joint(
+                case.joint, case.corners, nodes=nodes, harmonics=case.harmonics, progress=progress_to(bar)
+            )
+    except (SolveError, Interrupted) as ended:
+        code = EXIT_INTERRUPTED if isinstance(ended, Interrupted) else EXIT_FAILED
+        fail(str(ended) or "interrupted", code)
+        result = ended.result  # type: ignore[assignment]
+        if result is None or not len(result):
+            return code
+        say(f"note: {len(result)} of {len(case.corners)} load points were reached", file=sys.stderr)
+    written = write_outputs(
+        [
+            (options.plot, lambda path: figures.plot_joint(result, path, case.title)),
+            (options.shares, lambda path: figures.plot_shares(result, path, case.title)),
+        ],
+        options.json,
+        lambda: report.joints.document(result, case.title),
+    )
+    if options.json != "-":
+        say(*filter(None, [case.title]), *report.joints.describe(result).split("\n"))
+    return code or written

@@ -1,0 +1,8 @@
+"""Joints of several pins and plates: who carries how much, with clearance, friction and contact in every hole.
+
+The public names stand in ``__init__.pyi``. They are loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

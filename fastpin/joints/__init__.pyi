@@ -1,0 +1,11 @@
+from .parts import Joint as Joint
+from .parts import Pin as Pin
+from .parts import Plate as Plate
+from .parts import tate_rosenfeld as tate_rosenfeld
+from .read import JOINT_EXAMPLE as JOINT_EXAMPLE
+from .read import JointFile as JointFile
+from .read import parse_joint as parse_joint
+from .read import read_joint as read_joint
+from .result import JointResult as JointResult
+from .result import JointState as JointState
+from .solving import solve_joint as solve_joint

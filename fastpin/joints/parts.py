@@ -1,0 +1,355 @@
+"""The parts of a joint: plates with holes, and pins that go through some of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import combinations
+
+from fastpin.errors import InputError
+from fastpin.model.checks import (
+    as_toml,
+    check_fields,
+    choice,
+    instance,
+    instances,
+    is_above,
+    items,
+    known_name,
+    not_negative,
+    number,
+    point,
+    set_fields,
+    string,
+)
+from fastpin.model.loads import LOADS, REMOTE
+from fastpin.model.lug import Hole, Lug, Part, PartLoad
+from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
+from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
+from fastpin.model.read_only import ReadOnlyDict
+
+MOST_PINS, MOST_PLATES = 40, 20
+"""Most pins and plates of a joint."""
+
+MOVES = {"": (), "x": (1.0 + 0j,), "y": (1j,), "xy": (1.0 + 0j, 1j), "free": (1.0 + 0j, 1j, 0j)}
+"""Directions in which a plate may move, by the word; 0 is a rotation."""
+
+LEAST_PITCH = 1.1
+"""Least distance of the centres of two holes, in diameters. Nearer ones need more harmonics than are taken."""
+
+REMOTE_NAMES = tuple(LOADS[place] for place in REMOTE)
+"""Names of remote stresses and edge loads of a plate."""
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A plate of a joint.
+
+    Parameters
+    ----------
+    name : str
+    material : Material
+    thickness : float
+        m.
+    outline : sequence of Part
+        A closed curve, see :class:`fastpin.model.lug.Lug`. An empty one is an infinite plate. All other plates of its
+        joint must be free: under a net force an infinite plate moves without limit.
+    supports : mapping of str to str
+        What is held of a part of the outline, by its name, as in a lug.
+    moves : {"", "x", "y", "xy", "free"}
+        The supports of a plate may move along x or y, all together and without turning. Then the plate has the loads
+        "name.x" and "name.y": the force on its supports, N. A plate that is free has no supports: it floats between its
+        pins, of which it needs two.
+    holes : sequence of Hole
+        Holes without a pin.
+    loads : sequence of PartLoad
+        Tractions on parts of the outline, as in a lug. The load is called "name.sxx", "name.syy" or "name.sxy". An
+        infinite plate has these three loads as remote stresses, Pa.
+
+    Raises
+    ------
+    InputError
+        If a value can't be used. The error names the field.
+    """
+
+    name: str
+    material: Material
+    thickness: float
+    outline: tuple[Part, ...] = ()
+    supports: Mapping[str, str] = field(default_factory=dict)
+    moves: str = ""
+    holes: tuple[Hole, ...] = ()
+    loads: tuple[PartLoad, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_fields(self, _name, "name")
+        instance("material", self.material, Material, "a Material")
+        check_fields(self, number, "thickness", LEAST_RADIUS, MOST_RADIUS)
+        set_fields(self, outline=tuple(instances("outline", self.outline, Part, "a list of parts")))
+        set_fields(self, holes=tuple(instances("holes", self.holes, Hole, "a list of holes")))
+        set_fields(self, loads=tuple(instances("loads", self.loads, PartLoad, "a list of loads")))
+        if not isinstance(self.supports, Mapping):
+            raise InputError("supports", f"must map names to words, not {as_toml(self.supports)}")
+        set_fields(self, supports=ReadOnlyDict(self.supports), moves=choice("moves", self.moves, tuple(MOVES)))
+        if self.is_infinite:
+            for key in ("supports", "moves", "holes", "loads"):
+                if getattr(self, key):
+                    raise InputError(key, "has no meaning for an infinite plate; give an outline")
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.material, self.thickness, self.outline, self.holes, self.loads))
+
+    @property
+    def is_infinite(self) -> bool:
+        """Whether the plate has no outline."""
+        return not self.outline
+
+    @property
+    def load_names(self) -> tuple[str, ...]:
+        """Names of the loads that act on the plate."""
+        edges = REMOTE_NAMES if self.is_infinite else tuple(sorted({load.name for load in self.loads}))
+        pulled = "" if self.floats else self.moves
+        return tuple(f"{self.name}.{name}" for name in (*pulled, *edges))
+
+    @property
+    def floats(self) -> bool:
+        """Whether only its pins hold the plate."""
+        return self.moves == "free"
+
+    def lug(self, centres: Sequence[complex], radius: float, plane: Plane) -> tuple[Lug, tuple[str, ...]]:
+        """The plate as a lug round its first pinned hole, and the names of its further pinned holes.
+
+        `centres` are those of the pinned holes, m, and `radius` is theirs.
+        """
+        first = centres[0]
+        shifted = tuple(
+            Part(
+                part.name, part.start - first, part.end - first, None if part.through is None else part.through - first
+            )
+            for part in self.outline
+        )
+        free = tuple(Hole(hole.name, hole.centre - first, hole.radius) for hole in self.holes)
+        taken = {part.name for part in shifted} | {hole.name for hole in free}
+        names = []
+        for number_ in range(1, len(centres)):
+            name = f"pin hole {number_ + 1}"
+            while name in taken:
+                name += "'"
+            names.append(name)
+        pinned = tuple(Hole(name, centre - first, radius) for name, centre in zip(names, centres[1:], strict=True))
+        material = self.material
+        try:
+            holes = (*free, *pinned)
+            made = Lug(material.nu, plane, radius, shifted, self.supports, self.loads, holes, self.floats)
+        except InputError as error:
+            raise InputError(f"plate {self.name}", f"{error}; points count from its first pin") from None
+        return made, tuple(names)
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A pin of a joint, through one plate or several.
+
+    Parameters
+    ----------
+    name : str
+    at : complex
+        Its place x + iy, m.
+    material : Material
+    radius : float
+        Radius of its holes, m.
+    plates : sequence of str
+        Names of the plates that it goes through, in their order.
+    clearance : float or mapping of str to float
+        Radial clearance, m; one for each plate if they differ. Negative: an interference fit.
+    friction : float or mapping of str to float
+        Coefficient of friction, for each plate if they differ.
+    flexibility : float
+        Displacement of the pin in one plate over that in the next, per force between them, m/N: shear and bending of
+        the pin. 0 is a rigid pin. :func:`tate_rosenfeld` has a handbook formula.
+
+    Raises
+    ------
+    InputError
+        If a value can't be used. The error names the field.
+    """
+
+    name: str
+    at: complex
+    material: Material
+    radius: float
+    plates: tuple[str, ...]
+    clearance: float | Mapping[str, float] = 0.0
+    friction: float | Mapping[str, float] = 0.0
+    flexibility: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_fields(self, _name, "name")
+        check_fields(self, point, "at")
+        instance("material", self.material, Material, "a Material")
+        check_fields(self, number, "radius", LEAST_RADIUS, MOST_RADIUS)
+        set_fields(
+            self, plates=tuple(string("plates", name) for name in items("plates", self.plates, "a list of names"))
+        )
+        if not self.plates:
+            raise InputError("plates", f"pin {self.name} goes through no plate")
+        if len(set(self.plates)) < len(self.plates):
+            raise InputError("plates", f"pin {self.name} goes through a plate twice")
+        check_fields(self, not_negative, "flexibility")
+        for name in ("clearance", "friction"):
+            value = getattr(self, name)
+            if isinstance(value, Mapping):
+                for plate, each in value.items():
+                    known_name(name, plate, self.plates)
+                    number(f"{name}.{plate}", each)
+                if missing := [plate for plate in self.plates if plate not in value]:
+                    raise InputError(name, f"has no value for the plate {missing[0]}")
+                set_fields(self, **{name: ReadOnlyDict(value)})
+            else:
+                check_fields(self, number, name)
+
+    def value_in(self, name: str, plate: str) -> float:
+        """The clearance or the friction in a plate."""
+        value = getattr(self, name)
+        return float(value[plate] if isinstance(value, Mapping) else value)
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Pins in plates.
+
+    Parameters
+    ----------
+    plates : sequence of Plate
+    pins : sequence of Pin
+    plane : {"stress", "strain"}
+
+    Raises
+    ------
+    InputError
+        If a name stands twice or is unknown, holes overlap, radii differ, or a plate has no pin.
+    """
+
+    plates: tuple[Plate, ...]
+    pins: tuple[Pin, ...]
+    plane: Plane = "stress"
+
+    def __post_init__(self) -> None:
+        set_fields(self, plates=tuple(instances("plates", self.plates, Plate, "a list of plates")))
+        set_fields(self, pins=tuple(instances("pins", self.pins, Pin, "a list of pins")))
+        check_fields(self, choice, "plane", PLANES)
+        for kind, most, count in (("plates", MOST_PLATES, len(self.plates)), ("pins", MOST_PINS, len(self.pins))):
+            if not 1 <= count <= most:
+                raise InputError(kind, f"must be 1 to {most}, not {count}")
+        names = [*(plate.name for plate in self.plates), *(pin.name for pin in self.pins)]
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise InputError("name", f"two parts are called {as_toml(twice[0])}")
+        for pin in self.pins:
+            for name in pin.plates:
+                known_name("plates", name, names[: len(self.plates)])
+            if not math.isclose(pin.radius, self.radius, rel_tol=1e-9):
+                words = f"all pins of a joint must have one radius: {pin.name} has {pin.radius:g} m"
+                raise InputError("radius", f"{words}, {self.pins[0].name} has {self.radius:g} m")
+        for plate in self.plates:
+            self._check_holes(plate)
+            others = [other for other in self.plates if plate.is_infinite and other is not plate and not other.floats]
+            if others:
+                words = f"the plate {plate.name} is infinite, so {others[0].name} must be free"
+                raise InputError("moves", f"{words}: under a net force an infinite plate moves without limit")
+        for pin, plate in self.sections:
+            self.problem(pin, plate)
+
+    def _check_holes(self, plate: Plate) -> None:
+        """Check that the pinned holes of a plate keep apart and lie inside it."""
+        through = [pin for pin in self.pins if plate.name in pin.plates]
+        if not through:
+            raise InputError("plates", f"no pin goes through the plate {plate.name}")
+        if plate.floats and len(through) < 2:
+            raise InputError("moves", f"the plate {plate.name} is free and has one pin: nothing keeps it from turning")
+        least = 2.0 * LEAST_PITCH * self.radius
+        for one, other in combinations(through, 2):
+            apart = abs(one.at - other.at)
+            if is_above(least, apart):
+                words = f"the holes of {one.name} and {other.name} in {plate.name} are {apart:.4g} m apart"
+                raise InputError("at", f"{words}; they need {LEAST_PITCH:g} diameters, {least:.4g} m")
+        if not plate.is_infinite:
+            plate.lug([pin.at for pin in through], self.radius, self.plane)
+
+    @property
+    def radius(self) -> float:
+        """Radius of all holes, m."""
+        return self.pins[0].radius
+
+    @cached_property
+    def sections(self) -> tuple[tuple[Pin, Plate], ...]:
+        """Every pin in each of its plates: the interfaces, pin by pin."""
+        by_name = {plate.name: plate for plate in self.plates}
+        return tuple((pin, by_name[name]) for pin in self.pins for name in pin.plates)
+
+    def place(self, pin: str, plate: str) -> int:
+        """The place of a pin in a plate among the sections. Unknown names raise :class:`InputError`."""
+        known_name("pin", pin, [each.name for each in self.pins])
+        known_name("plate", plate, [each.name for each in self.plates])
+        for place, (one, other) in enumerate(self.sections):
+            if (one.name, other.name) == (pin, plate):
+                return place
+        raise InputError("plate", f"pin {pin} does not go through {plate}")
+
+    @cached_property
+    def load_names(self) -> tuple[str, ...]:
+        """Names of all loads: forces on pins and on plates that move, N, and stresses of plates, Pa."""
+        of_pins = tuple(f"{pin.name}.{axis}" for pin in self.pins for axis in "xy")
+        return sum((plate.load_names for plate in self.plates), ()) + of_pins
+
+    def is_stress(self, load: str) -> bool:
+        """Whether a load is a stress, Pa. The others are forces, N."""
+        return load.rsplit(".", 1)[1] in REMOTE_NAMES
+
+    def problem(self, pin: Pin, plate: Plate) -> Problem:
+        """The contact of a pin in one plate, as if that plate were infinite."""
+        pair = MaterialPair(pin.material, plate.material, self.plane)
+        try:
+            return Problem(
+                pair, pin.radius, pin.value_in("clearance", plate.name), pin.value_in("friction", plate.name),
+                pin_load="body", thickness=plate.thickness,
+            )  # fmt: skip
+        except InputError as error:
+            raise InputError(error.field, f"pin {pin.name} in {plate.name}: {error.reason}") from None
+
+
+def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], other: tuple[Material, float]) -> float:
+    """The flexibility of a fastener by shear and bending, m/N, of Tate and Rosenfeld's formula.
+
+    The bearing terms of the formula are left out: the contact has them. Source: Tate, M. B. and Rosenfeld, S. J.,
+    "Preliminary investigation of the loads carried by individual bolts in bolted joints", NACA TN 1051 (1946), as
+    usually quoted.
+
+    Parameters
+    ----------
+    diameter : float
+        m.
+    pin : Material
+    one, other : (Material, float)
+        Both plates: material, and thickness, m.
+
+    Raises
+    ------
+    InputError
+        If a length is out of range.
+    """
+    d, (_, a), (_, b) = number("diameter", diameter, LEAST_RADIUS, MOST_RADIUS), one, other
+    a, b = (number("thickness", each, LEAST_RADIUS, MOST_RADIUS) for each in (a, b))
+    area, inertia = 0.25 * math.pi * d * d, math.pi * d**4 / 64.0
+    shear = 4.0 * (a + b) / (9.0 * pin.shear_modulus * area)
+    bending = (a**3 + 5.0 * a * a * b + 5.0 * a * b * b + b**3) / (40.0 * pin.E * inertia)
+    return shear + bending
+
+
+def _name(field_: str, value: object) -> str:
+    """Check a name: a text without a dot, which stands between a name and its load."""
+    name = string(field_, value)
+    if "." in name:
+        raise InputError(field_, f"must be a text without a dot, not {as_toml(value)}")
+    return name

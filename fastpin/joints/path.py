@@ -1,0 +1,196 @@
+"""The way of a joint from one load to the next: exact paths, and creep where the contact of a pin snaps.
+
+Which pin touches first, and when, is an ordinary event of the path. A pin that is nearly unloaded may lose its last
+nodes, or be pinched between two holes and slip out. No state is near then. Such a pin is released, and stays where it
+is until it touches again. Others creep to the next state, as a pin that snaps does; see :mod:`fastpin.solver.snap`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from fastpin.joints.system import PinsSystem
+from fastpin.kernels import exchange
+from fastpin.kernels.status import OPEN
+from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
+    Configuration,
+    add_dissipation,
+    resting_status,
+    slip_tally_between,
+    worst_residual,
+)
+from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, SolveError
+from fastpin.solver.increment import implicit_step
+from fastpin.solver.path import PathStep, StepLostError
+from fastpin.solver.settling import FiniteStep
+from fastpin.solver.slip_tally import SlipTally
+from fastpin.solver.snap import MOST_STEPS, SOFTER, STIFFER, STIFFEST
+from fastpin.solver.tableau import TableauMemory
+
+JUMPS = (1e-6, 1e-4, 1e-3, 1e-2)
+"""Parts of a step at which a state beyond a snap is looked for."""
+
+NEGLIGIBLE = 1e-2
+"""Force of a contact that may be released, in parts of the largest one."""
+
+MOST_SNAPS = 200
+"""Snaps of one step, at most."""
+
+
+def unloaded(system: PinsSystem) -> Configuration:
+    """The joint before any load and fit: all pins concentric, open or without pressure."""
+    n, zeros, load = system.grid.size, np.zeros(system.grid.size), np.zeros(system.loads.shape[1])
+    load[-1] = 1.0
+    gap = np.maximum(system.initial_gap, 0.0)
+    return Configuration(
+        pressure=zeros.copy(), shear=zeros.copy(), gap=gap, slip=zeros.copy(), status=np.full(n, OPEN, dtype=np.int8),
+        motion=np.zeros(system.motions), load=load, origin=np.zeros(2), rest=np.zeros(system.motions),
+        rest_gap=gap.copy(), rest_slip=zeros.copy(), slip_tally=SlipTally.empty(n),
+    )  # fmt: skip
+
+
+def follow(
+    system: PinsSystem,
+    start: Configuration,
+    load: np.ndarray,
+    memory: TableauMemory,
+    report: Callable[[float], None],
+) -> tuple[Configuration, int]:
+    """Follow a straight step to `load` (loads,), dimensionless. Returns the configuration there, and the snaps.
+
+    `report` is called now and then, with the fraction that was reached. The sums of the configuration count from the
+    start of the step.
+
+    Raises
+    ------
+    SolveError
+        If the load can't be carried, or no state was found. ``fraction`` says where.
+    """
+    before, done, snaps = start.load, 0.0, 0
+    now = start
+    if not now.closed.any() and np.any((now.gap == 0.0) & (system.friction > 0.0)):
+        now, done = _first_of_neat(system, now, load)
+    while done < 1.0:
+        begin, step = done, None
+        try:
+            step = PathStep(system.resting(now.rest), now, load, memory)
+            now = step.follow(1.0, lambda part, begin=begin: report(begin + part * (1.0 - begin)))  # type: ignore[misc]
+            now.load = load.copy()
+            return now, snaps
+        except StepLostError as lost:
+            now = now if step is None else step.now
+            done = begin + lost.fraction * (1.0 - begin)
+            snaps += 1
+            beyond = None if snaps > MOST_SNAPS else _beyond(system, now, before, load, done)
+            if beyond is None:
+                raise _error(lost, done) from None
+            now, done = beyond
+    return now, snaps
+
+
+def _error(lost: StepLostError, done: float) -> SolveError:
+    if lost.code == exchange.NO_SUPPORT:
+        error: SolveError = NoEquilibriumError("nothing holds a pin or a plate: the joint is a mechanism")
+    else:
+        error = ConvergenceError("the stick and slip zones did not settle")
+    error.fraction = done
+    return error
+
+
+def _first_of_neat(system: PinsSystem, start: Configuration, load: np.ndarray) -> tuple[Configuration, float]:
+    """The first contact of neat pins. All grows in proportion, so that one implicit increment is exact.
+
+    It begins with all nodes without a gap sticking. Where other pins are loose, only a small part of the step is taken.
+    """
+    neat = start.gap == 0.0
+    begun = replace(start, status=np.where(neat, resting_status(system), OPEN).astype(np.int8))
+    for part in (1.0, 1e-1, 1e-2, 1e-3, 1e-4) if neat.all() else (1e-4, 1e-5, 1e-6):
+        found = implicit_step(system, begun, start.load + part * (load - start.load))
+        accepted = None if found is None else _accepted(system, start, found)
+        if accepted is not None:
+            return accepted, part
+    return start, 0.0
+
+
+def _beyond(
+    system: PinsSystem, now: Configuration, before: np.ndarray, after: np.ndarray, done: float
+) -> tuple[Configuration, float] | None:
+    """A state a little beyond a snap, and the fraction of the step at which it lies; None if none was found.
+
+    Lemke's method takes most of the time, so it comes last.
+    """
+    for way in (_settled, _released, _creep):
+        for jump in JUMPS:
+            reached = min(done + jump, 1.0)
+            found = way(system.resting(now.rest), now, before + reached * (after - before))
+            if found is not None:
+                return found, reached
+    return None
+
+
+def _settled(
+    system: PinsSystem, start: Configuration, load: np.ndarray, by_lemke: bool = False
+) -> Configuration | None:
+    """A finite step to `load`, with its dissipation: an increment, or by Lemke's method if that fails."""
+    after = implicit_step(system, start, load, patient=False)
+    if by_lemke and (after is None or worst_residual(system, after) > MAX_RESIDUAL):
+        after = FiniteStep(system, start).to(load)
+    return None if after is None else _accepted(system, start, after)
+
+
+def _accepted(system: PinsSystem, start: Configuration, after: Configuration) -> Configuration | None:
+    """A configuration with the dissipation and slip since `start`; None if it violates the contact conditions."""
+    if not worst_residual(system, after) <= MAX_RESIDUAL:
+        return None
+    add_dissipation(system, start, after)
+    after.slip_tally = slip_tally_between(start, after)
+    return after
+
+
+def _released(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
+    """A state at `load` in which contacts that carried next to nothing have let go; their pins rest where they are."""
+    forces = np.abs(system.passed(start.tractions)[:, :2]).max(axis=1)
+    light = np.flatnonzero((forces > 0.0) & (forces <= NEGLIGIBLE * forces.max()))
+    if not light.size:
+        return None
+    loose, rest = start.copy(), start.rest.copy()
+    for place in light:
+        own, nodes = slice(3 * place, 3 * place + 3), system.nodes.parts[place]
+        rest[own], loose.status[nodes] = start.motion[own], OPEN
+        loose.pressure[nodes] = loose.shear[nodes] = 0.0
+    return _settled(system.resting(rest), replace(loose, rest=rest), load)
+
+
+def _creep(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:
+    """Let the pins creep to a state at `load`, on springs that are slack at the start of each step and get softer."""
+    first = stiffness = float(system.weights.mean() / np.median(np.abs(system.operator.diagonal())))
+    last = start
+    for _ in range(MOST_STEPS):
+        if stiffness > STIFFEST * first:
+            return None
+        crept = _on_springs(system, last, load, stiffness)
+        if crept is None:
+            stiffness *= STIFFER
+            continue
+        last, stiffness = crept, stiffness * SOFTER
+        beyond = _settled(system, last, load, by_lemke=True)
+        if beyond is not None:
+            return beyond
+    return None
+
+
+def _on_springs(system: PinsSystem, start: Configuration, load: np.ndarray, stiffness: float) -> Configuration | None:
+    """A finite step of the pins on springs that are slack at `start`: a load of their own that acts with the size 1."""
+    springs = np.where(system.of_pins, stiffness, 0.0)
+    forces = np.column_stack([system.forces, springs * start.motion])
+    columns = np.column_stack([system.loads, np.zeros(len(system.loads))])
+    held = replace(
+        system, motion_rows=system.motion_rows + np.diag(springs), forces=forces, loads=columns,
+        drive=replace(system.drive, columns=columns), held_as=None,
+    )  # fmt: skip
+    after = _settled(held, replace(start, load=np.r_[start.load, 0.0]), np.r_[load, 1.0], by_lemke=True)
+    return None if after is None else replace(after, load=load.copy())

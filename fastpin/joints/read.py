@@ -1,0 +1,258 @@
+"""The reader of joint files: plates, pins and loads of a joint, in one TOML file.
+
+All faults of a file are reported at once, each with its line. :data:`JOINT_EXAMPLE` is a commented joint file.
+``fastpin joint --example`` prints it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from fastpin.casefile.materials import read_material
+from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
+from fastpin.errors import InputError
+from fastpin.joints.parts import MOST_PINS, Joint, Pin, Plate, tate_rosenfeld
+from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
+from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
+from fastpin.model.lug import Part, rectangle
+from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
+from fastpin.model.synonyms import closest
+
+JOINT_EXAMPLE = Path(__file__).with_name("joint.toml").read_text(encoding="utf-8")
+"""A commented joint file: a single lap of three bolts."""
+
+_KEYS: dict[str, tuple[str, ...]] = {
+    "joint": ("plane", "nodes", "harmonics", "repeat"),
+    "plate": ("name", *MATERIAL_KEYS, "thickness", "x", "y", "start", "parts", "supports", "moves"),
+    "pin": ("name", "at", *MATERIAL_KEYS, "diameter", "plates", "clearance", "friction", "flexibility"),
+}
+"""Sections of a joint file and their keys. The keys of [[load]] are the loads of the joint."""
+
+MOST_CORNERS = 10_000
+"""Most corners of a load history. Each state of ten pins takes a megabyte."""
+
+
+class JointFile(NamedTuple):
+    """The content of a joint file.
+
+    Attributes
+    ----------
+    joint : Joint
+    corners : list of dict
+        Loads at the corners, for :func:`fastpin.joints.solve_joint`.
+    title : str
+    nodes : int
+    harmonics : int or None
+    """
+
+    joint: Joint
+    corners: list[dict[str, float]]
+    title: str
+    nodes: int
+    harmonics: int | None
+
+
+def read_joint(path: str | Path) -> JointFile:
+    """Read a joint file.
+
+    Raises
+    ------
+    CaseFileError, InputError
+        See :func:`fastpin.read_case`.
+    """
+    path = file_path("path", path)
+    return parse_joint(read_text(path), str(path))
+
+
+def parse_joint(text: str, name: str = "joint file") -> JointFile:
+    """Read a joint from a TOML text. `name` is the name of the file in error messages.
+
+    Raises
+    ------
+    CaseFileError, InputError
+        See :func:`fastpin.read_case`.
+    """
+    return parse_text(text, name, "joint file", _joint_file)
+
+
+def _joint_file(source: CaseText) -> JointFile | None:
+    _check_keys(source)
+    title, settings = source.root.checked("title", string) or "", source.section("joint")
+    plane = settings.choice("plane", ("stress", *(word for word in PLANES if word != "stress")))
+    nodes = settings.checked("nodes", whole_number, LEAST_NODES, MOST_NODES) or 96
+    harmonics = settings.checked("harmonics", whole_number, 2, MOST_HARMONICS)
+    times = settings.checked("repeat", whole_number, 1, MOST_CORNERS) or 1
+    plates = [_plate(source, block) for block in _required(source, "plate")]
+    pins = [each for block in _required(source, "pin") for each in _pins(source, block, plates)]
+    loads = _required(source, "load")
+    if source.faults or plane is None or None in plates or None in pins:
+        return None
+    try:
+        joint = Joint(tuple(plates), tuple(pins), plane)  # type: ignore[arg-type]
+    except InputError as error:
+        source.report(str(error), "pin")
+        return None
+    corners = []
+    for block in loads:
+        block.check_keys(joint.load_names, " in [[load]]", f"; the loads are {', '.join(joint.load_names)}")
+        given = {name: block.number(name) for name in joint.load_names if name in block}
+        corners.append({name: value for name, value in given.items() if value is not None})
+    if len(corners) * times > MOST_CORNERS:
+        source.report(f"the history has {len(corners) * times:,} corners, more than {MOST_CORNERS:,}", "load")
+    if source.faults:
+        return None
+    load_values(joint, corners)
+    return JointFile(joint, corners * times, title, nodes, harmonics)
+
+
+def _required(source: CaseText, name: str) -> list[Section]:
+    """The blocks of a name, of which there must be one."""
+    blocks = source.blocks(name)
+    if not blocks and name not in source.root:
+        source.report(f"[[{name}]] blocks are missing", name)
+    return blocks
+
+
+def _check_keys(source: CaseText) -> None:
+    """Report unknown sections and keys."""
+    sections = (*_KEYS, "load")
+    for name, value in source.root.table.items():
+        if name == "title":
+            continue
+        if name not in sections:
+            shown = written(name, value)
+            kind = f"section {shown}" if shown else f'key "{name}" before the first section'
+            source.report(f"unknown {kind}{closest(name, sections) or f'; the sections are {_words(sections)}'}", name)
+        elif not isinstance(value, (dict, list)):
+            source.report(f"{name}: must be a section, not {as_toml(value)}", name)
+        elif name != "load":
+            for block in source.blocks(name):
+                block.check_keys(_KEYS[name], f" in {_words((name,))}")
+
+
+def _words(names: tuple[str, ...]) -> str:
+    return ", ".join(f"[{name}]" if name == "joint" else f"[[{name}]]" for name in names)
+
+
+def _plate(source: CaseText, block: Section) -> Plate | None:
+    """A plate; None if it is wrong (reported)."""
+    for key in ("name", "thickness"):
+        block.require(key)
+    material = read_material(source, block, MATERIALS, may_be_rigid=False)
+    supports = block.value("supports") or {}
+    if not isinstance(supports, dict):
+        block.report(f'supports: must be a table {{ part = "both" }}, not {as_toml(supports)}', "supports")
+        return None
+    outline = _outline(block)
+    values = {"name": block.value("name"), "thickness": block.value("thickness"), "moves": block.value("moves") or ""}
+    if material is None or outline is None or values["name"] is None or values["thickness"] is None:
+        return None
+    return _made(block, Plate, **values, material=material, outline=outline, supports=supports)
+
+
+def _made(block: Section, make: Any, **values: Any) -> Any:
+    """An object of a block; None if a value is wrong (reported)."""
+    try:
+        return make(**values)
+    except InputError as error:
+        block.report(str(error), error.field)
+        return None
+
+
+def _outline(block: Section) -> tuple[Part, ...] | None:
+    """The outline of a plate; empty for an infinite one, None if it is wrong (reported)."""
+    if "start" in block or "parts" in block:
+        start, parts = block.checked("start", _point), block.value("parts")
+        if start is None or not isinstance(parts, list) or not all(isinstance(part, dict) for part in parts):
+            block.report("parts: start and a list of parts { name, to, through } make an outline", "parts")
+            return None
+        found = []
+        try:
+            for part in parts:
+                known = [key for key in part if key not in ("name", "to", "through")]
+                if known or "to" not in part:
+                    raise InputError("parts", "a part has a name, its end to, and through if it is a circular arc")
+                end = _point("to", part["to"])
+                through = _point("through", part["through"]) if "through" in part else None
+                found.append(Part(string("name", part.get("name", "edge")), start, end, through))
+                start = end
+        except InputError as error:
+            block.report(str(error), "parts")
+            return None
+        return tuple(found)
+    if "x" not in block and "y" not in block:
+        return ()
+    for key in ("x", "y"):
+        block.require(key)
+    x, y = block.checked("x", _limits), block.checked("y", _limits)
+    return None if x is None or y is None else rectangle(x, y)
+
+
+def _pins(source: CaseText, block: Section, plates: list[Plate | None]) -> list[Pin | None]:
+    """The pins of a block; None for each that is wrong (reported)."""
+    for key in ("name", "at", "diameter", "plates"):
+        block.require(key)
+    material = read_material(source, block, MATERIALS, may_be_rigid=False)
+    names, places = block.checked("name", _names), block.checked("at", _points)
+    diameter, through = block.checked("diameter", positive), block.checked("plates", _names)
+    if material is None or names is None or places is None or diameter is None or through is None:
+        return [None]
+    if len(names) != len(places):
+        block.report(f"name: must name {len(places)} pins, as many as at has points, not {len(names)}", "name")
+        return [None]
+    flexibility = _flexibility(block, material, diameter, through, plates)
+    if flexibility is None:
+        return [None]
+    common = {"material": material, "radius": 0.5 * diameter, "plates": through, "flexibility": flexibility}
+    for key in ("clearance", "friction"):
+        common[key] = block.value(key) if key in block else 0.0
+    return [_made(block, Pin, name=name, at=at, **common) for name, at in zip(names, places, strict=True)]
+
+
+def _flexibility(
+    block: Section, material: Any, diameter: float, through: list[str], plates: list[Plate | None]
+) -> float | None:
+    """The flexibility of a pin, m/N; None if it is wrong (reported)."""
+    given = block.value("flexibility")
+    if not isinstance(given, str):
+        return block.checked("flexibility", number, 0.0) if given is not None else 0.0
+    if block.checked("flexibility", choice, ("rigid", "tate-rosenfeld")) is None:
+        return None
+    by_name = {plate.name: plate for plate in plates if plate is not None}
+    of = [by_name[name] for name in through if name in by_name]
+    if given == "rigid" or len(of) < 2:
+        return 0.0
+    values = {
+        tate_rosenfeld(diameter, material, (a.material, a.thickness), (b.material, b.thickness))
+        for a, b in itertools.pairwise(of)
+    }
+    if len(values) > 1:
+        block.report("flexibility: the formula gives several values for plates of unlike thickness; give a number, m/N")
+        return None
+    return values.pop()
+
+
+def _names(field: str, value: object) -> list[str]:
+    names = value if isinstance(value, list) else [value]
+    return [any_text(field, name) for name in names][:MOST_PINS]
+
+
+def _points(field: str, value: object) -> list[complex]:
+    """One point [x, y] or a list of points, m."""
+    if isinstance(value, list) and value and all(isinstance(each, list) for each in value):
+        return [_point(field, each) for each in value]
+    return [_point(field, value)]
+
+
+def _point(field: str, value: object) -> complex:
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError(field, f"must be a point [x, y], not {as_toml(value)}")
+    return complex(number(field, value[0]), number(field, value[1]))
+
+
+def _limits(field: str, value: object) -> tuple[float, float]:
+    if not isinstance(value, list) or len(value) != 2 or not number(field, value[0]) < number(field, value[1]):
+        raise InputError(field, f"must be two numbers [lower, upper], not {as_toml(value)}")
+    return float(value[0]), float(value[1])

@@ -1,0 +1,236 @@
+"""From a joint and its loads to a result."""
+
+from __future__ import annotations
+
+import functools
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fastpin.elasticity.plates import harmonic_sizes
+from fastpin.elasticity.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
+from fastpin.errors import InputError
+from fastpin.joints.parts import MOVES, Joint, Plate
+from fastpin.joints.path import follow, unloaded
+from fastpin.joints.result import JointResult, JointState
+from fastpin.joints.states import StateMaker
+from fastpin.joints.system import JointLoads, Motion, PinsSystem, Section, build
+from fastpin.model.angles import BOTTOM
+from fastpin.model.checks import as_toml, check_callable, instance, items, known_name, number, whole_number
+from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS
+from fastpin.model.materials import Plane
+from fastpin.solver.errors import Interrupted, SolveError
+from fastpin.solver.slip_tally import SlipTally
+from fastpin.solver.tableau import TableauMemory
+from fastpin.solver.task import deferred_interrupts, one_blas_thread
+
+Progress = Callable[[float, int], None]
+"""Called with the number of steps that are done, parts included, and the number of all steps."""
+
+LEAST_NODES, MOST_NODES = 16, 720
+"""Nodes of a contact, all round."""
+
+MOST_HARMONICS = 48
+"""Harmonics of a hole, at most. Holes with a pitch of 1.25 diameters need 33."""
+
+FIRST_TRIED = 16
+"""Harmonics that are tried first for a plate with an outline."""
+
+DECAYED = 1e-7
+"""Size of the last harmonic at which no more are taken, in parts of the largest one."""
+
+
+def solve_joint(
+    joint: Joint,
+    corners: Sequence[Mapping[str, float]],
+    *,
+    nodes: int = 96,
+    harmonics: int | None = None,
+    progress: Progress | None = None,
+) -> JointResult:
+    """Follow a load history of a joint and return the states at its corners.
+
+    All pins begin concentric in their holes. A loose pin stays in the middle of its holes until it touches: with
+    friction, the first touch decides where. Pins with interference are driven in together, before the first load.
+
+    Parameters
+    ----------
+    joint : Joint
+    corners : sequence of mappings
+        Loads at the corners by the names of ``joint.load_names``: forces in N, stresses in Pa. A load that is left out
+        keeps its value. Between corners the loads are linear.
+    nodes : int
+        Nodes of each contact, all round.
+    harmonics : int, optional
+        Highest harmonic of the holes, by which the pins of a plate act on one another. Chosen unless given.
+    progress : callable, optional
+        Called as ``progress(done_steps, all_steps)`` now and then.
+
+    Returns
+    -------
+    JointResult
+        Every state meets the contact conditions and the equilibrium of all pins and plates to 1e-9.
+
+    Raises
+    ------
+    InputError
+        If an input can't be used. The error names the field.
+    NoEquilibriumError, ConvergenceError
+        If the joint can't carry a load, or no state was found. The ``result`` of the error is the result so far.
+    Interrupted
+        After Ctrl-C. It is a KeyboardInterrupt with the ``result`` so far.
+    """
+    instance("joint", joint, Joint, "a Joint")
+    nodes = whole_number("nodes", nodes, LEAST_NODES, MOST_NODES)
+    if harmonics is not None:
+        harmonics = whole_number("harmonics", harmonics, 2, MOST_HARMONICS)
+    check_callable("progress", progress)
+    values, began = load_values(joint, corners), time.perf_counter()
+    states: list[JointState] = []
+    snaps, step = 0, 0
+    with deferred_interrupts() as request, one_blas_thread():
+
+        def report(part: float) -> None:
+            if request.stop:
+                raise Interrupted
+            if progress is not None:
+                progress(step + part, len(values))
+
+        plates = [_plate_compliance(joint, plate, harmonics, report) for plate in joint.plates]
+        orders = tuple(plate.order for plate in plates)
+        system, unit = _joint_system(joint, plates, values, nodes)
+        maker, memory, now = StateMaker(joint, system, plates), TableauMemory(system), unloaded(system)
+        try:
+            if system.given.fit.any():
+                now, snaps = follow(system, now, np.r_[now.load[:-2], 1.0, 1.0], memory, lambda part: report(0.0))
+            for step, corner in enumerate(values):
+                load = np.r_[np.zeros(len(LOADS)), corner / unit, now.load[-2:]]
+                begun = replace(now, dissipation=0.0, slip_tally=SlipTally.empty(system.grid.size))
+                now, more = follow(system, begun, load, memory, report)
+                snaps += more
+                states.append(maker.state(now, step, dict(zip(joint.load_names, corner.tolist(), strict=True))))
+                report(1.0)
+        except (SolveError, Interrupted) as ended:
+            if isinstance(ended, SolveError):
+                _say_where(ended, joint, values, step)
+            ended.result = JointResult(joint, tuple(states), nodes, orders, snaps, time.perf_counter() - began)  # type: ignore[assignment]
+            raise
+    return JointResult(joint, tuple(states), nodes, orders, snaps, time.perf_counter() - began)
+
+
+def _say_where(error: SolveError, joint: Joint, values: np.ndarray, step: int) -> None:
+    """Give an error the step, the fraction and the load at which the joint was lost."""
+    part = 1.0 if error.fraction is None or not math.isfinite(error.fraction) else error.fraction
+    before = values[step - 1] if step else np.zeros_like(values[step])
+    load = dict(zip(joint.load_names, (before + part * (values[step] - before)).tolist(), strict=True))
+    error.step, error.fraction, error.load = step, part, load
+    acting = ", ".join(f"{name} = {value:g}" for name, value in load.items() if value) or "no load"
+    error.args = (f"step {step + 1}, at {100.0 * part:.4g} % ({acting}): {error}",)
+
+
+def load_values(joint: Joint, corners: Sequence[Mapping[str, float]]) -> np.ndarray:
+    """The loads at the corners, shape (corners, loads), in the order of ``joint.load_names``.
+
+    Raises
+    ------
+    InputError
+        If there is no corner, a name is unknown, or a value is no finite number.
+    """
+    names, given = joint.load_names, items("corners", corners, "a list of corners")
+    if not given:
+        raise InputError("corners", "must have at least one corner")
+    values = np.zeros((len(given), len(names)))
+    for place, corner in enumerate(given):
+        if not isinstance(corner, Mapping):
+            raise InputError("corners", f"corner {place + 1} must map loads to numbers, not {as_toml(corner)}")
+        values[place] = values[place - 1] if place else 0.0
+        for name, value in corner.items():
+            known_name(f"corner {place + 1}", name, names)
+            values[place, names.index(name)] = number(name, value)
+    return values
+
+
+def _plate_compliance(
+    joint: Joint, plate: Plate, harmonics: int | None, report: Callable[[float], None]
+) -> HolesCompliance:
+    """The compliance of the pinned holes of a plate; that of equal plates is computed once."""
+    report(0.0)
+    centres = tuple(pin.at for pin, of in joint.sections if of is plate)
+    return _compliance(replace(plate, name="plate", thickness=1.0), centres, joint.radius, joint.plane, harmonics)
+
+
+@functools.lru_cache(maxsize=16)
+def _compliance(
+    plate: Plate, centres: tuple[complex, ...], radius: float, plane: Plane, harmonics: int | None
+) -> HolesCompliance:
+    if plate.is_infinite:
+        places = np.array(centres) / radius
+        return holes_in_infinite_plate(plate.material.kolosov(plane), places, harmonics or harmonics_needed(places))
+    lug, pinned = plate.lug(centres, radius, plane)
+    order = harmonics or FIRST_TRIED
+    while True:
+        found = holes_in_outline(lug, pinned, order)
+        last = max(float(harmonic_sizes(found.block(hole, hole))[-1]) for hole in range(found.holes))
+        if harmonics or order == MOST_HARMONICS or last <= DECAYED:
+            return found
+        order = min(2 * order, MOST_HARMONICS)
+
+
+def harmonics_needed(centres: np.ndarray) -> int:
+    """Harmonics of holes of radius 1 in an infinite plate that decay to 1e-7 of the hole's compliance."""
+    apart = np.abs(centres[:, None] - centres) + np.diag(np.full(centres.size, np.inf))
+    nearest = float(apart.min())
+    if not math.isfinite(nearest):
+        return 4
+    least = 4.0 - math.log(DECAYED) / (2.0 * math.log(nearest - 1.0)) if nearest > 2.0 else math.inf
+    return int(min(max(least, 4.0), MOST_HARMONICS))
+
+
+def _joint_system(
+    joint: Joint, plates: list[HolesCompliance], values: np.ndarray, nodes: int
+) -> tuple[PinsSystem, np.ndarray]:
+    """The system of a joint, and the unit of each load, SI."""
+    names, thick, radius = joint.load_names, joint.plates[0].thickness, joint.radius
+    places, pins = (
+        {plate.name: k for k, plate in enumerate(joint.plates)},
+        {pin.name: k for k, pin in enumerate(joint.pins)},
+    )
+    beta = joint.problem(*joint.sections[0]).surfaces.beta_star
+    first = {plate.name: pin.at for pin, plate in reversed(joint.sections)}
+    holes, sections = dict.fromkeys(places, 0), []
+    for pin, plate in joint.sections:
+        is_first = plate.name == pin.plates[0]
+        sections.append(
+            Section(
+                pins[pin.name], places[plate.name], holes[plate.name], (pin.at - first[plate.name]) / radius,
+                joint.problem(pin, plate),
+                plate.thickness / thick, 0.0 if is_first else pin.flexibility * thick / beta,
+            )
+        )  # fmt: skip
+        holes[plate.name] += 1
+    clearances = np.array([each.problem.clearance for each in sections])
+    stresses = np.array([joint.is_stress(name) for name in names])
+    sizes = np.abs(values).max(axis=0) * np.where(stresses, radius, 1.0 / thick)
+    force = 2.0 ** math.ceil(math.log2(float(sizes.max()) or float(np.abs(clearances).max()) / beta or 1.0))
+    moving = [Motion(places[plate.name], way) for plate in joint.plates for way in MOVES[plate.moves]]
+    on_pins, on_plates = np.zeros((len(pins), 2, len(names))), np.zeros((len(moving), len(names)))
+    columns = []
+    for place, name in enumerate(names):
+        part, what = name.rsplit(".", 1)
+        if stresses[place]:
+            columns.append((places[part], what, place))
+            for row, motion in enumerate(moving):
+                if motion.plate == places[part] and what in plates[motion.plate].resultants:
+                    share = joint.plates[motion.plate].thickness / thick
+                    on_plates[row, place] = share * (motion.at(0j) @ plates[motion.plate].resultants[what])
+        elif part in pins:
+            on_pins[pins[part], "xy".index(what), place] = 1.0
+        else:
+            on_plates[moving.index(Motion(places[part], 1.0 + 0j if what == "x" else 1j)), place] = 1.0
+    given = JointLoads(on_pins, moving, on_plates, columns, np.minimum(clearances, 0.0) / radius)
+    system = build(sections, plates, given, [Grid.circle(nodes, BOTTOM)] * len(sections), force)
+    return system, np.where(stresses, force / radius, force * thick)

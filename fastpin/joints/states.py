@@ -1,0 +1,141 @@
+"""States of a joint from configurations, after their conditions were checked."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fastpin.elasticity.several_holes import HolesCompliance
+from fastpin.errors import InputError
+from fastpin.joints.hole import HoleInPlate
+from fastpin.joints.parts import Joint
+from fastpin.joints.result import JointState
+from fastpin.joints.system import CENTRING, PinsSystem
+from fastpin.kernels.status import OPEN, SLIP_POSITIVE
+from fastpin.model.loads import LOADS
+from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, contact_residuals
+from fastpin.solver.errors import ConvergenceError
+from fastpin.states.state import State
+
+ROUNDED = 1e-13
+"""Entries of the compliance of a hole below this are rounding: those of a hole far from any other."""
+
+
+class StateMaker:
+    """Makes the states of one history, in order.
+
+    Parameters
+    ----------
+    joint : Joint
+    system : PinsSystem
+    plates : list of HolesCompliance
+    """
+
+    def __init__(self, joint: Joint, system: PinsSystem, plates: list[HolesCompliance]) -> None:
+        self._joint, self._system, self._plates = joint, system, plates
+        self._dissipated = np.zeros(len(system.sections))  # J/m, of each contact
+        self._rest: dict[int, np.ndarray] = {}  # where the pin first rested on each hole
+
+    def state(self, now: Configuration, step: int, load: dict[str, float]) -> JointState:
+        """The state of a configuration at a corner, under a `load` by name, SI.
+
+        Raises
+        ------
+        ConvergenceError
+            If the configuration violates the contact conditions, or the equilibrium of a pin or a plate.
+        """
+        system, scales = self._system, self._system.scales
+        residuals = contact_residuals(system.resting(now.rest), now, system.elastic(now.tractions))
+        residuals["bodies"] = unbalanced(system, now)
+        worst = max(residuals, key=lambda name: residuals[name])
+        if not residuals[worst] <= MAX_RESIDUAL:
+            words = f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
+            raise ConvergenceError(words)
+        passed = system.passed(now.tractions)
+        contacts = [self._contact(now, step, place, passed[place], residuals) for place in range(len(passed))]
+        thickness = np.array([[each.problem.thickness] for each in system.sections], dtype=float)
+        moved = np.zeros((len(self._plates), 3))
+        units = np.array([scales.displacement, scales.displacement, scales.rotation])
+        for motion, by in zip(system.given.moving, now.motion[3 * len(passed) :], strict=True):
+            moved[motion.plate] += by * units * motion.at(0j)
+        forces = passed[:, :2] * scales.force * thickness
+        return JointState(self._joint, step, load, tuple(contacts), forces, moved, residuals)
+
+    def _contact(
+        self, now: Configuration, step: int, place: int, passed: np.ndarray, residuals: dict[str, float]
+    ) -> State:
+        """The contact of one pin in one plate."""
+        system, scales = self._system, self._system.scales
+        nodes, grid, problem = system.nodes.parts[place], system.nodes.grids[place], system.sections[place].problem
+        x, y, turned = now.motion[3 * place : 3 * place + 3]
+        status = now.status[nodes].copy()
+        if problem.frictionless:
+            status = np.where(status == OPEN, OPEN, SLIP_POSITIVE).astype(np.int8)
+        if (status != OPEN).any() and place not in self._rest:
+            way = math.hypot(x, y)
+            self._rest[place] = float(system.initial_gap[nodes].max()) / way * np.array([x, y]) if way else np.zeros(2)
+        rest = self._rest.get(place, np.zeros(2))
+        datum = (rest[1] * np.cos(grid.theta) - rest[0] * np.sin(grid.theta)) * scales.displacement
+        tally: dict[str, Any] = {**now.slip_tally.part(np.arange(nodes.start, nodes.stop)).fields(scales)}
+        for name in ("slip_lowest", "slip_highest"):
+            tally[name] = tally[name] - datum
+        self._dissipated[place] += float(grid.weights @ tally["friction_energy"]) * problem.hole_radius
+        load = dict.fromkeys(LOADS, 0.0)
+        load["Q"], load["P"] = float(passed[0]) * scales.force, -float(passed[1]) * scales.force
+        load["M"] = float(passed[2]) * scales.force * problem.hole_radius
+        return State(
+            step=step, fraction=1.0, load=load, theta=grid.theta, pressure=now.pressure[nodes] * scales.traction,
+            shear=now.shear[nodes] * scales.traction, gap=now.gap[nodes] * scales.displacement,
+            slip=now.slip[nodes] * scales.displacement - datum, status=status, dx=float(x) * scales.displacement,
+            dy=float(y) * scales.displacement, rotation=float(turned) * scales.rotation,
+            dissipation=float(self._dissipated[place]), work=math.nan, energy=math.nan, residuals=residuals,
+            problem=replace(problem, plate_body=self._body(now, place)), grid=grid, **tally,
+        )  # fmt: skip
+
+    def _body(self, now: Configuration, place: int) -> HoleInPlate:
+        """The hole of a contact, with what the other pins and the loads of the plate do to its edge."""
+        system, scales = self._system, self._system.scales
+        section = system.sections[place]
+        plate, problem = self._plates[section.plate], section.problem
+        matrix = plate.block(section.hole, section.hole).copy()
+        matrix[np.abs(matrix) < ROUNDED] = 0.0
+        incoming = np.zeros(len(matrix))
+        for other, nodes, integrals in zip(system.sections, system.nodes.parts, system.integrals, strict=True):
+            if other.plate == section.plate and other.hole != section.hole:
+                coefficients = integrals @ np.concatenate([now.pressure[nodes], now.shear[nodes]])
+                incoming += plate.block(section.hole, other.hole) @ coefficients
+        for of, name, load in system.given.columns:
+            if of == section.plate:
+                incoming += plate.column(name, section.hole) * now.load[len(LOADS) + load]
+        pair = problem.pair
+        try:
+            return HoleInPlate(
+                pair.plate.nu, pair.plane, problem.hole_radius, matrix, incoming=incoming * scales.traction
+            )
+        except InputError as error:
+            raise InputError(
+                "harmonics", f"too few for {self._joint.plates[section.plate].name}: {error.reason}"
+            ) from None
+
+
+def unbalanced(system: PinsSystem, now: Configuration) -> float:
+    """The largest force or moment that is left on a pin or a plate, relative to what the contacts and loads carry.
+
+    It is recomputed from the tractions and the springs of loose pins, without the conditions of the solver.
+    """
+    load, count = now.load[len(LOADS) : -2], len(system.sections)
+    passed, motion = system.passed(now.tractions), (now.motion - now.rest)[: 3 * count].reshape(count, 3)
+    pushed = np.array([[each.thickness] for each in system.sections]) * (passed + CENTRING * motion)
+    left = []
+    for pin, members in enumerate(system.pins):
+        total = pushed[members].sum(axis=0)
+        total[:2] -= system.given.pins[pin] @ load
+        left += [*total[:2], 0.0 if system.is_smooth(pin) else total[2]]
+    for motion, force in zip(system.given.moving, system.given.plates @ load, strict=True):
+        of = zip(system.sections, pushed, strict=True)
+        left.append(float(sum(push @ motion.at(each.at) for each, push in of if each.plate == motion.plate) + force))
+    size = float((np.abs(system.resultants) @ np.abs(now.tractions)).max())
+    return float(np.abs(left).max()) / size if size else 0.0

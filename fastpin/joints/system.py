@@ -1,0 +1,320 @@
+"""The matrices of a joint of several pins and plates.
+
+An interface is a pin in the hole of one plate. Each is a :class:`fastpin.elasticity.system.System` of its own, of a pin
+in an infinite plate; a plate couples the interfaces of its holes through few harmonics. The unknown motions are, for
+each interface, the motion (c_x, c_y, omega) of the pin over the plate, and the motions of each plate that is not held.
+The conditions are the equilibrium of every pin and plate, and the coherence of a pin in its plates:
+
+    first plate of a pin    sum over its plates of t (F + e c) = force on the pin, for x and y
+    each further plate      D_before - D + flexibility times the force between both plates = 0, for x and y
+    rotations               one moment for all plates of a pin; equal rotations
+    plate that moves        the work of all t (F + e c) and moments on each of its motions + that of its loads = 0
+
+F is the force of the pin on the plate per thickness, t the thickness, and D = c + plate's displacement + g F - k J the
+displacement of the pin's section, (T29) of docs/theory.md. A weak spring of stiffness e holds every pin in the middle
+of its holes until it touches, and later where it was released: c of e c counts from there. It changes forces by 1e-6.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from fastpin.bodies.compliance import basis
+from fastpin.elasticity.drive import Drive
+from fastpin.elasticity.interfaces import TURN, Nodes
+from fastpin.elasticity.operator import DenseOperator
+from fastpin.elasticity.several_holes import HolesCompliance
+from fastpin.elasticity.system import Interface, System
+from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS, P, Q
+from fastpin.model.problem import Problem
+
+CENTRING = 1e-6
+"""Stiffness e of the springs that hold loose pins, times beta*. Forces change by as much. With 1e-7 a path was lost
+where a loose pin touches; with 1e-12 the first matrix is singular."""
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A pin in one plate.
+
+    Attributes
+    ----------
+    pin, plate : int
+        Places of both among the pins and plates.
+    hole : int
+        Place of the hole among those of its plate.
+    at : complex
+        Its centre, counted from the first hole of the plate, over R.
+    problem : Problem
+        The pin in an infinite plate of this material.
+    thickness : float
+        Thickness of the plate, in units of the first one.
+    flexibility : float
+        Displacement of this section over the one before, per force between them, dimensionless; 0 for the first one.
+    """
+
+    pin: int
+    plate: int
+    hole: int
+    at: complex
+    problem: Problem
+    thickness: float
+    flexibility: float = 0.0
+
+
+class Motion(NamedTuple):
+    """A motion of a plate: a displacement everywhere, a unit vector, or a rotation about its first hole.
+
+    Attributes
+    ----------
+    plate : int
+    way : complex
+        0 for a rotation.
+    """
+
+    plate: int
+    way: complex
+
+    def at(self, place: complex) -> tuple[float, float, float]:
+        """Displacement along x and y and rotation at a place of the plate, counted from its first hole."""
+        way = self.way or 1j * place
+        return way.real, way.imag, 0.0 if self.way else 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class JointLoads:
+    """What the loads of a joint do, dimensionless and in their order.
+
+    Attributes
+    ----------
+    pins : ndarray, shape (pins, 2, loads)
+        Force on each pin along x and y per unit of each load.
+    moving : sequence of Motion
+        Motions of the plates that are not held.
+    plates : ndarray, shape (moving, loads)
+        Work of each load on these motions.
+    columns : sequence of (int, str, int)
+        Loads within plates: the plate, the name of its column, the place of the load.
+    fit : ndarray, shape (sections,)
+        How far the fit opens the gap of each section, over R.
+
+    Two more loads follow: the fit, from 0 to 1, and the springs of loose pins, which is always 1.
+    """
+
+    pins: np.ndarray
+    moving: Sequence[Motion]
+    plates: np.ndarray
+    columns: Sequence[tuple[int, str, int]]
+    fit: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class PinsSystem(System):
+    """The system of several pins in several plates. The loads of the joint stand behind those of a single pin.
+
+    The load vector ends with the fit and with the springs, see :class:`JointLoads`.
+
+    Attributes
+    ----------
+    nodes : Nodes
+    sections : tuple of Section
+        The interfaces, pin by pin and through the thickness.
+    given : JointLoads
+    integrals : tuple of ndarray, shape (2 + 4 K, 2n)
+        Coefficients of the traction of each section in the basis of a compliance, per traction at its nodes.
+    springs : ndarray, shape (m, m)
+        The part of ``motion_rows`` that the springs of loose pins give.
+    """
+
+    nodes: Nodes = field(kw_only=True)
+    sections: tuple[Section, ...] = field(kw_only=True)
+    given: JointLoads = field(kw_only=True)
+    integrals: tuple[np.ndarray, ...] = field(kw_only=True)
+    springs: np.ndarray = field(kw_only=True)
+
+    @property
+    def is_toeplitz(self) -> bool:
+        return False
+
+    @property
+    def _acting(self) -> int:
+        return self.loads.shape[1]
+
+    @cached_property
+    def interfaces(self) -> tuple[Interface, ...]:
+        parts = enumerate(zip(self.sections, self.nodes.grids, self.nodes.parts, strict=True))
+        return tuple(Interface(each.problem, grid, nodes, 3 * place, 1.0) for place, (each, grid, nodes) in parts)
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        return np.zeros(self.nodes.size, dtype=bool)
+
+    @cached_property
+    def pins(self) -> list[list[int]]:
+        """The sections of each pin."""
+        count = 1 + max(each.pin for each in self.sections)
+        return [[place for place, each in enumerate(self.sections) if each.pin == pin] for pin in range(count)]
+
+    def is_smooth(self, pin: int) -> bool:
+        """Whether a pin has no friction in any of its plates: then nothing turns it."""
+        return all(self.sections[place].problem.frictionless for place in self.pins[pin])
+
+    @cached_property
+    def turning(self) -> tuple[slice, ...]:
+        parts = self.nodes.parts
+        return tuple(
+            slice(parts[of[0]].start, parts[of[-1]].stop) for pin, of in enumerate(self.pins) if not self.is_smooth(pin)
+        )
+
+    @cached_property
+    def of_pins(self) -> np.ndarray:
+        """Whether a condition is the equilibrium of a pin, bool, shape (m,). It stands with the pin's first section."""
+        found = np.zeros(self.motions, dtype=bool)
+        for members in self.pins:
+            found[3 * members[0] : 3 * members[0] + 3] = True
+        return found
+
+    def resting(self, rest: np.ndarray) -> PinsSystem:
+        """The same system with springs that are slack at the motion `rest` (m,)."""
+        forces = self.forces.copy()
+        forces[:, -1] = self.springs @ rest
+        return replace(self, forces=forces, held_as=self.held_as or self)
+
+    def passed(self, tractions: np.ndarray) -> np.ndarray:
+        """Force along x and y and moment of each section on its plate per thickness, shape (sections, 3)."""
+        found: np.ndarray = (self.resultants @ tractions).reshape(-1, 3)
+        return found
+
+
+def build(
+    sections: Sequence[Section],
+    plates: Sequence[HolesCompliance],
+    given: JointLoads,
+    grids: Sequence[Grid],
+    force: float,
+) -> PinsSystem:
+    """Fill the matrices of a joint with reference force `force`, N/m.
+
+    Parameters
+    ----------
+    sections : sequence of Section
+        Pin by pin, and through the thickness.
+    plates : sequence of HolesCompliance
+    given : JointLoads
+    grids : sequence of Grid
+        The nodes of each section, all round.
+    force : float
+    """
+    nodes = Nodes(tuple(grids))
+    alone = [System.build(each.problem, grid, force) for each, grid in zip(sections, grids, strict=True)]
+    scales, size = alone[0].scales, nodes.size
+    stretch = [system.scales.displacement / scales.displacement for system in alone]
+    matrix = np.zeros((2 * size, 2 * size), order="F")
+    motion = np.zeros((2 * size, 3 * len(sections) + len(given.moving)))
+    loads = np.zeros((2 * size, len(LOADS) + given.pins.shape[2] + 2))
+    bases = [basis(plates[each.plate].block(0, 0), grid) for each, grid in zip(sections, grids, strict=True)]
+    for a, (one, system) in enumerate(zip(sections, alone, strict=True)):
+        own, plate = nodes.rows(a), plates[one.plate]
+        unit = force / (one.problem.pair.plate.shear_modulus * scales.displacement)
+        local = system.operator.entries()  # the forces of the pins are no loads here: their columns join the operator
+        local += system.loads[:, [Q, P]] @ (system.equilibrium[:2] * [[1.0], [-1.0]])
+        matrix[np.ix_(own, own)] = stretch[a] * local
+        motion[own, 3 * a : 3 * a + 3] = system.motion
+        for b, other in enumerate(sections):
+            if other.plate == one.plate:
+                block = plate.block(one.hole, other.hole)
+                matrix[np.ix_(own, nodes.rows(b))] += unit * (bases[a][0] @ (block @ bases[b][1]))
+        for of, name, place in given.columns:
+            if of == one.plate:
+                loads[own, len(LOADS) + place] += unit * (bases[a][0] @ plate.column(name, one.hole))
+        loads[own[: own.size // 2], -2] = given.fit[a] * one.problem.hole_radius / scales.displacement
+    beta = scales.displacement / force
+    equilibrium, rows, springs, forces = _conditions(sections, alone, nodes, given, beta)
+    loose = [np.maximum(s * each.concentric_gap, 0.0) for s, each in zip(stretch, alone, strict=True)]
+    return PinsSystem(
+        problem=sections[0].problem, grid=nodes, scales=scales, rest_clearance=0.0,  # type: ignore[arg-type]
+        operator=DenseOperator(matrix), motion=motion, loads=loads, equilibrium=equilibrium, motion_rows=rows,
+        forces=forces, plate=0.0, drive=Drive(motion[:, :2], loads), nodes=nodes, sections=tuple(sections), given=given,
+        integrals=tuple(each[1] for each in bases), springs=springs,
+        friction=np.concatenate([each.friction for each in alone]),
+        initial_gap=np.concatenate(loose), weights=np.concatenate([each.weights for each in alone]),
+    )  # fmt: skip
+
+
+def _conditions(
+    sections: Sequence[Section], alone: Sequence[System], nodes: Nodes, given: JointLoads, beta: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The conditions of equilibrium and coherence: of the tractions, the motion, the springs in it, and the loads."""
+    count, size = 3 * len(sections), 2 * nodes.size
+    total = count + len(given.moving)
+    equilibrium, rows, springs = np.zeros((total, size)), np.zeros((total, total)), np.zeros((total, total))
+    user = slice(len(LOADS), len(LOADS) + given.pins.shape[2])
+    forces = np.zeros((total, user.stop + 2))
+
+    def add_force(row: int, place: int, axis: int, factor: float) -> None:
+        """Add the force of a pin on a plate, with the spring that centres it."""
+        equilibrium[row, nodes.rows(place)] += factor * alone[place].equilibrium[axis]
+        springs[row, 3 * place + axis] += factor * CENTRING
+
+    def add_displacement(row: int, place: int, axis: int, sign: float) -> None:
+        """Add the displacement of a section, (T29)."""
+        g = k = 1.0 / (8.0 * math.pi * sections[place].problem.pair.pin.shear_modulus * beta)
+        cos, sin = nodes.grids[place].trig_moments()
+        integral = (np.r_[cos, -sin], np.r_[sin, cos])[axis]
+        equilibrium[row, nodes.rows(place)] += sign * (g * alone[place].equilibrium[axis] - k * integral)
+        rows[row, 3 * place + axis] += sign
+        for number, motion in enumerate(given.moving):
+            if motion.plate == sections[place].plate:
+                rows[row, count + number] += sign * motion.at(sections[place].at)[axis]
+
+    def add_moment(row: int, place: int, factor: float) -> None:
+        """Add the moment of a pin on a plate, with the spring."""
+        shear = nodes.rows(place)[nodes.grids[place].size :]
+        equilibrium[row, shear] -= factor * alone[place].weights
+        springs[row, 3 * place + TURN] += factor * CENTRING
+
+    for pin in range(len(given.pins)):
+        members = [place for place, each in enumerate(sections) if each.pin == pin]
+        head = 3 * members[0]
+        forces[head : head + 2, user] = given.pins[pin]
+        if all(sections[place].problem.frictionless for place in members):
+            rows[head + TURN, head + TURN] = 1.0  # nothing turns it
+        else:
+            for place in members:
+                add_moment(head + TURN, place, sections[place].thickness)
+        for axis in (0, 1):
+            for place in members:
+                add_force(head + axis, place, axis, sections[place].thickness)
+            for step, (before, place) in enumerate(itertools.pairwise(members), start=1):
+                add_displacement(3 * place + axis, before, axis, 1.0)
+                add_displacement(3 * place + axis, place, axis, -1.0)
+                for earlier in members[:step]:
+                    add_force(
+                        3 * place + axis, earlier, axis, sections[place].flexibility * sections[earlier].thickness
+                    )
+                outside = given.pins[pin, axis] * sections[place].flexibility  # acts on the first section
+                forces[3 * place + axis, user] += outside
+        for before, place in itertools.pairwise(members):
+            for sign, of in ((1.0, before), (-1.0, place)):
+                rows[3 * place + TURN, 3 * of + TURN] += sign
+                for number, motion in enumerate(given.moving):
+                    if motion.plate == sections[of].plate:
+                        rows[3 * place + TURN, count + number] += sign * motion.at(0j)[TURN]
+    for number, motion in enumerate(given.moving):
+        for place, each in enumerate(sections):
+            if each.plate == motion.plate:
+                x, y, turned = motion.at(each.at)
+                add_force(count + number, place, 0, each.thickness * x)
+                add_force(count + number, place, 1, each.thickness * y)
+                if turned:
+                    add_moment(count + number, place, each.thickness)
+        forces[count + number, user] = -given.plates[number]
+    return equilibrium, rows + springs, springs, forces

@@ -1,0 +1,70 @@
+"""The compliance of plates with several pinned holes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fastpin.bodies.compliance import complex_coefficients
+from fastpin.elasticity.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
+from fastpin.model.lug import Hole, Lug, rectangle
+
+KOLOSOV = (3.0 - 0.33) / 1.33
+
+
+def edge_stress(found: HolesCompliance, hole: int, loads: dict[str, float], at: float) -> float:
+    """The hoop stress on the free edge of a hole under remote stresses, at an angle; (T48)."""
+    column = sum(size * found.column(name, hole) for name, size in loads.items())
+    moved = complex_coefficients(np.asarray(column))
+    order = np.arange(-found.order, found.order + 1.0)
+    return float(8.0 / (KOLOSOV + 1.0) * np.real(np.exp(1j * order * at) @ ((1.0 + order) * moved)))
+
+
+@pytest.mark.parametrize(
+    ("loads", "at", "expected"),
+    [
+        ({"syy": 1.0}, 0.0, {1.5: 3.26409, 2.0: 3.02018}),
+        ({"sxx": 1.0}, 0.5 * math.pi, {1.5: 2.62314, 3.0: 2.82504, 5.0: 2.92667}),
+        ({"sxx": 1.0, "syy": 1.0}, 0.0, {1.5: 2.88750, 3.0: 2.15459, 5.0: 2.04881}),
+    ],
+)
+def test_two_holes_have_the_stresses_of_lings_table(
+    loads: dict[str, float], at: float, expected: dict[float, float]
+) -> None:
+    """Two equal holes, centre distance 2 lambda R: stresses at the inner edge, and beside the line of centres."""
+    for half, stress in expected.items():
+        found = holes_in_infinite_plate(KOLOSOV, np.array([-half, half]) + 0j, 22 if half < 2.0 else 12)
+        assert edge_stress(found, 0, loads, at) == pytest.approx(stress, abs=1e-5)
+
+
+def test_a_hole_alone_adds_nothing_and_has_kirschs_stress() -> None:
+    found = holes_in_infinite_plate(KOLOSOV, np.array([0j]), 6)
+    np.testing.assert_allclose(found.matrix, 0.0, atol=1e-14)
+    assert edge_stress(found, 0, {"syy": 1.0}, 0.0) == pytest.approx(3.0, abs=1e-12)
+    assert edge_stress(found, 0, {"sxy": 1.0}, 0.75 * math.pi) == pytest.approx(4.0, abs=1e-12)
+
+
+def test_the_matrix_is_symmetric_before_it_is_made_so() -> None:
+    """Betti: a displacement at one hole under a force at another. The order of the holes does not matter either."""
+    centres = np.array([0.0, 4.0 + 1.0j, 1.0 - 5.0j])
+    found = holes_in_infinite_plate(KOLOSOV, centres, 14)
+    turned = holes_in_infinite_plate(KOLOSOV, centres[[2, 0, 1]], 14)
+    for to, by in ((0, 1), (1, 2), (2, 2)):
+        places = [1, 2, 0]
+        np.testing.assert_allclose(turned.block(places[to], places[by]), found.block(to, by), atol=1e-9)
+
+
+@pytest.mark.gate
+def test_a_wide_plate_is_nearly_infinite() -> None:
+    """Inner harmonics of two holes in a rectangle 60 radii wide, beside the series of the infinite plate."""
+    lug = Lug(
+        0.33, "stress", 1.0, rectangle((-60.0, 66.0), (-60.0, 60.0)),
+        dict.fromkeys(("left", "right", "bottom", "top"), "both"), holes=(Hole("second", 6.0 + 0j, 1.0),),
+    )  # fmt: skip
+    finite, infinite = holes_in_outline(lug, ["second"], 6), holes_in_infinite_plate(KOLOSOV, np.array([0j, 6.0]), 6)
+    inner = np.r_[0, 6:26]  # without rotation and translation, which the supports hold
+    for by in (0, 1):
+        less = finite.block(0, by)[np.ix_(inner, inner)] - infinite.block(0, by)[np.ix_(inner, inner)]
+        assert np.abs(less).max() < 2e-3

@@ -1,0 +1,72 @@
+"""Joints at random: the conditions of contact and equilibrium hold in every state, or no state is returned."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fastpin import Material, MaterialPair
+from fastpin.joints import Joint, JointState, Pin, Plate, solve_joint
+from fastpin.model.lug import rectangle
+from fastpin.solver import SolveError
+from tests.support.tiers import seeds
+
+MATERIALS = (Material(72e9, 0.33), Material(210e9, 0.30), Material(110e9, 0.31))
+FORCE = 1e6
+
+
+SHEET = Plate("sheet", MATERIALS[0], 1.0)
+COVER = Plate("cover", MATERIALS[0], 0.7, rectangle((-4.0, 15.0), (-4.0, 5.0)), moves="free")
+
+
+def random_joint(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]]]:
+    """Three pins in a sheet, with a free cover or without: all fits, free directions and signs of all loads."""
+    material, covered = MATERIALS[rng.integers(3)], bool(rng.random() < 0.7)
+    unit = MaterialPair(material, SHEET.material, "stress").beta_star * FORCE
+    pins = []
+    for k, at in enumerate((0.0, 5.0 - 0.5j, 11.0 + 1.0j)):
+        through = ("sheet", "cover") if covered and (k != 1 or rng.random() < 0.7) else ("sheet",)
+        fits = {name: float(rng.choice([-0.1, 0.0, 0.02, 0.1, 0.3])) * unit for name in through}
+        friction = float(rng.choice([0.0, 0.2, 0.6]))
+        soft = float(rng.choice([0.0, 0.2])) * unit / FORCE
+        pins.append(Pin(f"p{k}", at, material, 1.0, through, fits, friction, soft))
+    joint = Joint((SHEET, COVER) if covered else (SHEET,), tuple(pins))
+    names = [name for name in joint.load_names if rng.random() < 0.6]
+    sizes = {name: FORCE * (0.2 if joint.is_stress(name) else 1.0) for name in names}
+    corners = [{name: float(rng.uniform(-1.0, 1.0)) * size for name, size in sizes.items()} for _ in range(3)]
+    return joint, corners
+
+
+def check_state(state: JointState) -> None:
+    """Check Coulomb's law, the unilateral contact and the balance of each pin, from the arrays alone."""
+    joint = state.joint
+    for (pin, plate), contact in zip(joint.sections, state.contacts, strict=True):
+        friction = pin.value_in("friction", plate.name)
+        assert contact.pressure.min() >= 0.0
+        assert contact.gap.min() >= 0.0
+        assert np.all(contact.pressure * contact.gap == 0.0)
+        excess = np.abs(contact.shear) - friction * contact.pressure
+        assert excess.max() <= 1e-9 * max(contact.pressure.max(), 1.0)
+    for pin in joint.pins:
+        places = [place for place, (of, _) in enumerate(joint.sections) if of is pin]
+        given = [state.load[f"{pin.name}.x"], state.load[f"{pin.name}.y"]]
+        # Springs that hold loose pins take 1e-6 of a displacement.
+        np.testing.assert_allclose(state.forces[places].sum(axis=0), given, atol=1e-4 * FORCE)
+    assert max(state.residuals.values()) <= 1e-9
+
+
+@pytest.mark.gate
+def test_random_joints_meet_all_conditions_or_are_refused() -> None:
+    refused, tried = 0, 0
+    for seed in seeds(12):
+        joint, corners = random_joint(np.random.default_rng(seed))
+        tried += 1
+        try:
+            result = solve_joint(joint, corners, nodes=24, harmonics=6)
+        except SolveError as error:
+            refused += 1
+            result = error.result  # type: ignore[assignment]
+            assert result is not None
+        for state in result:
+            check_state(state)
+    assert refused <= max(1, tried // 10), (refused, tried)

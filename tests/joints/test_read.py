@@ -1,0 +1,156 @@
+"""Joint files, and what the command makes of them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from fastpin import CaseFileError, casefile, figures
+from fastpin.cli.main import main
+from fastpin.joints import JOINT_EXAMPLE, JointResult, parse_joint, solve_joint
+from fastpin.report import joints as report
+
+SHEETS = """
+title = "two bolts"
+
+[joint]
+nodes = 24
+
+[[plate]]
+name = "sheet"
+material = "aluminium"
+thickness = 2e-3
+
+[[pin]]
+name = ["A", "B"]
+at = [[0.0, 0.0], [20e-3, 0.0]]
+material = "steel"
+diameter = 5e-3
+plates = ["sheet"]
+clearance = 5e-6
+friction = 0.2
+
+[[load]]
+"A.x" = 4e3
+"B.x" = 2e3
+
+[[load]]
+"A.x" = 1e3
+"""
+
+
+def solved() -> JointResult:
+    case = parse_joint(SHEETS)
+    return solve_joint(case.joint, case.corners, nodes=case.nodes)
+
+
+def faults(text: str) -> list[tuple[int, str]]:
+    with pytest.raises(CaseFileError) as caught:
+        parse_joint(text)
+    return list(caught.value.problems)
+
+
+def test_the_example_is_a_lap_of_three_bolts() -> None:
+    case = parse_joint(JOINT_EXAMPLE)
+    assert [pin.name for pin in case.joint.pins] == ["A", "B", "C"]
+    assert case.joint.load_names[0] == "strap.x"
+    assert case.corners == [{"strap.x": 15e3}, {"strap.x": 1.5e3}]
+    assert case.joint.pins[0].flexibility == pytest.approx(2.1288e-9, rel=1e-4)
+    assert not case.joint.plates[0].is_infinite
+
+
+def test_a_history_repeats() -> None:
+    case = parse_joint(SHEETS.replace("nodes = 24", "nodes = 24\nrepeat = 3"))
+    assert len(case.corners) == 6
+
+
+def test_values_for_each_plate_and_parts_of_an_outline_are_read() -> None:
+    text = SHEETS.replace("friction = 0.2", "friction = { sheet = 0.3 }\nflexibility = 1e-9").replace(
+        "thickness = 2e-3",
+        'thickness = 2e-3\nstart = [-0.02, -0.02]\nsupports = { bottom = "both" }\nparts = [{ name = "bottom", '
+        "to = [0.04, -0.02] }, { to = [0.04, 0.02] }, { to = [-0.02, 0.02], through = [0.0, 0.025] }, "
+        "{ to = [-0.02, -0.02] }]",
+    )
+    joint = parse_joint(text).joint
+    assert joint.pins[0].value_in("friction", "sheet") == 0.3
+    assert [part.name for part in joint.plates[0].outline] == ["bottom", "edge", "edge", "edge"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "words"),
+    [
+        ("thickness = 2e-3", "thick = 2e-3", 10, 'unknown key "thick" in [[plate]], did you mean "thickness"?'),
+        ('"B.x" = 2e3', '"C.x" = 2e3', 23, 'unknown key "C.x" in [[load]]'),
+        ("diameter = 5e-3", "diameter = -5e-3", 16, "diameter: must be positive, not -0.005"),
+        ('plates = ["sheet"]', 'plates = ["skin"]', 0, 'plates: must be "sheet", not "skin"'),
+        ("friction = 0.2", "friction = { skin = 0.2 }", 19, 'friction: must be "sheet", not "skin"'),
+        ('["A", "B"]', '["A"]', 13, "name: must name 2 pins, as many as at has points, not 1"),
+        ("friction = 0.2", 'flexibility = "soft"', 19, 'flexibility: must be "rigid" or "tate-rosenfeld", not "soft"'),
+        ('material = "steel"', 'material = "stel"', 15, "material:"),
+        ("[joint]", "[joints]", 4, "unknown section [joints]"),
+        ("nodes = 24", "nodes = 2", 5, "nodes: must be a whole number from 16 to 720, not 2"),
+        ("[20e-3, 0.0]", "[20e-3]", 14, "at: must be a point [x, y], not [0.02]"),
+    ],
+)
+def test_a_fault_has_its_line(old: str, new: str, line: int, words: str) -> None:
+    assert old in SHEETS
+    found = faults(SHEETS.replace(old, new))
+    assert any(words in sentence and (line in (0, where)) for where, sentence in found), found
+
+
+def test_missing_blocks_are_told_together() -> None:
+    words = [sentence for _, sentence in faults("[joint]\n")]
+    assert words == [f"[[{name}]] blocks are missing" for name in ("plate", "pin", "load")]
+
+
+def test_a_joint_file_is_no_case_file() -> None:
+    with pytest.raises(CaseFileError, match="is a joint file, not a case file; see fastpin joint"):
+        casefile.parse_case(SHEETS)
+
+
+def test_text_and_json_tell_the_same_numbers() -> None:
+    result = solved()
+    text, document = report.describe(result), report.document(result, "two bolts")
+    assert "2 pins, 1 plates, 24 nodes a contact" in text
+    assert json.loads(json.dumps(document, allow_nan=False)) == document
+    first = document["states"][0]["contacts"][0]
+    assert first["force"] == pytest.approx([4e3, 0.0], abs=0.1)
+    assert first["share"] == pytest.approx(2.0 / 3.0, abs=1e-4)
+    row = document["largest"][0]
+    assert row["pressure"] == max(state["contacts"][0]["peak_pressure"] for state in document["states"])
+    assert row["hoop"] == max(state["contacts"][0]["peak_hoop_stress"]["value"] for state in document["states"])
+    assert f"{1e-6 * row['pressure']:.5g}" in text
+    assert (report.UNRESOLVED in text) == any(not each["resolved"] for each in document["largest"])
+
+
+def test_figures_are_drawn(tmp_path: Path) -> None:
+    result = solved()
+    figures.plot_joint(result, tmp_path / "map.svg", width=3.0)
+    figures.plot_shares(result, tmp_path / "shares.svg", width=3.0)
+    assert "hoop stress" in (tmp_path / "map.svg").read_text() or (tmp_path / "map.svg").stat().st_size > 10_000
+    with pytest.raises(Exception, match="state: must be a whole number from -2 to 1, not 7"):
+        figures.plot_joint(result, state=7)
+
+
+def test_the_command_solves_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "joint.toml").write_text(SHEETS)
+    out = tmp_path / "out.json"
+    assert main(["joint", str(tmp_path / "joint.toml"), "--json", str(out), "--nodes", "16"]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("two bolts\n2 pins, 1 plates, 16 nodes a contact")
+    assert json.loads(out.read_text())["nodes"] == 16
+
+
+def test_the_command_prints_its_example_and_wants_a_file(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["joint", "--example"]) == 0
+    assert capsys.readouterr().out == JOINT_EXAMPLE
+    assert main(["joint"]) == 2
+    assert "the joint file is missing; start with: fastpin joint --example" in capsys.readouterr().err
+
+
+def test_the_command_refuses_a_case_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "case.toml").write_text(casefile.EXAMPLE)
+    assert main(["joint", str(tmp_path / "case.toml")]) == 2
+    assert "is a case file, not a joint file; see fastpin run" in capsys.readouterr().err
