@@ -162,7 +162,9 @@ def _released(system: PinsSystem, start: Configuration, load: np.ndarray) -> Con
         own, nodes = slice(3 * place, 3 * place + 3), system.nodes.parts[place]
         rest[own], loose.status[nodes] = start.motion[own], OPEN
         loose.pressure[nodes] = loose.shear[nodes] = 0.0
-    return _settled(system.resting(rest), replace(loose, rest=rest), load)
+    held, loose = system.resting(rest), replace(loose, rest=rest)
+    found = implicit_step(held, loose, load)
+    return None if found is None else _accepted(held, loose, found)
 
 
 def _creep(system: PinsSystem, start: Configuration, load: np.ndarray) -> Configuration | None:

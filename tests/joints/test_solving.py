@@ -220,6 +220,7 @@ def test_every_pin_and_contact_is_in_equilibrium() -> None:
         assert set(state.residuals) == {"gap", "slip", "cone", "equilibrium", "bodies"}
 
 
+@pytest.mark.gate
 def test_a_flexible_pin_takes_less_of_the_load() -> None:
     rigid, soft = (
         solve_joint(
