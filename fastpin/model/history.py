@@ -301,35 +301,42 @@ class LoadHistory:
         path: str | Path,
         columns: Mapping[str, str | Mapping[str, Any]] | None = None,
         thickness: float | None = None,
+        skip: int = 0,
     ) -> LoadHistory:
-        """Read corners from a CSV file: a header, one corner a line.
+        """Read corners from a CSV file: perhaps a preamble, a header, one corner a line.
 
-        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped. Commas, semicolons
-        or tabs separate cells. With semicolons or tabs, numbers may have a decimal comma.
+        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped. Commas, semicolons,
+        tabs or blanks separate cells. Numbers may have a decimal comma.
 
         Parameters
         ----------
         path : str or Path
         columns : mapping, optional
             The column of each load: ``{"P": "Force [N]"}``, or ``{"P": {"column": "F", "scale": -1, "unit": "kN"}}``.
-            The scale is a factor. By default every column is a load, with a unit or without: ``P``, ``P [kN/m]``.
+            The scale is a factor. A column may be a number, counted from 1; the file then needs no header. A pair of
+            columns makes two corners of each line, and ``"count"`` is the column that says how often they are run
+            through: ``{"P": {"column": ["max", "min"]}, "count": "cycles"}``. By default every column is a load, with a
+            unit or without: ``P``, ``P [kN/m]``.
         thickness : float, optional
             Thickness, m. The file has forces in N, and they are divided by it. By default they are per metre.
+        skip : int
+            Lines at the beginning that are not read. A preamble without numbers needs no `skip`.
 
         Raises
         ------
         CaseFileError
             If the file can't be read, a column is missing or unknown, a unit does not fit its load, or cells are not
-            finite numbers. The error lists the first :data:`fastpin.model.profile_csv.MOST_FAULTS` faulty lines.
+            finite numbers. The error lists the first :data:`fastpin.model.csv_table.MOST_FAULTS` faulty lines.
         InputError
-            If `path`, `columns` or `thickness` can't be used.
+            If `path`, `columns`, `thickness` or `skip` can't be used.
         """
         path = file_path("path", path)
         choices = None if columns is None else column_choices("columns", columns)
+        skip = whole_number("skip", skip, 0)
         if thickness is None:
-            return read_csv(path, choices)
+            return read_csv(path, choices, skip=skip)
         checked_thickness("thickness", thickness)
-        return read_csv(path, choices, "with thickness").per_thickness(thickness)
+        return read_csv(path, choices, "with thickness", skip).per_thickness(thickness)
 
     def repeated(self, count: int) -> LoadHistory:
         """This history `count` times in a row. Each time is a cycle.
@@ -460,9 +467,17 @@ class LoadHistory:
         return _filled([_times(block, min(block.count, 2)) for block in self._blocks], initial)
 
 
-def read_csv(path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre") -> LoadHistory:
+def read_csv(
+    path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre", skip: int = 0
+) -> LoadHistory:
     """Read a history as :meth:`LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
-    return LoadHistory.of_blocks([_plain(read_corners(path, choices, basis))])
+    corners, counts = read_corners(path, choices, basis, skip)
+    if counts is None:
+        return LoadHistory.of_blocks([_plain(corners)])
+    rows = np.split(corners, len(counts))
+    return LoadHistory.of_blocks(
+        replace(_plain(row), count=int(count), cycle=True) for row, count in zip(rows, counts, strict=True)
+    )
 
 
 def cycle_length(history: LoadHistory, cycle: CycleKey) -> int:
