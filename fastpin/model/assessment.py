@@ -4,13 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
-from fastpin.model.checks import check_fields, choice, given_fields, items, number, positive, set_fields, true_or_false
+from fastpin.model.checks import (
+    as_toml,
+    check_fields,
+    choice,
+    given_fields,
+    items,
+    number,
+    positive,
+    set_fields,
+    true_or_false,
+)
+from fastpin.model.crack import checked_residual
 from fastpin.model.fatigue import LIFE_CONSTANTS, FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
@@ -39,6 +50,19 @@ MOST_LIFE = 1e18
 """Most passes of a spectrum, and most cycles at a knee: no test has gone as far."""
 
 
+class Rule(NamedTuple):
+    """How cycles do damage: fields of :class:`FatigueAssessment`."""
+
+    small_cycles: str = "elementary"
+    knee: float | None = None
+    reliability: float | None = None
+    confidence: float | None = None
+
+
+USUAL_RULE = Rule()
+"""Median lives, without a knee."""
+
+
 @dataclass(frozen=True)
 class FatigueAssessment:
     """How the fatigue of a load spectrum is assessed. The constants belong to the materials of the bodies.
@@ -46,7 +70,7 @@ class FatigueAssessment:
     Parameters
     ----------
     criterion : str or sequence of str
-        Criteria with lives: "smith-watson-topper", "fatemi-socie".
+        Criteria with lives: "smith-watson-topper", "fatemi-socie", "stress-life".
     bodies : str or sequence of str, optional
         Of "plate", "pin" and "seat"; unless given, all elastic bodies whose own material has the constants.
     over : {"history", "cycle"}
@@ -68,6 +92,16 @@ class FatigueAssessment:
         Whether the tractions are straight lines between the nodes. Unless given, they are for more than 500 states.
     life : float, optional
         The life that is asked for: passes of the spectrum without a crack. It gives a margin of safety.
+    reliability : float, optional
+        Part of the specimens that live longer than the life that is told, such as 0.99; the median life unless given.
+        For "stress-life" alone.
+    confidence : float, optional
+        Confidence in this life for the number of specimens behind the curve, such as 0.95. Unless given, the curve and
+        its scatter are taken as exact.
+    residual_stress : float or sequence of (float, float), optional
+        Hoop stress that the plate has without loads round its hole, or round the seat of its bush, Pa; negative after
+        cold working. One number, or pairs of a distance to the edge, m, and a stress. It is added to the stresses of
+        all states.
 
     Raises
     ------
@@ -85,6 +119,9 @@ class FatigueAssessment:
     knee: float | None = None
     straight: bool | None = None
     life: float | None = None
+    reliability: float | None = None
+    confidence: float | None = None
+    residual_stress: float | Sequence[Sequence[float]] | None = None
 
     def __post_init__(self) -> None:
         check_fields(self, _checked_words, "criterion", tuple(LIFE_CONSTANTS))
@@ -104,11 +141,30 @@ class FatigueAssessment:
         set_fields(self, knee=checked_knee(self.small_cycles, self.knee))
         check_fields(self, true_or_false, "straight", optional=True)
         check_fields(self, number, "life", 1.0, MOST_LIFE, optional=True)
+        check_fields(self, _checked_part, "reliability confidence", optional=True)
+        if self.reliability is not None and self.criteria != ("stress-life",):
+            raise InputError("reliability", f'needs criterion = "stress-life", not {as_toml(list(self.criteria))}')
+        if self.confidence is not None and self.reliability is None:
+            raise InputError("confidence", "belongs to a reliability, such as reliability = 0.99")
+        check_fields(self, checked_residual, "residual_stress", optional=True)
 
     @property
     def criteria(self) -> tuple[str, ...]:
         """The criteria, in the given order."""
         return tuple(self.criterion)
+
+    @property
+    def rule(self) -> Rule:
+        """How cycles do damage."""
+        return Rule(self.small_cycles, self.knee, self.reliability, self.confidence)
+
+    @property
+    def reliability_words(self) -> str:
+        """The end of a sentence on the reliability; empty for median lives."""
+        if self.reliability is None:
+            return ""
+        sure = "" if self.confidence is None else f" with a confidence of {100.0 * self.confidence:.6g} %"
+        return f", lives that {100.0 * self.reliability:.6g} % of the specimens reach{sure}"
 
     @property
     def passes(self) -> str:
@@ -132,7 +188,7 @@ class FatigueAssessment:
 
     def toml(self) -> dict[str, Any]:
         """The keys and values of the section [fatigue] of a case file."""
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in self.given.items()}
+        return {name: _as_lists(value) for name, value in self.given.items()}
 
     def written(self) -> dict[str, Any]:
         """The section [fatigue] with its criterion, so that it is never empty."""
@@ -156,6 +212,13 @@ class FatigueAssessment:
 def checked_distance(length: object) -> float:
     """Check a critical distance, m, which has the limits of a radius, and return it as a float."""
     return number("length", positive("length", length), LEAST_RADIUS, MOST_RADIUS)
+
+
+def _checked_part(field: str, value: object) -> float:
+    """Check a part of all specimens or trials."""
+    if not 0.5 <= number(field, value) < 1.0:
+        raise InputError(field, f"must lie from 0.5 to below 1, such as 0.99, not {as_toml(value)}")
+    return number(field, value)
 
 
 def _checked_words(field: str, value: str | Sequence[str], allowed: tuple[str, ...]) -> tuple[str, ...]:
@@ -224,6 +287,10 @@ def check_assessment(
         if how.method != "edge" and how.length is None:
             for body in bodies:
                 _check_constants(problem, body, ("threshold_range", "limit_range"), f'method "{how.method}"')
+        if how.reliability is not None:
+            names = ("curve_scatter",) if how.confidence is None else ("curve_scatter", "curve_samples")
+            for body in bodies:
+                _check_constants(problem, body, names, "a life at a reliability")
     if history is None:
         return
     if how.over == "cycle" and not history.longest_cycle:
@@ -238,6 +305,10 @@ def check_assessment(
 def _check_constants(problem: Problem, body: Body, names: Sequence[str], purpose: str) -> None:
     given = material_of(problem, body).fatigue or FatigueConstants()
     given.required(names, purpose, owner_of(problem, body))
+
+
+def _as_lists(value: Any) -> Any:
+    return [_as_lists(each) for each in value] if isinstance(value, tuple) else value
 
 
 ASSESSMENT_KEYS = tuple(field.name for field in fields(FatigueAssessment))
