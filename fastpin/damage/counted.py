@@ -19,7 +19,7 @@ from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve, sc
 from fastpin.damage.reliability import life_shift
 from fastpin.errors import InputError
 from fastpin.kernels import rainflow
-from fastpin.model.assessment import USUAL_RULE, Rule
+from fastpin.model.assessment import USUAL_RULE, DamageRule
 from fastpin.model.checks import alternatives, choice
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
@@ -131,7 +131,7 @@ class CountedMaterial(NamedTuple):
 
     @classmethod
     def of(
-        cls, name: str, material: Material, constants: FatigueConstants | None, body: str, rule: Rule = USUAL_RULE
+        cls, name: str, material: Material, constants: FatigueConstants | None, body: str, rule: DamageRule = USUAL_RULE
     ) -> CountedMaterial:
         """Check a criterion, the constants, by default those of the material of a body, and the rule of damage.
 

@@ -403,10 +403,6 @@ def _fatemi_socie(history: np.ndarray, material: Material, k: float, yield_stren
     return _without_rounding(found, FS_COUNT.natural(float(np.abs(history).max(initial=0.0)), material))
 
 
-def _stress_life(history: np.ndarray, material: Material, m: float) -> CriterionValues:
-    return _without_rounding(equivalent_stress(history, m), float(np.abs(history).max(initial=0.0)))
-
-
 def _without_rounding(found: Planes, natural: float) -> CriterionValues:
     """Planes with the parameter 0, and no angle, where the parameter is rounding beside its `natural` size."""
     noise = found.parameter <= ROUNDING * natural
@@ -469,7 +465,11 @@ FATIGUE_CRITERIA: dict[str, FatigueCriterion] = {
         FS_COUNT,
     ),
     "stress-life": FatigueCriterion(
-        "traction", LIFE_CONSTANTS["stress-life"][0], _stress_life, LIFE_CONSTANTS["stress-life"][1], STRESS_COUNT
+        "traction",
+        LIFE_CONSTANTS["stress-life"][0],
+        lambda history, _, m: _without_rounding(equivalent_stress(history, m), np.abs(history).max(initial=0.0)),
+        LIFE_CONSTANTS["stress-life"][1],
+        STRESS_COUNT,
     ),
     "findley": FatigueCriterion("traction", _LIMITS, _by_limits(findley, findley_limit)),
     "crossland": FatigueCriterion("traction", _LIMITS, _by_limits(crossland, crossland_limit)),

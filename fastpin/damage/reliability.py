@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
-from fastpin.model.assessment import Rule
+from fastpin.model.assessment import DamageRule
 from fastpin.model.checks import number, numbers, whole_number
 from fastpin.model.fatigue import LEAST_SAMPLES, FatigueConstants
 from fastpin.runtime.extensions import special
 
 
-def life_shift(rule: Rule, criterion: str, given: FatigueConstants, body: str) -> float:
+def life_shift(rule: DamageRule, criterion: str, given: FatigueConstants, body: str) -> float:
     """Return log10 of the median life over the life at the reliability of a rule of damage.
 
     Raises
@@ -32,8 +32,7 @@ def life_shift(rule: Rule, criterion: str, given: FatigueConstants, body: str) -
         return 0.0
     if criterion != "stress-life":
         raise InputError("reliability", f'belongs to the criterion "stress-life", not to "{criterion}"')
-    names = ("curve_scatter",) if rule.confidence is None else ("curve_scatter", "curve_samples")
-    scatter, *samples = given.required(names, "a life at a reliability", body)
+    scatter, *samples = given.required(rule.needs, "a life at a reliability", body)
     if rule.confidence is None:
         return NormalDist().inv_cdf(rule.reliability) * scatter
     fitted = 3 if given.curve_c == 0.0 else 4  # A, B, m and C

@@ -18,7 +18,7 @@ from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_angles
 from fastpin.damage.reliability import failure_probability
 from fastpin.damage.residual import with_residual
 from fastpin.errors import InputError
-from fastpin.model.assessment import USUAL_RULE, Rule
+from fastpin.model.assessment import USUAL_RULE, DamageRule
 from fastpin.model.checks import check_callable, choice, instance, true_or_false
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import CRITERION, Body, Points, isotropic_bodies, isotropic_material, material_of, owner_of
@@ -201,9 +201,9 @@ def spectrum_damage(
     if progress is not None:
         check_callable("progress", progress)
     tell_read, tell_counted = halves(progress)
-    return spectrum_count(states, criterion, body, points, depth, constants, straight, Rule(small_cycles, knee)).damage(
-        tell_read, tell_counted
-    )
+    return spectrum_count(
+        states, criterion, body, points, depth, constants, straight, DamageRule(small_cycles, knee)
+    ).damage(tell_read, tell_counted)
 
 
 class SpectrumCount(NamedTuple):
@@ -264,7 +264,7 @@ def spectrum_count(
     depth: ArrayLike | None = None,
     constants: FatigueConstants | None = None,
     straight: bool = False,
-    rule: Rule = USUAL_RULE,
+    rule: DamageRule = USUAL_RULE,
     residual_stress: Any = None,
 ) -> SpectrumCount:
     """Check the arguments of :func:`spectrum_damage`, and return the count that they ask for.

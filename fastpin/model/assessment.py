@@ -49,8 +49,11 @@ SPECTRA = ("history", "cycle")
 MOST_LIFE = 1e18
 """Most passes of a spectrum, and most cycles at a knee: no test has gone as far."""
 
+MOST_PART = 0.999999
+"""Largest reliability and confidence: no test has shown the tail of a scatter as far."""
 
-class Rule(NamedTuple):
+
+class DamageRule(NamedTuple):
     """How cycles do damage: fields of :class:`FatigueAssessment`."""
 
     small_cycles: str = "elementary"
@@ -58,8 +61,15 @@ class Rule(NamedTuple):
     reliability: float | None = None
     confidence: float | None = None
 
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The constants of the scatter that it needs."""
+        if self.reliability is None:
+            return ()
+        return ("curve_scatter",) if self.confidence is None else ("curve_scatter", "curve_samples")
 
-USUAL_RULE = Rule()
+
+USUAL_RULE = DamageRule()
 """Median lives, without a knee."""
 
 
@@ -141,7 +151,7 @@ class FatigueAssessment:
         set_fields(self, knee=checked_knee(self.small_cycles, self.knee))
         check_fields(self, true_or_false, "straight", optional=True)
         check_fields(self, number, "life", 1.0, MOST_LIFE, optional=True)
-        check_fields(self, _checked_part, "reliability confidence", optional=True)
+        check_fields(self, number, "reliability confidence", 0.5, MOST_PART, optional=True)
         if self.reliability is not None and self.criteria != ("stress-life",):
             raise InputError("reliability", f'needs criterion = "stress-life", not {as_toml(list(self.criteria))}')
         if self.confidence is not None and self.reliability is None:
@@ -154,9 +164,9 @@ class FatigueAssessment:
         return tuple(self.criterion)
 
     @property
-    def rule(self) -> Rule:
+    def rule(self) -> DamageRule:
         """How cycles do damage."""
-        return Rule(self.small_cycles, self.knee, self.reliability, self.confidence)
+        return DamageRule(self.small_cycles, self.knee, self.reliability, self.confidence)
 
     @property
     def reliability_words(self) -> str:
@@ -212,13 +222,6 @@ class FatigueAssessment:
 def checked_distance(length: object) -> float:
     """Check a critical distance, m, which has the limits of a radius, and return it as a float."""
     return number("length", positive("length", length), LEAST_RADIUS, MOST_RADIUS)
-
-
-def _checked_part(field: str, value: object) -> float:
-    """Check a part of all specimens or trials."""
-    if not 0.5 <= number(field, value) < 1.0:
-        raise InputError(field, f"must lie from 0.5 to below 1, such as 0.99, not {as_toml(value)}")
-    return number(field, value)
 
 
 def _checked_words(field: str, value: str | Sequence[str], allowed: tuple[str, ...]) -> tuple[str, ...]:
@@ -287,10 +290,8 @@ def check_assessment(
         if how.method != "edge" and how.length is None:
             for body in bodies:
                 _check_constants(problem, body, ("threshold_range", "limit_range"), f'method "{how.method}"')
-        if how.reliability is not None:
-            names = ("curve_scatter",) if how.confidence is None else ("curve_scatter", "curve_samples")
-            for body in bodies:
-                _check_constants(problem, body, names, "a life at a reliability")
+        for body in bodies:
+            _check_constants(problem, body, how.rule.needs, "a life at a reliability")
     if history is None:
         return
     if how.over == "cycle" and not history.longest_cycle:

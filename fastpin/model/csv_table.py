@@ -124,7 +124,7 @@ def read_table(path: Path, wanted: Wanted, skip: int = 0) -> tuple[list[CsvColum
             is_wide = raw.peek(2)[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
             encoding = "utf-16" if is_wide else "utf-8-sig"
             with TextIOWrapper(raw, encoding, errors=CP1252, newline="") as file:
-                table = _Table(str(path), wanted)
+                table = _Reading(str(path), wanted)
                 lines = table.lines(file, skip)
                 lines = chain(table.read_head(list(islice(lines, MOST_HEAD))), lines)
                 table.read_rows(islice(lines, MOST_HEAD))  # they show the kind of the numbers
@@ -135,7 +135,7 @@ def read_table(path: Path, wanted: Wanted, skip: int = 0) -> tuple[list[CsvColum
         raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None
 
 
-class _Table:
+class _Reading:
     """The rows of a file so far."""
 
     def __init__(self, name: str, wanted: Wanted) -> None:

@@ -9,7 +9,6 @@ from fastpin.assess.crack import GROWTH, grown
 from fastpin.assess.fatigue import DAMAGE, worst_damage
 from fastpin.assess.outputs import Output, chosen
 from fastpin.assess.strength import PLACE, worst_state
-from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.doubts import doubts_given
 from fastpin.model.strength import StrengthAssessment
 from fastpin.studies.failure import FailureLoad, failure_load
@@ -43,19 +42,16 @@ def _load_at_failure(result: Result, how: StrengthAssessment) -> FailureLoad:
         )  # fmt: skip
 
 
-def _failing(result: Result, how: FatigueAssessment) -> float:
-    """Return the part of the specimens that fail within the life that is asked for."""
-    found: float = worst_damage(result, how).failure_probability(how.life)
-    return found
-
-
 def _read_by(read: Callable[[Any, Any], Any], outputs: Mapping[str, Output]) -> dict[str, SectionOutcome]:
     return {name: SectionOutcome(output, read) for name, output in outputs.items()}
 
 
 SECTION_OUTCOMES = {
     "fatigue": _read_by(worst_damage, chosen(DAMAGE, ("life", "median_life", "damage", "angle")))
-    | _read_by(_failing, {"failure_probability": Output("failure_probability", "", lambda part: part)}),
+    | _read_by(
+        lambda result, how: worst_damage(result, how).failure_probability(how.life),
+        {"failure_probability": Output("failure_probability", "", lambda part: part)},
+    ),
     "crack": _read_by(
         grown,
         chosen(GROWTH, ("fate", "life", "arrest"))

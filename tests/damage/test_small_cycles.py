@@ -13,7 +13,7 @@ from fastpin.damage.lives import curve_with_knee, fatemi_socie_curve, smith_wats
 from fastpin.errors import InputError
 from fastpin.kernels import planes, rainflow
 from fastpin.model import FatigueConstants
-from fastpin.model.assessment import Rule
+from fastpin.model.assessment import DamageRule
 from tests.support.fatigue import uniaxial
 from tests.support.refusals import refused
 from tests.support.tiers import seeds
@@ -29,7 +29,7 @@ RULES = ("elementary", "original", "haibach")
 
 def sum_of(values, rule, knee, order=None, material=MATERIAL):
     """The damage of a stress sxx."""
-    counted = CountedMaterial.of(SWT, material, None, "plate", Rule(rule, knee))
+    counted = CountedMaterial.of(SWT, material, None, "plate", DamageRule(rule, knee))
     spectrum = Spectrum.of(np.arange(len(values)) if order is None else np.asarray(order))
     return float(counted.worst(uniaxial(values), spectrum)[0][0])
 
@@ -100,7 +100,7 @@ def test_the_knee_of_shear():
     for rule, knee, expected in (
         ("elementary", None, 0.5**10 / 1e6), ("haibach", 1e6, 0.5**19 / 1e6), ("original", 1e6, 0.0),
     ):  # fmt: skip
-        counted = CountedMaterial.of(FS, MATERIAL, constants, "plate", Rule(rule, knee))
+        counted = CountedMaterial.of(FS, MATERIAL, constants, "plate", DamageRule(rule, knee))
         assert counted.worst(history, spectrum)[0][0] == pytest.approx(expected, rel=1e-6)
 
 
@@ -109,7 +109,7 @@ def test_the_counted_cycles_have_the_damage_of_the_plane():
     history = rng.uniform(-2e8, 3e8, (30, 1, 4))
     spectrum = Spectrum.of(np.arange(30))
     for rule in RULES[1:]:
-        counted = CountedMaterial.of(SWT, MATERIAL, None, "plate", Rule(rule, 1e5))
+        counted = CountedMaterial.of(SWT, MATERIAL, None, "plate", DamageRule(rule, 1e5))
         found, plane = counted.worst(history, spectrum)
         assert found[0] > 0.0
         assert counted.cycles(history, spectrum, plane[0])[1][:, 2].sum() == pytest.approx(found[0], rel=1e-9)
@@ -148,7 +148,9 @@ def laws(seed):
     path = np.arange(size)
     sums = {}
     for rule in RULES:
-        counted = CountedMaterial.of(SWT, material, None, "plate", Rule(rule, None if rule == "elementary" else knee))
+        counted = CountedMaterial.of(
+            SWT, material, None, "plate", DamageRule(rule, None if rule == "elementary" else knee)
+        )
 
         def found(order, stresses=history, counted=counted):
             return float(counted.worst(stresses, Spectrum.of(np.asarray(order)))[0][0])
