@@ -190,16 +190,16 @@ class _Reading:
         return head[begin:]
 
     def _named(self, head: list[Line], splits: list[Splits], first: int, separator: str, width: int) -> int:
-        """Take the first line before the row `first` that has all columns as header. Return the place behind it."""
+        """Take the first line that has all columns as header. Return the place of the line behind header and units."""
         faults: list[tuple[bool, int, str]] = []
-        for place, (line_number, _) in enumerate(head[: max(first, 1)]):
+        for place, (line_number, _) in enumerate(head):
             for sign, cells in splits[place]:
                 while len(cells) > 1 and not cells[-1]:
                     cells.pop()
                 try:
                     self._set(cells, self._wanted.find(cells), sign)
                 except InputError as error:
-                    is_near = len(cells) == width and not _has_unit(cells)
+                    is_near = place < first and len(cells) == width and not _has_unit(cells)
                     faults.append((is_near, line_number, str(error) if error.field else error.reason))
                 else:
                     return place + 1 + any(self._has_units(*each) for each in head[place + 1 : place + 2])
@@ -219,14 +219,15 @@ class _Reading:
         if not width:  # the first line is the header, and no line behind it is in order
             first, (separator, cells) = 1, splits[0][0]
             width = len(cells)
-        before = [
-            (line_number, cells)
-            for (line_number, _), tried in list(zip(head, splits, strict=True))[max(first - 2, 0) : first]
+        lines = zip(head[max(first - 2, 0) : first], splits[max(first - 2, 0) : first], strict=True)
+        before = {
+            line_number: cells
+            for (line_number, _), tried in lines
             for sign, cells in tried
             if sign == separator and len(cells) == width
-        ]
-        has_units = bool(before) and _has_unit(before[-1][1])
-        titles = before[: len(before) - has_units][-1:]
+        }
+        has_units = bool(before) and _has_unit([*before.values()][-1])
+        titles = [*before.items()][: len(before) - has_units][-1:]
         line_number = titles[0][0] if titles else head[min(first, len(head) - 1)][0]
         is_sure = separator != "," or self._is_separator_given or bool(titles)
         if not is_sure and re.fullmatch(r"\s*[+-]?\d+,\d+\s*", head[first][1]):
@@ -238,7 +239,7 @@ class _Reading:
         except InputError as error:
             self._refuse(line_number, str(error) if error.field else error.reason)
         if has_units:
-            self._has_units(before[-1][0], head[first - 1][1])
+            self._has_units(*head[first - 1])
         return first
 
     def _splits(self, line: str) -> Splits:

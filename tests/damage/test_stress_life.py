@@ -311,6 +311,7 @@ def test_faults_in_a_case_file() -> None:
         ('criterion = "stress-life", reliability = 0.9, confidence = 0.9',
          ', fatigue = { curve = "17-4PH H900 bar, Kt 1" }',
          "fatigue: a life at a reliability needs curve_samples of the plate's material"),
+        ("", ', fatigue = { curve = "2024-T3 sheet" }', 'line 2: curve: there is no stress-life curve "2024'),
         ("reliability = 0.9", "", 'reliability: needs criterion = "stress-life"'),
     ):  # fmt: skip
         with pytest.raises(CaseFileError) as caught:

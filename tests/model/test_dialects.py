@@ -99,6 +99,9 @@ ONE, TWO = {"P": {"column": 1}}, {"P": {"column": 2}}
         ('P,Q\n"1,234",0\n0.5,0\n', None, [1234, 0.5]),
         ("P;Q\r1,5;0\r", None, [1.5]),
         ("date;8\nP;Q\n1;0\n", None, [1]),
+        ("16\nP;Q\n1;0\n", None, [1]),
+        ("F  S\nN/m  N/m\n1  0\n", ONE, [1]),
+        ("F [N/m]  S [kN/m]\n1  0\n", ONE, [1]),
     ],
 )
 def test_files_as_they_are(text: str, columns: Any, found: list[float], tmp_path: Path) -> None:
