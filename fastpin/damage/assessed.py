@@ -162,10 +162,7 @@ def _edge_count(
     """Return the count at points, by default at the given angles of an edge, or all along it."""
     if points is None and how.theta is not None:
         points = Points.at_depth(0.0, how.theta)
-    straight = _is_straight(stops, how)
-    return spectrum_count(
-        stops, criterion, body, points, straight=straight, rule=how.rule, residual_stress=how.residual_stress
-    )
+    return spectrum_count(stops, criterion, body, points, straight=_is_straight(stops, how), how=how)
 
 
 def _count_of_means(
@@ -176,7 +173,7 @@ def _count_of_means(
     residual = how.residual_stress
     length = checked_length(problem, method, body, how.length)
     points, weights = points_of_means(problem, method, body, length, theta)  # type: ignore[arg-type]
-    counted = CountedMaterial.of(criterion, material_of(problem, body), None, owner_of(problem, body), how.rule)
+    counted = CountedMaterial.of(criterion, material_of(problem, body), None, owner_of(problem, body), how)
     different, order = different_states(stops, straight)
 
     def means(progress: Progress) -> Iterator[tuple[slice, np.ndarray]]:

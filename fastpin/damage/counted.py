@@ -19,7 +19,7 @@ from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve, sc
 from fastpin.damage.reliability import life_shift
 from fastpin.errors import InputError
 from fastpin.kernels import rainflow
-from fastpin.model.assessment import USUAL_RULE, DamageRule
+from fastpin.model.assessment import USUAL, FatigueAssessment
 from fastpin.model.checks import alternatives, choice
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
@@ -131,15 +131,20 @@ class CountedMaterial(NamedTuple):
 
     @classmethod
     def of(
-        cls, name: str, material: Material, constants: FatigueConstants | None, body: str, rule: DamageRule = USUAL_RULE
+        cls,
+        name: str,
+        material: Material,
+        constants: FatigueConstants | None,
+        body: str,
+        how: FatigueAssessment = USUAL,
     ) -> CountedMaterial:
-        """Check a criterion, the constants, by default those of the material of a body, and the rule of damage.
+        """Check a criterion, the constants, by default those of the material of a body, and how cycles do damage.
 
         Raises
         ------
         InputError
             If the criterion has no life, or a constant is missing. The message names the constants and the `body`.
-            Also if the rule can't be used.
+            Also if its curve has no such knee.
         """
         criterion = FATIGUE_CRITERIA[choice("criterion", name, tuple(FATIGUE_CRITERIA))]
         if criterion.counting is None:
@@ -147,10 +152,10 @@ class CountedMaterial(NamedTuple):
         given = (material.fatigue if constants is None else constants) or FatigueConstants()
         known = given.required((*criterion.needs, *criterion.life_needs), name, body)
         needs = len(criterion.needs)
-        shift = life_shift(rule, name, given, body)
+        shift = life_shift(how, given, body)
         curve = scattered(criterion.counting.curve(material, *known[needs:]), shift)
         power = known[0] if criterion.counting.form == rainflow.POWERS else 0.0
-        life = curve_with_knee(curve, criterion.counting.degree, rule.small_cycles, rule.knee, power)
+        life = curve_with_knee(curve, criterion.counting.degree, how.small_cycles, how.knee, power)
         scatter = given.curve_scatter if name == "stress-life" and given.curve_scatter else math.nan
         return cls(name, criterion.counting, material, known[:needs], life, shift, scatter)
 

@@ -14,29 +14,27 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
-from fastpin.model.assessment import DamageRule
+from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import number, numbers, whole_number
 from fastpin.model.fatigue import LEAST_SAMPLES, FatigueConstants
 from fastpin.runtime.extensions import special
 
 
-def life_shift(rule: DamageRule, criterion: str, given: FatigueConstants, body: str) -> float:
-    """Return log10 of the median life over the life at the reliability of a rule of damage.
+def life_shift(how: FatigueAssessment, given: FatigueConstants, body: str) -> float:
+    """Return log10 of the median life over the life at the reliability of an assessment.
 
     Raises
     ------
     InputError
         If the material of the `body` has no scatter, or with a confidence no number of specimens.
     """
-    if rule.reliability is None:
+    if how.reliability is None:
         return 0.0
-    if criterion != "stress-life":
-        raise InputError("reliability", f'belongs to the criterion "stress-life", not to "{criterion}"')
-    scatter, *samples = given.required(rule.needs, "a life at a reliability", body)
-    if rule.confidence is None:
-        return NormalDist().inv_cdf(rule.reliability) * scatter
+    scatter, *samples = given.required(how.scatter_needs, "a life at a reliability", body)
+    if how.confidence is None:
+        return NormalDist().inv_cdf(how.reliability) * scatter
     fitted = 3 if given.curve_c == 0.0 else 4  # A, B, m and C
-    return tolerance_factor(rule.reliability, rule.confidence, int(samples[0]), fitted) * scatter
+    return tolerance_factor(how.reliability, how.confidence, int(samples[0]), fitted) * scatter
 
 
 def tolerance_factor(reliability: float, confidence: float, samples: int, fitted: int = 4) -> float:

@@ -18,7 +18,7 @@ from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_angles
 from fastpin.damage.reliability import failure_probability
 from fastpin.damage.residual import with_residual
 from fastpin.errors import InputError
-from fastpin.model.assessment import USUAL_RULE, DamageRule
+from fastpin.model.assessment import USUAL, FatigueAssessment
 from fastpin.model.checks import check_callable, choice, instance, true_or_false
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import CRITERION, Body, Points, isotropic_bodies, isotropic_material, material_of, owner_of
@@ -201,9 +201,10 @@ def spectrum_damage(
     if progress is not None:
         check_callable("progress", progress)
     tell_read, tell_counted = halves(progress)
-    return spectrum_count(
-        states, criterion, body, points, depth, constants, straight, DamageRule(small_cycles, knee)
-    ).damage(tell_read, tell_counted)
+    how = FatigueAssessment(small_cycles=small_cycles, knee=knee)
+    return spectrum_count(states, criterion, body, points, depth, constants, straight, how).damage(
+        tell_read, tell_counted
+    )
 
 
 class SpectrumCount(NamedTuple):
@@ -264,12 +265,11 @@ def spectrum_count(
     depth: ArrayLike | None = None,
     constants: FatigueConstants | None = None,
     straight: bool = False,
-    rule: DamageRule = USUAL_RULE,
-    residual_stress: Any = None,
+    how: FatigueAssessment = USUAL,
 ) -> SpectrumCount:
     """Check the arguments of :func:`spectrum_damage`, and return the count that they ask for.
 
-    `rule` and `residual_stress` are those of a :class:`fastpin.model.FatigueAssessment`.
+    Rule, reliability and residual stress are those of `how`.
     """
     stops = stops_of_one_problem(states)
     problem = stops[0].problem
@@ -291,13 +291,13 @@ def spectrum_count(
                 isotropic_material("body", problem, one, CRITERION),
                 constants,
                 owner_of(problem, one),
-                rule,
+                how,
             ),
         )
         for chosen, one in bodies_at(problem, body, below.ravel())
     ]
     blocks = with_residual(
-        partial(history_blocks, different, points, body, straight), problem, body, points, residual_stress
+        partial(history_blocks, different, points, body, straight), problem, body, points, how.residual_stress
     )
     return SpectrumCount(criterion, body, points.theta, below * problem.hole_radius, different, order, parts, blocks)
 

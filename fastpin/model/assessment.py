@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -51,26 +51,6 @@ MOST_LIFE = 1e18
 
 MOST_PART = 0.999999
 """Largest reliability and confidence: no test has shown the tail of a scatter as far."""
-
-
-class DamageRule(NamedTuple):
-    """How cycles do damage: fields of :class:`FatigueAssessment`."""
-
-    small_cycles: str = "elementary"
-    knee: float | None = None
-    reliability: float | None = None
-    confidence: float | None = None
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """The constants of the scatter that it needs."""
-        if self.reliability is None:
-            return ()
-        return ("curve_scatter",) if self.confidence is None else ("curve_scatter", "curve_samples")
-
-
-USUAL_RULE = DamageRule()
-"""Median lives, without a knee."""
 
 
 @dataclass(frozen=True)
@@ -164,9 +144,11 @@ class FatigueAssessment:
         return tuple(self.criterion)
 
     @property
-    def rule(self) -> DamageRule:
-        """How cycles do damage."""
-        return DamageRule(self.small_cycles, self.knee, self.reliability, self.confidence)
+    def scatter_needs(self) -> tuple[str, ...]:
+        """The constants of the scatter that it needs of each material."""
+        if self.reliability is None:
+            return ()
+        return ("curve_scatter",) if self.confidence is None else ("curve_scatter", "curve_samples")
 
     @property
     def reliability_words(self) -> str:
@@ -291,7 +273,7 @@ def check_assessment(
             for body in bodies:
                 _check_constants(problem, body, ("threshold_range", "limit_range"), f'method "{how.method}"')
         for body in bodies:
-            _check_constants(problem, body, how.rule.needs, "a life at a reliability")
+            _check_constants(problem, body, how.scatter_needs, "a life at a reliability")
     if history is None:
         return
     if how.over == "cycle" and not history.longest_cycle:
@@ -314,3 +296,6 @@ def _as_lists(value: Any) -> Any:
 
 ASSESSMENT_KEYS = tuple(field.name for field in fields(FatigueAssessment))
 """The fields of :class:`FatigueAssessment`, the keys of [fatigue] in a case file."""
+
+USUAL = FatigueAssessment()
+"""Median lives by Smith, Watson and Topper, without a knee."""

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.model.angles import cos_degrees
 from fastpin.model.checks import (
     as_toml,
     file_path,
@@ -266,7 +267,7 @@ class LoadHistory:
 
         def corner(turn: float) -> dict[str, float]:
             return {
-                name: mean.get(name, 0.0) + amplitude.get(name, 0.0) * _cos_degrees(360.0 * turn + phase.get(name, 0.0))
+                name: mean.get(name, 0.0) + amplitude.get(name, 0.0) * cos_degrees(360.0 * turn + phase.get(name, 0.0))
                 for name in LOADS
                 if name in mean or name in amplitude
             }
@@ -313,14 +314,13 @@ class LoadHistory:
         path : str or Path
         columns : mapping, optional
             The column of each load: ``{"P": "Force [N]"}``, or ``{"P": {"column": "F", "scale": -1, "unit": "kN"}}``.
-            The scale is a factor. A column may be a number, counted from 1; the file then needs no header. A pair of
-            columns makes two corners of each line, and ``"count"`` is the column that says how often they are run
-            through: ``{"P": {"column": ["max", "min"]}, "count": "cycles"}``. By default every column is a load, with a
-            unit or without: ``P``, ``P [kN/m]``.
+            A column may be a number, counted from 1, of a file without a header. A pair makes two corners of each line,
+            and ``"count"`` says how often: ``{"P": {"column": ["max", "min"]}, "count": "cycles"}``. By default every
+            column is a load, with a unit or without: ``P``, ``P [kN/m]``.
         thickness : float, optional
             Thickness, m. The file has forces in N, and they are divided by it. By default they are per metre.
         skip : int
-            Lines at the beginning that are not read. A preamble without numbers needs no `skip`.
+            Lines at the beginning that are not read. A preamble without numbers needs none.
 
         Raises
         ------
@@ -335,7 +335,6 @@ class LoadHistory:
         skip = whole_number("skip", skip, 0)
         if thickness is None:
             return read_csv(path, choices, skip=skip)
-        checked_thickness("thickness", thickness)
         return read_csv(path, choices, "with thickness", skip).per_thickness(thickness)
 
     def repeated(self, count: int) -> LoadHistory:
@@ -471,13 +470,8 @@ def read_csv(
     path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre", skip: int = 0
 ) -> LoadHistory:
     """Read a history as :meth:`LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
-    corners, counts = read_corners(path, choices, basis, skip)
-    if counts is None:
-        return LoadHistory.of_blocks([_plain(corners)])
-    rows = np.split(corners, len(counts))
-    return LoadHistory.of_blocks(
-        replace(_plain(row), count=int(count), cycle=True) for row, count in zip(rows, counts, strict=True)
-    )
+    parts = read_corners(path, choices, basis, skip)
+    return LoadHistory.of_blocks(replace(_plain(rows), count=max(n, 1), cycle=n > 0) for rows, n in parts)
 
 
 def cycle_length(history: LoadHistory, cycle: CycleKey) -> int:
@@ -604,9 +598,3 @@ def _plain(given: np.ndarray) -> Block:
 
 def _count_corners(count: int) -> str:
     return f"{count:,} corner{'' if count == 1 else 's'}"
-
-
-def _cos_degrees(angle: float) -> float:
-    """The cosine, exact where it is 0 or 1."""
-    quarters = angle / 90.0
-    return (1.0, 0.0, -1.0, 0.0)[int(quarters) % 4] if quarters.is_integer() else math.cos(math.radians(angle))

@@ -22,10 +22,10 @@ MOST_COUNTED = 10_000
 
 def read_corners(
     path: Path, choices: Mapping[str, ColumnChoice] | None, basis: Basis, skip: int = 0
-) -> tuple[np.ndarray, np.ndarray | None]:
-    """Read the corners of a CSV file, shape (corners, loads), and the counts of its rows, shape (rows,), or None.
+) -> list[tuple[np.ndarray, int]]:
+    """Read blocks of corners from a CSV file, shape (corners, loads), each with its count: 0 if the file has none.
 
-    Empty cells are NaN. Each row has as many corners as a load has columns: one, or two.
+    Empty cells are NaN. Each row has as many corners as a load has columns: one, or two. With counts it is a block.
 
     Parameters
     ----------
@@ -71,4 +71,7 @@ def read_corners(
         given = [column for name, column in zip(names, numbers, strict=True) if name == load]
         for place in range(size):
             corners[place::size, LOADS.index(load)] = given[place % len(given)]
-    return corners, numbers[names.index(COUNT)].astype(int) if COUNT in names else None
+    if COUNT not in names:
+        return [(corners, 0)]
+    counts = numbers[names.index(COUNT)].astype(int).tolist()
+    return list(zip(np.split(corners, rows), counts, strict=True))

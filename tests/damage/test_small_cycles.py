@@ -12,8 +12,7 @@ from fastpin.damage.counted import CountedMaterial, Spectrum
 from fastpin.damage.lives import curve_with_knee, fatemi_socie_curve, smith_watson_topper_curve
 from fastpin.errors import InputError
 from fastpin.kernels import planes, rainflow
-from fastpin.model import FatigueConstants
-from fastpin.model.assessment import DamageRule
+from fastpin.model import FatigueAssessment, FatigueConstants
 from tests.support.fatigue import uniaxial
 from tests.support.refusals import refused
 from tests.support.tiers import seeds
@@ -29,7 +28,7 @@ RULES = ("elementary", "original", "haibach")
 
 def sum_of(values, rule, knee, order=None, material=MATERIAL):
     """The damage of a stress sxx."""
-    counted = CountedMaterial.of(SWT, material, None, "plate", DamageRule(rule, knee))
+    counted = CountedMaterial.of(SWT, material, None, "plate", FatigueAssessment(small_cycles=rule, knee=knee))
     spectrum = Spectrum.of(np.arange(len(values)) if order is None else np.asarray(order))
     return float(counted.worst(uniaxial(values), spectrum)[0][0])
 
@@ -100,7 +99,7 @@ def test_the_knee_of_shear():
     for rule, knee, expected in (
         ("elementary", None, 0.5**10 / 1e6), ("haibach", 1e6, 0.5**19 / 1e6), ("original", 1e6, 0.0),
     ):  # fmt: skip
-        counted = CountedMaterial.of(FS, MATERIAL, constants, "plate", DamageRule(rule, knee))
+        counted = CountedMaterial.of(FS, MATERIAL, constants, "plate", FatigueAssessment(small_cycles=rule, knee=knee))
         assert counted.worst(history, spectrum)[0][0] == pytest.approx(expected, rel=1e-6)
 
 
@@ -109,7 +108,7 @@ def test_the_counted_cycles_have_the_damage_of_the_plane():
     history = rng.uniform(-2e8, 3e8, (30, 1, 4))
     spectrum = Spectrum.of(np.arange(30))
     for rule in RULES[1:]:
-        counted = CountedMaterial.of(SWT, MATERIAL, None, "plate", DamageRule(rule, 1e5))
+        counted = CountedMaterial.of(SWT, MATERIAL, None, "plate", FatigueAssessment(small_cycles=rule, knee=1e5))
         found, plane = counted.worst(history, spectrum)
         assert found[0] > 0.0
         assert counted.cycles(history, spectrum, plane[0])[1][:, 2].sum() == pytest.approx(found[0], rel=1e-9)
@@ -149,7 +148,11 @@ def laws(seed):
     sums = {}
     for rule in RULES:
         counted = CountedMaterial.of(
-            SWT, material, None, "plate", DamageRule(rule, None if rule == "elementary" else knee)
+            SWT,
+            material,
+            None,
+            "plate",
+            FatigueAssessment(small_cycles=rule, knee=None if rule == "elementary" else knee),
         )
 
         def found(order, stresses=history, counted=counted):

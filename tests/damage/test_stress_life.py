@@ -18,7 +18,7 @@ from fastpin.damage.lives import cycles_on_curve, stress_life_curve
 from fastpin.damage.reliability import failure_probability, tolerance_factor
 from fastpin.errors import CaseFileError
 from fastpin.model import FatigueAssessment, FatigueConstants, Material
-from fastpin.model.assessment import USUAL_RULE, DamageRule
+from fastpin.model.assessment import USUAL
 from fastpin.model.stress_life import KSI, stress_life_curves
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import value_of
@@ -41,9 +41,9 @@ def uniaxial(levels: np.ndarray) -> np.ndarray:
     return history
 
 
-def damage_of(levels: np.ndarray, rule: DamageRule = USUAL_RULE, of: Material | None = None) -> float:
+def damage_of(levels: np.ndarray, how: FatigueAssessment = USUAL, of: Material | None = None) -> float:
     """The damage of a spectrum of one stress, given in ksi."""
-    counted = CountedMaterial.of("stress-life", of or material(), None, "plate", rule)
+    counted = CountedMaterial.of("stress-life", of or material(), None, "plate", how)
     return float(counted.worst(uniaxial(levels), Spectrum.of(np.arange(len(levels))))[0][0])
 
 
@@ -62,8 +62,10 @@ def test_one_level() -> None:
     levels = np.array([0.0, 40.0])
     assert 1.0 / damage_of(levels) == pytest.approx(10.0 ** (A - B * math.log10(40.0 - C)), rel=1e-9)
     assert 1.0 / damage_of(levels) == pytest.approx(403_881, abs=0.5)
-    assert 1.0 / damage_of(levels, DamageRule(reliability=0.99)) == pytest.approx(52_752, abs=0.5)
-    assert 1.0 / damage_of(levels, DamageRule(reliability=0.99, confidence=0.95)) == pytest.approx(35_434, abs=0.5)
+    assert 1.0 / damage_of(levels, FatigueAssessment("stress-life", reliability=0.99)) == pytest.approx(52_752, abs=0.5)
+    assert 1.0 / damage_of(
+        levels, FatigueAssessment("stress-life", reliability=0.99, confidence=0.95)
+    ) == pytest.approx(35_434, abs=0.5)
     assert damage_of([0.0, 15.7]) == 0.0  # below C
     assert damage_of([0.0, 16.0]) == pytest.approx(by_hand(np.array([0.0, 16.0])), rel=1e-8)
 
@@ -72,7 +74,7 @@ def test_random_spectra() -> None:
     for seed in seeds(20):
         levels = np.random.default_rng(seed).uniform(-20.0, 60.0, 60)
         assert damage_of(levels) == pytest.approx(by_hand(levels), rel=1e-7)
-        assert damage_of(levels, DamageRule(reliability=0.9)) == pytest.approx(
+        assert damage_of(levels, FatigueAssessment("stress-life", reliability=0.9)) == pytest.approx(
             by_hand(levels, 1.2815515655446004 * ERROR), rel=1e-7
         )
 
@@ -83,7 +85,7 @@ def test_lives_scatter_as_stated() -> None:
     draws = np.random.default_rng(3).normal(0.0, ERROR, 100_000)
     lives = 1.0 / by_hand(levels, draws)
     for part in (0.5, 0.9, 0.99):
-        stated = 1.0 / damage_of(levels, DamageRule(reliability=part))
+        stated = 1.0 / damage_of(levels, FatigueAssessment("stress-life", reliability=part))
         reached = np.mean(lives >= stated)
         assert reached == pytest.approx(part, abs=4.0 * math.sqrt(part * (1.0 - part) / draws.size))
         median = 1.0 / damage_of(levels)
@@ -156,10 +158,10 @@ def test_rules_of_small_cycles() -> None:
     at = 10.0 ** ((A - 6.0) / B) + C
     for factor, knee in itertools.product((1.1, 0.9), (None, 1e6)):
         levels = np.array([0.0, factor * at])
-        done = damage_of(levels, DamageRule("original", knee) if knee else DamageRule())
+        done = damage_of(levels, FatigueAssessment(small_cycles="original", knee=knee) if knee else USUAL)
         assert done == pytest.approx(0.0 if knee and factor < 1.0 else by_hand(levels), rel=1e-8)
     slope = B * at / (at - C)
-    found = damage_of(np.array([0.0, 0.9 * at]), DamageRule("haibach", 1e6))
+    found = damage_of(np.array([0.0, 0.9 * at]), FatigueAssessment(small_cycles="haibach", knee=1e6))
     assert found == pytest.approx(1e-6 * 0.9 ** (2.0 * slope - 1.0), rel=1e-7)
 
 
@@ -264,7 +266,7 @@ def test_a_case_with_a_reliability(result: fastpin.Result, sure: FatigueAssessme
     hoop = hoop_at(result, found.hot_spot.theta) / KSI
     assert median.hot_spot.damage == pytest.approx(by_hand(hoop), rel=1e-5)
     (reserve,) = result.assessed_reserves(sure)
-    assert 1.0 / damage_of(reserve.factor * hoop, sure.rule) == pytest.approx(1e5, rel=1e-4)
+    assert 1.0 / damage_of(reserve.factor * hoop, sure) == pytest.approx(1e5, rel=1e-4)
 
 
 def test_text_json_and_outcomes_say_the_same(result: fastpin.Result, sure: FatigueAssessment) -> None:
