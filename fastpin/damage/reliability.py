@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
 from fastpin.model.assessment import FatigueAssessment
-from fastpin.model.checks import number, numbers, whole_number
+from fastpin.model.checks import in_one_shape, number, number_array, numbers, whole_number
 from fastpin.model.fatigue import LEAST_SAMPLES, FatigueConstants
 from fastpin.runtime.extensions import special
 
@@ -85,7 +85,7 @@ def failure_probability(life: ArrayLike, median: ArrayLike, scatter: float) -> n
     error = number("scatter", scatter, 0.0)
     if error == 0.0:
         raise InputError("scatter", "must be positive, not 0")
-    lives, medians = numbers("life", life, 0.0, open_low=True), np.asarray(median, dtype=float)
+    lives, medians = in_one_shape("median", numbers("life", life, 0.0, open_low=True), number_array("median", median))
     if not np.all(medians > 0.0):
         raise InputError("median", "must be above 0")
     ratio = (np.log10(lives) - np.log10(medians)) / error

@@ -46,6 +46,9 @@ def read_samples(
         If `path`, `columns` or `skip` can't be used.
     """
     place = file_path("path", path)
+    if columns is not None and (not isinstance(columns, Mapping) or not set(columns) <= set(COLUMNS)):
+        example = '{"angles": {"column": 1}, "values": {"column": "R", "unit": "um"}}'
+        raise InputError("columns", f"must map angles and values to columns, such as {example}, not {as_toml(columns)}")
     choices = {name: column_choice(name, given) for name, given in (columns or {}).items()}
     for name in COLUMNS if choices else ():
         if len(choices[name].columns if name in choices else ()) != 1:

@@ -210,6 +210,8 @@ def test_profiles_have_the_same_dialects(kind: str, tmp_path: Path) -> None:
 
 def test_columns_of_a_profile_that_are_wrong(tmp_path: Path) -> None:
     for columns, words in (
+        ([1, 2], "columns: must map angles and values to columns, such as"),
+        ({"angle": 1}, "columns: must map angles and values to columns, such as"),
         ({"angles": "phi"}, 'values: must be a column of the CSV file, such as { column = "angle" } or { column = 1 }'),
         ({"angles": "phi", "values": {"colum": 1}}, 'values: unknown key "colum"; the keys are column, scale, unit'),
     ):
