@@ -46,6 +46,8 @@ OTHER_WORDS = {
     "csv": "CSV file of corners, relative to the case file: a header, then a line for each corner; a load "
     'beside it is a column: `P = { column = "Force [N]", scale = -1.0, unit = "kN" }`',
     "repeat": "number of times that the loads are run through",
+    "skip": "lines at the beginning of the CSV file that are not read",
+    "count": "column that says how many times the two corners of a line are run through",
     "file": "a compliance, relative to the case file",
     "material": "name of a material of fastpin or of your own file",
     "rigid": "true: the body is rigid",

@@ -26,7 +26,8 @@ def assessment_words(how: FatigueAssessment) -> str:
     rule = RULES[how.small_cycles].format("" if how.knee is None else f"{how.knee:.6g}")
     place = "" if how.method == "edge" else f", stresses by the {how.method} method of critical distances"
     asked = "" if how.life is None else f", for a life of {how.life:.6g} {how.passes}"
-    return f"{spectrum}, {rule}{place}{asked}"
+    residual = "" if how.residual_stress is None else ", with a residual stress of the plate"
+    return f"{spectrum}, {rule}{place}{asked}{how.reliability_words}{residual}"
 
 
 def crack_words(problem: Problem, crack: CrackGrowth) -> str:

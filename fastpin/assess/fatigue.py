@@ -38,6 +38,8 @@ HOW = (
     Output("small_cycles", "text", lambda how: how.small_cycles, allowed=MINER_RULES),
     Output("knee", "", lambda how: how.knee, optional=True),
     Output("life_asked", "", lambda how: how.life, optional=True),
+    Output("reliability", "", lambda how: how.reliability, optional=True),
+    Output("confidence", "", lambda how: how.confidence, optional=True),
 )
 """Outputs of a :class:`fastpin.model.FatigueAssessment`."""
 
@@ -48,6 +50,10 @@ DAMAGE = (
     Output(
         "life", "life", lambda found: found.hot_spot.life,
         "spectra, or cycles over the last cycle; null without damage", optional=True,
+    ),
+    Output(
+        "median_life", "life", lambda found: found.hot_spot.life * 10.0**found.shift,
+        "the life that half of the specimens reach", optional=True,
     ),
     Output("angle", "angle", lambda found: found.hot_spot.theta, optional=True),
     Output("depth", "length", lambda found: found.hot_spot.depth, optional=True),
@@ -132,8 +138,12 @@ def _line(damage: SpectrumDamage, how: FatigueAssessment) -> str:
     if math.isnan(spot.theta):
         return f"{name}: no damage"
     depth = "" if spot.depth == 0.0 else f", {units(damage.problem)['length'].text(spot.depth, 3)} below the edge"
+    failing = damage.failure_probability(how.life)
+    parts = [f"median life {spot.life * 10.0**damage.shift:.4g}"] if damage.shift else []
+    parts += [] if math.isnan(failing) else [f"{failing:.3g} of the specimens fail within {how.life:.6g} {how.passes}"]
     parts = [
-        f"life {spot.life:.4g} {how.passes}, damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}",
+        ", ".join([f"life {spot.life:.4g} {how.passes}", *parts])
+        + f", damage {spot.damage:.4g} at {from_bottom(spot.theta):z.2f} deg{depth}",
         f"normal of the plane {math.degrees(spot.plane):z.2f} deg from +x",
     ]
     same: dict[frozenset[float], tuple[float, int, str]] = {}  # repeated states have the load points of the first ones
@@ -158,5 +168,7 @@ def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
         cycles = {name: getattr(one.cycles, name)[:MOST_LISTED].tolist() for name in one.cycles._fields}
         rows = [dict(zip(cycles, row, strict=True)) for row in zip(*cycles.values(), strict=True)]
         over_yield = over.get(owner_of(one.problem, one.body))
-        bodies.append(document_of(DAMAGE, one, units(one.problem)) | {"cycles": rows, "over_yield": over_yield})
+        failing = one.failure_probability(assessed.how.life)
+        rest = {"failure_probability": None if math.isnan(failing) else failing, "over_yield": over_yield}
+        bodies.append(document_of(DAMAGE, one, units(one.problem)) | {"cycles": rows} | rest)
     return document_of(HOW, assessed.how, {}) | {"error": assessed.reason or None, "bodies": bodies}

@@ -26,6 +26,8 @@ def read_assessment(
     harmless = {key: getattr(usual, key) for key in ASSESSMENT_KEYS}
     if values.get("length") is not None:
         harmless["method"] = "line"  # a wrong method leaves its length unreported, as a wrong rule its knee
+    if values.get("reliability") is not None:
+        harmless["criterion"] = "stress-life"
     if values.get("knee") is not None:
         harmless["small_cycles"] = "original"
     if values.get("small_cycles", "elementary") != "elementary":

@@ -9,7 +9,7 @@ import numpy as np
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import any_text, as_toml, number, whole_number
-from fastpin.model.csv_columns import COLUMN_KEYS, ColumnChoice, column_choice
+from fastpin.model.csv_columns import COLUMN_KEYS, COUNT, ColumnChoice, column_choice
 from fastpin.model.history import (
     MAX_CORNERS,
     MOST_POINTS,
@@ -126,6 +126,9 @@ def _from_block(block: Section, folder: Path, basis: Basis) -> LoadHistory | Non
             if name in block:
                 block.report(f"{name}: can't be given together with amplitude; write mean = {{{name} = ...}}", name)
         return _harmonic(block)
+    for name in (COUNT, "skip"):
+        if name in block:
+            block.report(f'{name}: needs a CSV file, such as csv = "rig.csv"', name)
     for name in HARMONIC:
         if name in block:
             block.report(f"{name}: needs an amplitude, such as amplitude = {{Q = 1e5}}", name)
@@ -223,16 +226,19 @@ def _numbers(block: Section, name: str) -> list[float] | float | None:
 def _from_csv(section: Section, folder: Path, basis: Basis) -> LoadHistory | None:
     """The corners of a CSV file. The loads of the section, if it has any, are tables that name their columns."""
     name = section.checked("csv", any_text)
-    choices = {load: _column(section, load) for load in LOADS if load in section}
+    choices = {load: _column(section, load) for load in (*LOADS, COUNT) if load in section}
     known = {load: choice for load, choice in choices.items() if choice is not None}
-    if name is None or len(known) < len(choices):
+    skip = section.checked("skip", whole_number, 0) if "skip" in section else 0
+    if name is None or skip is None or len(known) < len(choices):
         return None
     try:
-        return read_csv(folder / name, known or None, basis)
+        return read_csv(folder / name, known or None, basis, skip)
     except CaseFileError as error:
         for line, sentence in error.problems:
             section.report(f"csv: {name}{f', line {line}' if line else ''}: {sentence}", "csv")
-        return None
+    except InputError as error:
+        section.report(str(error), error.field)
+    return None
 
 
 def _column(section: Section, load: str) -> ColumnChoice | None:

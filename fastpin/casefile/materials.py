@@ -80,7 +80,7 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
     inner = Section(source, (section.name, "fatigue"), table)
     inner.check_keys(_FATIGUE_KEYS, f" in fatigue of [{section.name}]")
     given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
-    return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
+    return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": "", "curve": ""})
 
 
 def read_law(source: CaseText, section: Section, key: str) -> KnownLaw | None:

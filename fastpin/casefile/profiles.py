@@ -19,7 +19,7 @@ from fastpin.model.checks import any_text, as_toml, number, whole_number
 from fastpin.model.load_units import Basis
 from fastpin.model.problem import checked_gap
 from fastpin.model.profile import MOST_TERMS, NO_GAP, InitialGap, Profile
-from fastpin.model.profile_csv import ProfileKind, read_samples
+from fastpin.model.profile_csv import COLUMNS, ProfileKind, read_samples
 from fastpin.model.profile_terms import MOST_ORDER, Crown, Flat, Harmonic, Zone
 from fastpin.model.synonyms import closest
 from fastpin.model.wear import COEFFICIENTS, MOST_CYCLES, WEAR_KEYS, Wear
@@ -115,10 +115,13 @@ WORDS = {
 }
 """The kinds of terms by their first keys."""
 
-FILE, FILTER = "file", "harmonics"
+FILE, SKIP, FILTER = "file", "skip", "harmonics"
 """Keys of the table of a CSV file, and of the filter that any table may have."""
 
-WORD_KEYS = (*dict.fromkeys(key for word in WORDS.values() for key in word.keys), FILE, FILTER)
+FILE_KEYS = (FILE, *COLUMNS, SKIP)
+"""Keys of the table of a CSV file."""
+
+WORD_KEYS = (*dict.fromkeys(key for word in WORDS.values() for key in word.keys), FILE, SKIP, FILTER)
 """All keys of the tables of terms."""
 
 
@@ -151,7 +154,7 @@ class _Reader:
         """The profile of a number, a file or a table that is called `name` in messages; None if wrong (reported)."""
         try:
             if _is_file(value):
-                return self._from_csv(key, name, value)
+                return self._from_csv(key, name, {FILE: value})
             if isinstance(value, dict):
                 return self._from_table(key, name, value)
             return Profile.of(name, number(name, value))
@@ -162,8 +165,8 @@ class _Reader:
     def _from_table(self, key: str, name: str, table: Mapping[str, Any]) -> Profile | None:
         """The profile of a table: of a term, or of a file; perhaps filtered."""
         plain = {word: value for word, value in table.items() if word != FILTER}
-        is_file = list(plain) == [FILE]
-        found = self._from_csv(key, f"{name}.{FILE}", plain[FILE]) if is_file else _from_table(name, plain)
+        is_file = FILE in plain and set(plain) <= set(FILE_KEYS)
+        found = self._from_csv(key, name, plain) if is_file else _from_table(name, plain)
         if found is None or FILTER not in table:
             return found
         try:
@@ -171,18 +174,24 @@ class _Reader:
         except InputError as error:
             raise InputError(f"{name}.{FILTER}", error.reason) from None
 
-    def _from_csv(self, key: str, name: str, file: str) -> Profile | None:
+    def _from_csv(self, key: str, name: str, table: Mapping[str, Any]) -> Profile | None:
+        """The profile of a table with a file."""
+        field = f"{name}.{FILE}" if isinstance(self._section.value(key), dict) else name
+        file = any_text(field, table[FILE])
+        columns = {word: table[word] for word in COLUMNS if word in table}
         try:
-            place = self._folder / any_text(name, file)
-            angles, values = read_samples(place, self._quantity, self._basis)
+            place = self._folder / file
+            angles, values = read_samples(place, self._quantity, self._basis, columns, table.get(SKIP, 0))
         except CaseFileError as error:
             for line, sentence in error.problems:
-                self._section.report(f"{name}: {file}{f', line {line}' if line else ''}: {sentence}", key)
+                self._section.report(f"{field}: {file}{f', line {line}' if line else ''}: {sentence}", key)
             return None
+        except InputError as error:
+            raise InputError(f"{name}.{error.field}", error.reason) from None
         try:
             return Profile.samples(angles, values)
         except InputError as error:
-            raise InputError(name, f"{file}: {error.field} {error.reason}") from None
+            raise InputError(field, f"{file}: {error.field} {error.reason}") from None
 
 
 def _from_table(name: str, table: Mapping[str, Any]) -> Profile:

@@ -53,7 +53,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     ),
     "gap": GAP_KEYS,
     **{section: keys_of(kinds) for section, kinds in BODY_KINDS.items()},
-    "load": (*LOADS, *HARMONIC, "csv", "repeat"),
+    "load": (*LOADS, *HARMONIC, "csv", "skip", "count", "repeat"),
     "history": ("csv", "repeat"),
     "wear": WEAR_KEYS,
     **{name: each.keys for name, each in BESIDE.items()},

@@ -8,6 +8,7 @@ from .criteria import crossland as crossland
 from .criteria import crossland_limit as crossland_limit
 from .criteria import dang_van as dang_van
 from .criteria import dang_van_limit as dang_van_limit
+from .criteria import equivalent_stress as equivalent_stress
 from .criteria import fatemi_socie as fatemi_socie
 from .criteria import findley as findley
 from .criteria import findley_limit as findley_limit
@@ -46,6 +47,8 @@ from .lives import fatemi_socie_life as fatemi_socie_life
 from .lives import miner as miner
 from .lives import smith_watson_topper_life as smith_watson_topper_life
 from .race import Race as Race
+from .reliability import failure_probability as failure_probability
+from .reliability import tolerance_factor as tolerance_factor
 from .reserve import StressReserve as StressReserve
 from .spectrum import SpectrumCycles as SpectrumCycles
 from .spectrum import SpectrumDamage as SpectrumDamage

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from fastpin.damage.distance import checked_length, mean_depth, points_of_means
 from fastpin.damage.histories import Progress, different_states, history_blocks
 from fastpin.damage.hot_spots import edge_angles
 from fastpin.damage.reserve import Goal, StressReserve, stress_reserve
+from fastpin.damage.residual import with_residual
 from fastpin.damage.spectrum import SpectrumCount, SpectrumDamage, halves, spectrum_count
 from fastpin.errors import InputWarning
 from fastpin.model.assessment import FatigueAssessment, assessed_bodies, check_assessment
@@ -122,7 +124,7 @@ def _of_body(
     if how.method == "edge" or theta is None:
         edge = _edge_count(stops, how, criterion, body).damage(*halves(lambda done, total: tell(share * done / total)))
         if how.straight is None and _is_straight(stops, how):
-            _doubt_straight(stops, edge)
+            _doubt_straight(stops, edge, how)
         if how.method == "edge" or math.isnan(edge.hot_spot.theta):
             return edge
         theta = np.array([edge.hot_spot.theta])
@@ -130,7 +132,7 @@ def _of_body(
     return count.damage(*halves(lambda done, total: tell(1.0 - share + share * done / total)))
 
 
-def _doubt_straight(stops: Sequence[State], edge: SpectrumDamage) -> None:
+def _doubt_straight(stops: Sequence[State], edge: SpectrumDamage, how: FatigueAssessment) -> None:
     """Warn if the worst cycle of a body does another damage with refined tractions: the grid is too coarse."""
     if not edge.cycles.damage.size:
         return
@@ -138,7 +140,9 @@ def _doubt_straight(stops: Sequence[State], edge: SpectrumDamage) -> None:
     few = list({load_point(state): state for state in stops if load_point(state) in wanted}.values())
     points = Points.at_depth(0.0, edge_angles(few, 0))
     straight, refined = (
-        spectrum_count(few, edge.criterion, edge.body, points, straight=each).damage(*halves(None)).hot_spot.damage  # type: ignore[arg-type]
+        _edge_count(few, how.changed(straight=each), edge.criterion, edge.body, points)  # type: ignore[arg-type]
+        .damage(*halves(None))
+        .hot_spot.damage
         for each in (True, False)
     )
     if not straight / MOST_STRAIGHT <= refined <= straight * MOST_STRAIGHT:
@@ -152,11 +156,13 @@ def _is_straight(stops: Sequence[State], how: FatigueAssessment) -> bool:
     return len(stops) > MOST_REFINED if how.straight is None else how.straight
 
 
-def _edge_count(stops: Sequence[State], how: FatigueAssessment, criterion: str, body: Body) -> SpectrumCount:
-    """Return the count at the given angles of an edge, or all along it."""
-    points = None if how.theta is None else Points.at_depth(0.0, how.theta)
-    rule = how.small_cycles, how.knee
-    return spectrum_count(stops, criterion, body, points, straight=_is_straight(stops, how), rule=rule)
+def _edge_count(
+    stops: Sequence[State], how: FatigueAssessment, criterion: str, body: Body, points: Points | None = None
+) -> SpectrumCount:
+    """Return the count at points, by default at the given angles of an edge, or all along it."""
+    if points is None and how.theta is not None:
+        points = Points.at_depth(0.0, how.theta)
+    return spectrum_count(stops, criterion, body, points, straight=_is_straight(stops, how), how=how)
 
 
 def _count_of_means(
@@ -164,11 +170,10 @@ def _count_of_means(
 ) -> SpectrumCount:
     """Return the count of the means of the stresses at angles of the edge, by the theory of critical distances."""
     problem, method, straight = stops[0].problem, how.method, _is_straight(stops, how)
+    residual = how.residual_stress
     length = checked_length(problem, method, body, how.length)
     points, weights = points_of_means(problem, method, body, length, theta)  # type: ignore[arg-type]
-    counted = CountedMaterial.of(
-        criterion, material_of(problem, body), None, owner_of(problem, body), how.small_cycles, how.knee
-    )
+    counted = CountedMaterial.of(criterion, material_of(problem, body), None, owner_of(problem, body), how)
     different, order = different_states(stops, straight)
 
     def means(progress: Progress) -> Iterator[tuple[slice, np.ndarray]]:
@@ -177,7 +182,10 @@ def _count_of_means(
         for k in range(theta.size):
             some = Points.at_depth(points.depth[k], points.theta[k])
             mean = np.zeros((len(different), 1, 4))
-            for part, history in history_blocks(different, some, body, straight):
+            read = with_residual(
+                partial(history_blocks, different, some, body, straight), problem, body, some, residual
+            )
+            for part, history in read(lambda part: None):
                 mean[:, 0] += np.einsum("tqc,q->tc", history, weights[part])
             progress((k + 1) / theta.size)
             yield slice(k, k + 1), mean

@@ -15,9 +15,11 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, PlaneCount
-from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve
+from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve, scattered
+from fastpin.damage.reliability import life_shift
 from fastpin.errors import InputError
 from fastpin.kernels import rainflow
+from fastpin.model.assessment import USUAL, FatigueAssessment
 from fastpin.model.checks import alternatives, choice
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
@@ -111,8 +113,12 @@ class CountedMaterial(NamedTuple):
     material : Material
     constants : tuple of float
         The constants of the parameter.
-    life : ndarray, shape (7,)
+    life : ndarray, shape (8,)
         The curve of lives with its knee, see :func:`fastpin.damage.lives.curve_with_knee`.
+    shift : float
+        log10 of the median life over the life at the reliability that is asked for.
+    scatter : float
+        Standard error of log10 life; NaN if it is unknown.
     """
 
     name: str
@@ -120,19 +126,25 @@ class CountedMaterial(NamedTuple):
     material: Material
     constants: tuple[float, ...]
     life: np.ndarray
+    shift: float
+    scatter: float
 
     @classmethod
     def of(
-        cls, name: str, material: Material, constants: FatigueConstants | None, body: str,
-        rule: str = "elementary", knee: float | None = None,
-    ) -> CountedMaterial:  # fmt: skip
-        """Check a criterion, the constants, by default those of the material of a body, and the rule of small cycles.
+        cls,
+        name: str,
+        material: Material,
+        constants: FatigueConstants | None,
+        body: str,
+        how: FatigueAssessment = USUAL,
+    ) -> CountedMaterial:
+        """Check a criterion, the constants, by default those of the material of a body, and how cycles do damage.
 
         Raises
         ------
         InputError
             If the criterion has no life, or a constant is missing. The message names the constants and the `body`.
-            Also if the rule or its knee can't be used.
+            Also if its curve has no such knee.
         """
         criterion = FATIGUE_CRITERIA[choice("criterion", name, tuple(FATIGUE_CRITERIA))]
         if criterion.counting is None:
@@ -140,9 +152,12 @@ class CountedMaterial(NamedTuple):
         given = (material.fatigue if constants is None else constants) or FatigueConstants()
         known = given.required((*criterion.needs, *criterion.life_needs), name, body)
         needs = len(criterion.needs)
-        curve = criterion.counting.curve(material, *known[needs:])
-        life = curve_with_knee(curve, criterion.counting.degree, rule, knee)
-        return cls(name, criterion.counting, material, known[:needs], life)
+        shift = life_shift(how, given, body)
+        curve = scattered(criterion.counting.curve(material, *known[needs:]), shift)
+        power = known[0] if criterion.counting.form == rainflow.POWERS else 0.0
+        life = curve_with_knee(curve, criterion.counting.degree, how.small_cycles, how.knee, power)
+        scatter = given.curve_scatter if name == "stress-life" and given.curve_scatter else math.nan
+        return cls(name, criterion.counting, material, known[:needs], life, shift, scatter)
 
     def worst(
         self, history: np.ndarray, spectrum: Spectrum, progress: Callable[[float], None] | None = None

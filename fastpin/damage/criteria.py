@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from fastpin.damage import lives
 from fastpin.errors import InputError
-from fastpin.kernels import planes, spheres
+from fastpin.kernels import planes, rainflow, spheres
 from fastpin.model.checks import number, numbers, positive
 from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.materials import Material
@@ -29,13 +29,16 @@ from fastpin.runtime.threads import in_chunks
 COMPONENTS = ("sxx", "syy", "szz", "sxy")
 """The components of a stress history, in the order of its last axis."""
 
+SCANNED, NARROWED = 144, 24
+"""Planes of the scan of :func:`equivalent_stress`, and halvings of the interval beside the best one."""
+
 CHUNK = 64
 """Points that one thread searches at a time."""
 
 ROUNDING = 1e-9
 """A parameter below this part of its natural size is rounding: its angle and plane have no meaning."""
 
-Criterion = Literal["smith-watson-topper", "fatemi-socie", "findley", "crossland", "dang-van"]
+Criterion = Literal["smith-watson-topper", "fatemi-socie", "stress-life", "findley", "crossland", "dang-van"]
 
 
 class Planes(NamedTuple):
@@ -99,6 +102,43 @@ def fatemi_socie(history: ArrayLike, shear_modulus: float, k: float, yield_stren
     stresses = _checked(history)
     weight = number("k", k, 0.0) / positive("yield_strength", yield_strength)
     return _worst(*_shear_strain(stresses, positive("shear_modulus", shear_modulus), weight), planes.SWING_TIMES_MORE)
+
+
+def equivalent_stress(history: ArrayLike, m: float) -> Planes:
+    """The largest equivalent stress of all planes, Pa: S_max (1 - R)^m = (S_max - S_min)^m S_max^(1 - m).
+
+    S is the normal stress of the plane (Walker 1970). It is 0 where no plane is ever in tension.
+
+    Parameters
+    ----------
+    history : array_like, shape (stops, points, 4)
+        Stresses, Pa; see :mod:`fastpin.damage.criteria`.
+    m : float
+        Walker's exponent, 0.01 to 0.99.
+
+    Raises
+    ------
+    InputError
+        As :func:`smith_watson_topper`.
+    """
+    normal, power = _on_planes(_checked(history)), number("m", m, 0.01, 0.99)
+
+    def value(x: np.ndarray) -> np.ndarray:
+        stress = normal[..., 0] + normal[..., 1] * np.cos(x) + normal[..., 2] * np.sin(x)
+        return np.asarray(np.ptp(stress, axis=0) ** power * np.maximum(stress.max(axis=0), 0.0) ** (1.0 - power))
+
+    places = np.linspace(-np.pi, np.pi, SCANNED + 1)[1:]
+    step, turned = places[1] - places[0], np.array([value(np.full(normal.shape[1], x)) for x in places])
+    # Of planes that mirror each other the one with the larger angle is told.
+    best = turned >= (1.0 - planes.TIE) * turned.max(axis=0)
+    middle = places[SCANNED - 1 - np.argmax(best[::-1], axis=0)]
+    for _ in range(NARROWED):
+        tried = middle + step * np.linspace(-1.0, 1.0, 5)[:, None]
+        middle = np.take_along_axis(tried, np.argmax([value(x) for x in tried], axis=0)[None], 0)[0]
+        step *= 0.5
+    angle, parameter = 0.5 * middle, value(middle)
+    angle = np.where(angle > 0.5 * np.pi, angle - np.pi, np.where(angle <= -0.5 * np.pi, angle + np.pi, angle))
+    return Planes(parameter, np.where(parameter > 0.0, angle, np.nan))
 
 
 def findley(history: ArrayLike, k: float) -> Planes:
@@ -308,7 +348,8 @@ class PlaneCount(NamedTuple):
     Attributes
     ----------
     form : int
-        SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.kernels.planes`.
+        SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.kernels.planes`, or POWERS of
+        :mod:`fastpin.kernels.rainflow`. The first constant of the parameter is then the power.
     degree : int
         Power of the stresses with which the parameter grows: 2 for a product of stress and strain. The factor of the
         normal stress in SWING_TIMES_MORE does not count.
@@ -398,6 +439,14 @@ FS_COUNT = PlaneCount(
     lambda material, *constants: lives.fatemi_socie_curve(material.shear_modulus, *constants),
 )
 
+STRESS_COUNT = PlaneCount(
+    rainflow.POWERS,
+    1,
+    lambda history, material, m: (_on_planes(history),) * 2,
+    lambda stress, material: stress,
+    lambda material, *constants: lives.stress_life_curve(*constants),
+)
+
 _LIMITS = ("bending_limit", "torsion_limit")
 
 FATIGUE_CRITERIA: dict[str, FatigueCriterion] = {
@@ -414,6 +463,13 @@ FATIGUE_CRITERIA: dict[str, FatigueCriterion] = {
         _fatemi_socie,
         LIFE_CONSTANTS["fatemi-socie"][1],
         FS_COUNT,
+    ),
+    "stress-life": FatigueCriterion(
+        "traction",
+        LIFE_CONSTANTS["stress-life"][0],
+        lambda history, _, m: _without_rounding(equivalent_stress(history, m), np.abs(history).max(initial=0.0)),
+        LIFE_CONSTANTS["stress-life"][1],
+        STRESS_COUNT,
     ),
     "findley": FatigueCriterion("traction", _LIMITS, _by_limits(findley, findley_limit)),
     "crossland": FatigueCriterion("traction", _LIMITS, _by_limits(crossland, crossland_limit)),

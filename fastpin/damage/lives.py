@@ -10,7 +10,10 @@ from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
 from fastpin.model.assessment import checked_knee
-from fastpin.model.checks import negative, number_array, numbers, positive
+from fastpin.model.checks import negative, not_negative, number, number_array, numbers, positive
+
+FLAT, NEGLIGIBLE = 1e-12, 1e-100
+"""Exponent of a stress without an end: (2N)^-FLAT is 1 to 4e-11 for all lives; and a coefficient that is none."""
 
 
 class LifeCurve(NamedTuple):
@@ -109,6 +112,28 @@ def fatemi_socie_curve(
     return LifeCurve((elastic, plastic), (b, negative("shear_ductility_exponent", shear_ductility_exponent)))
 
 
+def stress_life_curve(A: float, B: float, C: float, Kt: float) -> LifeCurve:
+    """The curve log10 N = A - B log10(S/Kt - C) of an equivalent stress S, Pa, as Kt (C + (10^A/N)^(1/B)).
+
+    The stress Kt C without an end is a power of 2N whose exponent is as good as 0: -:data:`FLAT`.
+
+    Raises
+    ------
+    InputError
+        If a constant is out of range.
+    """
+    slope, kt = positive("curve_b", B), positive("curve_kt", Kt)
+    falling = _coefficient("curve_a", 10.0 ** min((number("curve_a", A) + math.log10(2.0)) / slope, 300.0) * kt)
+    return LifeCurve((max(not_negative("curve_c", C) * kt, NEGLIGIBLE * falling), falling), (-FLAT, -1.0 / slope))
+
+
+def scattered(curve: LifeCurve, shift: float) -> LifeCurve:
+    """The curve with lives shorter by the factor 10^shift at all parameters; a parameter without an end stays."""
+    c, e = curve.coefficients, curve.exponents
+    falling = (each if -slope <= FLAT else each * 10.0 ** (shift * slope) for each, slope in zip(c, e, strict=True))
+    return LifeCurve(tuple(falling), e)  # type: ignore[arg-type]
+
+
 def miner(counts: ArrayLike, lives: ArrayLike) -> np.ndarray:
     """The sum of n_i/N_i over the blocks of a spectrum (Palmgren 1924, Miner 1945); 1 means failure.
 
@@ -137,7 +162,9 @@ def miner(counts: ArrayLike, lives: ArrayLike) -> np.ndarray:
     return np.tensordot(number_of, 1.0 / cycles, axes=1)
 
 
-def curve_with_knee(curve: LifeCurve, degree: int, rule: str = "elementary", knee: float | None = None) -> np.ndarray:
+def curve_with_knee(
+    curve: LifeCurve, degree: int, rule: str = "elementary", knee: float | None = None, power: float = 0.0
+) -> np.ndarray:
     """Return the numbers of a curve of lives, and of its part beyond the knee, for :mod:`fastpin.kernels.rainflow`.
 
     Let P be the parameter, P_D that of the curve at the knee N_D, and P proportional to the power `degree` of the
@@ -155,11 +182,13 @@ def curve_with_knee(curve: LifeCurve, degree: int, rule: str = "elementary", kne
     rule : {"elementary", "original", "haibach"}
     knee : float, optional
         N_D, cycles; for "original" and "haibach" only.
+    power : float
+        The power of the stress range in the parameter of "stress-life".
 
     Returns
     -------
-    ndarray, shape (7,)
-        Logarithms of both coefficients, both exponents, logarithms of P_D and 2 N_D, and the slope beyond them.
+    ndarray, shape (8,)
+        Logarithms of both coefficients, both exponents, logarithms of P_D and 2 N_D, the slope beyond them, the power.
 
     Raises
     ------
@@ -169,14 +198,15 @@ def curve_with_knee(curve: LifeCurve, degree: int, rule: str = "elementary", kne
     cycles = checked_knee(rule, knee)
     logs, slopes = np.log(curve.coefficients), np.array(curve.exponents)
     if cycles is None:
-        return np.array([*logs, *slopes, -np.inf, 0.0, 0.0])
+        return np.array([*logs, *slopes, -np.inf, 0.0, 0.0, power])
     at = math.log(2.0 * cycles)
     powers = logs + at * slopes
     limit = float(np.logaddexp(*powers))
     k = -degree / float(np.sum(slopes * np.exp(powers - limit)))
     if k <= 1.0:
         raise InputError("knee", f"must lie where the slope k of the curve of lives is above 1, not {k:.3g}")
-    return np.array([*logs, *slopes, limit, at, np.inf if rule == "original" else (2.0 * k - 1.0) / degree])
+    beyond = np.inf if rule == "original" else (2.0 * k - 1.0) / degree
+    return np.array([*logs, *slopes, limit, at, beyond, power])
 
 
 def _coefficient(field: str, value: float) -> float:

@@ -109,7 +109,7 @@ def goal_words(goal: Goal, how: FatigueAssessment) -> str:
 
 
 def _remark(one: StressReserve, how: FatigueAssessment) -> str:
-    words = goal_words(one.goal, how)
+    words = f"{goal_words(one.goal, how)}{how.reliability_words}"
     if not one.is_finite:
         return f"{words}: no stress is too large"
     depth = "" if one.depth == 0.0 else f", {units(one.problem)['length'].text(one.depth, 3)} below the edge"

@@ -15,7 +15,10 @@ from fastpin.damage.counted import SPECTRUM_CRITERIA, CountedMaterial, Spectrum
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, Criterion
 from fastpin.damage.histories import different_states, history_blocks
 from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_angles
+from fastpin.damage.reliability import failure_probability
+from fastpin.damage.residual import with_residual
 from fastpin.errors import InputError
+from fastpin.model.assessment import USUAL, FatigueAssessment
 from fastpin.model.checks import check_callable, choice, instance, true_or_false
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import CRITERION, Body, Points, isotropic_bodies, isotropic_material, material_of, owner_of
@@ -99,6 +102,10 @@ class SpectrumDamage(ReadOnly):
         Angle of the worst plane's normal from the +x axis, rad, in (-pi/2, pi/2]; NaN where there is no damage.
     cycles : SpectrumCycles
         The cycles at the hot spot; none without damage.
+    shift : float
+        log10 of the median life over the life at the hot spot: 0, unless a reliability is asked for.
+    scatter : float
+        Standard error of log10 life of the material there; NaN if it is unknown.
     """
 
     problem: Problem
@@ -109,6 +116,8 @@ class SpectrumDamage(ReadOnly):
     damage: np.ndarray
     plane: np.ndarray
     cycles: SpectrumCycles
+    shift: float = 0.0
+    scatter: float = math.nan
 
     def __repr__(self) -> str:
         spot = self.hot_spot
@@ -121,6 +130,15 @@ class SpectrumDamage(ReadOnly):
     def life(self) -> np.ndarray:
         """Number of spectra until the sum is 1; infinite where there is no damage."""
         return np.divide(1.0, self.damage, out=np.full(self.damage.shape, np.inf), where=self.damage > 0.0)
+
+    def failure_probability(self, life: float | None) -> float:
+        """Part of the specimens that fail at the hot spot within a life, in spectra; NaN without a life or a scatter.
+
+        A life that is not positive raises :class:`InputError`.
+        """
+        if life is None or math.isnan(self.scatter):
+            return math.nan
+        return float(failure_probability(life, self.hot_spot.life * 10.0**self.shift, self.scatter))
 
     @property
     def hot_spot(self) -> SpectrumSpot:
@@ -183,7 +201,8 @@ def spectrum_damage(
     if progress is not None:
         check_callable("progress", progress)
     tell_read, tell_counted = halves(progress)
-    return spectrum_count(states, criterion, body, points, depth, constants, straight, (small_cycles, knee)).damage(
+    how = FatigueAssessment(small_cycles=small_cycles, knee=knee)
+    return spectrum_count(states, criterion, body, points, depth, constants, straight, how).damage(
         tell_read, tell_counted
     )
 
@@ -233,8 +252,9 @@ class SpectrumCount(NamedTuple):
             raise InputError("states", "must have a turning point: their stresses do not change")
         damage, plane = found.damage.reshape(self.theta.shape), found.plane.reshape(self.theta.shape)
         cycles = found.cycles(spectrum, np.array([load_point(state) for state in self.different]))
-        where = self.criterion, self.body, self.theta, self.depth
-        return SpectrumDamage(self.different[0].problem, *where, damage, plane, cycles)
+        where = self.different[0].problem, self.criterion, self.body, self.theta, self.depth
+        curve = self.parts[0][1] if found.best is None else found.best[2]
+        return SpectrumDamage(*where, damage, plane, cycles, curve.shift, curve.scatter)
 
 
 def spectrum_count(
@@ -245,11 +265,11 @@ def spectrum_count(
     depth: ArrayLike | None = None,
     constants: FatigueConstants | None = None,
     straight: bool = False,
-    rule: tuple[str, float | None] = ("elementary", None),
+    how: FatigueAssessment = USUAL,
 ) -> SpectrumCount:
     """Check the arguments of :func:`spectrum_damage`, and return the count that they ask for.
 
-    `rule` is that of small cycles with its knee.
+    Rule, reliability and residual stress are those of `how`.
     """
     stops = stops_of_one_problem(states)
     problem = stops[0].problem
@@ -271,12 +291,14 @@ def spectrum_count(
                 isotropic_material("body", problem, one, CRITERION),
                 constants,
                 owner_of(problem, one),
-                *rule,
+                how,
             ),
         )
         for chosen, one in bodies_at(problem, body, below.ravel())
     ]
-    blocks = partial(history_blocks, different, points, body, straight)
+    blocks = with_residual(
+        partial(history_blocks, different, points, body, straight), problem, body, points, how.residual_stress
+    )
     return SpectrumCount(criterion, body, points.theta, below * problem.hole_radius, different, order, parts, blocks)
 
 
@@ -340,7 +362,7 @@ class _Found:
     def __init__(self, theta: np.ndarray) -> None:
         self._theta, self.damage, self.plane = theta, np.zeros(theta.size), np.full(theta.size, np.nan)
         self._taken = 0
-        self._best: tuple[int, np.ndarray, CountedMaterial] | None = None
+        self.best: tuple[int, np.ndarray, CountedMaterial] | None = None
 
     def take(
         self, counted: CountedMaterial, history: np.ndarray, spectrum: Spectrum, places: np.ndarray,
@@ -355,15 +377,15 @@ class _Found:
         )
         self.damage[places], self.plane[places] = damage, plane
         at = top_angle(damage, self._theta[places])
-        rivals = [places[at], *(() if self._best is None else self._best[:1])]
+        rivals = [places[at], *(() if self.best is None else self.best[:1])]
         if damage[at] > 0.0 and top_angle(self.damage[rivals], self._theta[rivals]) == 0:
-            self._best = int(places[at]), history[:, at : at + 1].copy(), counted
+            self.best = int(places[at]), history[:, at : at + 1].copy(), counted
 
     def cycles(self, spectrum: Spectrum, load_points: np.ndarray) -> SpectrumCycles:
         """Return the cycles at the point with the largest damage."""
         places, values = np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3))
-        if self._best is not None:
-            point, history, counted = self._best
+        if self.best is not None:
+            point, history, counted = self.best
             places, values = counted.cycles(history, spectrum, float(self.plane[point]))
         done = values[:, 2]
         rows = np.argsort(np.where(is_top(done), -np.inf, -done), kind="stable")

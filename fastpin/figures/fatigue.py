@@ -120,7 +120,8 @@ def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
             handles.append(Line2D([], [], linestyle="none", label=f"{before}no damage"))
             continue
         axes[0, 0].plot(from_bottom(spot.theta), spot.damage, "o", markersize=4.5, color=colour)
-        where = f"{before}{spot.life:.3g} spectra at {from_bottom(spot.theta):.1f} deg".replace("-", "−")
+        median = f", median life {spot.life * 10.0**one.shift:.3g}" if one.shift else ""
+        where = f"{before}{spot.life:.3g} spectra at {from_bottom(spot.theta):.1f} deg{median}".replace("-", "−")
         handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
         _draw_planes(axes[0, 0], angle, damage, (one.plane.ravel() - one.theta.ravel())[order])
         axes[1, 0].semilogy(angle, np.where(damage > 0.0, one.life.ravel()[order], np.nan), **line(2 * place))

@@ -3,7 +3,11 @@
 The planes hold the z axis, and their components U and V are sums f0 + f1 cos x + f2 sin x, see
 :mod:`fastpin.kernels.planes`. The cycles of U are counted (Matsuishi and Endo 1968; four points, as ASTM E1049 for
 repeated histories). A cycle has the amplitude of U and the largest V of all its stops. Its
-parameter is that of the forms SWING_TIMES_PUSH and SWING_TIMES_MORE. Its damage 1/N follows from
+parameter is that of the forms SWING_TIMES_PUSH and SWING_TIMES_MORE, or of POWERS, with m = life[7]:
+
+    POWERS                 (2 amplitude)^m max(V, 0)^(1 - m)
+
+Its damage 1/N follows from
 
     parameter = exp(life[0]) (2N)^life[2] + exp(life[1]) (2N)^life[3]
 
@@ -40,6 +44,12 @@ PITCH, ROWS = 0.05, 400
 
 WORTH = 0.5
 """Planes of the scan with less than this part of the largest damage are not refined."""
+
+POWERS = 3
+"""The form of Walker's equivalent stress. The other forms stand in :mod:`fastpin.kernels.planes`."""
+
+SMOOTH = 1e-5
+"""Step of Newton's method in log 2N up to which a table of lives is exact. Beside a stress without an end it is not."""
 
 TIE = 1e-6
 """Relative difference up to which the damages of two planes are equal: the error of the search."""
@@ -106,10 +116,17 @@ def _count(u, v, order, blocks, stack, cycles, weights):
 
 
 @inner
-def _parameter(u, v, cycle, form):
-    """The parameter of a cycle."""
-    swing, push = 0.5 * abs(u[cycle[0]] - u[cycle[1]]), max(v[cycle[2]], 0.0)
+def _combined(swing, push, form, life):
+    """The parameter of an amplitude and a largest V that is not negative."""
+    if form == POWERS:
+        return (2.0 * swing) ** life[7] * push ** (1.0 - life[7])
     return swing * push if form == 0 else swing * (1.0 + push)
+
+
+@inner
+def _parameter(u, v, cycle, form, life):
+    """The parameter of a cycle."""
+    return _combined(0.5 * abs(u[cycle[0]] - u[cycle[1]]), max(v[cycle[2]], 0.0), form, life)
 
 
 @inner
@@ -137,9 +154,9 @@ def _beyond(target, life):
 
 @inner
 def _fill(table, life):
-    """Fill the roots and their slopes, down from the logarithm life[7] of the highest parameter, a row each."""
+    """Fill the roots and their slopes, down from the logarithm life[8] of the highest parameter, a row each."""
     for k in range(table.shape[0]):
-        x = _root(life[7] - k * PITCH, life)
+        x = _root(life[8] - k * PITCH, life)
         one, two = math.exp(life[0] + x * life[2]), math.exp(life[1] + x * life[3])
         table[k, 0], table[k, 1] = x, -PITCH * (one + two) / (life[2] * one + life[3] * two)
 
@@ -150,7 +167,7 @@ def _damage(parameter, life, table):
     target = math.log(parameter)
     if target < life[4]:
         return _beyond(target, life)
-    place = (life[7] - target) / PITCH
+    place = (life[8] - target) / PITCH
     k = int(place) if place >= 0.0 else table.shape[0]
     if k + 1 >= table.shape[0]:
         return 2.0 * math.exp(min(-_root(target, life), 700.0))
@@ -160,8 +177,8 @@ def _damage(parameter, life, table):
     one, two = life[0] + x * life[2], life[1] + x * life[3]
     lower = math.exp(-abs(one - two))
     upper, under = (life[2], life[3]) if one > two else (life[3], life[2])
-    x -= (max(one, two) + math.log1p(lower) - target) * (1.0 + lower) / (upper + under * lower)
-    return 2.0 * math.exp(min(-x, 700.0))
+    step = (max(one, two) + math.log1p(lower) - target) * (1.0 + lower) / (upper + under * lower)
+    return 2.0 * math.exp(min(-(x - step if abs(step) < SMOOTH else _root(target, life)), 700.0))
 
 
 @inner
@@ -179,21 +196,21 @@ def _sum(path, x, order, blocks, form, least, curve, table, u, v, stack, cycles,
     _on_plane(path, x, u, v)
     total = 0.0
     for k in range(_count(u, v, order, blocks, stack, cycles, weights)):
-        parameter = _parameter(u, v, cycles[k], form)
+        parameter = _parameter(u, v, cycles[k], form, curve)
         if parameter > least:
             total += weights[k] * _damage(parameter, curve, table)
     return total
 
 
 @inner
-def _highest(paths, form):
+def _highest(paths, form, life):
     """The logarithm of a parameter that no cycle of these points exceeds."""
     swing, push = 0.0, 0.0
     for i in range(paths.shape[0]):
         for t in range(paths.shape[1]):
             swing = max(swing, abs(paths[i, t, 0]) + math.hypot(paths[i, t, 1], paths[i, t, 2]))
             push = max(push, abs(paths[i, t, 3]) + math.hypot(paths[i, t, 4], paths[i, t, 5]))
-    most = swing * push if form == 0 else swing * (1.0 + push)
+    most = _combined(swing, push, form, life)
     return math.log(most) if most > 0.0 else 0.0
 
 
@@ -210,12 +227,12 @@ def worst_sums(paths, order, blocks, form, least, life, out):
     blocks : ndarray of int64, shape (blocks, 3)
         First stop of each block, the stop after its last one, and the number of its passes.
     form : int
-        SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.kernels.planes`.
+        SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.kernels.planes`, or POWERS.
     least : float
         Cycles with a parameter up to this one do no damage.
-    life : ndarray, shape (7,)
+    life : ndarray, shape (8,)
         Logarithms of the coefficients, and the exponents, both below 0. Then the logarithms of the parameter and of 2N
-        at the knee, and the slope beyond it. The first is -inf for a curve without a knee.
+        at the knee, and the slope beyond it. The first is -inf for a curve without a knee. Last the power of POWERS.
     out : ndarray, shape (points, 2)
         Damage of the spectrum, and the angle x/2 of its plane in (-pi/2, pi/2], rad. The angle is NaN where the damage
         is 0.
@@ -224,8 +241,8 @@ def worst_sums(paths, order, blocks, form, least, life, out):
     stack, cycles = np.empty((6 * order.size + 2, 2), np.int64), np.empty((3 * order.size + 2, 3), np.int64)
     weights, scanned = np.empty(3 * order.size + 2, np.int64), np.empty(COARSE)
     peaks, places = np.empty(COARSE), np.empty(COARSE)
-    table, curve = np.empty((ROWS, 2)), np.empty(8)
-    curve[:7], curve[7] = life, _highest(paths, form)
+    table, curve = np.empty((ROWS, 2)), np.empty(9)
+    curve[:8], curve[8] = life, _highest(paths, form, life)
     _fill(table, curve)
     step = 2.0 * math.pi / COARSE
     for i in range(paths.shape[0]):
@@ -287,7 +304,7 @@ def cycles_on_plane(path, angle, order, blocks, form, least, life, places, value
     _on_plane(path, 2.0 * angle, u, v)
     count = _count(u, v, order, blocks, stack, places, weights)
     for k in range(count):
-        parameter = _parameter(u, v, places[k], form)
+        parameter = _parameter(u, v, places[k], form, life)
         values[k, 0], values[k, 1] = weights[k], parameter
         values[k, 2] = 0.0
         if parameter > least:

@@ -23,4 +23,5 @@ from .problem import Problem as Problem
 from .profile import InitialGap as InitialGap
 from .profile import Profile as Profile
 from .strength import StrengthAssessment as StrengthAssessment
+from .stress_life import stress_life_curves as stress_life_curves
 from .wear import Wear as Wear

@@ -106,3 +106,9 @@ def _shortest(angle: float, degrees: float, back: Callable[[float], float]) -> f
     rounded = (round(degrees, decimals) for decimals in range(14))
     near = (math.nextafter(degrees, end) for end in (-math.inf, math.inf))
     return next((each for each in (*rounded, degrees, *near) if back(each) == angle), degrees)
+
+
+def cos_degrees(angle: float) -> float:
+    """The cosine of an angle in degrees, exact where it is 0, 1 or -1."""
+    quarters = angle / 90.0
+    return (1.0, 0.0, -1.0, 0.0)[int(quarters) % 4] if quarters.is_integer() else math.cos(math.radians(angle))

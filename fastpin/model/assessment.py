@@ -10,7 +10,18 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
-from fastpin.model.checks import check_fields, choice, given_fields, items, number, positive, set_fields, true_or_false
+from fastpin.model.checks import (
+    as_toml,
+    check_fields,
+    choice,
+    given_fields,
+    items,
+    number,
+    positive,
+    set_fields,
+    true_or_false,
+)
+from fastpin.model.crack import checked_residual
 from fastpin.model.fatigue import LIFE_CONSTANTS, FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
@@ -38,6 +49,9 @@ SPECTRA = ("history", "cycle")
 MOST_LIFE = 1e18
 """Most passes of a spectrum, and most cycles at a knee: no test has gone as far."""
 
+MOST_PART = 0.999999
+"""Largest reliability and confidence: no test has shown the tail of a scatter as far."""
+
 
 @dataclass(frozen=True)
 class FatigueAssessment:
@@ -46,7 +60,7 @@ class FatigueAssessment:
     Parameters
     ----------
     criterion : str or sequence of str
-        Criteria with lives: "smith-watson-topper", "fatemi-socie".
+        Criteria with lives: "smith-watson-topper", "fatemi-socie", "stress-life".
     bodies : str or sequence of str, optional
         Of "plate", "pin" and "seat"; unless given, all elastic bodies whose own material has the constants.
     over : {"history", "cycle"}
@@ -68,6 +82,16 @@ class FatigueAssessment:
         Whether the tractions are straight lines between the nodes. Unless given, they are for more than 500 states.
     life : float, optional
         The life that is asked for: passes of the spectrum without a crack. It gives a margin of safety.
+    reliability : float, optional
+        Part of the specimens that live longer than the life that is told, such as 0.99; the median life unless given.
+        For "stress-life" alone.
+    confidence : float, optional
+        Confidence in this life for the number of specimens behind the curve, such as 0.95. Unless given, the curve and
+        its scatter are taken as exact.
+    residual_stress : float or sequence of (float, float), optional
+        Hoop stress that the plate has without loads round its hole, or round the seat of its bush, Pa; negative after
+        cold working. One number, or pairs of a distance to the edge, m, and a stress. It is added to the stresses of
+        all states.
 
     Raises
     ------
@@ -85,6 +109,9 @@ class FatigueAssessment:
     knee: float | None = None
     straight: bool | None = None
     life: float | None = None
+    reliability: float | None = None
+    confidence: float | None = None
+    residual_stress: float | Sequence[Sequence[float]] | None = None
 
     def __post_init__(self) -> None:
         check_fields(self, _checked_words, "criterion", tuple(LIFE_CONSTANTS))
@@ -104,11 +131,32 @@ class FatigueAssessment:
         set_fields(self, knee=checked_knee(self.small_cycles, self.knee))
         check_fields(self, true_or_false, "straight", optional=True)
         check_fields(self, number, "life", 1.0, MOST_LIFE, optional=True)
+        check_fields(self, number, "reliability confidence", 0.5, MOST_PART, optional=True)
+        if self.reliability is not None and self.criteria != ("stress-life",):
+            raise InputError("reliability", f'needs criterion = "stress-life", not {as_toml(list(self.criteria))}')
+        if self.confidence is not None and self.reliability is None:
+            raise InputError("confidence", "belongs to a reliability, such as reliability = 0.99")
+        check_fields(self, checked_residual, "residual_stress", optional=True)
 
     @property
     def criteria(self) -> tuple[str, ...]:
         """The criteria, in the given order."""
         return tuple(self.criterion)
+
+    @property
+    def scatter_needs(self) -> tuple[str, ...]:
+        """The constants of the scatter that it needs of each material."""
+        if self.reliability is None:
+            return ()
+        return ("curve_scatter",) if self.confidence is None else ("curve_scatter", "curve_samples")
+
+    @property
+    def reliability_words(self) -> str:
+        """The end of a sentence on the reliability; empty for median lives."""
+        if self.reliability is None:
+            return ""
+        sure = "" if self.confidence is None else f" with a confidence of {100.0 * self.confidence:.6g} %"
+        return f", lives that {100.0 * self.reliability:.6g} % of the specimens reach{sure}"
 
     @property
     def passes(self) -> str:
@@ -132,7 +180,7 @@ class FatigueAssessment:
 
     def toml(self) -> dict[str, Any]:
         """The keys and values of the section [fatigue] of a case file."""
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in self.given.items()}
+        return {name: _as_lists(value) for name, value in self.given.items()}
 
     def written(self) -> dict[str, Any]:
         """The section [fatigue] with its criterion, so that it is never empty."""
@@ -224,6 +272,8 @@ def check_assessment(
         if how.method != "edge" and how.length is None:
             for body in bodies:
                 _check_constants(problem, body, ("threshold_range", "limit_range"), f'method "{how.method}"')
+        for body in bodies:
+            _check_constants(problem, body, how.scatter_needs, "a life at a reliability")
     if history is None:
         return
     if how.over == "cycle" and not history.longest_cycle:
@@ -240,5 +290,12 @@ def _check_constants(problem: Problem, body: Body, names: Sequence[str], purpose
     given.required(names, purpose, owner_of(problem, body))
 
 
+def _as_lists(value: Any) -> Any:
+    return [_as_lists(each) for each in value] if isinstance(value, tuple) else value
+
+
 ASSESSMENT_KEYS = tuple(field.name for field in fields(FatigueAssessment))
 """The fields of :class:`FatigueAssessment`, the keys of [fatigue] in a case file."""
+
+USUAL = FatigueAssessment()
+"""Median lives by Smith, Watson and Topper, without a knee."""

@@ -65,17 +65,11 @@ class CrackGrowth:
         check_fields(self, number, "theta", -MOST_ANGLE, MOST_ANGLE, optional=True)
         check_fields(self, number, "angle", -MOST_INCLINATION, MOST_INCLINATION)
         check_fields(self, choice, "body", EDGES)
-        check_fields(self, _checked_residual, "residual_stress", optional=True)
+        check_fields(self, checked_residual, "residual_stress", optional=True)
 
     def residual(self, s: np.ndarray) -> np.ndarray:
         """The residual stress at distances to the mouth, m, of any shape; 0 unless one is given, Pa."""
-        s = numbers("s", s)
-        if self.residual_stress is None:
-            return np.zeros(np.shape(s))
-        if isinstance(self.residual_stress, float):
-            return np.full(np.shape(s), self.residual_stress)
-        depth, stress = np.array(self.residual_stress).T
-        return np.interp(s, depth, stress)
+        return residual_at(self.residual_stress, numbers("s", s))
 
     def entries(self) -> dict[str, Any]:
         """The keys and values of the section [crack] of a case file. Angles are in degrees, theta from the bottom."""
@@ -182,7 +176,15 @@ def crack_from(**given: Any) -> CrackGrowth:
     return CrackGrowth(**given)
 
 
-def _checked_residual(name: str, given: object) -> float | tuple[tuple[float, float], ...]:
+def residual_at(stress: Any, s: np.ndarray) -> np.ndarray:
+    """A residual stress, a number or pairs, at distances to the edge, m, of any shape; 0 for None, Pa."""
+    if not isinstance(stress, tuple):
+        return np.full(np.shape(s), stress or 0.0)
+    return np.interp(s, *np.array(stress).T)
+
+
+def checked_residual(name: str, given: object) -> float | tuple[tuple[float, float], ...]:
+    """Check a residual stress, Pa, or pairs of a distance to the edge, m, and a residual stress."""
     if not isinstance(given, (list, tuple, np.ndarray)):
         return number(name, given)
     pairs = items(name, given, "a number, or pairs of a distance and a stress")

@@ -2,13 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any
 
 from fastpin.errors import InputError
-from fastpin.model.checks import check_fields, choice, given_fields, items, negative, positive, string
-from fastpin.model.synonyms import explains_keywords
+from fastpin.model.checks import (
+    LONGEST_TEXT,
+    as_toml,
+    check_fields,
+    choice,
+    given_fields,
+    items,
+    negative,
+    not_negative,
+    number,
+    positive,
+    set_fields,
+    string,
+    whole_number,
+)
+from fastpin.model.stress_life import stress_life_curves
+from fastpin.model.synonyms import closest, explains_keywords
 
 LIFE_CONSTANTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "smith-watson-topper": (
@@ -19,8 +35,20 @@ LIFE_CONSTANTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ("normal_stress_factor", "yield_strength"),
         ("shear_fatigue_strength", "shear_strength_exponent", "shear_fatigue_ductility", "shear_ductility_exponent"),
     ),
+    "stress-life": (("curve_m",), ("curve_a", "curve_b", "curve_c", "curve_kt")),
 }
 """The criteria with lives: the constants of the parameter, and those of the life."""
+
+LEAST_SAMPLES = 6
+"""Least number of specimens: more than the constants of a curve."""
+
+CHECKS: dict[str, Callable[..., Any]] = {
+    "curve_a": number,
+    "curve_c": not_negative,
+    "curve_m": partial(number, least=0.01, most=0.99),
+    "curve_samples": partial(whole_number, least=LEAST_SAMPLES),
+}
+"""Checks of constants that need not be positive, or are limited."""
 
 
 @explains_keywords
@@ -55,11 +83,24 @@ class FatigueConstants:
         Archard's coefficient k_w: volume worn off per force and sliding distance, 1/Pa.
     source : str
         Where the constants come from.
+    curve : str
+        Name of a stress-life curve of :func:`fastpin.model.stress_life_curves`. It gives all constants below that are
+        not given themselves.
+    curve_a, curve_b, curve_c, curve_m : float, optional
+        log10 N = A - B log10(S - C) with the equivalent stress S = S_max (1 - R)^m of Walker, Pa. With stresses in ksi,
+        A is smaller by 6.83852 B.
+    curve_kt : float, optional
+        Stress concentration of the specimens, to whose nominal stress S belongs; 1 for smooth ones.
+    curve_scatter : float, optional
+        Standard error of log10 N about the curve of lives.
+    curve_samples : int, optional
+        Number of specimens behind it.
 
     Raises
     ------
     InputError
-        If a constant is not positive and finite, or an exponent not negative and finite.
+        If a constant is not positive and finite, or an exponent not negative and finite. The constant C may be 0, and m
+        is below 1. Also if the curve is unknown.
     """
 
     fatigue_strength: float | None = None
@@ -78,12 +119,30 @@ class FatigueConstants:
     normal_stress_factor: float | None = None
     wear_coefficient: float | None = None
     source: str = ""
+    curve: str = ""
+    curve_a: float | None = None
+    curve_b: float | None = None
+    curve_c: float | None = None
+    curve_m: float | None = None
+    curve_kt: float | None = None
+    curve_scatter: float | None = None
+    curve_samples: int | None = None
 
     def __post_init__(self) -> None:
-        check_fields(self, string, "source")
+        check_fields(self, string, "source curve")
+        known: dict[str, Any] = {} if self.curve_a is None else {"curve_c": 0.0, "curve_kt": 1.0}
+        if self.curve:
+            curves = stress_life_curves()
+            if self.curve not in curves:
+                words = (
+                    f"there is no stress-life curve {as_toml(self.curve)}{closest(self.curve[:LONGEST_TEXT], curves)}"
+                )
+                raise InputError("curve", words)
+            known = curves[self.curve]
+        set_fields(self, **{name: value for name, value in known.items() if getattr(self, name) in (None, "")})
         for name in self.given():
-            if name != "source":
-                check_fields(self, negative if name.endswith("_exponent") else positive, name)
+            if name not in ("source", "curve"):
+                check_fields(self, negative if name.endswith("_exponent") else CHECKS.get(name, positive), name)
 
     def __repr__(self) -> str:
         return f"FatigueConstants({', '.join(f'{name}={value!r}' for name, value in self.given().items())})"

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.model.angles import cos_degrees
 from fastpin.model.checks import (
     as_toml,
     file_path,
@@ -266,7 +267,7 @@ class LoadHistory:
 
         def corner(turn: float) -> dict[str, float]:
             return {
-                name: mean.get(name, 0.0) + amplitude.get(name, 0.0) * _cos_degrees(360.0 * turn + phase.get(name, 0.0))
+                name: mean.get(name, 0.0) + amplitude.get(name, 0.0) * cos_degrees(360.0 * turn + phase.get(name, 0.0))
                 for name in LOADS
                 if name in mean or name in amplitude
             }
@@ -301,35 +302,40 @@ class LoadHistory:
         path: str | Path,
         columns: Mapping[str, str | Mapping[str, Any]] | None = None,
         thickness: float | None = None,
+        skip: int = 0,
     ) -> LoadHistory:
-        """Read corners from a CSV file: a header, one corner a line.
+        """Read corners from a CSV file: perhaps a preamble, a header, one corner a line.
 
-        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped. Commas, semicolons
-        or tabs separate cells. With semicolons or tabs, numbers may have a decimal comma.
+        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped. Commas, semicolons,
+        tabs or blanks separate cells. Numbers may have a decimal comma.
 
         Parameters
         ----------
         path : str or Path
         columns : mapping, optional
             The column of each load: ``{"P": "Force [N]"}``, or ``{"P": {"column": "F", "scale": -1, "unit": "kN"}}``.
-            The scale is a factor. By default every column is a load, with a unit or without: ``P``, ``P [kN/m]``.
+            A column may be a number, counted from 1, of a file without a header. A pair makes two corners of each line,
+            and ``"count"`` says how often: ``{"P": {"column": ["max", "min"]}, "count": "cycles"}``. By default every
+            column is a load, with a unit or without: ``P``, ``P [kN/m]``.
         thickness : float, optional
             Thickness, m. The file has forces in N, and they are divided by it. By default they are per metre.
+        skip : int
+            Lines at the beginning that are not read. A preamble without numbers needs none.
 
         Raises
         ------
         CaseFileError
             If the file can't be read, a column is missing or unknown, a unit does not fit its load, or cells are not
-            finite numbers. The error lists the first :data:`fastpin.model.profile_csv.MOST_FAULTS` faulty lines.
+            finite numbers. The error lists the first :data:`fastpin.model.csv_table.MOST_FAULTS` faulty lines.
         InputError
-            If `path`, `columns` or `thickness` can't be used.
+            If `path`, `columns`, `thickness` or `skip` can't be used.
         """
         path = file_path("path", path)
         choices = None if columns is None else column_choices("columns", columns)
+        skip = whole_number("skip", skip, 0)
         if thickness is None:
-            return read_csv(path, choices)
-        checked_thickness("thickness", thickness)
-        return read_csv(path, choices, "with thickness").per_thickness(thickness)
+            return read_csv(path, choices, skip=skip)
+        return read_csv(path, choices, "with thickness", skip).per_thickness(thickness)
 
     def repeated(self, count: int) -> LoadHistory:
         """This history `count` times in a row. Each time is a cycle.
@@ -460,9 +466,12 @@ class LoadHistory:
         return _filled([_times(block, min(block.count, 2)) for block in self._blocks], initial)
 
 
-def read_csv(path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre") -> LoadHistory:
+def read_csv(
+    path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre", skip: int = 0
+) -> LoadHistory:
     """Read a history as :meth:`LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
-    return LoadHistory.of_blocks([_plain(read_corners(path, choices, basis))])
+    parts = read_corners(path, choices, basis, skip)
+    return LoadHistory.of_blocks(replace(_plain(rows), count=max(n, 1), cycle=n > 0) for rows, n in parts)
 
 
 def cycle_length(history: LoadHistory, cycle: CycleKey) -> int:
@@ -589,9 +598,3 @@ def _plain(given: np.ndarray) -> Block:
 
 def _count_corners(count: int) -> str:
     return f"{count:,} corner{'' if count == 1 else 's'}"
-
-
-def _cos_degrees(angle: float) -> float:
-    """The cosine, exact where it is 0 or 1."""
-    quarters = angle / 90.0
-    return (1.0, 0.0, -1.0, 0.0)[int(quarters) % 4] if quarters.is_integer() else math.cos(math.radians(angle))

@@ -11,9 +11,9 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from io import BufferedReader
 from os import stat_result
 from pathlib import Path
-from typing import BinaryIO
 
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """The first bytes of an HDF5 file."""
@@ -38,7 +38,7 @@ def remembered_inputs() -> Iterator[None]:
         _READ.reset(token)
 
 
-def open_input(path: Path) -> BinaryIO:
+def open_input(path: Path) -> BufferedReader:
     """Open a file of the user to read its bytes, and note it as read.
 
     Its name may stand in a file of a stranger. Nothing may ever be written to a pipe, and a device may have no end.

@@ -6,7 +6,7 @@ In Python angles are in rad and count from +x. Case files, JSON and texts have d
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias, get_args
@@ -143,11 +143,18 @@ class Profile:
         return found if harmonics is None else found.filtered(harmonics)
 
     @classmethod
-    def from_csv(cls, path: str | Path, quantity: str = "gap", harmonics: int | None = None) -> Profile:
+    def from_csv(
+        cls,
+        path: str | Path,
+        quantity: str = "gap",
+        harmonics: int | None = None,
+        columns: Mapping[str, Any] | None = None,
+        skip: int = 0,
+    ) -> Profile:
         """Samples from a CSV file with two columns: the angle from the bottom of the hole, and the value there.
 
-        The first line names the columns, each perhaps with a unit: ``angle [deg]``, ``gap [um]``. Without units angles
-        are in degrees and gaps in m.
+        A header names the columns, each perhaps with a unit: ``angle [deg]``, ``gap [um]``. Without units angles are in
+        degrees and gaps in m.
 
         Parameters
         ----------
@@ -156,16 +163,21 @@ class Profile:
             What the values are. Friction has no unit. Wear coefficients are in 1/Pa.
         harmonics : int, optional
             The waves round the hole that are kept, see :meth:`filtered`. Without it all of them are kept.
+        columns : mapping, optional
+            The columns ``"angles"`` and ``"values"`` of a file with more of them, or without a header:
+            ``{"angles": {"column": 1}, "values": {"column": "R", "scale": -1, "unit": "um"}}``.
+        skip : int
+            Lines at the beginning that are not read. A preamble without numbers needs no `skip`.
 
         Raises
         ------
         CaseFileError
             If the file can't be read or has faults. It lists them with their lines.
         InputError
-            If the samples do not go round the hole, see :meth:`samples`.
+            If the samples do not go round the hole, see :meth:`samples`, or an argument can't be used.
         """
         kind = choice("quantity", quantity, get_args(ProfileKind))
-        return cls.samples(*read_samples(path, kind), harmonics)  # type: ignore[arg-type]
+        return cls.samples(*read_samples(path, kind, columns=columns, skip=skip), harmonics)  # type: ignore[arg-type]
 
     @classmethod
     def of(cls, place: str, value: ProfileLike) -> Profile:

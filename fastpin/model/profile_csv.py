@@ -2,137 +2,95 @@
 
 from __future__ import annotations
 
-import csv
-from io import StringIO
+import math
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
-from fastpin.errors import CaseFileError, InputError
+from fastpin.errors import InputError
 from fastpin.model.angles import angle_at
-from fastpin.model.checks import as_toml, file_path, number, why_unreadable
-from fastpin.model.csv_columns import title_and_unit
-from fastpin.model.inputs import open_input
+from fastpin.model.checks import as_toml, file_path, whole_number
+from fastpin.model.csv_columns import CsvColumn, chosen_columns, column_choice, known_places, title_and_unit
+from fastpin.model.csv_table import Wanted, read_table
 from fastpin.model.load_units import Basis, LoadUnit, load_unit
 
 ProfileKind = Literal["gap", "friction", "wear"]
 """What the values of a file are."""
 
-
-MOST_BYTES = 2_000_000
-"""Most bytes of a file. 20,000 samples with all digits have 0.9 MB."""
+COLUMNS = ("angles", "values")
+"""Names of the columns of a profile."""
 
 MOST_ROWS = 20_001
 """Most rows: the samples of a profile, and the first one again."""
 
-MOST_FAULTS = 20
-"""Most faulty lines of a CSV file that an error lists."""
-
 
 def read_samples(
-    path: str | Path, quantity: ProfileKind = "gap", basis: Basis = "per metre"
+    path: str | Path,
+    quantity: ProfileKind = "gap",
+    basis: Basis = "per metre",
+    columns: Mapping[str, Any] | None = None,
+    skip: int = 0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Read angles, rad, and values, shape (n,) each, from a CSV file with two columns.
+    """Read angles, rad, and values, shape (n,) each, from a CSV file.
 
-    The first line names the columns, each with a unit or without: degrees and m are meant then. Cells are separated by
-    commas, semicolons or tabs. Decimal commas are understood if the cells are not separated by commas.
+    `columns` chooses the columns of :data:`COLUMNS`. Without it the file has two columns with a header, each with a
+    unit or without: degrees and m are meant then. The first `skip` lines are not read.
 
     Raises
     ------
     CaseFileError
-        If the file can't be read, is larger than :data:`MOST_BYTES`, or has faults. It lists them with their lines.
+        See :func:`fastpin.model.csv_table.read_table`.
     InputError
-        If `path` is no path.
+        If `path`, `columns` or `skip` can't be used.
     """
     place = file_path("path", path)
-    try:
-        with open_input(place) as file:
-            raw = file.read(MOST_BYTES + 1)
-        if len(raw) > MOST_BYTES:
-            raise CaseFileError(str(place), [(0, f"is larger than {MOST_BYTES:,} bytes")])
-        text = raw.decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise CaseFileError(str(place), [(0, why_unreadable(error))]) from None
-    return _samples(text, str(place), quantity, basis)
+    if columns is not None and (not isinstance(columns, Mapping) or not set(columns) <= set(COLUMNS)):
+        example = '{"angles": {"column": 1}, "values": {"column": "R", "unit": "um"}}'
+        raise InputError("columns", f"must map angles and values to columns, such as {example}, not {as_toml(columns)}")
+    choices = {name: column_choice(name, given) for name, given in (columns or {}).items()}
+    for name in COLUMNS if choices else ():
+        if len(choices[name].columns if name in choices else ()) != 1:
+            raise InputError(name, 'must be a column of the CSV file, such as { column = "angle" } or { column = 1 }')
+    _, (angles, values) = read_table(
+        place,
+        Wanted(
+            find=(lambda titles: chosen_columns(titles, choices)) if choices else _two_columns,
+            places=known_places(choices) if choices else (0, 1),
+            unit=lambda name, unit: _unit(name, unit, quantity, basis),
+            noun="samples",
+            most=MOST_ROWS,
+            too_many=f"more than {MOST_ROWS - 1:,} samples can't be read",
+            has_gaps=False,
+            example="angles = { column = 1 }",
+        ),
+        whole_number("skip", skip, 0),
+    )
+    return angle_at(angles), values
 
 
-def _samples(text: str, name: str, quantity: ProfileKind, basis: Basis) -> tuple[np.ndarray, np.ndarray]:
-    lines = [
-        (line_number, line)
-        for line_number, line in enumerate(text.splitlines(), start=1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise CaseFileError(name, [(0, "holds no samples")])
-    if len(lines) > MOST_ROWS + 1:
-        raise CaseFileError(name, [(lines[MOST_ROWS + 1][0], f"more than {MOST_ROWS - 1:,} samples can't be read")])
-    (first, head), *rest = lines
-    separator = next((sign for sign in "\t;" if sign in head), ",")
-    try:
-        units = _units(_cells(head, separator), quantity, basis)
-    except InputError as error:
-        raise CaseFileError(name, [(first, str(error) if error.field else error.reason)]) from None
-    faults, rows = [], []
-    for line_number, line in rest:
-        try:
-            cells = _cells(line, separator)
-            row = []
-            for title, cell in zip(units, cells, strict=True):
-                text = cell if separator == "," else cell.replace(",", ".")
-                if not _is_number(text):
-                    raise InputError(title, f"must be a number, not {as_toml(cell)}")
-                row.append(number(title, float(text)))
-            rows.append(row)
-        except InputError as error:
-            faults.append((line_number, str(error)))
-        except ValueError:
-            faults.append((line_number, f"must have two numbers, an angle and a value, not {as_toml(line.strip())}"))
-        if len(faults) >= MOST_FAULTS:
-            break
-    if faults or not rows:
-        raise CaseFileError(name, faults or [(0, "holds no samples")])
-    numbers, (angle, value) = np.array(rows), units.values()
-    degrees = numbers[:, 0] if angle is None else np.degrees(numbers[:, 0])
-    return angle_at(degrees), numbers[:, 1] * (10.0**value.power * value.factor if value else 1.0)
+def _two_columns(titles: list[str]) -> list[CsvColumn]:
+    if len(titles) != 2:
+        words = f"a profile has two columns, an angle and a value, not {len(titles)}"
+        raise InputError("", f"{words}; choose them: angles = {{ column = 1 }}, values = {{ column = 2 }}")
+    if not any(titles):
+        words = "the first line must name the columns; columns without names have numbers"
+        raise InputError("", f"{words}: angles = {{ column = 1 }}, values = {{ column = 2 }}")
+    parts = [title_and_unit(title) for title in titles]
+    return [CsvColumn(k, COLUMNS[k], titles[k], unit=unit) for k, (_, unit) in enumerate(parts)]
 
 
-def _units(cells: list[str], quantity: ProfileKind, basis: Basis) -> dict[str, LoadUnit | None]:
-    """The units of the two columns by their titles. The unit of angles is None for degrees."""
-    if len(cells) != 2:
-        raise InputError("", f"a profile has two columns, an angle and a value, not {len(cells)}")
-    if all(_is_number(cell) for cell in cells):
-        raise InputError("", "the first line must name the columns")
-    (angle, angle_unit), (title, unit) = (title_and_unit(cell.strip()) for cell in cells)
-    if angle_unit not in ("", "deg", "rad"):
-        raise InputError(angle, f"an angle must be in deg or rad, not {as_toml(angle_unit)}")
-    if quantity == "friction" and unit not in ("", "-", "1"):
-        raise InputError(title, f"friction has no unit; leave it out, not {as_toml(unit)}")
-    if quantity == "wear" and unit not in ("", "1/Pa"):
-        raise InputError(title, f"a wear coefficient must be in 1/Pa, not {as_toml(unit)}")
-    found = None
-    if quantity == "gap" and unit:
-        if basis == "dimensionless":
-            raise InputError(title, f"the gap of a problem with load_parameter has no unit; leave it out, not {unit}")
-        try:
-            found = load_unit("ux", unit, basis)
-        except InputError as error:
-            raise InputError(title, error.reason) from None
-    names = (angle or "angle", title or quantity)
-    keys = names if names[0] != names[1] else ("angle", quantity)
-    return dict(zip(keys, (None if angle_unit != "rad" else LoadUnit(), found), strict=True))
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    try:
-        return [cell.strip() for cell in next(csv.reader(StringIO(line), delimiter=separator, skipinitialspace=True))]
-    except (csv.Error, StopIteration):
-        return []
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return "_" not in text
+def _unit(name: str, unit: str, quantity: ProfileKind, basis: Basis) -> LoadUnit:
+    """Return the way of angles to degrees, or of values to SI units."""
+    if name == "angles":
+        if unit not in ("deg", "rad"):
+            raise InputError(name, f"an angle must be in deg or rad, not {as_toml(unit)}")
+        return LoadUnit(0, math.degrees(1.0)) if unit == "rad" else LoadUnit()
+    if quantity == "friction" and unit not in ("-", "1"):
+        raise InputError(name, f"friction has no unit; leave it out, not {as_toml(unit)}")
+    if quantity == "wear" and unit != "1/Pa":
+        raise InputError(name, f"a wear coefficient must be in 1/Pa, not {as_toml(unit)}")
+    if quantity == "gap" and basis == "dimensionless":
+        raise InputError(name, f"the gap of a problem with load_parameter has no unit; leave it out, not {unit}")
+    return load_unit("ux", unit, basis) if quantity == "gap" else LoadUnit()

@@ -64,6 +64,7 @@ _SYNONYMS: dict[str, str] = {
     "phase": "phi phase_angle lag",
     "amplitude": "amp range",
     "csv": "file filename path spectrum",
+    "skip": "skiprows skip_rows skip_lines header header_lines",
     # solver
     "nodes": "n n_nodes num_nodes number_of_nodes mesh elements resolution points",
     "increments": "steps n_steps n_increments substeps load_steps",

@@ -185,7 +185,7 @@ def materials(page: PageParts) -> PageSection:
         columns = [("constant", "", [name.replace("_", " ") for name in names])]
         for body, given in fatigue.items():
             values = [given.get(name, "-") for name in names]
-            columns.append((body, "", [f"{value:.6g}" if isinstance(value, float) else value for value in values]))
+            columns.append((body, "", [value if isinstance(value, str) else f"{value:.6g}" for value in values]))
         parts.append(Table("Fatigue constants, in SI units", columns))
         parts += [Text(f"Source of the constants of the {body}: {text}.") for body, text in sources.items() if text]
     else:

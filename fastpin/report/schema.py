@@ -227,7 +227,7 @@ def _fatigue() -> Schema:
     numbers = dict.fromkeys(("start", "stop", "largest", "parameter", "damage"), _NUMBER)
     words = {"description": "counted cycles at the hot spot, the largest damage first; start and stop are load points"}
     cycles = _list_of(_object(numbers | {"times": _WHOLE})) | words
-    body = _object(properties(DAMAGE) | {"cycles": cycles, "over_yield": _UNKNOWN})
+    body = _object(properties(DAMAGE) | {"cycles": cycles, "failure_probability": _UNKNOWN, "over_yield": _UNKNOWN})
     return _object(properties(HOW) | {"error": _OPTIONAL_TEXT, "bodies": _list_of(body)})
 
 

@@ -69,6 +69,9 @@ fft = Later("scipy.fft")
 interpolate = Later("scipy.interpolate")
 """Cubics, which curves between the nodes follow."""
 
+special = Later("scipy.special")
+"""Distributions, which lives at a confidence need."""
+
 optimize = Later("scipy.optimize")
 """Minima and roots, which few problems need."""
 

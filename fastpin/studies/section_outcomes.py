@@ -47,7 +47,11 @@ def _read_by(read: Callable[[Any, Any], Any], outputs: Mapping[str, Output]) -> 
 
 
 SECTION_OUTCOMES = {
-    "fatigue": _read_by(worst_damage, chosen(DAMAGE, ("life", "damage", "angle"))),
+    "fatigue": _read_by(worst_damage, chosen(DAMAGE, ("life", "median_life", "damage", "angle")))
+    | _read_by(
+        lambda result, how: worst_damage(result, how).failure_probability(how.life),
+        {"failure_probability": Output("failure_probability", "", lambda part: part)},
+    ),
     "crack": _read_by(
         grown,
         chosen(GROWTH, ("fate", "life", "arrest"))

@@ -61,7 +61,7 @@ def test_a_case_without_the_section():
 MISSING = 'must be given with small_cycles = "haibach": the cycles at the knee, such as 1e6'
 
 FAULTS = {
-    'criterion = "findley"': 'criterion: must be "smith-watson-topper" or "fatemi-socie", not "findley"',
+    'criterion = "findley"': 'criterion: must be "smith-watson-topper", "fatemi-socie" or "stress-life", not "findley"',
     "criterion = 3": "criterion: must be a word or a list of words, not 3",
     'bodies = ["hole"]': 'bodies: must be "plate", "pin" or "seat", not "hole"',
     'small_cycles = "miner"': 'small_cycles: must be "elementary", "original" or "haibach", not "miner"',

@@ -115,7 +115,7 @@ def test_a_stored_result_knows_its_assessment(tmp_path):
 
 
 BAD = {
-    "criterion": ({"criterion": "findley"}, 'must be "smith-watson-topper" or "fatemi-socie", not "findley"'),
+    "criterion": ({"criterion": "findley"}, 'must be "smith-watson-topper", "fatemi-socie" or "stress-life", not'),
     "bodies": ({"bodies": ["plate", "plate"]}, "must be at least one word, each one once, not 2"),
     "over": ({"over": "block"}, 'must be "history" or "cycle", not "block"'),
     "method": ({"method": "volume"}, 'must be "edge", "point", "line" or "area", not "volume"'),

@@ -70,7 +70,7 @@ def test_every_criterion(fretting, cycle, criterion):
     assert found.hot_spot.parameter == found.parameter.max() > 0.0
     by_planes = criterion not in ("crossland", "dang-van")
     assert (found.plane is not None) == by_planes
-    if criterion in ("smith-watson-topper", "fatemi-socie"):
+    if criterion in damage.SPECTRUM_CRITERIA:
         assert found.limit is None
         assert found.margin is None
         assert found.hot_spot.life == found.life.min()

@@ -12,7 +12,7 @@ from fastpin.damage.counted import CountedMaterial, Spectrum
 from fastpin.damage.lives import curve_with_knee, fatemi_socie_curve, smith_watson_topper_curve
 from fastpin.errors import InputError
 from fastpin.kernels import planes, rainflow
-from fastpin.model import FatigueConstants
+from fastpin.model import FatigueAssessment, FatigueConstants
 from tests.support.fatigue import uniaxial
 from tests.support.refusals import refused
 from tests.support.tiers import seeds
@@ -28,7 +28,7 @@ RULES = ("elementary", "original", "haibach")
 
 def sum_of(values, rule, knee, order=None, material=MATERIAL):
     """The damage of a stress sxx."""
-    counted = CountedMaterial.of(SWT, material, None, "plate", rule, knee)
+    counted = CountedMaterial.of(SWT, material, None, "plate", FatigueAssessment(small_cycles=rule, knee=knee))
     spectrum = Spectrum.of(np.arange(len(values)) if order is None else np.asarray(order))
     return float(counted.worst(uniaxial(values), spectrum)[0][0])
 
@@ -70,7 +70,7 @@ def test_the_slope_below_the_knee_is_that_of_the_tangent():
     """Two powers: the slope k at the knee lies between those of both, from a difference quotient of the curve."""
     curve = smith_watson_topper_curve(E, STRENGTH, B, 0.22, -0.59)
     constants = (E, STRENGTH, B, 0.22, -0.59)
-    *_, limit, at, slope = curve_with_knee(curve, 2, "haibach", 2e4)
+    *_, limit, at, slope, _ = curve_with_knee(curve, 2, "haibach", 2e4)
     assert damage.smith_watson_topper_life(math.exp(limit), *constants) == pytest.approx(2e4, rel=1e-9)
     assert at == pytest.approx(math.log(4e4))
     up, down = (float(damage.smith_watson_topper_life(math.exp(limit + step), *constants)) for step in (1e-4, -1e-4))
@@ -82,7 +82,7 @@ def test_the_slope_below_the_knee_is_that_of_the_tangent():
 def test_the_slope_of_fatemi_and_socie():
     """The parameter grows with the amplitude itself."""
     curve = fatemi_socie_curve(26e9, 640e6, -0.1, 1e-40, -0.59)
-    *_, slope = curve_with_knee(curve, 1, "haibach", 1e6)
+    *_, slope, _ = curve_with_knee(curve, 1, "haibach", 1e6)
     assert slope == pytest.approx(2.0 * 10.0 - 1.0, rel=1e-9)
 
 
@@ -99,7 +99,7 @@ def test_the_knee_of_shear():
     for rule, knee, expected in (
         ("elementary", None, 0.5**10 / 1e6), ("haibach", 1e6, 0.5**19 / 1e6), ("original", 1e6, 0.0),
     ):  # fmt: skip
-        counted = CountedMaterial.of(FS, MATERIAL, constants, "plate", rule, knee)
+        counted = CountedMaterial.of(FS, MATERIAL, constants, "plate", FatigueAssessment(small_cycles=rule, knee=knee))
         assert counted.worst(history, spectrum)[0][0] == pytest.approx(expected, rel=1e-6)
 
 
@@ -108,7 +108,7 @@ def test_the_counted_cycles_have_the_damage_of_the_plane():
     history = rng.uniform(-2e8, 3e8, (30, 1, 4))
     spectrum = Spectrum.of(np.arange(30))
     for rule in RULES[1:]:
-        counted = CountedMaterial.of(SWT, MATERIAL, None, "plate", rule, 1e5)
+        counted = CountedMaterial.of(SWT, MATERIAL, None, "plate", FatigueAssessment(small_cycles=rule, knee=1e5))
         found, plane = counted.worst(history, spectrum)
         assert found[0] > 0.0
         assert counted.cycles(history, spectrum, plane[0])[1][:, 2].sum() == pytest.approx(found[0], rel=1e-9)
@@ -147,7 +147,13 @@ def laws(seed):
     path = np.arange(size)
     sums = {}
     for rule in RULES:
-        counted = CountedMaterial.of(SWT, material, None, "plate", rule, None if rule == "elementary" else knee)
+        counted = CountedMaterial.of(
+            SWT,
+            material,
+            None,
+            "plate",
+            FatigueAssessment(small_cycles=rule, knee=None if rule == "elementary" else knee),
+        )
 
         def found(order, stresses=history, counted=counted):
             return float(counted.worst(stresses, Spectrum.of(np.asarray(order)))[0][0])

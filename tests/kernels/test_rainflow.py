@@ -10,7 +10,7 @@ from fastpin.kernels import planes, rainflow
 from tests.support.kernels import in_python
 from tests.support.tiers import seeds
 
-LIFE = np.array([np.log(2e3), np.log(5e5), -0.25, -0.7, -np.inf, 0.0, 0.0])
+LIFE = np.array([np.log(2e3), np.log(5e5), -0.25, -0.7, -np.inf, 0.0, 0.0, 0.5])
 
 
 def one_block(states):
@@ -107,7 +107,7 @@ def test_the_history_of_the_standard():
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("form", [planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE])
+@pytest.mark.parametrize("form", [planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE, rainflow.POWERS])
 def test_the_worst_plane_is_that_of_a_scan(form):
     rng = np.random.default_rng(5)
     for size in (2, 3, 7, 30, 80):
@@ -127,9 +127,9 @@ def test_compiled_and_plain_python():
     rng = np.random.default_rng(6)
     paths, order = rng.normal(size=(3, 9, 6)), rng.integers(0, 9, 14)
     blocks = np.array([[0, 5, 1], [5, 9, 6], [9, 14, 2]])
-    knees = [LIFE, np.r_[LIFE[:4], 0.3, 40.0, 6.0], np.r_[LIFE[:4], 0.3, 40.0, np.inf]]
+    knees = [LIFE, np.r_[LIFE[:4], 0.3, 40.0, 6.0, 0.5], np.r_[LIFE[:4], 0.3, 40.0, np.inf, 0.5]]
     plain = in_python(rainflow)
-    for form, life in itertools.product((planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE), knees):
+    for form, life in itertools.product((planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE, rainflow.POWERS), knees):
         one, two = np.empty((3, 2)), np.empty((3, 2))
         rainflow.worst_sums(paths, order, blocks, form, 0.0, life, one)
         plain.worst_sums(paths, order, blocks, form, 0.0, life, two)

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model import history_csv
+from fastpin.model import csv_table, history_csv
+from fastpin.model.csv_table import MOST_FAULTS
 from fastpin.model.history import LoadHistory, cycle_length, cycles_after, same_ahead
 from fastpin.model.loads import LOADS, complete_load
 from fastpin.model.options import KeepRule
-from fastpin.model.profile_csv import MOST_FAULTS
 from tests.support.refusals import refused
 from tests.support.tiers import seeds
 
@@ -254,10 +254,12 @@ def test_keep() -> None:
 
 @pytest.mark.parametrize("line", ["\n", "# " + "x" * 1000 + "\n", " " * 5000 + "\n", "#\r"])
 def test_a_csv_file_without_corners_is_not_read_to_its_end(line, path, monkeypatch):
-    monkeypatch.setattr(history_csv, "MOST_AROUND", 100_000)
-    lines = history_csv.MOST_AROUND // max(len(line), history_csv.SHORTEST_LINE) + 10
+    monkeypatch.setattr(csv_table, "MOST_AROUND", 100_000)
+    lines = csv_table.MOST_AROUND // max(len(line), csv_table.SHORTEST_LINE) + 10
     path.write_text("P\n1\n" + line * (2 * lines), newline="")
-    with pytest.raises(CaseFileError, match="the lines up to here are too long or too many for 1 corners") as caught:
+    with pytest.raises(
+        CaseFileError, match="the lines up to here are too long or too many for their load corners"
+    ) as caught:
         LoadHistory.from_csv(path)
     assert caught.value.problems[0][0] < lines + 10
 
@@ -272,7 +274,7 @@ def test_a_csv_file_has_a_limit_of_corners(path: Path, monkeypatch: pytest.Monke
 
 
 def test_a_csv_file_of_long_corners_is_read(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(history_csv, "MOST_AROUND", 1000)
+    monkeypatch.setattr(csv_table, "MOST_AROUND", 1000)
     cells = ",".join(f"{-math.pi * 10.0 ** -(100 + k):.17g}" for k in range(len(LOADS)))
     path.write_text(",".join(LOADS) + "\n" + f"{cells}\n# a comment\n" * 1000)
     assert len(LoadHistory.from_csv(path)) == 1000

@@ -104,9 +104,10 @@ def test_faults_name_line_column_and_what_is_allowed(text, columns, thickness, l
     assert words in sentence
 
 
-def test_a_file_in_the_encoding_of_old_spreadsheets_gets_a_remedy(tmp_path: Path) -> None:
+def test_bytes_that_are_no_text_get_a_remedy(tmp_path: Path) -> None:
+    (tmp_path / "rig.csv").write_bytes(b"ux [\x81m]\n1\n")
     with pytest.raises(CaseFileError, match="is not UTF-8 text; save it with this encoding"):
-        loads(tmp_path, "ux [µm]\n1\n", None, None, "cp1252")
+        LoadHistory.from_csv(tmp_path / "rig.csv")
 
 
 @pytest.mark.parametrize(
@@ -120,7 +121,12 @@ def test_a_file_in_the_encoding_of_old_spreadsheets_gets_a_remedy(tmp_path: Path
         ({"P": {"scale": 2.0}}, "P", "column is missing"),
         ({"P": {"column": "F", "scale": 0}}, "P.scale", "must not be 0"),
         ({"P": {"column": "F", "scale": "x"}}, "P.scale", "must be a number"),
-        ({"P": {"column": 3}}, "P.column", "must be text in quotes"),
+        (
+            {"P": {"column": 0}},
+            "P.column",
+            "must be the text of a header, a number counted from 1, or a list of two of",
+        ),
+        ({"P": {"column": [1, 2, 3]}}, "P.column", "must be the text of a header, a number counted from 1, or"),
         ({"P": {"column": "F", "unit": 3}}, "P.unit", "must be text in quotes"),
     ],
 )

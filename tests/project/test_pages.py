@@ -27,6 +27,7 @@ HOW_TO = [
     "tutorial",
     "riveted-joint",
     "bushed-lug",
+    "signature",
     "case-files",
     "histories",
     "sessions",
@@ -42,6 +43,7 @@ HOW_TO = [
     "compliance",
     "superposition",
     "fatigue",
+    "stress-life",
     "wear",
     "convergence",
     "coming-from",
@@ -54,6 +56,7 @@ FILES = {
     "wear.md": ["worn-joint.toml", "fretting-map.toml"],
     "cracks.md": ["crack-map.toml"],
     "bushed-lug.md": ["bushed-lug.toml", "bushed-lug-tolerances.toml"],
+    "signature.md": ["signature.toml"],
     "riveted-joint.md": ["riveted-joint.toml", "riveted-joint-plan.toml"],
 }
 """The files that a page shows as a whole, in this order. Each of them begins with a comment."""
@@ -117,6 +120,7 @@ def test_a_page_shows_its_files(page: str) -> None:
     ("page", "count"),
     [
         ("carbon-laminate.md", 1),
+        ("stress-life.md", 2),
         *gate(("bush.md", 2), ("wear.md", 5)),
         pytest.param("fatigue.md", 5, marks=pytest.mark.survey),
     ],
@@ -128,10 +132,26 @@ def test_python_prints_the_numbers_of_the_page(page: str, count: int) -> None:
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("page", ["carbon-laminate", "bushed-lug"])
+@pytest.mark.parametrize("page", ["carbon-laminate", "bushed-lug", "signature"])
 def test_the_run_of_a_page_prints_its_numbers(page: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", f"{page}.toml"]) == 0
     assert texts(f"{page}.md", "text")[0] in capsys.readouterr().out
+
+
+@pytest.mark.gate
+def test_a_cold_worked_hole_passes_as_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    """The other commands of the page check the case and write its report."""
+    assert main(["run", "signature-cold.toml"]) == 0
+    assert texts("signature.md", "text")[1] in capsys.readouterr().out
+    plain, cold = (
+        Path(name).read_text(encoding="utf-8").splitlines()[1:] for name in ("signature.toml", "signature-cold.toml")
+    )
+    assert [line for line in cold if line not in plain] == [
+        "residual_stress = -100e6    # what cold working has left, Pa"
+    ]
+    assert main(["check", "signature.toml"]) == 0
+    assert main(["run", "signature.toml", "-o", "signature.h5"]) == 0
+    assert Path("signature.csv").read_text(encoding="utf-8") in page_text("signature.md")
 
 
 @pytest.mark.parametrize("page", ["coming-from.md", *gate("superposition.md", "interference.md")])

@@ -314,6 +314,6 @@ def test_faults_of_an_outcome(tmp_path):
     text = '[outcomes]\na = { fatigue = "knee" }\nb = { fatigue = "life", small_cycles = "haibach" }\n'
     found = faults_of(parse_plan, "[grid]\ncontact.friction = [0.2]\n" + text)
     assert [fault for _, fault in found] == [
-        'a: fatigue: must be "life", "damage" or "angle", not "knee"',
+        'a: fatigue: must be "life", "median_life", "damage", "angle" or "failure_probability", not "knee"',
         'b: knee: must be given with small_cycles = "haibach": the cycles at the knee, such as 1e6',
     ]

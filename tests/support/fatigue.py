@@ -8,6 +8,7 @@ import fastpin
 from fastpin.model import FatigueConstants
 
 CONSTANTS = FatigueConstants(
+    curve="2024-T3 sheet, Kt 1",
     fatigue_strength=1100e6,
     strength_exponent=-0.124,
     fatigue_ductility=0.22,
