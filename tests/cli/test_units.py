@@ -321,7 +321,7 @@ def check_summary(*texts: str) -> None:
         del each["problem"]["thickness"], each["statistics"]
     factors = {kind: factor_of(unit, thick["units"][kind]) for kind, unit in plain.pop("units").items()}
     assert {kind for kind, factor in factors.items() if factor == T} == {
-        "force", "moment", "energy", "stiffness", "work per stress",
+        "force", "moment", "energy", "stiffness", "rig stiffness", "work per stress",
     }  # fmt: skip
     del thick["units"]
     counted = 0
