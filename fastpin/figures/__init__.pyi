@@ -20,6 +20,7 @@ from .cycles import plot_cycles as plot_cycles
 from .fatigue import plot_fatigue as plot_fatigue
 from .gap import plot_gap as plot_gap
 from .history import plot_history as plot_history
+from .identify import plot_identified as plot_identified
 from .laminates import plot_stiffness as plot_stiffness
 from .laminates import plot_strength as plot_strength
 from .load_cycle import plot_loops as plot_loops

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from fastpin.errors import InputError
 from fastpin.model.checks import LONGEST_TEXT, as_toml, number, string
-from fastpin.model.load_units import Basis, LoadUnit, is_unit, load_unit, unit_name
+from fastpin.model.load_units import Basis, LoadUnit, is_unit, is_unit_of, load_unit, unit_name
 from fastpin.model.loads import LOADS, load_index
 from fastpin.model.synonyms import closest
 
@@ -24,7 +24,8 @@ class ColumnChoice(NamedTuple):
     Attributes
     ----------
     column : str
-        The text of the header, with its unit or without.
+        The text of the header, with its unit or without. If it is empty, the column named as the load is taken, or else
+        the only one with a unit of the load.
     scale : float
         Factor of all numbers: -1 turns the sign. Not 0.
     unit : str
@@ -115,7 +116,7 @@ def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) ->
     parts = [title_and_unit(title) for title in titles]
     found = []
     for load, choice in choices.items():
-        wanted = choice.column.strip()
+        wanted = choice.column.strip() or column_of(load, parts, titles)
         places = [place for place, title in enumerate(titles) if title == wanted]
         places = places or [place for place, (name, _) in enumerate(parts) if name == wanted]
         if len(places) != 1:
@@ -131,6 +132,18 @@ def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) ->
         unit = _one_unit(load, choice.unit, parts[place][1], "the header says")
         found.append(CsvColumn(place, load, titles[place], choice.scale, unit))
     return found
+
+
+def column_of(load: str, parts: Sequence[tuple[str, str]], titles: Sequence[str]) -> str:
+    """Return the title of the column of a load: that of its name, else the only one with a unit of its kind."""
+    found = [place for place, (name, _) in enumerate(parts) if name == load]
+    found = found or [place for place, (_, unit) in enumerate(parts) if unit and is_unit_of(load, unit)]
+    if len(found) == 1:
+        return titles[found[0]]
+    shown = ", ".join(as_toml(titles[place]) for place in (found or range(len(titles)))[:MOST_SHOWN])
+    if found:
+        raise InputError(load, f"{len(found)} columns of the file may hold it: {shown}; name one of them")
+    raise InputError(load, f"no column of the file has its name or a unit of it; name one of {shown}")
 
 
 def named_columns(cells: Sequence[str]) -> list[CsvColumn]:

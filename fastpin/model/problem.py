@@ -111,9 +111,8 @@ class Problem:
         like the logarithm of the distance. So a displacement relative to the plate needs a radius. The default of a
         ring, also round a bush, is its outer rim.
     rig_stiffness : float, optional
-        Stiffness, N/m^2 (force per unit thickness per displacement), 1e-30 to 1e30 1/beta*, of a spring between the hub
-        and each prescribed displacement ``ux`` and ``uy``: the test rig gives way. None is a rigid rig. In a
-        dimensionless problem its unit is 1/beta*. The rig of a prescribed rotation is ``hub_stiffness``.
+        Stiffness, N/m^2 (force per unit thickness), of a spring between the hub and each prescribed displacement ``ux``
+        and ``uy``: the rig, rigid unless given. A dimensionless problem has it in 1/beta*. See also ``hub_stiffness``.
     pin_body : PinBody
         A solid or a hollow pin; a class of :mod:`fastpin.bodies`.
     plate_body : PlateBody
@@ -259,8 +258,7 @@ class Problem:
         if self.rig_stiffness is not None:
             if self.drive == "force":
                 raise InputError("rig_stiffness", 'only a displacement has a rig: drive = "ux" or "uy" or "both"')
-            natural = 1.0 / self.surfaces.beta_star
-            stiffness = number("rig_stiffness", positive("rig_stiffness", self.rig_stiffness))
+            natural, stiffness = 1.0 / self.surfaces.beta_star, positive("rig_stiffness", self.rig_stiffness)
             set_fields(self, rig_stiffness=number("rig_stiffness", stiffness, 1e-30 * natural, 1e30 * natural))
 
     def __repr__(self) -> str:
@@ -304,8 +302,8 @@ class Problem:
 
         With a load P = 1 the load parameter (R - R_D)/(F beta*) is `load_parameter`. The units of results are F/R for
         tractions, F beta* for displacements and F beta*/R for rotations. Remote stresses are given in F/R, and a hub's
-        stiffness in R^2/beta*, that of a rig in 1/beta*. Radii of bodies are in units of R, and the interference of a bush in F beta*. beta* is
-        that of the two surfaces in contact: of pin and bush if there is a bush.
+        stiffness in R^2/beta*, that of a rig in 1/beta*. Radii of bodies are in units of R, and the interference of a
+        bush in F beta*. beta* is that of the two surfaces in contact: of pin and bush if there is a bush.
         """
         value = number("load_parameter", load_parameter, -MOST_PARAMETER, MOST_PARAMETER)
         instance("pair", pair, MaterialPair, "a MaterialPair")
