@@ -35,6 +35,7 @@ from fastpin.model.load_units import Basis
 from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
 from fastpin.model.problem import Problem, checked_thickness
 from fastpin.model.synonyms import explains_keywords
+from fastpin.model.turning import recorded_cycles
 
 POINTS = 24
 """Default number of corners in a cycle of loads that are out of phase."""
@@ -462,7 +463,8 @@ class LoadHistory:
 
 def read_csv(path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre") -> LoadHistory:
     """Read a history as :meth:`LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
-    return LoadHistory.of_blocks([_plain(read_corners(path, choices, basis))])
+    table = read_corners(path, choices, basis)
+    return LoadHistory.of_blocks([Block(table, *recorded_cycles(table))])
 
 
 def cycle_length(history: LoadHistory, cycle: CycleKey) -> int:

@@ -24,6 +24,7 @@ ABOVE_BODIES = tuple(
         "lug",
         "points",
         "problem",
+        "recorded",
         "strength",
         "units",
     )
