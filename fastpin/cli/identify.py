@@ -12,12 +12,12 @@ from fastpin.cli.terminal import EXIT_OK, EXIT_READING, as_options, check_output
 def run(options: argparse.Namespace) -> int:
     """Fit the case to the loop, print what it tells, and draw it."""
     case = casefile.read_case(options.case)
-    check_outputs({"--csv": options.csv, "--json": options.json, "--plot": options.plot})
     fit = [name.strip() for name in options.fit.split(",") if name.strip()]
     with as_options(("over", "displacement", "force", "force_factor", "fit", "start", "nodes")):
         loop = studies.read_loop(
             options.loop, case.problem, options.over, options.displacement, options.force, options.force_factor
         )
+        check_outputs({"--csv": options.csv, "--json": options.json, "--plot": options.plot})
         with Bar(1, "{whole} of about {total} solutions") as bar:
             found = studies.identify(
                 case.problem, case.history, loop, fit, by_cycle=options.by_cycle, start=options.start,

@@ -71,7 +71,7 @@ def test_a_loop_is_read_fitted_and_written() -> None:
     assert 0.97 * float(friction[2]) < 0.68 < 1.03 * float(friction[3])
     (stiffness,) = (line.split() for line in lines if line.split()[:1] == ["stiffness"])
     assert 0.99 * float(stiffness[2]) < 250.0 < 1.01 * float(stiffness[3])
-    assert stiffness[4] == "MN/m"
+    assert stiffness[4:] == ["MN", "per", "m"]
     document = json.loads(Path("out.json").read_text())
     jsonschema.validate(document, json_schema("identify"))
     assert f"{document['estimates']['friction']['value']:.4g}" == friction[1]
@@ -114,7 +114,7 @@ def test_the_text_says_what_is_told_and_what_is_not() -> None:
     lines = report.text(identified()).splitlines()
     assert lines[3].split() == ["value", "95", "%:", "from", "to"]
     assert lines[4].split() == ["friction", "0.6", "0.5", "0.9"]
-    assert lines[5].split() == ["stiffness", "240", "232", "248", "MN/m"]
+    assert lines[5].split() == ["stiffness", "240", "232", "248", "MN", "per", "m"]
     assert lines[6].split() == ["displacement", "offset", "1", "0", "2", "um"]
     assert lines[-3:] == [
         "correlation of friction and stiffness: -0.93",
@@ -134,6 +134,14 @@ def test_the_json_has_the_text_s_numbers() -> None:
     document = report.document(stuck, "rig")
     jsonschema.validate(document, json_schema("identify"))
     assert document["estimates"]["friction"] == {"value": None, "low": 0.4, "high": None}
+
+
+def test_units_are_per_thickness_without_a_thickness() -> None:
+    plain, thick = (report.text(identified(problem=joint(thickness=each))) for each in (None, THICKNESS))
+    assert " 30  " in plain
+    for words in ("GN/m^2", " kN/m", "J/m"):
+        assert words in plain
+        assert words not in thick
 
 
 def test_the_figure_has_a_panel_for_each_question() -> None:

@@ -97,6 +97,7 @@ WITHOUT_UNITS = {
     "benchmarks": "has problems per thickness",
     "charts": "is dimensionless",
     "completion": "prints a script",
+    "identify": "fits for seconds; tests/cli/test_identify.py compares both",
     "schema": "prints the form of documents",
 }
 """Commands that are not walked, with a reason each. Every other command must be in :data:`PARTS`."""
@@ -244,7 +245,7 @@ def units_in(found: Walk, wrong: re.Pattern[str]) -> dict[str, str]:
 
 
 UNIT = re.compile(r" \[(.*)\]$")
-PAIRS = {"N/m": "N", "N": "N m", "J/m": "J", "N/rad": "N m/rad", "m^2": "m^3"}
+PAIRS = {"N/m": "N", "N": "N m", "J/m": "J", "N/rad": "N m/rad", "m^2": "m^3", "N/m^2": "N per m"}
 """The unit with a thickness for each unit per thickness."""
 
 

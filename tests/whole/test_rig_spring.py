@@ -70,5 +70,5 @@ def test_a_wrong_stiffness_is_refused(titanium_in_aluminium, drive, stiffness, w
 def test_the_case_file_gives_the_whole_rig_s_stiffness():
     case = parse_case(CASE)
     assert case.problem.rig_stiffness == 3e8 / 5e-3
-    assert "rig of stiffness 300 MN/m" in describe(case)
+    assert "rig of stiffness 300 MN per m" in describe(case)
     assert parse_case(case_text(case)).problem == case.problem
