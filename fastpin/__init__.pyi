@@ -40,4 +40,5 @@ from .storage.store import save as save
 from .storage.wear_files import load_wear as load_wear
 from .storage.wear_files import wear as wear
 from .studies.convergence import converge as converge
+from .studies.identification import identify as identify
 from .version import __version__ as __version__

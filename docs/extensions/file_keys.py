@@ -45,6 +45,7 @@ OTHER_WORDS = {
     "points": "corners of each harmonic cycle",
     "csv": "CSV file of corners, relative to the case file: a header, then a line for each corner; a load "
     'beside it is a column: `P = { column = "Force [N]", scale = -1.0, unit = "kN" }`',
+    "turning_points": "whether only corners of the CSV file are kept at which a load turns back by more than its noise",
     "repeat": "number of times that the loads are run through",
     "skip": "lines at the beginning of the CSV file that are not read",
     "count": "column that says how many times the two corners of a line are run through",

@@ -8,7 +8,7 @@ import numpy as np
 
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import any_text, as_toml, number, whole_number
+from fastpin.model.checks import any_text, as_toml, number, true_or_false, whole_number
 from fastpin.model.csv_columns import COLUMN_KEYS, COUNT, ColumnChoice, column_choice
 from fastpin.model.history import (
     MAX_CORNERS,
@@ -23,6 +23,7 @@ from fastpin.model.history_csv import MAX_ROWS
 from fastpin.model.load_units import Basis
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
+from fastpin.model.recorded import turning_corners
 
 MOST_BLOCKS = 10_000
 """Most [[load]] blocks. A block can hold any number of corners."""
@@ -232,7 +233,8 @@ def _from_csv(section: Section, folder: Path, basis: Basis) -> LoadHistory | Non
     if name is None or skip is None or len(known) < len(choices):
         return None
     try:
-        return read_csv(folder / name, known or None, basis, skip)
+        history = read_csv(folder / name, known or None, basis, skip)
+        return turning_corners(history) if section.checked("turning_points", true_or_false) else history
     except CaseFileError as error:
         for line, sentence in error.problems:
             section.report(f"csv: {name}{f', line {line}' if line else ''}: {sentence}", "csv")

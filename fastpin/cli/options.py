@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from fastpin.cli.chart_options import add_chart_options
+from fastpin.cli.crack_options import add_crack_options
+from fastpin.cli.loop_options import add_loop_options
 from fastpin.errors import printable
 from fastpin.figures.kinds import DEFAULT_KEY_FIGURE, KIND_OPTIONS, KINDS, STATES_HELP
 from fastpin.model.synonyms import closest, meant
@@ -27,7 +29,9 @@ EXIT_CODES = (
 SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""
 
-SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack", "charts")
+SCHEMAS = (
+    "run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack", "charts", "identify"
+)  # fmt: skip
 """Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
 
 
@@ -71,6 +75,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_converge(commands)
     add_sweep(commands)
     add_tolerances(commands)
+    add_identify(commands)
     add_compliance(commands)
     add_joint(commands)
     add_paper(commands)
@@ -240,47 +245,10 @@ def add_plot(commands: Any) -> None:
             plot.add_argument(f"--{name}", metavar=option.metavar, type=read, help=option.words)
 
 
-_LAW_WORDS = {
-    "C": "growth in a cycle under the range --unit, m",
-    "m": "exponent of Paris and Walker: da/dN = C (dK (1 - R)^(g - 1))^m",
-    "n": "exponent of NASGRO",
-    "p": "NASGRO's exponent near the threshold",
-    "q": "NASGRO's exponent near the toughness",
-    "exponent": "Walker's g (default 1: Paris's law)",
-    "threshold_range": "threshold of long cracks at R = 0, Pa sqrt(m) (default 0)",
-    "threshold_exponent": "Walker: exponent of 1 - R in the threshold (default 1 - g)",
-    "threshold_slope": "NASGRO's C_th for R >= 0 (default 0)",
-    "compressive_slope": "NASGRO's C_th for R < 0 (default 0)",
-    "constraint": "NASGRO's alpha, 1 to 3 (default 2)",
-    "stress_level": "NASGRO's largest stress over the flow stress (default 0.3)",
-    "intrinsic_length": "El Haddad's length of the threshold of short cracks, m (default 0)",
-    "toughness": "K at which the plate breaks, Pa sqrt(m)",
-    "unit": "range that C belongs to, Pa sqrt(m) (default 1e6)",
-}
-"""Help of the constants of the laws of growth."""
-
-
 def add_crack(commands: Any) -> None:
     """Add ``crack``."""
     crack = _command(commands, "crack", "crack", "run", "grow a crack from the hole under the loads of a result")
-    crack.add_argument("result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE)")
-    whose = "default: [crack] of the case"
-    for name, words in (
-        ("first", f"first length of the crack, m ({whose})"),
-        ("last", f"last length, m ({whose})"),
-        ("at", "angle of its mouth from the bottom, deg (default: [crack], else where a crack grows fastest)"),
-        ("angle", "its direction from the radius, counter-clockwise, deg (default: [crack], else 0)"),
-    ):
-        crack.add_argument(f"--{name}", metavar="X", type=literal, help=words)
-    crack.add_argument("--body", choices=("plate", "seat"), help="seat: the plate round a bush (default: plate)")
-    crack.add_argument("--case", metavar="CASE", type=Path, help="case file whose [crack] replaces that of the result")
-    crack.add_argument("--spectrum", action="store_true", help="count the cycles of the whole history")
-    laws = "law of the constants below (default walker; without constants: [crack], else the material)"
-    crack.add_argument("--law", choices=("paris", "walker", "nasgro"), help=laws)
-    for name, words in _LAW_WORDS.items():
-        crack.add_argument(f"--{name.replace('_', '-')}", metavar="X", type=literal, help=words)
-    crack.add_argument("-o", "--output", metavar="FIGURE", type=Path, help="draw the growth (png, pdf, svg)")
-    crack.add_argument("--csv", metavar="FILE", type=Path, help="write the numbers at all lengths")
+    add_crack_options(crack, literal)
     _add_json(crack, "write the growth and its margins as JSON")
 
 
@@ -431,6 +399,14 @@ def add_tolerances(commands: Any) -> None:
     tolerances.add_argument("--scatter", metavar="FILE", type=Path, help="samples over the fields (png, pdf or svg)")
     tolerances.add_argument("--value", metavar="NAME", help="outcomes of the figures: a,b (default: the first ones)")
     _add_json(tolerances, "write the effects as JSON")
+
+
+def add_identify(commands: Any) -> None:
+    """Add ``identify``."""
+    words = "fit friction, rig stiffness and offsets to a measured loop of displacement and force"
+    identify = _command(commands, "identify", "identify", "run", words)
+    add_loop_options(identify, literal)
+    _add_json(identify, "write what the loop tells as JSON")
 
 
 def add_compliance(commands: Any) -> None:

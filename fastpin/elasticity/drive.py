@@ -112,7 +112,7 @@ class DisplacementDrive(Drive):
     Attributes
     ----------
     compliance : float
-        The compliance g.
+        The compliance g, with that of the rig.
     coupling : ndarray, shape (2, 2n)
         Maps (N, T) to k J, along x and y. It is 0 for an axis that is not driven.
     offsets : ndarray, shape (2n, 2)
@@ -191,6 +191,8 @@ def make_drive(
     if not axes.any():
         return Drive(motion[:, :2], loads)
     compliance = problem.drive_compliances[0]
+    if problem.rig_stiffness is not None:  # a spring in series
+        compliance += 1.0 / (problem.rig_stiffness * problem.surfaces.beta_star)
     coupling = displacement_coupling(problem, grid) * axes[:, None]
     translation = motion[:, :2].copy()
     offsets = loads[:, list(FORCES)] * SIGNS * axes

@@ -20,6 +20,7 @@ from .cycles import plot_cycles as plot_cycles
 from .fatigue import plot_fatigue as plot_fatigue
 from .gap import plot_gap as plot_gap
 from .history import plot_history as plot_history
+from .identify import plot_identified as plot_identified
 from .joint import plot_joint as plot_joint
 from .joint import plot_shares as plot_shares
 from .laminates import plot_stiffness as plot_stiffness

@@ -29,6 +29,7 @@ from fastpin.model.units import scaled, units
 from fastpin.report.curves import write_csv
 from fastpin.report.cycle import fatigue_bodies
 from fastpin.report.fatigue import fatigue_curve, spectrum_curve
+from fastpin.states.choice import span_of
 
 PLANES = 40
 """Planes that are drawn as short lines, spread over the edge."""
@@ -51,7 +52,7 @@ def fatigue_plot(
     criterion = criterion or "smith-watson-topper"
     if not subject.cycles:
         return _spectrum_plot(subject, criterion, body, depth)
-    result = subject.part(with_cycles(subject).cycles[-1])
+    result = subject.part(*span_of(with_cycles(subject).cycles[-1]))
     cycle = cycle_states(result, result.cycles[-1])
     bodies = (fatigue_bodies(cycle[0].problem, criterion) or ["plate"]) if body is None else [body]
     return fatigue_of([fatigue(cycle, criterion, one, depth=depth) for one in bodies])

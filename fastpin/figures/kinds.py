@@ -39,6 +39,7 @@ KIND_OPTIONS = {
         "counted from 1",
         "N",
     ),
+    "corners": KindOption("loops, slip: a part of the history in place of a cycle, such as 21-101", "A-B"),
     "abscissa": KindOption(
         "loops: prescribed (default where a displacement is prescribed) or pin (its displacement)", "WHICH"
     ),
@@ -119,8 +120,10 @@ KINDS = {
         of_laminates=True,
     ),
     "cycles": Kind("cycles", "changes in each cycle", ("csv",), sources=("result",)),
-    "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv",)),
-    "loops": Kind("load_cycle", "hysteresis loops of the last cycle, or of several", ("csv", "cycle", "abscissa")),
+    "slip": Kind("load_cycle", "slip and friction energy in the last cycle", ("csv", "corners")),
+    "loops": Kind(
+        "load_cycle", "hysteresis loops of the last cycle, or of several", ("csv", "cycle", "corners", "abscissa")
+    ),
     "fatigue": Kind(
         "fatigue",
         "a criterion along the edge over the last cycle, or damage",

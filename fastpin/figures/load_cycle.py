@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -31,7 +32,7 @@ from fastpin.figures.words import (
     shown_unit,
     without_rounding,
 )
-from fastpin.model.checks import choice, instance, items, string
+from fastpin.model.checks import as_toml, choice, instance, items, string
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
@@ -39,7 +40,7 @@ from fastpin.report.curves import Curve, write_csv
 from fastpin.report.cycle import CONJUGATES, loop_curve, natural_sizes
 from fastpin.report.cycle import write_csv as write_cycle
 from fastpin.solver.result import Result
-from fastpin.states.choice import chosen_cycles
+from fastpin.states.choice import chosen_cycles, span_of
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 
 STRAIGHT = 3
@@ -70,9 +71,23 @@ def one_or_several(cycle: LoadCycle | Result | Sequence[LoadCycle]) -> list[Load
     return [_cycle_of(one) for one in each]
 
 
-def slip_plot(subject: Subject) -> Plot:
-    """Return slip and friction energy of the last cycle."""
-    return slip_of(subject.part(with_cycles(subject).cycles[-1]).cycle())
+def slip_plot(subject: Subject, corners: str | None = None) -> Plot:
+    """Return slip and friction energy of the last cycle, or from one corner to another such as "21-101"."""
+    if corners is not None:
+        return slip_of(_between(subject, corners))
+    return slip_of(subject.part(*span_of(with_cycles(subject).cycles[-1])).cycle())
+
+
+def _between(subject: Subject, corners: str) -> LoadCycle:
+    """The part of a history from one corner to another, as a cycle."""
+    ends = re.fullmatch(r"\s*(\d+)\s*-\s*(\d+)\s*", string("corners", corners))
+    if ends is None:
+        raise InputError("corners", f"must be two corners such as 21-101, not {as_toml(corners)}")
+    first, last = int(ends[1]), int(ends[2])
+    whole = len(subject.result().history)
+    if not 1 <= first < last <= whole:
+        raise InputError("corners", f"must increase, from 1 to {whole:,}, the last corner; not {corners.strip()}")
+    return subject.part(first, last).cycle(first=first, last=last)
 
 
 def slip_of(cycle: LoadCycle) -> Plot:
@@ -165,11 +180,19 @@ def _shade(panel: Axes, cycle: LoadCycle, frame: Frame, slips: bool) -> list[Art
     return entries
 
 
-def loops_plot(subject: Subject, cycle: str = "last", abscissa: Abscissa | None = None) -> Plot:
+def loops_plot(
+    subject: Subject, cycle: str = "last", abscissa: Abscissa | None = None, corners: str | None = None
+) -> Plot:
     """Return the hysteresis loops of chosen cycles, at most as many as a figure can show. Cycles count from 1.
 
-    Cycles without a loop are left out, and the notes say so.
+    Cycles without a loop are left out, and the notes say so. `corners` such as "21-101" choose another part.
     """
+    if corners is not None:
+        chosen = _between(subject, corners)
+        of_chosen = loops_of([chosen], abscissa)
+        return replace(
+            of_chosen, write_numbers=partial(write_csv, [loop_curve(chosen)]), notes=[dissipated_words(chosen)]
+        )
     result = with_cycles(subject)
     places, refusal = chosen_cycles(result.cycles, cycle), None
     shown = [places[k] for k in spread(len(places), MAX_NAMED)]
@@ -179,7 +202,7 @@ def loops_plot(subject: Subject, cycle: str = "last", abscissa: Abscissa | None 
         numbers = ", ".join(f"{place + 1:,}" for place in shown)
         notes.append(f"the figure shows {len(shown)} of {len(places):,} cycles: {numbers}")
     for place in shown:
-        part = subject.part(result.cycles[place])
+        part = subject.part(*span_of(result.cycles[place]))
         try:
             found[place + 1] = part.cycle(place)
         except InputError as error:

@@ -14,7 +14,7 @@ from fastpin.model.checks import as_toml, instance
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.wear_result import WearResult
-from fastpin.states.choice import NO_CYCLE, StateChoice, span_of
+from fastpin.states.choice import NO_CYCLE, StateChoice
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.recording import stored_case
@@ -52,7 +52,7 @@ class InMemory:
         """Return the result."""
         return instance("result", self._result, Result, "a Result")
 
-    def part(self, cycle: Cycle) -> Result:
+    def part(self, first: int, last: int) -> Result:
         """Return the result."""
         return self.result()
 
@@ -95,9 +95,9 @@ class InFile:
         """Return the result without its states."""
         return load(self._path, states=[])
 
-    def part(self, cycle: Cycle) -> Result:
-        """Return the result with the states of one cycle only."""
-        return load(self._path, states=places_between(self._path, *span_of(cycle)))
+    def part(self, first: int, last: int) -> Result:
+        """Return the result with the states from one corner to another only."""
+        return load(self._path, states=places_between(self._path, first, last))
 
     def whole(self) -> Result:
         """Return the result with all its states."""
@@ -140,5 +140,5 @@ def with_cycles(subject: Subject) -> Result:
     """Return the result of a subject, perhaps without its states. Without a cycle raise :class:`InputError`."""
     result = subject.result()
     if not result.cycles:
-        raise InputError("result", NO_CYCLE)
+        raise InputError("result", f"{NO_CYCLE}; loops and slip also show --corners 21-101")
     return result

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from fastpin.errors import InputError
 from fastpin.model.checks import LONGEST_TEXT, as_toml, is_whole, number, string
-from fastpin.model.load_units import is_unit, unit_name
+from fastpin.model.load_units import is_unit, is_unit_of, unit_name
 from fastpin.model.loads import LOADS, load_index
 from fastpin.model.synonyms import closest
 
@@ -28,7 +28,8 @@ class ColumnChoice(NamedTuple):
     ----------
     columns : tuple of str or int
         The header, with its unit or without, or the number of the column, counted from 1. Two of them: each line has
-        two corners of the load, such as the largest and the smallest.
+        two corners of the load, such as the largest and the smallest. If the header is empty, the column named as the
+        load is taken, or else the only one with a unit of the load.
     scale : float
         Factor of all numbers: -1 turns the sign. Not 0.
     unit : str
@@ -138,7 +139,8 @@ def _place(name: str, column: str | int, titles: Sequence[str], bare: Sequence[s
         if column > len(titles):
             raise InputError(name, f"the file has {len(titles)} columns, and no column {column}")
         return column - 1
-    wanted = column.strip()
+    parts = [title_and_unit(title) for title in titles]
+    wanted = column.strip() or column_of(name, parts, titles)
     places = [place for place, title in enumerate(titles) if title == wanted]
     places = places or [place for place, title in enumerate(bare) if title == wanted]
     if len(places) != 1:
@@ -150,6 +152,18 @@ def _place(name: str, column: str | int, titles: Sequence[str], bare: Sequence[s
             hint = closest(wanted, [title for title in (*titles[:100], *bare[:100]) if len(title) < LONGEST_TEXT])
         raise InputError(name, f"{fault} {as_toml(wanted)}; its columns are {shown}{hint}")
     return places[0]
+
+
+def column_of(load: str, parts: Sequence[tuple[str, str]], titles: Sequence[str]) -> str:
+    """Return the title of the column of a load: that of its name, else the only one with a unit of its kind."""
+    found = [place for place, (name, _) in enumerate(parts) if name == load]
+    found = found or [place for place, (_, unit) in enumerate(parts) if unit and is_unit_of(load, unit)]
+    if len(found) == 1:
+        return titles[found[0]]
+    shown = ", ".join(as_toml(titles[place]) for place in (found or range(len(titles)))[:MOST_SHOWN])
+    if found:
+        raise InputError(load, f"{len(found)} columns of the file may hold it: {shown}; name one of them")
+    raise InputError(load, f"no column of the file has its name or a unit of it; name one of {shown}")
 
 
 def named_columns(titles: Sequence[str]) -> list[CsvColumn]:

@@ -61,6 +61,9 @@ FIELDS = {
     ),
     "drive": Field(choices=("force", "ux", "uy", "both"), in_ids="given"),
     "gauge_radius": Field("length", is_optional=True, in_ids="given", also="r_gauge gauge"),
+    "rig_stiffness": Field(
+        "rig stiffness", is_optional=True, in_ids="given", also="series_stiffness machine_stiffness rig_spring k_rig"
+    ),
     "thickness": Field("length", is_optional=True, in_ids="never", also="t h width plate_thickness depth b"),
     "gap": Field(
         "displacement",

@@ -36,6 +36,7 @@ from fastpin.model.load_units import Basis
 from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
 from fastpin.model.problem import Problem, checked_thickness
 from fastpin.model.synonyms import explains_keywords
+from fastpin.model.turning import recorded_cycles
 
 POINTS = 24
 """Default number of corners in a cycle of loads that are out of phase."""
@@ -471,6 +472,9 @@ def read_csv(
 ) -> LoadHistory:
     """Read a history as :meth:`LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
     parts = read_corners(path, choices, basis, skip)
+    if len(parts) == 1 and not parts[0][1]:  # a record of samples may hold cycles
+        rows, _ = parts[0]
+        return LoadHistory.of_blocks([Block(rows, *recorded_cycles(rows))])
     return LoadHistory.of_blocks(replace(_plain(rows), count=max(n, 1), cycle=n > 0) for rows, n in parts)
 
 

@@ -134,6 +134,15 @@ def is_unit(name: str) -> bool:
     return any(name in units for table in (_PER_METRE, _WITH_THICKNESS) for units in table.values())
 
 
+def is_unit_of(load: str, name: str) -> bool:
+    """Whether a name is the usual spelling of a unit of this load: of a force or moment, per thickness or not.
+
+    A moment per thickness in N is left out: it looks like a force.
+    """
+    kind = LOAD_KIND[load]
+    return name in _WITH_THICKNESS[kind] or (name in _PER_METRE[kind] and name not in _WITH_THICKNESS["force"])
+
+
 def load_unit(load: str, name: str, basis: Basis) -> LoadUnit:
     """Return a unit by its usual spelling.
 

@@ -110,6 +110,9 @@ class Problem:
         :data:`MOST_GAUGE` R. Only with a prescribed displacement. Far away the plate's displacement under a force grows
         like the logarithm of the distance. So a displacement relative to the plate needs a radius. The default of a
         ring, also round a bush, is its outer rim.
+    rig_stiffness : float, optional
+        Stiffness, N/m^2 (force per unit thickness), of a spring between the hub and each prescribed displacement ``ux``
+        and ``uy``: the rig, rigid unless given. A dimensionless problem has it in 1/beta*. See also ``hub_stiffness``.
     pin_body : PinBody
         A solid or a hollow pin; a class of :mod:`fastpin.bodies`.
     plate_body : PlateBody
@@ -140,6 +143,7 @@ class Problem:
     hub_stiffness: float | None = field(default=None, kw_only=True)
     drive: DriveKind = field(default="force", kw_only=True)
     gauge_radius: float | None = field(default=None, kw_only=True)
+    rig_stiffness: float | None = field(default=None, kw_only=True)
     pin_body: PinBody = field(default=SOLID_PIN, kw_only=True)
     plate_body: PlateBody = field(default=INFINITE_PLATE, kw_only=True)
     thickness: float | None = field(default=None, kw_only=True)
@@ -251,6 +255,11 @@ class Problem:
                     raise InputError("gauge_radius", f"must be the hole radius {radius:g} in a laminate, not {gauge:g}")
                 gauge = radius
             set_fields(self, gauge_radius=gauge)
+        if self.rig_stiffness is not None:
+            if self.drive == "force":
+                raise InputError("rig_stiffness", 'only a displacement has a rig: drive = "ux" or "uy" or "both"')
+            natural, stiffness = 1.0 / self.surfaces.beta_star, positive("rig_stiffness", self.rig_stiffness)
+            set_fields(self, rig_stiffness=number("rig_stiffness", stiffness, 1e-30 * natural, 1e30 * natural))
 
     def __repr__(self) -> str:
         size = f"load parameter {self.clearance:.6g} (R = F = beta* = 1)"
@@ -260,6 +269,7 @@ class Problem:
         hub += "" if self.hub_radius is None else f" at radius {self.hub_radius:.6g}"
         driven = "" if self.drive == "force" else f", driven by {self.drive.replace('both', 'ux and uy')}"
         driven += "" if self.gauge_radius is None else f" over radius {self.gauge_radius:.6g}"
+        driven += "" if self.rig_stiffness is None else f" by a rig of stiffness {self.rig_stiffness:.6g}"
         load = {"centre": "load at the centre", "body": "body load"}[self.pin_load]
         load = load if self.pin_body == SOLID_PIN else repr(self.pin_body)
         plate = "" if self.plate_body == INFINITE_PLATE else f"\n {self.plate_body!r}"
@@ -283,6 +293,7 @@ class Problem:
         hub_stiffness: float | None = None,
         drive: DriveKind = "force",
         gauge_radius: float | None = None,
+        rig_stiffness: float | None = None,
         pin_body: PinBody = SOLID_PIN,
         plate_body: PlateBody = INFINITE_PLATE,
         gap: InitialGap = NO_GAP,
@@ -291,16 +302,16 @@ class Problem:
 
         With a load P = 1 the load parameter (R - R_D)/(F beta*) is `load_parameter`. The units of results are F/R for
         tractions, F beta* for displacements and F beta*/R for rotations. Remote stresses are given in F/R, and a hub's
-        stiffness in R^2/beta*. Radii of bodies are in units of R, and the interference of a bush in F beta*. beta* is
-        that of the two surfaces in contact: of pin and bush if there is a bush.
+        stiffness in R^2/beta*, that of a rig in 1/beta*. Radii of bodies are in units of R, and the interference of a
+        bush in F beta*. beta* is that of the two surfaces in contact: of pin and bush if there is a bush.
         """
         value = number("load_parameter", load_parameter, -MOST_PARAMETER, MOST_PARAMETER)
         instance("pair", pair, MaterialPair, "a MaterialPair")
         plate_body, pair = without_units(pair, plate_body)
         return cls(
             pair, 1.0, value, friction, pin_load, rotation, hub_radius, True,
-            hub_stiffness=hub_stiffness, drive=drive, gauge_radius=gauge_radius, pin_body=pin_body,
-            plate_body=plate_body, gap=gap,
+            hub_stiffness=hub_stiffness, drive=drive, gauge_radius=gauge_radius, rig_stiffness=rig_stiffness,
+            pin_body=pin_body, plate_body=plate_body, gap=gap,
         )  # fmt: skip
 
     @cached_property

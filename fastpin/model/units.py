@@ -35,6 +35,7 @@ _KINDS = {
     "displacement": _Kind("m", "F beta*"),
     "rotation": _Kind("rad", "F beta*/R"),
     "stiffness": _Kind("N/rad", "R^2/beta*", "N m/rad"),
+    "rig stiffness": _Kind("N/m^2", "1/beta*", "N per m"),
     "energy": _Kind("J/m", "F^2 beta*", "J"),
     "ratio": _Kind("", ""),
     "energy density": _Kind("J/m^2", "F^2 beta*/R"),

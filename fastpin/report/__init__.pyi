@@ -3,6 +3,7 @@ from . import convergence as convergence
 from . import cycle as cycle
 from . import envelope as envelope
 from . import fatigue as fatigue
+from . import identify as identify
 from . import joints as joints
 from . import strength as strength
 from . import stress as stress

@@ -157,6 +157,8 @@ def _drive(problem: Problem) -> str:
     words = f", {names[problem.drive]}"
     if problem.gauge_radius is not None:
         words += f" over radius {problem.gauge_radius:g} {length}"
+    if problem.rig_stiffness is not None:
+        words += f", rig of stiffness {units(problem)['rig stiffness'].text(problem.rig_stiffness)}"
     if problem.hub_radius is not None and not problem.held:
         words += f", hub of radius {problem.hub_radius:g} {length}"
     return words

@@ -25,6 +25,7 @@ from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import METHODS, SolveOptions
 from fastpin.model.ply import CRITERION_NAMES
 from fastpin.model.strength import LENGTHS
+from fastpin.report.identify import ENERGIES
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
 from fastpin.states.quantities import QUANTITIES
@@ -47,7 +48,8 @@ def json_schema(command: str) -> Schema:
 
     Parameters
     ----------
-    command : {"run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack", "charts"}
+    command : str
+        "run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack", "charts" or "identify".
         ``fastpin resume`` and ``show`` write the document of "run".
 
     Raises
@@ -133,6 +135,29 @@ def _crack_growth() -> Schema:
             "crack": _object(properties(GROWTH)),
             "lengths": _map_of(_list_of(_UNKNOWN), "a column of numbers at all lengths, with its unit in its name"),
             "margins": _margins(),
+        }
+    )
+
+
+def _identified() -> Schema:
+    """The document of ``fastpin identify``."""
+    ends = _object({"value": _UNKNOWN | {"description": "null: not told"}, "low": _UNKNOWN, "high": _UNKNOWN})
+    return _object(
+        {
+            "fastpin": _TEXT,
+            "title": _TEXT,
+            "units": _map_of(_TEXT, "unit of each kind of quantity"),
+            "displacement": _TEXT,
+            "force": _TEXT,
+            "samples": _WHOLE,
+            "turning_points": _WHOLE,
+            "least_reversal": _NUMBER,
+            "noise": _object({"displacement": _NUMBER, "force": _NUMBER}),
+            "scatter": _NUMBER,
+            "estimates": _map_of(ends, "an identified value and its interval of 95 %; null: no bound"),
+            "correlations": _list_of({"type": "array", "prefixItems": [_TEXT, _TEXT, _NUMBER]}),
+            "energies": _list_of(_object(dict.fromkeys(ENERGIES, _NUMBER))),
+            "notes": _list_of(_TEXT),
         }
     )
 
@@ -386,6 +411,7 @@ _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "tolerances": _tolerances,
     "crack": _crack_growth,
     "charts": _charts,
+    "identify": _identified,
 }
 
 COMMANDS = tuple(_DOCUMENTS)

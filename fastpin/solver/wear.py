@@ -20,6 +20,7 @@ from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.profile import Profile, ProfileLike, profile_of_nodes
+from fastpin.model.recorded import with_last_cycle
 from fastpin.model.wear import Wear
 from fastpin.solver.attempts import Unfit, arcs_after, first_wide_enough
 from fastpin.solver.errors import ArcError, Interrupted, ResolutionError
@@ -123,6 +124,7 @@ class WearTask:
 
     def __post_init__(self) -> None:
         self._task()
+        object.__setattr__(self, "history", with_last_cycle(self.history))
         check_wear(self.problem)
         if self.options.method != "path":
             raise InputError("method", 'wear is followed by method = "path" only')

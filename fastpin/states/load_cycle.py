@@ -20,6 +20,7 @@ from fastpin.model.checks import instances, number_array
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.ties import top_angle
+from fastpin.model.turning import is_back
 from fastpin.model.units import units_per_thickness
 from fastpin.states.regimes import Regime, regime_of
 from fastpin.states.state import State
@@ -129,9 +130,13 @@ class LoadCycle:
 
     @property
     def differing_loads(self) -> list[str]:
-        """Names of the loads that differ between the two ends."""
-        problem, begin, end = self.states[0].problem, self.states[0].load, self.states[-1].load
-        return [name for name in LOADS if name not in problem.reactions and begin[name] != end[name]]
+        """Names of the loads that differ between the two ends, by more than a record can tell.
+
+        See :func:`fastpin.model.turning.is_back`.
+        """
+        given = [name for name in LOADS if name not in self.states[0].problem.reactions]
+        values = {name: np.array([state.load[name] for state in self.states]) for name in given}
+        return [name for name, each in values.items() if each[0] != each[-1] and not is_back(each)]
 
     @cached_property
     def status(self) -> np.ndarray:

@@ -483,7 +483,7 @@ class State(ReadOnly):
     def displacement(self) -> dict[str, float]:
         """The displacement of the hub relative to the gauge circle, "ux" and "uy" in m, (T29).
 
-        It counts as dx and dy do. Where it is prescribed, it is the load of the same name.
+        It counts as dx and dy do. Where it is prescribed, it is the load of the same name, less the give of the rig.
         """
         (cos, sin), pair = self.grid.trig_moments(), self.problem.surfaces
         own, coupling = self.problem.drive_compliances

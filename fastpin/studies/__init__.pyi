@@ -6,6 +6,10 @@ from . import tolerances as tolerances
 from .convergence import converge as converge
 from .failure import FailureLoad as FailureLoad
 from .failure import failure_load as failure_load
+from .identification import FittedValue as FittedValue
+from .identification import Identified as Identified
+from .identification import identify as identify
+from .measured_loop import read_loop as read_loop
 from .outcome_tables import read_outcomes as read_outcomes
 from .plan import parse_plan as parse_plan
 from .plan import read_plan as read_plan

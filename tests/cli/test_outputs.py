@@ -33,6 +33,7 @@ COMMANDS = {
     "converge": ["converge", "case.toml"],
     "sweep": ["sweep", "plan.toml"],
     "tolerances": ["tolerances", "tolerances.toml"],
+    "identify": ["identify", "case.toml", "rig.csv", "--over", "ux"],
     "compliance": ["compliance", "lug.toml"],
     "joint": ["joint", "joint.toml"],
     "benchmarks": ["benchmarks", "kirsch"],
@@ -55,6 +56,7 @@ TEXTS: dict[str, dict[str, str]] = {
     "converge": {"--csv": ".csv", "--json": ".json", "--plot": ".pdf"},
     "sweep": {"--table": ".csv", "--plot": ".png"},
     "tolerances": {"--table": ".csv", "--plot": ".png", "--scatter": ".svg", "--json": ".json"},
+    "identify": {"--csv": ".csv", "--json": ".json", "--plot": ".png"},
     "compliance": {"--output": ".json", "--plot": ".png"},
     "joint": {"--json": ".json", "--plot": ".png", "--shares": ".svg"},
     "benchmarks": {"--json": ".json"},
@@ -86,6 +88,7 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "case.toml").write_text(CASE)
     (folder / "lug.toml").write_text(LUG_EXAMPLE)
     (folder / "joint.toml").write_text(JOINT_EXAMPLE)
+    (folder / "rig.csv").write_text("ux,Q\n1e-6,1e5\n2e-6,2e5\n")
     (folder / "plan.toml").write_text('case = "case.toml"\n[grid]\nsolve.nodes = [41]\ncontact.friction = [0.2, 0.3]\n')
     (folder / "tolerances.toml").write_text(
         'case = "case.toml"\nsamples = 2\n[tolerances]\ncontact.friction = { from = 0.2, to = 0.5 }\n'
@@ -100,7 +103,7 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(samples: Path, tmp_path: Path) -> Path:
-    for name in ("case.toml", "lug.toml", "joint.toml", "plan.toml", "tolerances.toml", "r.h5"):
+    for name in ("case.toml", "rig.csv", "lug.toml", "joint.toml", "plan.toml", "tolerances.toml", "r.h5"):
         shutil.copyfile(samples / name, tmp_path / name)
     return tmp_path
 

@@ -37,6 +37,7 @@ def test_a_thickness_comes_as_a_factor_and_a_unit() -> None:
         "force": ("N/m", Unit(0.01, "N")),
         "moment": ("N", Unit(0.01, "N m")),
         "stiffness": ("N/rad", Unit(0.01, "N m/rad")),
+        "rig stiffness": ("N/m^2", Unit(0.01, "N per m")),
         "energy": ("J/m", Unit(0.01, "J")),
         "work per stress": ("m^2", Unit(0.01, "m^3")),
     }

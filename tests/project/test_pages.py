@@ -27,6 +27,7 @@ HOW_TO = [
     "tutorial",
     "riveted-joint",
     "bushed-lug",
+    "rig",
     "signature",
     "case-files",
     "histories",
@@ -58,6 +59,7 @@ FILES = {
     "bushed-lug.md": ["bushed-lug.toml", "bushed-lug-tolerances.toml"],
     "signature.md": ["signature.toml"],
     "riveted-joint.md": ["riveted-joint.toml", "riveted-joint-plan.toml"],
+    "rig.md": ["rig.toml", "rig-map.toml"],
 }
 """The files that a page shows as a whole, in this order. Each of them begins with a comment."""
 
@@ -280,6 +282,21 @@ def test_the_plan_of_the_bushed_lug_has_its_runs() -> None:
     study = read_tolerances("bushed-lug-tolerances.toml")
     assert len(study.plan.points) == 43
     assert study.plan.outcomes.keys() == {"hoop", "life", "growth"}
+
+
+# -- a loop of a rig ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.gate
+def test_the_loop_of_the_rig_prints_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["identify", "rig.toml", "rig.csv"]) == 0
+    assert_shown(texts("rig.md", "text")[0], capsys.readouterr().out)
+
+
+def test_the_map_of_the_rig_has_its_runs() -> None:
+    plan = read_plan("rig-map.toml")
+    assert len(plan.runs) == 30
+    assert plan.outcomes.keys() == {"regime", "energy"}
 
 
 # -- a bolt in a carbon laminate ---------------------------------------------------------------------------------------

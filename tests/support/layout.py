@@ -24,6 +24,7 @@ ABOVE_BODIES = tuple(
         "lug",
         "points",
         "problem",
+        "recorded",
         "strength",
         "units",
     )
@@ -89,7 +90,7 @@ BY_NAME = ("import_module", "__import__", "Later")
 MOST_LINES = 600
 MOST_FUNCTION_LINES = 50
 MOST_PARAMETERS = 8
-MOST_PUBLIC_NAMES = 43
+MOST_PUBLIC_NAMES = 44
 
 UPWARD = {
     "states/state.py": "State shows itself in notebooks",

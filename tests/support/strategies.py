@@ -142,6 +142,7 @@ def problems(draw: st.DrawFn) -> fastpin.Problem:
         "hub_radius": draw(between(1e-3, 1.0)) * radius if has_hub and draw(st.booleans()) else None,
         "hub_stiffness": draw(scale(-3, 3)) * radius**2 / unit if rotation == "spring" else None,
         "gauge_radius": draw(between(1.0, 100.0)) * radius if drive != "force" and draw(st.booleans()) else None,
+        "rig_stiffness": draw(scale(-3, 3)) / unit if drive != "force" and draw(st.booleans()) else None,
     }
     kind: dict[str, Any] = {"pin_load": pin_load, "rotation": rotation, "drive": drive}
     if draw(st.booleans()):
@@ -275,7 +276,10 @@ def tables_of(case: fastpin.Case) -> Tables:
         contact["load_parameter"] = problem.clearance
     else:
         contact |= {"hole_radius": problem.hole_radius, "clearance": problem.clearance}
-    given = {name: getattr(problem, name) for name in ("drive", "hub_radius", "hub_stiffness", "gauge_radius")}
+    given = {
+        name: getattr(problem, name)
+        for name in ("drive", "hub_radius", "hub_stiffness", "gauge_radius", "rig_stiffness")
+    }
     contact |= {name: value for name, value in given.items() if value is not None}
     tables["contact"] = contact
     tables["gap"] = {name: written(profile) for name, profile in problem.gap.given.items()}

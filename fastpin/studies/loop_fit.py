@@ -1,0 +1,309 @@
+"""The fit of a model to a measured loop: curves from solutions, unknowns, bars.
+
+The model is driven by the ends of the branches alone. The unknowns are fitted to the distances of all samples from its
+curves, along the normal. The unknown of the friction is its reciprocal: the friction itself has a tail to infinity.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.runtime.extensions import optimize
+from fastpin.solver.errors import ArcError, ResolutionError, SolveError
+from fastpin.solver.solving import MemoryRecorder
+from fastpin.solver.task import Task
+from fastpin.studies.measured_loop import MeasuredLoop
+
+POINTS, FINEST, MOVED = 8, 4, 0.4
+"""Points of a branch, and the most times as many. They are twice as many until friction and rig move by less than this
+many standard deviations: a quarter of it is left."""
+
+STEPS = {"friction": 0.03, "compliance": 5e-3, "displacement_offset": 1e-3, "displacement_drift": 1e-3,
+         "clearance": 1e-2, "force_offset": 1e-3, "force_drift": 1e-3, "scale": 1e-3}  # fmt: skip
+"""Steps of the differences, in the sizes of the unknowns."""
+
+LEAST, MOST = 0.05, 20.0
+"""Least and most 1/friction. A pin with a friction of 20 sticks wherever it touches."""
+
+ROUNDS, CONVERGED = 5, 0.02
+"""Most Jacobians by differences, and a change of the sum of squares in units of the noise that counts as none."""
+
+SIGMA, TRIES, FOLLOWED = 1.04 * 1.96, 6, 4
+"""Standard deviations of an interval of 95 %: the noise of the ends, which drive the model, adds 4 % to a bar. Most
+values of a friction that are tried for each end of its interval, and most steps in which the other unknowns follow."""
+
+STARTS = (0.6,)
+"""Factors of 1/friction from which it is fitted again: contacts that slip more or less have minima of their own."""
+
+LOST = 50.0
+"""Distance of all samples, in standard deviations, where the model has no state."""
+
+Start = Literal["rest", "cycle"]
+
+IdentifyProgress = Callable[[float, float], None]
+
+
+@dataclass(eq=False)
+class LoopModel:
+    """Curves of all branches, from solutions of a history that turns at the measured ends only."""
+
+    problem: Problem
+    held: dict[str, float]
+    names: tuple[str, str]
+    loop: MeasuredLoop
+    start: Start
+    by_cycle: bool
+    nodes: int
+    progress: IdentifyProgress | None
+    points: int = POINTS
+    solved: int = 0
+    grid: Grid | None = None
+    known: dict[Any, list[tuple[np.ndarray, np.ndarray]]] = field(default_factory=dict)
+
+    @property
+    def cycle_of(self) -> np.ndarray:
+        """The cycle of each branch, from 0: the first one also has the branch before, the last one what is left."""
+        branches = len(self.loop.ends) - 1
+        if not self.by_cycle:
+            return np.zeros(branches, dtype=int)
+        return np.minimum(np.maximum(np.arange(branches) - 1, 0) // 2, max((branches - 1) // 2 - 1, 0))
+
+    def with_values(self, friction: float, compliance: float, clearance: float) -> Problem:
+        """The problem with a friction, a compliance of the rig and a clearance."""
+        stiffness = 1.0 / compliance if compliance > 0.0 else None
+        if self.names[0] == "rotation":
+            rig: dict[str, Any] = {"hub_stiffness": stiffness, "rotation": "fixed" if stiffness is None else "spring"}
+        else:
+            rig = {"rig_stiffness": stiffness}
+        return replace(self.problem, friction=friction, clearance=clearance, **rig)
+
+    def curves(self, inverse: Sequence[float], compliance: float, clearance: float, shift: float, drift: float) -> Any:
+        """Displacements and forces of each branch, for 1/friction of each cycle and the offset and drift of the
+        displacement."""
+        key = (*inverse, compliance, clearance, shift, drift, self.points)
+        if key in self.known:
+            return self.known[key]
+        ends = self.loop.ends[:, 1] - shift - drift * self.loop.ends[:, 0]
+        changes = [inverse[0] / inverse[cycle] - 1.0 for cycle in self.cycle_of]
+        rows, spans = [(0.0, 0.0)], []
+        if self.start == "rest":
+            ends[0] = 0.0
+        else:  # once round, to the branch on which the record begins
+            rows += [(each, 0.0) for each in (*ends[[2, 1, 2] if len(ends) > 3 else [1]], ends[0])]
+        part = np.linspace(0.0, 1.0, self.points + 1)[1:]
+        part = 0.5 * part + 0.25 * (1.0 - np.cos(math.pi * part))  # denser where a branch begins
+        for begin, end, change in zip(ends[:-1], ends[1:], changes, strict=True):
+            if change != rows[-1][1]:
+                rows.append((begin, change))
+            spans.append(slice(len(rows) - 1, len(rows) + self.points))
+            rows += [(each, change) for each in begin + (end - begin) * part]
+        forces = self._forces(self.with_values(1.0 / inverse[0], compliance, clearance), np.array(rows))
+        places = np.array(rows)[:, 0]
+        if len(self.known) > 3:
+            self.known.pop(next(iter(self.known)))
+        self.known[key] = [(places[span], forces[span]) for span in spans]
+        return self.known[key]
+
+    def _forces(self, problem: Problem, rows: np.ndarray) -> np.ndarray:
+        """The reactions at the corners of a path: rows of the displacement and the change of the friction."""
+        table = np.column_stack([*(np.full(len(rows), value) for value in self.held.values()), rows])
+        history = LoadHistory.from_array(table, [*self.held, self.names[0], "friction_change"])
+        kept, options = MemoryRecorder(), SolveOptions(nodes=self.nodes * self.points // POINTS)
+        grid = self.grid if self.grid is not None and self.grid.size == options.nodes else None
+        try:
+            Task(problem, history, options, grid).follow(kept)
+        except (ArcError, ResolutionError):  # the contact has grown beyond the arc of the solution before
+            Task(problem, history, options).follow(kept)
+        self.grid = kept.run.grid  # type: ignore[union-attr]
+        self.solved += 1
+        if self.progress is not None:
+            self.progress(self.solved, max(40.0, self.solved + 5.0))
+        return np.array([state.resultants[self.names[1]] for state in kept.states])
+
+
+class LoopFit:
+    """The unknowns, fitted. They count in their sizes.
+
+    Attributes
+    ----------
+    names : list of str
+        The unknowns: "friction" of each cycle, "compliance", and names of estimates.
+    found, deviations : ndarray, shape (unknowns,)
+    covariance : ndarray, shape (unknowns, unknowns)
+    low, high : ndarray, shape (unknowns,)
+        Intervals of 95 %.
+    scatter, moved : float
+        `moved` is the last change by twice the points, in standard deviations.
+    """
+
+    def __init__(self, model: LoopModel, wanted: Sequence[str]) -> None:
+        self.model = model
+        loop, problem = model.loop, model.problem
+        self.cycles = int(model.cycle_of[-1]) + 1
+        travel, force = float(np.ptp(loop.displacement)), float(np.ptp(loop.force))
+        at_rest = model.start == "rest"
+        shift = loop.ends[0, 1] if at_rest else 0.5 * (loop.ends[1:-1, 1].min() + loop.ends[1:-1, 1].max())
+        zero = loop.force[:3].mean() if at_rest else 0.5 * (loop.force.min() + loop.force.max())
+        stiffness = problem.hub_stiffness if model.names[0] == "rotation" else problem.rig_stiffness
+        self.fixed = {"compliance": 0.0 if stiffness is None else 1.0 / stiffness, "clearance": problem.clearance,
+                      "displacement_drift": 0.0, "force_drift": 0.0, "scale": 1.0}  # fmt: skip
+        guess = [("friction", 1.0 / problem.friction, 1.0)] * self.cycles  # type: ignore[operator]
+        guess += [("displacement_offset", shift, travel), ("force_offset", zero, force)]
+        if "stiffness" in wanted:
+            guess.insert(self.cycles, ("compliance", self.fixed["compliance"] or 0.05 * travel / force, travel / force))
+        if "clearance" in wanted:
+            guess.append(("clearance", problem.clearance, travel))
+        if "drift" in wanted:
+            guess += [("displacement_drift", 0.0, travel), ("force_drift", 0.0, force)]
+        if "scale" in wanted:
+            guess.append(("scale", 1.0, 1.0))
+        self.names = [name for name, _, _ in guess]
+        self.sizes = np.array([size for _, _, size in guess])
+        limits = {"friction": (LEAST, MOST), "compliance": (0.0, np.inf), "scale": (0.1, 10.0)}
+        self.bounds = np.array([limits.get(name, (-np.inf, np.inf)) for name in self.names]).T
+        self._solve(np.array([value for _, value, _ in guess]) / self.sizes)
+
+    def _solve(self, first: np.ndarray) -> None:
+        model = self.model
+        self.residuals(first, must=True)
+        best, coarse, jacobian = self._descent(first)
+        for factor in STARTS:
+            start = coarse.copy()
+            start[: self.cycles] *= factor
+            if (other := self._descent(start))[0] < best:
+                best, coarse, jacobian = other
+        self.cost, self.found, moved = best, coarse, math.inf
+        self._set_bars(jacobian)
+        ends = np.array([self._profile(unknown, jacobian) for unknown in range(self.cycles)]) - coarse
+        offsets = self.names.index("displacement_offset")  # friction and rig stand before them
+        while moved > MOVED and model.points < FINEST * POINTS:
+            model.points *= 2
+            before = self.found
+            self.found, _ = self._minimum(before, jacobian)
+            moved = float(np.max((np.abs(self.found - before) / self.deviations)[:offsets]))
+        self.moved = moved
+        self._set_bars(jacobian)
+        bars = SIGMA * self.deviations
+        bars[: self.cycles] = 0.0
+        self.low = np.maximum(self.found + np.minimum(ends.min(axis=(0, 1)), -bars), self.bounds[0])
+        self.high = self.found + np.maximum(ends.max(axis=(0, 1)), bars)
+
+    def _descent(self, at: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+        """The least sum of squares that is found from a start, where it is, and the Jacobian there."""
+        self.cost = math.inf
+        for _ in range(ROUNDS):
+            cost, jacobian = self.cost, self._jacobian(at)
+            at, jacobian = self._minimum(at, jacobian)
+            if cost - self.cost < CONVERGED:
+                break
+        return self.cost, at, jacobian
+
+    def values(self, unknowns: np.ndarray) -> dict[str, Any]:
+        """The unknowns in SI units with what is fixed; "friction" is a list of 1/friction."""
+        given = unknowns * self.sizes
+        named = dict(zip(self.names[self.cycles :], given[self.cycles :].tolist(), strict=True))
+        return {**self.fixed, **named, "friction": given[: self.cycles].tolist()}
+
+    def compared(self, unknowns: np.ndarray) -> np.ndarray:
+        """Distances of the samples, displacements of their feet and forces there, shape (3, n)."""
+        value, loop = self.values(unknowns), self.model.loop
+        curves = self.model.curves(
+            value["friction"], value["compliance"], value["clearance"], value["displacement_offset"],
+            value["displacement_drift"],
+        )  # fmt: skip
+        moved = loop.displacement - value["displacement_offset"] - value["displacement_drift"] * loop.time
+        acting = loop.force - value["force_offset"] - value["force_drift"] * loop.time
+        found: np.ndarray = loop.distances([(x, value["scale"] * y) for x, y in curves], moved, acting)
+        return found
+
+    def residuals(self, unknowns: np.ndarray, must: bool = False) -> np.ndarray:
+        """The distances of the samples. With `must` a model without a state raises its error."""
+        try:
+            return self.compared(unknowns)[0]
+        except SolveError:
+            if must:
+                raise
+            return np.full(self.model.loop.time.size, LOST)
+
+    def _jacobian(self, at: np.ndarray) -> np.ndarray:
+        """Differences of the distances, shape (samples, unknowns)."""
+        steps, here = np.diag([STEPS[name] for name in self.names]), self.residuals(at)
+        return np.column_stack([(self.residuals(at + step) - here) / step.max() for step in steps])
+
+    def _minimum(self, first: np.ndarray, jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The unknowns with the least sum of squares, and the Jacobian with Broyden's updates on the way."""
+        matrix = jacobian.copy()
+        last: list[np.ndarray] = []
+
+        def distances(unknowns: np.ndarray) -> np.ndarray:
+            found = self.residuals(unknowns)
+            if last and (step := unknowns - last[0]).any() and abs(found[0]) != LOST:
+                matrix[:] += np.outer(found - last[1] - matrix @ step, step) / (step @ step)
+            last[:] = [unknowns.copy(), found]
+            return found
+
+        inside = np.clip(first, np.nextafter(self.bounds[0], np.inf), self.bounds[1])
+        found = optimize.least_squares(
+            distances, inside, lambda _: matrix.copy(), self.bounds, x_scale="jac", xtol=1e-6,
+            ftol=CONVERGED / len(jacobian), max_nfev=10,
+        )  # fmt: skip
+        self.cost = 2.0 * float(found.cost)
+        return found.x, matrix
+
+    def _set_bars(self, jacobian: np.ndarray) -> None:
+        """Set scatter, covariance and deviations. The columns get the size 1 before they are inverted.
+
+        Samples that lie closer than their noise make no bar smaller.
+        """
+        self.scatter = math.sqrt(self.cost / max(len(jacobian) - self.found.size, 1))
+        length = np.linalg.norm(jacobian, axis=0)
+        length[length == 0.0] = 1e-300
+        unit = jacobian / length
+        self.covariance = (
+            max(self.scatter, 1.0) ** 2 * np.linalg.pinv(unit.T @ unit, rcond=1e-14) / np.outer(length, length)
+        )
+        self.deviations = np.sqrt(np.diag(self.covariance))
+
+    def _profile(self, unknown: int, jacobian: np.ndarray) -> np.ndarray:
+        """The values of all unknowns, shape (2, unknowns), where the sum of squares is larger by that of 95 %.
+
+        One unknown is moved to either side until it is. The others follow, linear in the distances, unless they stand
+        at their bounds. Both sides of the friction differ: the less of the contact slips, the less the loop tells.
+        """
+        low, high = self.bounds[:, unknown]
+        others = (np.arange(self.found.size) != unknown) & (self.found > 1.01 * self.bounds[0])
+        way = np.where(others, self.covariance[unknown], 0.0) / self.covariance[unknown, unknown]
+        bar, ends = SIGMA * self.deviations[unknown], []
+        for side in (-1.0, 1.0):
+            at, step, is_end = self.found.copy(), bar, False
+            for _ in range(TRIES):
+                place = float(np.clip(self.found[unknown] + side * step, low, high))
+                at = np.clip(at + way * (place - at[unknown]), *self.bounds)
+                at[unknown] = place
+                least = math.inf
+                for _ in range(FOLLOWED):
+                    away = self.residuals(at)
+                    moved = np.linalg.lstsq(jacobian[:, others], away, rcond=None)[0]
+                    at[others] -= moved
+                    before, least = least, float(np.sum((away - jacobian[:, others] @ moved) ** 2))
+                    if before - least < 10.0 * CONVERGED:
+                        break
+                size = math.sqrt(max(least - self.cost, 1e-4)) / max(self.scatter, 1.0)
+                is_end = abs(size - SIGMA) < 0.1 or (size < SIGMA and place in (low, high))
+                if is_end:
+                    break
+                step = abs(place - self.found[unknown]) * float(np.clip(SIGMA / size, 0.3, 3.0))
+            if not is_end:  # the bar of the linear model, and the others where they were
+                at = self.found.copy()
+                at[unknown] = np.clip(at[unknown] + side * bar, low, high)
+            ends.append(at)
+        return np.array(ends)

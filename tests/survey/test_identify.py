@@ -1,0 +1,56 @@
+"""Identified values lie in their intervals of 95 % as often as they should: loops with random noise and known truth."""
+
+import math
+from typing import Any
+
+import pytest
+
+from fastpin.studies.identification import identify
+from tests.support.loops import PRESSED, THICKNESS, Measured
+
+pytestmark = pytest.mark.survey
+
+LOOPS: dict[str, tuple[Measured, dict[str, Any]]] = {
+    "slender": (Measured(12e-6, 80, 0.006), {}),
+    "1 %": (Measured(25e-6, 80, 0.01), {}),
+    "few samples": (Measured(30e-6, 50, 0.02), {}),
+    "drift": (Measured(40e-6, 200, 0.01, 0.1), {"fit": ["stiffness", "drift"]}),
+    "many samples": (Measured(50e-6, 500, 0.03), {}),
+    "2 %": (Measured(50e-6, 100, 0.02), {}),
+    "wide": (Measured(80e-6, 200, 0.01), {}),
+    "in a cycle": (Measured(50e-6, 100, 0.01, begins=1.1, cycles=2.0), {"start": "cycle"}),
+    "rotation": (Measured(6e-3, 100, 0.01, rig=30e3 / THICKNESS, names=("rotation", "M")), {}),
+    "one turning point": (Measured(50e-6, 200, 0.01, cycles=0.7), {}),
+}
+"""Loops, and what is fitted. The friction is 0.68, the first guess 0.5."""
+
+EACH = 12
+"""Loops of each kind. Fewer than 9 of them inside an interval of 95 % are as rare as 0.2 %."""
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_intervals_hold_the_truth(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    (measured, options), away, friction, rig = LOOPS[name], [], 0, 0
+    clean = measured.clean()
+    for seed in range(EACH):
+        record = measured.loop(clean, 1000 * list(LOOPS).index(name) + seed)
+        found = identify(measured.guess(), [PRESSED], record, **options)
+        value, low, high = found.estimates["friction"]
+        friction += low <= measured.friction <= high
+        rig += found.estimates["stiffness"].low <= measured.rig <= found.estimates["stiffness"].high
+        if not math.isnan(value):
+            bar = 0.5 * (1.0 / low - 1.0 / high)
+            away.append((1.0 / value - 1.0 / measured.friction) / bar)
+    bias = sum(away) / max(len(away), 1)
+    with capsys.disabled():
+        print(f"{name}: friction {friction}, stiffness {rig} of {EACH} inside; mean error {bias:+.2f} bars")
+    assert min(friction, rig) >= 9
+    assert abs(bias) < 0.6  # the mean of twelve scatters by 0.15 bars
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_stuck_loops_tell_no_friction(seed: int) -> None:
+    measured = Measured(2e-6, 60, 0.01)
+    found = identify(measured.guess(), [PRESSED], measured.loop(measured.clean(), seed))
+    assert math.isnan(found.frictions[0].value)
+    assert found.frictions[0].low < 0.68 < found.frictions[0].high
