@@ -98,6 +98,11 @@ class HeldTable(NamedTuple):
     order: np.ndarray
 
 
+def begins_held(system: System) -> bool:
+    """Whether steps on a system begin with a held contact."""
+    return system.grid.size <= FEW_NODES and system.has_friction and system.operator.matrix is not None
+
+
 def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     """The table of a contact with all `closed` nodes (n,) sticking; None if they can't hold the pin."""
     n, size = closed.size, 2 * closed.size + system.motions
