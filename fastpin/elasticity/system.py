@@ -155,13 +155,13 @@ class System:
         bodies = body_terms(problem)
 
         cos, sin, one, zero = np.cos(theta), np.sin(theta), np.ones(n), np.zeros(n)
-        motion = np.column_stack([np.r_[-cos, -sin], np.r_[-sin, cos], np.r_[zero, one]])
+        motion = np.array([[-cos, -sin], [-sin, cos], [zero, one]]).reshape(3, 2 * n).T.copy()
         plate, loads = load_columns(problem, theta, bodies)
 
         cos_moment, sin_moment = grid.trig_moments()
         equilibrium = np.zeros((3, 2 * n))
-        equilibrium[0] = np.r_[cos_moment, sin_moment]  # Q
-        equilibrium[1] = np.r_[sin_moment, -cos_moment]  # -P
+        equilibrium[0] = np.concatenate([cos_moment, sin_moment])  # Q
+        equilibrium[1] = np.concatenate([sin_moment, -cos_moment])  # -P
         motion_rows, forces = np.zeros((3, 3)), np.zeros((3, len(LOADS)))
         forces[0, Q], forces[1, P] = 1.0, -1.0
         if problem.rotation == "free" and not problem.frictionless:
@@ -196,6 +196,18 @@ class System:
         if bodies is not None and (bodies.matrix.size or (bodies.anisotropy and self.problem.pin_body.bore_radius)):
             return False
         return self.grid.uniform and self.operator.by_distance and not self.drive.has_displacements
+
+    @cached_property
+    def entries_by_distance(self) -> np.ndarray:
+        """Entries of a block Toeplitz operator by the distance of two nodes, shape (3, n+1).
+
+        The rows are gap of N, slip of T and gap of T. The largest distance of an arc, and the last column, are 0.
+        """
+        n, end = self.grid.size, 0 if self.grid.closed else 1  # the hats at the ends of an arc are halves
+        nodes, found = np.arange(end, n), np.zeros((3, n + 1))
+        both = self.operator.entries(np.concatenate([nodes, n + nodes]), np.array([end, n + end]))
+        found[0, : n - end], found[2, : n - end], found[1, : n - end] = *both[: n - end].T, both[n - end :, 1]
+        return found
 
     @property
     def motions(self) -> int:
@@ -292,7 +304,7 @@ class System:
 
         The other nodes are left out, so they must stay open.
         """
-        rows = np.r_[nodes, self.grid.size + nodes]
+        rows = np.concatenate([nodes, self.grid.size + nodes])
         return replace(
             self, grid=arc_of(self.grid, nodes), operator=DenseOperator(self.operator.entries(rows, rows)),
             motion=self.motion[rows], loads=self.loads[rows], equilibrium=self.equilibrium[:, rows],
@@ -416,13 +428,13 @@ def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) 
     point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star) if bodies is None else bodies.force_factor
     plate = 0.5 * (1.0 - uniform_part(problem))  # R kappa'/(2 G) per beta*, Eq. (42)
     loads = np.zeros((2 * theta.size, len(LOADS)))
-    loads[:, P] = point * np.r_[sin, cos]
-    loads[:, Q] = point * np.r_[-cos, sin]
+    loads[:, P] = point * np.concatenate([sin, cos])
+    loads[:, Q] = point * np.concatenate([-cos, sin])
     if bodies is not None:
         for place, column in bodies.load_columns(theta).items():
             loads[:, place] += column
         return plate, loads
-    loads[:, SXX] = plate * np.r_[0.5 + cos_double, sin_double]
-    loads[:, SYY] = plate * np.r_[0.5 - cos_double, -sin_double]
-    loads[:, SXY] = 2.0 * plate * np.r_[sin_double, -cos_double]
+    loads[:, SXX] = plate * np.concatenate([0.5 + cos_double, sin_double])
+    loads[:, SYY] = plate * np.concatenate([0.5 - cos_double, -sin_double])
+    loads[:, SXY] = 2.0 * plate * np.concatenate([sin_double, -cos_double])
     return plate, loads

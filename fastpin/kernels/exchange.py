@@ -91,7 +91,23 @@ def _column(tableau, updates, p, out):
             out[i] = matrix[i, p]
     else:
         _held_column(tableau, p, out)
-    for k in range(tableau.fresh[p // WIDTH], updates):
+    first, factors = tableau.fresh[p // WIDTH], np.zeros(4)
+    fours = updates - (updates - first) % 4
+    for k in range(first, fours, 4):  # four in a pass: the column is read and written once
+        for later in range(4):
+            factor, source = 0.0, tableau.source[k + later]
+            if source >= 0:
+                factor = out[source]
+                for earlier in range(later):
+                    factor += factors[earlier] * left[source, k + earlier]
+            if tableau.slot[k + later] == p:
+                factor += tableau.delta[k + later]
+            factors[later] = factor
+        a, b, c, d = factors[0], factors[1], factors[2], factors[3]
+        if a != 0.0 or b != 0.0 or c != 0.0 or d != 0.0:
+            for i in range(out.size):
+                out[i] = (((out[i] + a * left[i, k]) + b * left[i, k + 1]) + c * left[i, k + 2]) + d * left[i, k + 3]
+    for k in range(fours, updates):
         factor = 0.0
         if tableau.source[k] >= 0:
             factor = out[tableau.source[k]]

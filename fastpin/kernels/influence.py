@@ -273,12 +273,13 @@ def _hat_series(h_left, h_right, ratio):
     weight = np.hstack([np.multiply.outer(h_right, HAT_WEIGHT), np.multiply.outer(h_left, HAT_WEIGHT)])
     tangent = np.tan(0.5 * t)
     moment = weight * np.exp(-1j * t)
+    moments = np.empty((TERMS, *t.shape), dtype=complex)  # times the powers of the tangent
+    moments[0], moments[1:] = moment, tangent
+    np.multiply.accumulate(moments, axis=0, out=moments)
     series = np.empty((h_left.size, TERMS + 1), dtype=complex)
     series[:, TERMS] = moment.sum(axis=1)
     series[:, 0] = (moment * (1j * np.log1p(tangent * tangent) - 0.5 * ratio * t)).sum(axis=1)  # ln cos(t/2)
-    for p in range(1, TERMS):
-        moment *= tangent
-        series[:, p] = 2j / p * moment.sum(axis=1)
+    series[:, 1:TERMS] = 2j / np.arange(1, TERMS) * moments[1:].sum(axis=2).T
     return np.stack([series.real, series.imag], axis=1)
 
 

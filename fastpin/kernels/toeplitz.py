@@ -119,7 +119,7 @@ def add_turned_column(by_distance, turn, factor, rows, column, out):
 
 
 @compiled
-def _invert(first, second, cross, out):
+def invert(first, second, cross, out):
     """Fill `out` (2m, 2m) with the inverse; see :func:`inverse`."""
     m = first.size
     forward, column, error = np.empty((4, m)), np.empty((4, m)), np.empty(4)
@@ -149,7 +149,7 @@ def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndar
     `cross` is antisymmetric. The inverse is not finite if a leading block is singular.
     """
     out = np.empty((2 * first.size, 2 * first.size))
-    _invert(first, second, cross, out)
+    invert(first, second, cross, out)
     return out
 
 

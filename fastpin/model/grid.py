@@ -212,8 +212,9 @@ def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:
     """int_0^h (1 - t/h) exp(i sense t) dt = (h/2) sinc(h/2)^2 + i sense (1 - sin(h)/h), for lengths h >= 0."""
     even = 0.5 * length * np.sinc(0.5 * length / math.pi) ** 2
     series = np.zeros_like(length)  # series of 1 - sin(h)/h: no digits are lost where h is small
+    square = length**2
     for k in range(8, 0, -1):
-        series = length**2 / (2.0 * k * (2.0 * k + 1.0)) * (1.0 - series)
+        series = square / (2.0 * k * (2.0 * k + 1.0)) * (1.0 - series)
     odd = np.where(length > 0.5, 1.0 - np.sinc(length / math.pi), series)
     return even + 1j * sense * odd
 

@@ -586,10 +586,9 @@ def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | Non
     if first.shape != (len(LOADS),):
         raise InputError("initial", f"must have the shape ({len(LOADS)},), not {first.shape}")
     values = np.vstack([first, *parts])
-    for column in values.T:
-        rows = np.where(np.isnan(column), 0, np.arange(len(column)))
-        column[:] = column[np.maximum.accumulate(rows)]
-    return values[1:]
+    rows = np.where(np.isnan(values), 0, np.arange(len(values))[:, None])
+    filled: np.ndarray = np.take_along_axis(values, np.maximum.accumulate(rows), axis=0)[1:]
+    return filled
 
 
 def _times(block: Block, count: int) -> np.ndarray:

@@ -13,17 +13,22 @@ from collections.abc import Iterator
 import numpy as np
 
 from fastpin.elasticity.large import latest_system
+from fastpin.elasticity.system import System
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid, graded_size
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import REMOTE, M
+from fastpin.model.loads import REMOTE, M, P, Q
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.solver import whole_step
+from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.errors import ArcError, SolveError
+from fastpin.solver.first_contact import first_contact
 from fastpin.solver.rest import climb_angle
 from fastpin.solver.run import Run, RunProgress
-from fastpin.solver.step import pushes
+from fastpin.solver.step import pieces, pushes
 from fastpin.solver.survey import survey
+from fastpin.solver.tableau import TableauMemory
 
 log = logging.getLogger(__name__)
 
@@ -159,8 +164,8 @@ def _touched_arc(
     `progress` sees each coarse run as a separate run before the fine run.
     """
     arc = None if problem.gap else _estimated_arc(problem, values)  # with a gap the pin may touch anywhere
-    history = LoadHistory.from_array(_outline(problem, _without_repetition(values)))
-    quick = _quick_arc(problem, history, arc, force, progress) if nodes < COARSE_NODES else None
+    values = _outline(problem, _without_repetition(values))
+    quick = _quick_arc(problem, values, arc, force, progress) if nodes < COARSE_NODES else None
     if quick is not None:
         return quick
     for _ in range(12):
@@ -168,19 +173,16 @@ def _touched_arc(
             arc = None
         circle = GAP_NODES if problem.gap else COARSE_NODES
         grid = Grid.circle(circle) if arc is None else Grid.arc(*arc, COARSE_NODES)
-        try:
-            run = CoarseRun(history, latest_system(problem, grid, force), SolveOptions(), progress=progress)
-            run.follow()
-            margin = 4
-        except ArcError:
+        margin = 4
+        touched, error = _coarse_run(latest_system(problem, grid, force), values, progress)
+        if isinstance(error, ArcError):
             assert arc is not None
             arc = _widened(arc, 1.5)
             continue
-        except SolveError:
+        if error is not None:
             if problem.gap:  # nothing says where the pin touches later
                 return None
             margin = 12  # the fine run reports the error, or gets further
-        touched = np.flatnonzero(run.touched)
         if touched.size == 0:
             return arc
         if grid.closed:
@@ -194,27 +196,65 @@ def _touched_arc(
 
 
 def _quick_arc(
-    problem: Problem, history: LoadHistory, arc: tuple[float, float] | None, force: float, progress: RunProgress | None
+    problem: Problem, values: np.ndarray, arc: tuple[float, float] | None, force: float, progress: RunProgress | None
 ) -> tuple[float, float] | None:
     """The arc of a quick coarse run on the estimated `arc`; None if it is not sure.
 
     It is sure if the loads are those of Hertz's estimate, without remote stress, the history was followed to its end,
     and the contact took much of the arc.
     """
-    if arc is None or arc[1] - arc[0] >= WHOLE or history.distinct()[:, REMOTE].any():
+    if arc is None or arc[1] - arc[0] >= WHOLE or values[:, REMOTE].any():
         return None
-    system = latest_system(problem, Grid.arc(*arc, QUICK_NODES), force)
-    run = CoarseRun(history, system, SolveOptions(), progress=progress)
-    try:
-        run.follow()
-    except SolveError:
-        return None
-    touched = np.flatnonzero(run.touched)
-    if touched.size == 0:
+    grid = Grid.arc(*arc, QUICK_NODES)
+    touched, error = _coarse_run(latest_system(problem, grid, force), values, progress)
+    if error is not None or touched.size == 0:
         return None
     first, last = max(touched[0] - QUICK_MARGIN, 0), min(touched[-1] + QUICK_MARGIN, QUICK_NODES - 1)
-    theta = run.grid.theta
-    return (float(theta[first]), float(theta[last])) if last - first > 0.4 * QUICK_NODES else None
+    return (float(grid.theta[first]), float(grid.theta[last])) if last - first > 0.4 * QUICK_NODES else None
+
+
+def _coarse_run(
+    system: System, values: np.ndarray, progress: RunProgress | None
+) -> tuple[np.ndarray, SolveError | None]:
+    """The nodes that are ever in contact, in their order, and the error with which the coarse run ended."""
+    touched = _touched_in_whole_steps(system, values / system.scales.loads, progress)
+    if touched is not None:
+        return np.flatnonzero(touched), None
+    run = CoarseRun(LoadHistory.from_array(values), system, SolveOptions(), progress=progress)
+    try:
+        run.follow()
+    except SolveError as error:
+        return np.flatnonzero(run.touched), error
+    return np.flatnonzero(run.touched), None
+
+
+def _touched_in_whole_steps(system: System, loads: np.ndarray, progress: RunProgress | None) -> np.ndarray | None:
+    """Whether each node is ever in contact, bool, shape (n,), by whole steps between the corners alone.
+
+    `loads` (corners, loads) are dimensionless. None if a :class:`CoarseRun` is needed: with an initial gap, a moment, a
+    change of the friction, or a nearly neat fit; where no force presses the pin; or where a step needs more.
+    """
+    others = [place for place in range(loads.shape[1]) if place not in (P, Q, *REMOTE)]
+    if system.problem.gap or system.is_nearly_neat or loads[:, others].any() or not loads[:, [P, Q]].any(axis=1).all():
+        return None
+    now, memory = unloaded_configuration(system), TableauMemory(system)
+    if now.closed.any():
+        return None
+    try:
+        now, part = first_contact(system, now, now.load, loads[0], has_slip=False)
+    except SolveError:
+        return None
+    touched = now.closed
+    for corner, load in enumerate(loads):
+        if part < 1.0 or corner > 0:
+            is_straight = len(pieces(now.load, load, nearly_neat=False)) == 1
+            found = whole_step.follow(system, now, load, memory) if is_straight else None
+            if found is None:
+                return None
+            now, touched = found.now, touched | found.touched
+        if progress is not None:
+            progress(corner + 1.0, len(loads))
+    return touched
 
 
 def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] | None:
@@ -232,7 +272,7 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
     loaded = pin > 0.0
     angles = np.unwrap(np.arctan2(force[loaded, 1], force[loaded, 0]))
     climbed = angles + climb_angle(pin[loaded], values[loaded, M] / problem.hole_radius)
-    angles = np.r_[angles, climbed]
+    angles = np.concatenate([angles, climbed])
     parameter = problem.load_parameter(float(pin.max()))
     half = 1.6 if parameter <= 0.0 else min(1.6, max(LEAST_HALF, 1.3 / math.sqrt(math.pi * parameter)))
     return float(angles.min()) - 1.3 * half, float(angles.max()) + 1.3 * half

@@ -16,6 +16,7 @@ from fastpin.model.angles import angle_between
 from fastpin.model.loads import FRICTION_CHANGE, REMOTE, UX, UY, M, P, Q
 from fastpin.reading.zones import runs
 from fastpin.runtime.extensions import optimize
+from fastpin.solver import whole_step
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -37,6 +38,7 @@ from fastpin.solver.interfaces import PinView, part_of, with_part
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import bend, hole_gap, place_between, put_at_rest, release, rest_position
 from fastpin.solver.step import is_pushed, presses
+from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.window import SecondPlaceError, Window
 
 FIRST_NODES = (2, 4)
@@ -181,7 +183,7 @@ def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
     n = system.grid.size
     if np.ptp(gap) <= 1e-12 * np.abs(gap).max():  # the pin touches all round at once
         return np.arange(n)
-    before, after = np.roll(gap, 1), np.roll(gap, -1)
+    before, after = np.concatenate([gap[-1:], gap[:-1]]), np.concatenate([gap[1:], gap[:1]])
     if not system.grid.closed:
         before[0], after[-1] = np.inf, np.inf
     lowest = np.flatnonzero((gap <= before) & (gap < after))
@@ -430,7 +432,10 @@ def _begun(
     """The first patch `found` with its slip tally, dissipation and work since the pin was at rest.
 
     `begin` is the load (loads,) at which the contact begins, for the slip of a patch without shear; None for others.
+    Without `has_slip` nobody asks for energies either.
     """
+    if begin is not None and not has_slip:
+        return found
     dissipated = dissipation_between(system, resting, found)
     if begin is None:
         begun = slip_tally_with(replace(resting, status=found.status))  # its nodes slip from there on
@@ -496,8 +501,10 @@ def _grown_slip(system: System, patch: Configuration, begin: np.ndarray) -> np.n
     growth = min(sizes)
     if growth < 1.0:
         return None
+    after, memory = begin + growth * (patch.load - begin), TableauMemory(system)
     try:
-        grown = PathStep(system, patch, begin + growth * (patch.load - begin)).follow(1.0)
+        found = whole_step.follow(system, patch, after, memory)
+        grown = PathStep(system, patch, after, memory).follow(1.0) if found is None else found.now
     except StepLostError:
         return None
     new = patch.slip.copy()

@@ -17,8 +17,9 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import held
+from fastpin.kernels import held_table as held_table_kernels
 from fastpin.kernels.arrays import Contact, ContactValues, LoadTerms, Queue, RightSides, Tableau
-from fastpin.kernels.exchange import WIDTH
+from fastpin.kernels.exchange import EVENTS, NEXT, QUEUED, REACHED, REBUILD, ROUND, UPDATES, WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
 from fastpin.solver.configuration import Configuration, Correction
@@ -32,14 +33,17 @@ FEW_NODES = 512
 MOST_NUMBERS = 4_000_000
 """Numbers in the tables of all held contacts of a system that are kept, at most: 32 MB."""
 
-LEAST_NEIGHBOURS = 24
-"""Smallest number of neighbouring nodes for the Toeplitz inverse. With fewer nodes a factorisation is as fast."""
+LEAST_NEIGHBOURS = 192
+"""Smallest number of neighbouring nodes for the inverse in a laminate. With fewer nodes a factorisation is as fast."""
 
 MOST_FACTORISED = 400
 """Most rows of a table by a factorisation. With more rows, columns on demand take less time."""
 
-LEAST_RECURRENCES = 192
-"""Smallest number of neighbouring nodes for the recurrences of their responses. With fewer, products are as fast."""
+MOST_UPDATES = 240
+"""Updates of a tableau beside those of the slipping nodes, at most. Then the closed nodes are held anew.
+
+A column takes as long as it has updates, and a new table as long as some 20 columns (300 to 401 nodes).
+"""
 
 MOST_CONDITION = 1e8
 """Largest condition number of the equations of the motion. A contact above it hardly holds the pin."""
@@ -67,8 +71,6 @@ class HeldContacts:
                 self._tables.move_to_end(key)
                 return self._tables[key]
         table = held_table(system, closed)
-        if table is not None and not _holds(system, closed, table):
-            table = None
         with self._lock:
             self._tables[key] = table
             while len(self._tables) > max(1, MOST_NUMBERS // (4 * closed.size * closed.size)):
@@ -96,24 +98,37 @@ class HeldTable(NamedTuple):
     order: np.ndarray
 
 
+def begins_held(system: System) -> bool:
+    """Whether steps on a system begin with a held contact."""
+    return system.grid.size <= FEW_NODES and system.has_friction and system.operator.matrix is not None
+
+
 def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     """The table of a contact with all `closed` nodes (n,) sticking; None if they can't hold the pin."""
-    n, both = closed.size, np.concatenate([closed, closed])
-    rows, others = np.flatnonzero(both), np.flatnonzero(~both)
-    size = 2 * n + system.motions
-    matrix = np.empty((size, size), order="F")
-    by_distance = have_toeplitz_matrix(system, np.flatnonzero(closed), LEAST_NEIGHBOURS)
-    if not (by_distance and _fill_by_distances(system, rows, others, matrix)):
-        if rows.size > MOST_FACTORISED:
-            return None
-        unknowns = DenseUnknowns(system, np.where(closed, STICK, OPEN).astype(np.int8))
-        if unknowns.singular:
-            return None
-        _fill_by_factorisation(unknowns, matrix)
-    stack = np.concatenate([rows, others, np.arange(2 * n, size)])
+    n, size = closed.size, 2 * closed.size + system.motions
+    nodes, others = np.flatnonzero(closed), np.flatnonzero(~closed)
+    stack = np.concatenate([nodes, nodes + n, others, others + n, np.arange(2 * n, size)])
     order = np.empty(size, dtype=np.int64)
     order[stack] = np.arange(size)
-    return HeldTable(matrix, stack, order)
+    table = HeldTable(np.empty((size, size), order="F"), stack, order)
+    is_sound, in_laminate = False, system.bodies is not None and bool(system.bodies.anisotropy)
+    if have_toeplitz_matrix(system, nodes, LEAST_NEIGHBOURS if in_laminate else 1):
+        if in_laminate:
+            is_sound = _fill_in_laminate(system, closed, table)
+        else:
+            condition, error = held_table_kernels.fill(
+                system.entries_by_distance, int(nodes[0]), nodes.size, *system.equations[:3], table.matrix
+            )
+            is_sound = condition < MOST_CONDITION and error < MOST_RESIDUAL
+    if is_sound:
+        return table
+    if 2 * nodes.size > MOST_FACTORISED:
+        return None
+    unknowns = DenseUnknowns(system, np.where(closed, STICK, OPEN).astype(np.int8))
+    if unknowns.singular:
+        return None
+    _fill_by_factorisation(unknowns, table.matrix)
+    return table if _holds(system, closed, table) else None
 
 
 def _fill_by_factorisation(unknowns: DenseUnknowns, matrix: np.ndarray) -> None:
@@ -129,12 +144,13 @@ def _fill_by_factorisation(unknowns: DenseUnknowns, matrix: np.ndarray) -> None:
     matrix[count:end, count:end] += acting[others]
 
 
-def _fill_by_distances(system: System, rows: np.ndarray, others: np.ndarray, matrix: np.ndarray) -> bool:
-    """Fill the matrix of a table from the inverse of a block Toeplitz matrix, and the motion of the pin.
+def _fill_in_laminate(system: System, closed: np.ndarray, table: HeldTable) -> bool:
+    """Fill the matrix of a table whose closed nodes are neighbours in a laminate.
 
     Returns whether the nodes hold the pin so well that few digits are lost.
     """
-    count, end = rows.size, rows.size + others.size
+    count, end, matrix = 2 * int(closed.sum()), 2 * closed.size, table.matrix
+    rows, others = table.stack[:count], table.stack[count:end]
     neighbours = Neighbours.of(system, int(rows[0]), count // 2)
     core = neighbours.core
     motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
@@ -142,7 +158,8 @@ def _fill_by_distances(system: System, rows: np.ndarray, others: np.ndarray, mat
     small = _motion_by_forces(system, equilibrium, moved)
     if small is None:
         return False
-    free, tied, acting = _responses(system, rows, others, neighbours)
+    responses = neighbours.responses()
+    free, tied, acting = -responses, responses.T, neighbours.complement()
     moving = np.empty((len(small), len(matrix)))
     moving[:, :count] = -small @ (equilibrium @ core)
     moving[:, count:end] = -small @ (system.equilibrium[:, others] + equilibrium @ free)
@@ -154,7 +171,7 @@ def _fill_by_distances(system: System, rows: np.ndarray, others: np.ndarray, mat
     matrix[end:], matrix[:, end:] = 0.0, 0.0
     turned = np.concatenate([-moved, system.motion[others] - tied @ motion, np.eye(len(small))])
     blas.dgemm(1.0, turned, moving, beta=1.0, c=matrix, overwrite_c=1)
-    return True
+    return _holds(system, closed, table)
 
 
 def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray) -> np.ndarray | None:
@@ -166,25 +183,6 @@ def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray
         return None
     sound = np.linalg.norm(complement) * np.linalg.norm(small) < MOST_CONDITION
     return small if sound else None
-
-
-def _responses(
-    system: System, rows: np.ndarray, others: np.ndarray, neighbours: Neighbours
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Responses without motion of the pin: of `rows` to `others`, of `others` to `rows`, and of `others` to themselves.
-
-    With many nodes recurrences take the place of products.
-    """
-    if rows.size >= 2 * LEAST_RECURRENCES:
-        responses = neighbours.responses()
-        return -responses, responses.T, neighbours.complement()
-    assert system.operator.matrix is not None  # there are few nodes
-    acting = system.operator.matrix.T  # row by row: whole columns of the operator are copied
-    on_others = acting.take(rows, axis=0).take(others, axis=1)
-    tied = (neighbours.core.T @ on_others).T
-    free = -tied.T
-    complement = acting.take(others, axis=0).take(others, axis=1)
-    return free, tied, (complement + free.T @ on_others).T
 
 
 def _holds(system: System, closed: np.ndarray, table: HeldTable) -> bool:
@@ -235,43 +233,65 @@ class HeldColumns:
         memory: TableauMemory,
     ) -> None:
         n, updates = system.grid.size, memory.left.shape[1]
-        self._system, self._operator = system, system.operator.matrix
-        self._table, self._contact, self._rest_gap = table, contact, rest_gap
+        self._system, self._memory, self._contact, self._rest_gap = system, memory, contact, rest_gap
         self._before, self._rate = before, load_rate
         self._displaced, self._forces = system.load_displacement(load_rate), system.load_forces(load_rate)
         self._has_begun = self.turned = False
-        self.tableau = Tableau(
-            matrix=table.matrix,
-            order=table.order,
-            fresh=np.zeros(-(-2 * n // WIDTH), dtype=np.int64),
-            left=memory.left,
-            source=np.empty(updates, dtype=np.int64),
-            slot=np.empty(updates, dtype=np.int64),
-            delta=np.empty(updates),
-            rates=np.empty(table.order.size),
-            tied=np.empty(n),
-            drag=np.empty(n),
-            chunk=updates + 1,
-        )
+        if memory.held is None:
+            memory.held = Tableau(
+                matrix=memory.matrix,
+                order=table.order,
+                fresh=np.zeros(-(-2 * n // WIDTH), dtype=np.int64),
+                left=memory.left,
+                source=np.empty(updates, dtype=np.int64),
+                slot=np.empty(updates, dtype=np.int64),
+                delta=np.empty(updates),
+                rates=np.empty(table.order.size),
+                tied=np.empty(n),
+                drag=np.empty(n),
+                chunk=updates + 1,
+            )
+        self.tableau = memory.held
+        self._begin(table, 0)
 
     def follow(self, load: LoadTerms, queue: Queue, stop: float, most_events: int, all_at_once: int) -> int:
         """Follow the load up to the fraction `stop` of the step, and return the code of the kernel.
 
         The first call begins the step: it sets the ties in the contact, and lets go the nodes that go on slipping.
+        After many updates the nodes that are closed then are held, and the step goes on from there.
         """
         system, contact, now = self._system, self._contact, self._before + stop * self._rate
         sides = RightSides(system.load_displacement(now), system.load_forces(now), self._rest_gap)
         pressure, shear, gap, slip = np.empty((4, contact.status.size))
-        settled = ContactValues(
+        self._settled = ContactValues(
             pressure, shear, gap, slip, np.empty_like(contact.status), np.empty_like(contact.motion)
         )  # fmt: skip
-        code, turned, self._errors = held.step(
-            not self._has_begun, self._table.stack, self._operator, system.equations, self._displaced, self._forces,
-            sides, contact, self.tableau, load, queue, system.fixed, system.operator.typical, stop, most_events,
-            all_at_once, settled,
-        )  # fmt: skip
-        self.turned, self._has_begun, self._settled = self.turned or turned, True, settled
-        return int(code)
+        before: np.ndarray | None = None
+        while True:
+            code, turned, self._errors = held.step(
+                not self._has_begun, self._table.stack, system.operator.matrix, system.equations, self._displaced,
+                self._forces, sides, contact, self.tableau, load, queue, system.fixed, system.operator.typical, stop,
+                most_events, all_at_once, self._settled,
+            )  # fmt: skip
+            self.turned, self._has_begun, events = self.turned or turned, True, int(queue.counts[EVENTS])
+            is_stuck = events == self._events
+            if before is not None and is_stuck and code != REACHED:  # the slipping nodes can't be let go one by one
+                contact.status[:], code = before, REBUILD
+                queue.counts[[QUEUED, NEXT, ROUND]] = 0
+            if code != REBUILD or is_stuck:
+                return int(code)
+            table, before = HeldContacts.of(system).table(system, contact.status != OPEN), contact.status.copy()
+            if table is None:
+                return int(code)
+            queue.counts[[UPDATES, QUEUED, NEXT, ROUND]] = 0
+            self._begin(table, events)
+
+    def _begin(self, table: HeldTable, events: int) -> None:
+        """Begin with the nodes held that are closed after so many `events` of the step."""
+        status = self._contact.status
+        room = np.count_nonzero((status != OPEN) & (status != STICK)) + MOST_UPDATES
+        self._table, self._events, self._has_begun = table, events, False
+        self.tableau = self.tableau._replace(matrix=table.matrix, order=table.order, left=self._memory.left[:, :room])
 
     def correct(self, now: Configuration) -> Correction:
         """Correct tractions and motion of `now`, at the stop that was reached, to rounding."""

@@ -66,11 +66,7 @@ class Neighbours:
 
         The rows are gap of N, slip of T and gap of T. The largest distance of an arc is not needed, and 0.
         """
-        n, end = system.grid.size, 0 if system.grid.closed else 1  # the hats at the ends of an arc are halves
-        nodes, first, entries = np.arange(end, n), np.array([end]), np.zeros((3, n))
-        for place, (rows, column) in enumerate([(nodes, first), (n + nodes, n + first), (nodes, n + first)]):
-            entries[place, : n - end] = system.operator.entries(rows, column)[:, 0]
-        return entries
+        return system.entries_by_distance[:, :-1]
 
 
 class TurnedNeighbours(Neighbours):

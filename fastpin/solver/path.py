@@ -20,7 +20,7 @@ from fastpin.kernels.arrays import Contact, LoadTerms, Queue
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import P, Q
 from fastpin.solver.configuration import Configuration, Correction, Solution, snap_to_bounds, solve_unknowns
-from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts
+from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts, begins_held
 from fastpin.solver.settling import settle
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
@@ -118,7 +118,7 @@ class PathStep:
             now.rest_slip,
             now.slip_tally.sums,
         )
-        self._load = _load_terms(system, self.before, self.rate)
+        self._load = load_terms(system, self.before, self.rate)
         self._queue = Queue(
             node=np.zeros(2 * n, dtype=np.int64),
             status=np.zeros(2 * n, dtype=np.int8),
@@ -216,7 +216,7 @@ class PathStep:
                     checked = 0
                     continue
                 last = settlings == MOST_SETTLINGS
-                if not _exceeds_bounds(correction) or (last and _is_rounding(correction)):
+                if not exceeds_bounds(correction) or (last and _is_rounding(correction)):
                     return correction.settled
                 if last:
                     raise StepLostError(exchange.CYCLING, self.fraction)
@@ -251,9 +251,7 @@ class PathStep:
         Returns False if the held nodes can't hold the pin, or without friction.
         """
         status = self.now.status
-        if status.size > FEW_NODES or not self.system.has_friction or self.system.operator.matrix is None:
-            return False
-        table = HeldContacts.of(self.system).table(self.system, self.now.closed)
+        table = HeldContacts.of(self.system).table(self.system, self.now.closed) if begins_held(self.system) else None
         if table is None:
             return False
         contact, rest_gap = self._contact, self.now.rest_gap
@@ -413,7 +411,7 @@ class PathStep:
         return None if unknowns is None else solve_unknowns(self.system, unknowns, now.slip, now.load, now.rest_gap)
 
 
-def _load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:
+def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:
     """The terms of the work of the loads along a straight piece, from its first load and its rate, shape (loads,)."""
     weights = np.concatenate([system.weights, system.weights])
     return LoadTerms(
@@ -428,7 +426,7 @@ def _load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTer
     )
 
 
-def _exceeds_bounds(correction: Correction) -> bool:
+def exceeds_bounds(correction: Correction) -> bool:
     """Whether a correction exceeds the bounds of its statuses by more than rounding."""
     settled, (traction, gap) = correction.settled, correction.beyond
     return bool(traction > MOST_DRIFT * settled.pressure.max() or gap > MOST_DRIFT * settled.gap.max())

@@ -10,6 +10,7 @@ import numpy as np
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.model.loads import FRICTION_CHANGE, M
+from fastpin.solver import whole_step
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.drift import DriftPath
 from fastpin.solver.driven import can_float
@@ -100,8 +101,15 @@ class PathStepper:
         """
         try:
             if self._step is None:
+                now, after = position.now, piece.after
+                system = self._steady_system(now.load, after)
+                if system is not None and stop == piece.end and self._follow_whole(system, position, after):
+                    return
                 self._begin = position.reached
-                self._step = self._path(position.now, piece.after)
+                if system is None:
+                    self._step = DriftPath(self._under(now.load), now, after, self._under(after).friction)
+                else:
+                    self._step = PathStep(system, now, after, self._memory)
             begin, length = self._begin, piece.end - self._begin
             part = 1.0 if stop == piece.end else (stop - begin) / length
             position.now = self._step.follow(part, lambda done: report(begin + done * length))
@@ -129,14 +137,23 @@ class PathStepper:
         self._statistics["resettled"] += self._step.resettled
         self._step = None
 
-    def _path(self, now: Configuration, after: np.ndarray) -> PathStep | DriftPath:
-        """The path from a configuration to the load `after` (loads,)."""
-        system = self._under(now.load)
-        is_steady = now.load[FRICTION_CHANGE:].tolist() == after[FRICTION_CHANGE:].tolist()
-        later = system if is_steady else self._under(after)
-        if later is system or np.array_equal(system.friction, later.friction):
-            return PathStep(system, now, after, self._memory)
-        return DriftPath(system, now, after, later.friction)
+    def _follow_whole(self, system: System, position: Position, after: np.ndarray) -> bool:
+        """Follow the rest of a piece to the load `after` in one call. Returns whether that was enough."""
+        found = whole_step.follow(system, position.now, after, self._memory)
+        if found is None:
+            return False
+        position.now = found.now
+        position.touched |= found.touched
+        self._statistics["events"] += found.events
+        self._statistics["exchanges"] += found.exchanges
+        return True
+
+    def _steady_system(self, before: np.ndarray, after: np.ndarray) -> System | None:
+        """The system on the way between two loads (loads,); None if the friction changes on it."""
+        system = self._under(before)
+        if before[FRICTION_CHANGE:].tolist() == after[FRICTION_CHANGE:].tolist():
+            return system
+        return system if np.array_equal(system.friction, self._under(after).friction) else None
 
     def _under(self, load: np.ndarray) -> System:
         """The system with the friction under a load (loads,), kept for the next question."""

@@ -299,7 +299,11 @@ def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.
     Returns the gap and its first and second derivative at the angles `theta`, rad, dimensionless, shape (3, ...).
     """
     if system.bodies is None:
-        sxx, syy, sxy = load[[SXX, SYY, SXY]]
+        sxx, syy, sxy = load[[SXX, SYY, SXY]].tolist()
+        if not (sxx or syy or sxy):
+            found = np.zeros((3, *np.shape(theta)))
+            found[0] = system.rest_clearance
+            return found + _initial_gap(system, theta)
         mean, oval, diagonal = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy), 2.0 * system.plate * sxy
     elif system.bodies.anisotropy is not None:
         mean, oval, diagonal = system.bodies.ellipse(load)

@@ -357,7 +357,7 @@ class Session:
             given = np.full(len(LOADS), np.nan)
             for name, value in loads.items():
                 place, limit = limits.get(name, (0, -1.0)) if type(name) is str else (0, -1.0)
-                if type(value) is not float or not -limit <= value <= limit:
+                if not isinstance(value, float) or not -limit <= value <= limit:  # NumPy's numbers too
                     break
                 given[place] = value
             else:

@@ -36,7 +36,11 @@ class TableauMemory:
     left : ndarray, shape (2n+m, updates)
     unknowns : LatestUnknowns
         The linear systems of the latest statuses.
+    held : Tableau or None
+        The arrays of a tableau that begins with a held contact; None before the first one.
     """
+
+    held: Tableau | None = None
 
     def __init__(self, system: System) -> None:
         rows, columns = len(system.motion) + system.motions, len(system.motion)

@@ -17,6 +17,7 @@ from fastpin.solver import path, shortcut
 from fastpin.solver.solving import solve
 from tests.support.checks.body_cases import ring_compliance
 from tests.support.kernels import python
+from tests.support.steps import as_with_many_nodes
 
 BOTTOM = -0.5 * np.pi
 GRIDS = {"arc": Grid.arc(BOTTOM - 1.7, BOTTOM + 1.6, 61), "circle": Grid.circle(72), "odd circle": Grid.circle(61)}
@@ -85,7 +86,7 @@ def test_entries_of_an_operator_that_only_has_products(titanium_in_aluminium):
 @pytest.fixture
 def _transforms(monkeypatch):
     """Small grids too are followed in the way of large ones."""
-    monkeypatch.setattr(path, "FEW_NODES", 0)
+    as_with_many_nodes(monkeypatch)
     monkeypatch.setattr(large, "MOST_KEPT", 0)
     monkeypatch.setattr(shortcut, "WORTHWHILE", 1)
 

@@ -16,7 +16,6 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, Q
 from fastpin.model.problem import Problem
-from fastpin.solver import path
 from fastpin.solver import unknowns as solver_unknowns
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import solve_statuses, worst_residual
@@ -28,6 +27,7 @@ from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
 from tests.support import processes
 from tests.support.kernels import in_python, python
+from tests.support.steps import as_with_many_nodes
 from tests.support.tiers import gate
 
 KERNELS = exchange
@@ -269,7 +269,7 @@ def test_a_tableau_that_has_drifted_is_built_anew(titanium_in_aluminium, monkeyp
             self.tableau.matrix[50:150, asked] *= 1.0 + 1e-7
 
     monkeypatch.setattr(Columns, "refresh", spoilt)
-    monkeypatch.setattr(path, "FEW_NODES", 0)
+    as_with_many_nodes(monkeypatch)
     step = PathStep(system, first, loads(P=1.0))
     found = step.follow(1.0)
     assert step.rebuilds > 0
@@ -393,7 +393,7 @@ VARIED = {
 def test_friction_that_varies_along_the_rim(system, monkeypatch, kind, road):
     """The naive solver lets nodes without friction stick and slip like all others; their shear is 0 all the same."""
     if road == "columns":
-        monkeypatch.setattr(path, "FEW_NODES", 0)
+        as_with_many_nodes(monkeypatch)
     rough = replace(system, friction=VARIED[kind])
     first, _ = first_contact(rough, unloaded_configuration(rough), loads(), loads(P=1.0))
     now = naive = replace(first, slip_tally=SlipTally.empty(41))
@@ -425,7 +425,7 @@ def pushed_to_and_fro(system):
 def test_the_arrays_have_the_number_of_motions(system, monkeypatch, road):
     """A fourth motion, which follows the load Q along x, is a displacement of the load."""
     if road != "held":
-        monkeypatch.setattr(path, "FEW_NODES", 0)
+        as_with_many_nodes(monkeypatch)
         monkeypatch.setattr(solver_unknowns, "LEAST_NEIGHBOURS", 2 if road == "sticking" else 1000)
     part, x = 0.1, system.motion[:, 0]
     moved, rows, forces = system.loads.copy(), np.zeros((4, 4)), np.zeros((4, len(LOADS)))
@@ -486,6 +486,7 @@ def test_compiled_and_plain_python_give_the_same_states():
 def test_a_full_tableau_is_built_anew(titanium_in_aluminium, monkeypatch):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
     history, arc = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], (BOTTOM - 1.6, BOTTOM + 1.55)
+    as_with_many_nodes(monkeypatch)
     plenty = solve(problem, history, nodes=101, arc=arc)
     monkeypatch.setattr("fastpin.solver.tableau.ROOM", 0)
     little = solve(problem, history, nodes=101, arc=arc)

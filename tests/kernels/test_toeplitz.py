@@ -10,9 +10,10 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.solver import path, unknowns
+from fastpin.solver import unknowns
 from fastpin.solver.solving import solve
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
+from tests.support.steps import as_with_many_nodes
 from tests.support.tiers import gate
 
 KERNELS = toeplitz
@@ -136,7 +137,7 @@ def test_histories_are_those_of_factorisations(small_sets, titanium_in_aluminium
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, pin_load, rotation)
     grid = Grid.arc(BOTTOM - 1.8, BOTTOM + 1.8, 301)
     corners = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}, {"P": 0.4, "sxx": 0.1}, {"P": 1.2}]
-    monkeypatch.setattr(path, "FEW_NODES", 0)  # as with many nodes
+    as_with_many_nodes(monkeypatch)  # as with many nodes
     fast = solve(problem, corners, grid=grid)
     monkeypatch.setattr(StickingRun, "of", lambda *_: None)
     slow = solve(problem, corners, grid=grid)

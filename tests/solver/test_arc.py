@@ -50,12 +50,11 @@ def test_the_quick_run_finds_the_arc_of_the_careful_ones(monkeypatch: pytest.Mon
     ids=["remote stress", "little contact"],
 )
 def test_the_quick_run_leaves_the_others_to_the_careful_ones(corners: list[dict[str, float]], wider: float) -> None:
-    problem, history = Problem.from_load_parameter(LIKE, 0.1, 0.3), LoadHistory(corners)
-    values = history.distinct()
+    problem, values = Problem.from_load_parameter(LIKE, 0.1, 0.3), LoadHistory(corners).distinct()
     estimated = arc._estimated_arc(problem, values)
     assert estimated is not None
     wide = estimated[0] - wider, estimated[1] + wider
-    assert arc._quick_arc(problem, history, wide, reference_force(problem, values), None) is None
+    assert arc._quick_arc(problem, values, wide, reference_force(problem, values), None) is None
 
 
 def test_the_estimate_of_a_close_fit_tends_to_the_one_of_a_neat_fit() -> None:
@@ -100,6 +99,7 @@ def test_a_search_to_and_fro_ends(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(Run, "follow", follow)
     monkeypatch.setattr(arc, "_quick_arc", lambda *_: None)
+    monkeypatch.setattr(arc, "_touched_in_whole_steps", lambda *_: None)
     assert touched_arc(Problem.from_load_parameter(LIKE, 0.1, 0.3), LoadHistory([{"P": 1.0}])) is not None
     assert len(lengths) == 12
     assert min(lengths) < 0.5 < max(lengths)

@@ -16,6 +16,7 @@ from fastpin.solver import first_contact, path
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.errors import ArcError, NoEquilibriumError
 from fastpin.solver.solving import solve
+from tests.support.steps import step_by_step
 from tests.support.tiers import seeds
 
 BOTTOM = -0.5 * np.pi
@@ -105,6 +106,7 @@ def test_a_drifted_step_goes_back_to_the_last_check(monkeypatch, titanium_in_alu
     case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
     history = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}]
     plain = solve(case, history, nodes=201)
+    step_by_step(monkeypatch)
     begun = path.HeldColumns.correct
     monkeypatch.setattr(path.HeldColumns, "correct", lambda *given: begun(*given)._replace(drift=1.0))
     again = solve(case, history, grid=plain.grid)

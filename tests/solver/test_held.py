@@ -14,7 +14,7 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
-from fastpin.solver import held, path
+from fastpin.solver import held
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import solve_statuses
 from fastpin.solver.errors import SolveError
@@ -26,6 +26,7 @@ from fastpin.solver.unknowns import DenseUnknowns
 from tests.support.bodies import HOLDS
 from tests.support.kernels import python, run_as_python
 from tests.support.programs import assert_same_bits
+from tests.support.steps import as_with_many_nodes
 from tests.support.tiers import gate, some_gate
 from tests.survey.histories import generate
 
@@ -197,7 +198,7 @@ def test_histories_have_the_states_of_the_way_by_factorisations(kind, monkeypatc
         options = {**case.options, "nodes": 61}
         found = solve_or_none(case, options)
         with monkeypatch.context() as patch:
-            patch.setattr(path, "FEW_NODES", 0)
+            as_with_many_nodes(patch)
             expected = solve_or_none(case, options)
         assert (found is None) == (expected is None)
         if found is None or found.grid.size > held.FEW_NODES:

@@ -60,6 +60,17 @@ def assert_same_state(one: State, other: State) -> None:
     assert_same([one], [other])
 
 
+def test_numpys_numbers_are_as_quick_as_pythons(problem, monkeypatch):
+    """Loads that were seen before are not read as a history."""
+    sessions = [fastpin.Session(problem, 41) for _ in range(2)]
+    for session in sessions:
+        session.advance({"P": 1.0, "Q": 0.1})
+    monkeypatch.setattr("fastpin.solver.session.check_loads", None)
+    for session, kind in zip(sessions, (float, np.float64), strict=True):
+        session.advance({"P": kind(1.01), "Q": kind(0.11)})
+    assert_same_state(sessions[0].state, sessions[1].state)
+
+
 def difference(one: State, two: State) -> float:
     """Largest difference of two states on one grid, in parts of the largest traction, gap or motion."""
     pressure, gap = two.pressure.max(), max(two.gap.max(), np.abs(two.slip).max())

@@ -22,6 +22,7 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep
 from fastpin.solver.settling import FiniteStep, settle
 from fastpin.solver.solving import solve
+from tests.support.steps import step_by_step
 from tests.support.tiers import some_gate
 
 BOTTOM = -0.5 * np.pi
@@ -247,6 +248,7 @@ def test_too_many_events_are_told_from_a_snap(monkeypatch, titanium_in_aluminium
     case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
     pressed = solve(case, [{"P": 1.0}], grid=Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 81))
     monkeypatch.setattr(path, "MOST_EVENTS", 0)
+    step_by_step(monkeypatch)
     with pytest.raises(ConvergenceError, match="did not settle"):
         solve(case, [{"Q": 0.3}, {"Q": -0.3}], start=pressed)
     assert exchange.ENDLESS != exchange.CYCLING

@@ -15,6 +15,7 @@ from fastpin.solver import path, unknowns
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
+from tests.support.steps import as_with_many_nodes
 
 BOTTOM = -0.5 * np.pi
 
@@ -58,7 +59,7 @@ def test_a_mended_tableau_shares_its_factorisation(system, monkeypatch):
             made.append(status.tobytes())
         build(self, system, status)
 
-    monkeypatch.setattr(path, "FEW_NODES", 0)
+    as_with_many_nodes(monkeypatch)
     monkeypatch.setattr(path, "MOST_DRIFT", 0.0)
     monkeypatch.setattr(DenseUnknowns, "__init__", counted)
     result = solve(system.problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=201, arc=(BOTTOM - 1.8, BOTTOM + 1.8))
