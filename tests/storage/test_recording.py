@@ -313,7 +313,7 @@ def died(problem, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(writer, "CHECKPOINT_EVERY", 0.0)
         patch.setattr(writer, "CHECKPOINT_SHARE", 0.0)
-        patch.setattr(writer.FileRecorder, "finish", lambda writer, _: writer.abort())
+        patch.setattr(writer.FileRecorder, "end", lambda recorder, _: recorder.file.abort())
         with pytest.raises(Interrupted):
             follow(problem, RANDOM, folder / "a.h5", nodes=61, progress=StopAt(12.0), arc=(-3.0, -0.1))
     return folder
