@@ -1,4 +1,8 @@
-"""The margins of safety of a result: all of them, and the smallest one as an outcome."""
+"""Margins of safety of a result: strengths of each body, the bush in its seat, and fatigue, each with its state.
+
+A margin of safety is allowable/value - 1, as aerospace engineers write it: below 0 the part fails. One table serves the
+terminal, JSON and reports. Extremes are those of all kept states.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +12,24 @@ from typing import TYPE_CHECKING, Any
 
 from fastpin.assess.crack import grown
 from fastpin.assess.fatigue import Assessed
-from fastpin.assess.kept import kept
+from fastpin.assess.outputs import kept
 from fastpin.assess.strength import WorstState, worst_state
+from fastpin.assess.table import aligned
 from fastpin.cracks.margins import crack_margins
 from fastpin.damage.margins import last_cycle_margins, reserve_margins, strength_margins
 from fastpin.model.problem import Problem
+from fastpin.model.units import named_loads, printed_loads, units
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import KeptStates, marked_extremes
-from fastpin.states.margins import Margin, smallest_margin, static_margins
+from fastpin.states.margins import (
+    Margin,
+    over_yield,
+    over_yield_of,
+    over_yield_words,
+    smallest_margin,
+    static_margins,
+)
+from fastpin.states.quantities import point_name
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
@@ -23,6 +37,10 @@ if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
 
 LEAST = "least"
 """The smallest of all margins that are known, as tables mark it."""
+
+
+HEADS = ("subject", "value", "allowable", "margin", "load point", "loads", "remark")
+"""Headings of :func:`margin_rows`."""
 
 
 def all_margins(
@@ -77,3 +95,99 @@ def _margins(result: Any, sections: tuple[tuple[str, Any], ...]) -> list[Margin]
         asked["strength"] = worst_state(result, how["strength"])
     static = static_margins(result.problem, marked_extremes(states), states.read)
     return result_margins(result.problem, static, result.states, result.cycles, **asked)
+
+
+def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
+    """Return lines of text on the margins that are known; none if no margin is known.
+
+    The smallest one is marked, unless only a part of its body was looked at.
+    """
+    known = [row for row in rows if math.isfinite(row.margin)]
+    if not known:
+        return []
+    cells = []
+    for name, value, allowable, margin, point, loads, place in margin_rows(problem, known):
+        where = "" if point == "-" else f"load point {point}: {loads}"
+        cells.append((name, f"{value} of {allowable}", margin, where, place))
+    return ["margins of safety over all kept states, allowable/value - 1:", *aligned(cells, "lrrll")]
+
+
+def in_order(margins: Sequence[Margin]) -> list[Margin]:
+    """Margins from the smallest one on; then those of parts that need nothing, then those that are not known."""
+    return sorted(margins, key=lambda row: (math.isnan(row.margin), row.margin))
+
+
+def verdict(margins: Sequence[Margin], is_complete: bool = True) -> str:
+    """Return a sentence on the margin that governs, and on what is not known; without its full stop.
+
+    A run that is not complete has a verdict on the loads that it reached only.
+    """
+    least, unknown = smallest_margin(margins), [row.subject for row in margins if math.isnan(row.margin)]
+    words = "no margin is known"
+    if least is not None:
+        but = " but that of a crack that grows" if any(row.margin < 0.0 for row in margins) else ""
+        safe = f"all known margins{but} are positive; the smallest{' other' * bool(but)} is that of"
+        fails = "the joint fails by" if least.margin < 0.0 else safe
+        where = "" if math.isnan(least.load_point) else f", load point {point_name(least.load_point)}"
+        words = f"{fails} {least.subject}: {least.margin:+.2f}{where}"
+        words += f", {least.part}" if least.part else ""
+    words = words if is_complete else f"not known, the run is unfinished; up to its end {words}"
+    return words + (f"; not known: {len(unknown)} of {len(margins)}, see their remarks" if unknown else "")
+
+
+def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, ...]]:
+    """Return rows of text under :data:`HEADS`. A margin of stresses above yield is marked."""
+    unit, least, over = units(problem), smallest_margin(margins), over_yield(margins)
+
+    def verdict(row: Margin) -> str:
+        if math.isnan(row.margin):
+            return "not known"
+        words = "none needed" if math.isinf(row.margin) else f"{row.margin:+.2f}"
+        if row is not least or row.part:  # the smallest of a part says nothing of the whole
+            return words
+        return f"{words}, the smallest{' known' if any(each.part for each in margins) else ''}"
+
+    def shown(row: Margin, value: float) -> str:
+        if math.isnan(value):
+            return "-"
+        if math.isinf(value):
+            return "infinite"
+        return f"{value:.3g}" if row.kind == "ratio" else unit[row.kind].text(value, 4)
+
+    return [
+        (
+            row.subject,
+            shown(row, row.value),
+            shown(row, row.allowable),
+            verdict(row),
+            "-" if math.isnan(row.load_point) else point_name(row.load_point),
+            named_loads(problem, row.loads) if row.loads else "-",
+            "; ".join(filter(None, (row.remark, row.part)))
+            + (over_yield_words(over, row.owner) if over_yield_of(row, over) else ""),
+        )
+        for row in margins
+    ]
+
+
+def document(problem: Problem, margins: Sequence[Margin]) -> list[dict[str, Any]]:
+    """Return margins as JSON-ready dicts, in printed units."""
+    unit, least, over = units(problem), smallest_margin(margins), over_yield(margins)
+    factors = {row.kind: 1.0 if row.kind == "ratio" else unit[row.kind].factor for row in margins}
+    return [
+        {
+            "subject": row.subject,
+            "name": row.name,
+            "body": row.owner,
+            "value": factors[row.kind] * row.value,
+            "allowable": factors[row.kind] * row.allowable,
+            "unit": "" if row.kind == "ratio" else unit[row.kind].name,
+            "margin": row.margin,
+            "smallest": row is least and not row.part,
+            "part": row.part,
+            "over_yield": over_yield_of(row, over),
+            "loads": printed_loads(problem, row.loads),
+            "load_point": row.load_point,
+            "remark": row.remark,
+        }
+        for row in margins
+    ]

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import csv
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import wraps
+from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from fastpin.model.angles import from_bottom
-from fastpin.model.units import DEGREE, Unit
+from fastpin.model.problem import Problem
+from fastpin.model.units import DEGREE, Unit, units
+from fastpin.storage.files import replacing
 
 ROUNDING = 1e-9
 """Values and differences below this part of the largest of their kind are rounding. They are shown as 0."""
@@ -102,3 +109,101 @@ def chosen(outputs: Iterable[Output], names: Sequence[str]) -> dict[str, Output]
     """Return some of the outputs by name, in the order of the names."""
     known = {each.name: each for each in outputs}
     return {name: known[name] for name in names}
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One curve of a figure.
+
+    Attributes
+    ----------
+    parameters : dict
+        The values that differ between the curves of a figure: L_p, mu, the pair, the load.
+    columns : dict of ndarray
+        The numbers, all of one length, by a name with its unit. NaN breaks the curve.
+    """
+
+    parameters: dict[str, Any]
+    columns: dict[str, np.ndarray] = field(repr=False)
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        return self.columns[column]
+
+
+def write_csv(curves: Sequence[Curve], path: Path, remarks: Sequence[str] = ()) -> None:
+    """Write curves as CSV, one below the other. Each line has the curve's parameters, then a row of its columns.
+
+    NaN is an empty cell. A comma in a text becomes a semicolon, for programs that do not know quotes. `remarks` become
+    lines that begin with #.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
+    """
+    names = list(dict.fromkeys(name for curve in curves for name in (*curve.parameters, *curve.columns)))
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        file.writelines(f"# {remark}\n" for remark in remarks)
+        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
+        writer.writeheader()
+        for curve in curves:
+            parameters = {name: _parameter(value) for name, value in curve.parameters.items()}
+            rows = zip(*curve.columns.values(), strict=True)
+            for row in rows:
+                writer.writerow({**parameters, **dict(zip(curve.columns, map(_cell, row), strict=True))})
+
+
+def csv_cell(value: Any) -> Any:
+    """Return the value of a cell. A text that a spreadsheet would take for a formula begins with an apostrophe."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")) else value
+
+
+def _parameter(value: float | str) -> float | str:
+    if isinstance(value, str):
+        return csv_cell(value.replace(",", ";"))
+    return "" if math.isnan(value) else value
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, str):
+        return csv_cell(value)
+    return "" if math.isnan(value) else f"{value:.9g}"
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def kept(function: Function) -> Function:
+    """Let a function keep its values while its first argument lives, such as a result of which several outcomes ask.
+
+    The other arguments are given by position, and are hashable.
+    """
+    known: WeakKeyDictionary[Any, dict[tuple[Any, ...], Any]] = WeakKeyDictionary()
+
+    @wraps(function)
+    def value(first: Any, *others: Any) -> Any:
+        values = known.setdefault(first, {})
+        if others not in values:
+            values[others] = function(first, *others)
+        return values[others]
+
+    return value  # type: ignore[return-value]
+
+
+def unit_names(problem: Problem) -> dict[str, str]:
+    """Return the name of the unit of every kind of quantity in the JSON of a problem."""
+    angle = {"angle": "deg from the bottom of the hole, counter-clockwise"}
+    return {kind: unit.name for kind, unit in units(problem).items()} | angle
+
+
+def json_ready(value: Any) -> Any:
+    """Return `value` JSON-ready: Python numbers for NumPy's, lists for tuples, None for NaN and infinity."""
+    if isinstance(value, Mapping):
+        return {str(key): json_ready(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [json_ready(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,17 +1,38 @@
-"""The strength of a laminate round the hole: its outputs."""
+"""The strength of a laminate round the hole: its outputs, its text, and the load at which the first ply fails."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
 
-from fastpin import damage
-from fastpin.assess.kept import kept
-from fastpin.assess.outputs import Output
+from fastpin import damage, solver
+from fastpin.assess.outputs import Output, kept
+from fastpin.assess.outputs import document as document_of
 from fastpin.damage.hole_strength import JOINT_MODES
 from fastpin.damage.laminates import MODES
-from fastpin.model.strength import StrengthAssessment
+from fastpin.errors import InputError
+from fastpin.model.angles import from_bottom
+from fastpin.model.case import Case
+from fastpin.model.checks import choice
+from fastpin.model.doubts import doubts_given
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOAD_KIND, Corner
+from fastpin.model.ply import PlyCriterion
+from fastpin.model.problem import Problem
+from fastpin.model.strength import LENGTHS, StrengthAssessment
+from fastpin.model.units import printed_loads, units
+from fastpin.solver.errors import ConvergenceError, SolveError
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
+
+CLOSE = 1e-6
+"""Largest difference of the strength ratio from 1 at the load at failure."""
+
+
+MOST_SOLVED = 40
+"""Most histories that are solved to find it. Three or four are usual: stresses nearly grow with the load."""
 
 
 class WorstState(NamedTuple):
@@ -51,3 +72,203 @@ def worst_state(result: Any, how: StrengthAssessment) -> WorstState:
         If the strength can't be assessed.
     """
     return WorstState(how, *damage.least_strength(result.states, how))
+
+
+def strength_words(problem: Problem, how: StrengthAssessment) -> str:
+    """Criterion of an assessment of strength, and where it is evaluated."""
+    length = units(problem)["length"]
+    if how.distance is not None:
+        return f"{how.criterion} {f'{length.text(how.distance, 3)} from' if how.distance else 'at'} the edge"
+    lengths = (f"{length.text(value, 3)} in {name}" for name, value in how.lengths.items())
+    return f"{how.criterion} on the characteristic curve of {' and '.join(lengths)}"
+
+
+class StrengthFound(NamedTuple):
+    """The strength of a laminate in the worst state of a history.
+
+    Attributes
+    ----------
+    how : StrengthAssessment
+    states : int
+        Number of states of which it is the worst.
+    state : State
+    strength : JointStrength
+    failure : FailureLoad or None
+        None unless it is asked for and found.
+    reason : str
+        Why it was not found; empty if it was, or was not asked for.
+    """
+
+    how: StrengthAssessment
+    states: int
+    state: State
+    strength: damage.JointStrength
+    failure: FailureLoad | None
+    reason: str
+
+    @property
+    def worst(self) -> WorstState:
+        """How it was assessed, the worst state and its strength."""
+        return WorstState(self.how, self.state, self.strength)
+
+
+def assess_strength(
+    case: Case, states: Sequence[State], progress: Callable[[float, float], None] | None = None
+) -> StrengthFound:
+    """Return the strength in the worst of some states of a case with a section [strength], and its load at failure.
+
+    Raises
+    ------
+    InputError
+        If the strength can't be assessed.
+    """
+    how = case.strength
+    assert how is not None
+    state, strength = damage.least_strength(states, how, progress)
+    failure, reason = None, ""
+    if how.failure:
+        options = case.options.keywords() | {"error_bars": False}  # they need another run each time
+        try:
+            with doubts_given():
+                failure = failure_load(
+                    case.problem, case.history, how.criterion, **how.lengths, over="history", **options
+                )
+        except (InputError, SolveError) as error:
+            reason = str(error)
+    return StrengthFound(how, len(states), state, strength, failure, reason)
+
+
+def strength_lines(found: StrengthFound) -> list[str]:
+    """Return lines of text: the least strength ratio with its place and mode, and the factor on the loads."""
+    ratio, words = found.strength.least_ratio, strength_words(found.state.problem, found.how)
+    if not math.isfinite(ratio):
+        return [f"strength by {words}: no stress"]
+    line = f"strength ratio {ratio:.4g} by {words}"
+    if found.states > 1:
+        line += f", the least of {found.states:,} kept states, at load point {load_point(found.state):.6g}"
+    lines = [f"{line}; {place_words(found.strength)}"]
+    if found.failure is not None:
+        at = f"load point {load_point(found.failure.state):.6g}; " if found.states > 1 else ""
+        words = f"{at}{place_words(found.failure.strength)}"
+        lines.append(f"load at failure: {found.failure.factor:.4g} times all loads; {words}")
+    elif found.reason:
+        lines.append(f"load at failure: not found, {found.reason}")
+    return lines
+
+
+def place_words(strength: damage.JointStrength) -> str:
+    """Return the place of the least ratio, its ply and its modes in words."""
+    at = f"at {from_bottom(strength.angle):z.2f} deg from the bottom"
+    parts = [at, f"ply of {strength.ply_angle:g} deg by {strength.ply_mode}", strength.joint_mode]
+    return ", ".join(filter(None, parts))
+
+
+def document(found: StrengthFound) -> dict[str, Any]:
+    """Return a strength as a JSON-ready dict. A ratio without stress is infinite."""
+    unit, failure = units(found.state.problem), None
+    lengths = {name: unit["length"].factor * value for name, value in found.how.lengths.items()}
+    if found.failure is not None:
+        load = printed_loads(found.state.problem, found.failure.state.load)
+        failure = {"factor": found.failure.factor, "load": load, "solved": found.failure.solved}
+        failure |= document_of(PLACE, found.failure, unit)
+    return {
+        "criterion": found.how.criterion,
+        **dict.fromkeys(LENGTHS),
+        **lengths,
+        "states": found.states,
+        **document_of(PLACE, found, unit),
+        "failure": failure,
+        "error": found.reason or None,
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class FailureLoad:
+    """The load at which the first ply fails.
+
+    Attributes
+    ----------
+    factor : float
+        Factor on all loads of the history.
+    state : State
+        The state in which it fails, of the history times this factor.
+    strength : JointStrength
+        The strength there; its least ratio is 1.
+    solved : int
+        Number of histories that were solved.
+    """
+
+    factor: float
+    state: State
+    strength: damage.JointStrength
+    solved: int
+
+
+def failure_load(
+    problem: Problem,
+    history: LoadHistory | Sequence[Corner],
+    criterion: PlyCriterion = "hashin",
+    *,
+    distance: float | None = None,
+    tension: float | None = None,
+    compression: float | None = None,
+    over: Literal["end", "history"] = "end",
+    **options: Any,
+) -> FailureLoad:
+    """The factor on a load history at which the first ply fails at a distance from the hole.
+
+    With a clearance the stresses are not in proportion to the load. So histories are solved until the strength ratio is
+    1. Damage before failure, which spreads the load, is not known to it.
+
+    Parameters
+    ----------
+    problem : Problem
+    history : LoadHistory or sequence of dicts
+        The loads that the factor multiplies. A change of friction is kept as it is.
+    criterion, distance, tension, compression
+        See :func:`joint_strength`.
+    over : {"end", "history"}
+        Where it fails: at the end of the history, or in any state that is kept.
+    **options
+        Options of :func:`fastpin.solve`, such as ``nodes``.
+
+    Raises
+    ------
+    InputError
+        See :func:`joint_strength`; also if the laminate carries no stress there.
+    SolveError
+        If a history can't be followed, or no factor is found.
+    """
+    loads = history if isinstance(history, LoadHistory) else LoadHistory(history)
+    how = StrengthAssessment(criterion, distance, tension, compression)
+    last = slice(-1 if choice("over", over, ("end", "history")) == "end" else 0, None)
+    scaled = [name for name, kind in LOAD_KIND.items() if kind != "ratio"]  # all but the change of friction
+    factor, known = 1.0, []
+    for solved in range(1, MOST_SOLVED + 1):
+        states = solver.solve(problem, loads.scaled(dict.fromkeys(scaled, factor)), **options)[last]
+        state, strength = damage.least_strength(states, how)
+        ratio = strength.least_ratio
+        if not math.isfinite(ratio):
+            raise InputError("history", "must stress the laminate: no factor makes a ply fail")
+        if abs(ratio - 1.0) <= CLOSE:
+            return FailureLoad(factor, state, strength, solved)
+        known.append((math.log(factor), math.log(ratio)))
+        factor = math.exp(_next_factor(known))
+    raise ConvergenceError(f"no load at failure was found after {MOST_SOLVED} histories")
+
+
+def _next_factor(known: list[tuple[float, float]]) -> float:
+    """The logarithm of the next factor to try, from those of the known factors and their strength ratios.
+
+    A ratio above 1 asks for a larger factor. The secant of the logarithms is taken where it stays between the nearest
+    factors on both sides, and else the step for stresses in proportion to the load, or the middle.
+    """
+    low = max((x for x, y in known if y > 0.0), default=-math.inf)
+    high = min((x for x, y in known if y < 0.0), default=math.inf)
+    x, y = known[-1]
+    found = x + y
+    if len(known) > 1:
+        before, value = known[-2]
+        if y != value and low < (secant := x - y * (x - before) / (y - value)) < high:
+            found = secant
+    return found if low < found < high else 0.5 * (low + high)

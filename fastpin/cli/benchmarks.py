@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import Any
 
-from fastpin import report
+from fastpin.assess.outputs import json_ready
 from fastpin.cli.progress import Bar
 from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_outputs
 from fastpin.errors import InputError
@@ -53,4 +53,4 @@ def run(options: argparse.Namespace) -> int:
         finished = f"benchmarks that are finished: {', '.join(documents)}" if documents else "no benchmark was finished"
         return fail(f"interrupted; {finished}", EXIT_INTERRUPTED)
     document = {"fastpin": __version__, "benchmarks": documents}
-    return write_outputs([], options.json, lambda: report.summary.json_ready(document))
+    return write_outputs([], options.json, lambda: json_ready(document))

@@ -6,15 +6,14 @@ import argparse
 import sys
 
 from fastpin import casefile, figures, report, storage
-from fastpin.assess.crack import CrackStops
+from fastpin.assess.crack import CrackStops, growth_curve, growth_line, growth_table
+from fastpin.assess.outputs import write_csv
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
 from fastpin.model.growth import LAWS
-from fastpin.report.crack_growth import growth_curve, growth_line, growth_table
-from fastpin.report.curves import write_csv
 from fastpin.states.state import State
 
 PLACES = "{whole} of {total} places"

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fastpin import assess, casefile, cracks, figures, live, report, solver, storage
+from fastpin.assess.crack import growth_line
+from fastpin.assess.margins import margin_lines
 from fastpin.cli import wear
 from fastpin.cli.crack import PLACES
 from fastpin.cli.interface import load_seat, seat_title
@@ -32,6 +34,7 @@ from fastpin.cli.terminal import (
     write_outputs,
     write_text,
 )
+from fastpin.damage.margins import MOST_STOPS
 from fastpin.errors import InputError, ReadingError
 from fastpin.kernels import first
 from fastpin.model.beside import beside_of
@@ -39,8 +42,6 @@ from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
-from fastpin.report.crack_growth import growth_line
-from fastpin.report.margins import margin_lines
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import (
     TableRows,
@@ -60,7 +61,7 @@ from fastpin.states.walking import walk_doubts
 
 if TYPE_CHECKING:  # they import compiled code
     from fastpin.assess.fatigue import Assessed
-    from fastpin.report.strength import StrengthFound
+    from fastpin.assess.strength import StrengthFound
     from fastpin.states.load_cycle import LoadCycle
     from fastpin.states.state import State
 
@@ -264,9 +265,9 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     places = {*rows.printed, *peaks}
     if cycles:
         last = range(points.size)[storage.places_between(path, *span_of(cycles[-1]))]
-        if len(last) <= report.cycle.MOST_STOPS or case.problem.seat is not None:
+        if len(last) <= MOST_STOPS or case.problem.seat is not None:
             places |= set(last)  # the fatigue over the last cycle is printed, and whether a bush walks
-    elif _is_spectrum(case) and points.size <= report.cycle.MOST_STOPS:
+    elif _is_spectrum(case) and points.size <= MOST_STOPS:
         places |= set(range(points.size))  # the fatigue over the whole history is printed
     if case.problem.seat is not None:
         places |= set(range(points.size)[-1:])
@@ -331,7 +332,7 @@ class RunReport:
             writers.append((options.cycles, partial(figures.plot_cycles, result, title=case.title)))
         elif options.cycles is not None:
             code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
-        writers.append((options.cycle_csv, lambda path: report.cycle.write_csv(self._last_cycle(), path)))
+        writers.append((options.cycle_csv, lambda path: assess.cycle.write_csv(self._last_cycle(), path)))
         code = write_outputs(writers, options.json, lambda: document) or code
         if options.json != "-":
             self._print_states(read, judged)
@@ -414,7 +415,7 @@ class RunReport:
         whole = result if self.part is None or self.path is None else storage.load(self.path)
         try:
             with Bar(len(whole), "state {n} of {total}") as progress_bar:
-                return report.strength.assess_strength(case, whole.states, progress_to(progress_bar))
+                return assess.strength.assess_strength(case, whole.states, progress_to(progress_bar))
         except InputError as error:
             say(f"fastpin: note: no strength is assessed: {error}", file=sys.stderr)
             return None
@@ -481,20 +482,20 @@ class RunReport:
             if judged.fatigue is not None:
                 return assess.fatigue.assessment_lines(judged.fatigue, over)
             if result.cycles:
-                return report.cycle.fatigue_lines(states, result.cycles[-1], over)
-            damages = report.cycle.spectrum_damages(result.states, len(case.history)) if _is_spectrum(case) else []
-            return [report.cycle.spectrum_line(one, over) for one in damages]
+                return assess.fatigue.fatigue_lines(states, result.cycles[-1], over)
+            damages = assess.fatigue.spectrum_damages(result.states, len(case.history)) if _is_spectrum(case) else []
+            return [assess.fatigue.spectrum_line(one, over) for one in damages]
 
         return {
             "largest hoop stress": lambda: [hoop_line(problem, peaks, body) for body in EDGES],
             "bush": lambda: bush_line(problem, peaks).splitlines(),
             "seat": seat,
             "cycles": lambda: cycle_lines(problem, result.cycles, peaks),
-            "last cycle": lambda: [] if judged.cycle is None else [report.cycle.cycle_line(judged.cycle)],
+            "last cycle": lambda: [] if judged.cycle is None else [assess.cycle.cycle_line(judged.cycle)],
             "margins": lambda: margin_lines(problem, margins()),
             "fatigue": lives,
             "crack": lambda: [] if judged.crack is None else [growth_line(judged.crack, over_yield(margins()))],
-            "strength": lambda: [] if judged.strength is None else report.strength.strength_lines(judged.strength),
+            "strength": lambda: [] if judged.strength is None else assess.strength.strength_lines(judged.strength),
         }
 
 

@@ -7,6 +7,7 @@ import dataclasses
 import time
 
 from fastpin import report, storage, verification
+from fastpin.assess.outputs import json_ready
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_outputs
 from fastpin.runtime.threads import cores
@@ -34,4 +35,4 @@ def run(options: argparse.Namespace) -> int:
         "passed": code == EXIT_OK,
         "checks": [{**dataclasses.asdict(check), "passed": check.passed} for check in checks],
     }
-    return write_outputs([], options.json, lambda: report.summary.json_ready(document)) or code
+    return write_outputs([], options.json, lambda: json_ready(document)) or code

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from fastpin import casefile, live, report, solver, storage
+from fastpin import assess, casefile, live, solver, storage
 from fastpin.cli.options import literal
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import (
@@ -83,8 +83,8 @@ def _write(result: solver.WearResult | None, options: argparse.Namespace, title:
     writers: list[tuple[Any, Callable[[Path], object]]] = []
     if result is not None and len(result):
         writers.append((options.record, lambda path: write_text(path, live.record_life(result, title, trouble or ""))))
-    code = write_outputs(writers, options.json, lambda: report.wear.document(result, title, trouble))
+    code = write_outputs(writers, options.json, lambda: assess.wear.document(result, title, trouble))
     if options.json != "-" and result is not None:
         rows = [*result.summary().split("\n"), ""] if len(result) else []
-        say(*([title, ""] if title else []), *rows, report.wear.reached_line(result))
+        say(*([title, ""] if title else []), *rows, assess.wear.reached_line(result))
     return code

@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from fastpin.assess.crack import growth_curve
+from fastpin.assess.outputs import write_csv
 from fastpin.cracks import Growth
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
@@ -16,8 +18,6 @@ from fastpin.figures.words import caption, quantity
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instances
 from fastpin.model.units import units
-from fastpin.report.crack_growth import growth_curve
-from fastpin.report.curves import write_csv
 
 
 def crack_growth_of(found: Growth | Sequence[Growth]) -> Plot:

@@ -10,6 +10,8 @@ from matplotlib.colors import LogNorm
 from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D
 
+from fastpin.assess.outputs import write_csv
+from fastpin.assess.wear import damage_curve, followed_words
 from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import Criterion, criterion_title
 from fastpin.figures.scar import MARGIN, cycles_axis, life_caption
@@ -22,8 +24,6 @@ from fastpin.model.angles import from_bottom
 from fastpin.model.points import Body, edge_body
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
-from fastpin.report.curves import write_csv
-from fastpin.report.wear import damage_curve, followed_words
 from fastpin.solver.wear_result import WearResult
 
 DECADES = 6

@@ -11,7 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from fastpin.assess.asked import assessment_words
+from fastpin.assess.fatigue import assessment_words, fatigue_bodies, fatigue_curve, spectrum_curve
+from fastpin.assess.outputs import write_csv
 from fastpin.damage import CRITERIA, NO_CRACK, SPECTRUM_CRITERIA, Fatigue, SpectrumDamage, cycle_states, fatigue
 from fastpin.damage.assessed import MOST_REFINED
 from fastpin.damage.criteria import Criterion, criterion_title
@@ -26,9 +27,6 @@ from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.checks import choice, instances
 from fastpin.model.points import EDGES, Body, edge_body
 from fastpin.model.units import scaled, units
-from fastpin.report.curves import write_csv
-from fastpin.report.cycle import fatigue_bodies
-from fastpin.report.fatigue import fatigue_curve, spectrum_curve
 
 PLANES = 40
 """Planes that are drawn as short lines, spread over the edge."""

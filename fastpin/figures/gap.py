@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.lines import Line2D
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import draw_zero, line
@@ -15,7 +16,6 @@ from fastpin.model.case import Case
 from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import units
-from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.result import Result
 
 BESIDE = 1e-6

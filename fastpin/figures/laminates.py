@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.damage.hole_strength import JointStrength, joint_strength, laminate_of
 from fastpin.damage.laminates import MODES
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
@@ -26,7 +27,6 @@ from fastpin.model.ply import PlyCriterion
 from fastpin.model.problem import Problem
 from fastpin.model.strength import StrengthAssessment
 from fastpin.model.units import PASCAL, units
-from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 

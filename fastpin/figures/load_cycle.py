@@ -15,7 +15,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.cycle import CONJUGATES, loop_curve, natural_sizes
+from fastpin.assess.cycle import write_csv as write_cycle
+from fastpin.assess.outputs import ROUNDING, Curve, write_csv
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import Frame
@@ -35,9 +37,6 @@ from fastpin.model.checks import choice, instance, items, string
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
-from fastpin.report.curves import Curve, write_csv
-from fastpin.report.cycle import CONJUGATES, loop_curve, natural_sizes
-from fastpin.report.cycle import write_csv as write_cycle
 from fastpin.solver.result import Result
 from fastpin.states.choice import chosen_cycles
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour

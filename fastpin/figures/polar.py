@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import DrawnStates, name_states, state_lines
 from fastpin.figures.subjects import InMemory, Subject
@@ -21,7 +22,6 @@ from fastpin.figures.tractions import traction_curves
 from fastpin.figures.words import quantity, shown_unit
 from fastpin.model.laminate import Laminate
 from fastpin.model.units import units
-from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
 
 HEIGHT = 0.9

@@ -11,6 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
+from fastpin.assess.outputs import write_csv
+from fastpin.assess.wear import coefficient_words, cycles_curve, followed_words, scar_curves
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.sketch import load_ranges
 from fastpin.figures.style import MAX_NAMED, angle_axis, line
@@ -19,8 +21,6 @@ from fastpin.figures.words import ANGLE, caption, quantity, range_text, short, w
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
-from fastpin.report.curves import write_csv
-from fastpin.report.wear import coefficient_words, cycles_curve, followed_words, scar_curves
 from fastpin.solver.wear_result import WearResult, WornCycle
 
 MARGIN = 0.15

@@ -21,6 +21,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import Bbox
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.errors import InputError
 from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
@@ -28,7 +29,6 @@ from fastpin.figures.words import caption, quantity, shown_label, wrapped
 from fastpin.model.checks import instances
 from fastpin.model.problem import Problem
 from fastpin.model.units import PASCAL
-from fastpin.report.curves import Curve, write_csv
 from fastpin.report.envelope import BEARING, BYPASS
 from fastpin.report.sweep import Axis, Chart
 

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.sketch import draw_sketch, load_ranges
@@ -23,7 +24,6 @@ from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.checks import true_or_false
 from fastpin.model.points import owner_of
 from fastpin.model.units import units
-from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice
 from fastpin.states.curves import friction_along
 from fastpin.states.quantities import load_point

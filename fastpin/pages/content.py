@@ -9,9 +9,9 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from fastpin.assess.table import Column
 from fastpin.errors import printable
 from fastpin.model.case import About
-from fastpin.report.table import Column
 
 
 def shown(text: str) -> str:

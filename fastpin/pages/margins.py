@@ -6,13 +6,12 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from fastpin.assess.margins import all_margins
+from fastpin.assess.margins import HEADS, all_margins, in_order, margin_rows, verdict
 from fastpin.damage.margins import fatigue_margins
 from fastpin.model.points import edge_body
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, PageSection, Text
 from fastpin.pages.source import Source
-from fastpin.report.margins import HEADS, in_order, margin_rows, verdict
 from fastpin.states.margins import Margin
 from fastpin.states.walking import walk_margins
 from fastpin.studies.convergence import Convergence

@@ -7,8 +7,14 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fastpin.assess.fatigue import Assessed, assessment_lines
+from fastpin.assess.crack import growth_line
+from fastpin.assess.cycle import cycle_line
+from fastpin.assess.fatigue import Assessed, assessment_lines, hot_spot_line, spectrum_line
+from fastpin.assess.margins import verdict
 from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.strength import strength_lines
+from fastpin.assess.table import MAX_ROWS, Column
+from fastpin.assess.wear import wear_input
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
 from fastpin.figures.crack_growth import crack_growth_of
@@ -41,14 +47,8 @@ from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.convergence import heading, reported_series, series_columns
-from fastpin.report.crack_growth import growth_line
-from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
-from fastpin.report.margins import verdict
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_lines, state_columns
-from fastpin.report.strength import strength_lines
-from fastpin.report.table import MAX_ROWS, Column
-from fastpin.report.wear import wear_input
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.extremes import READINGS, yield_doubts
 from fastpin.states.load_cycle import LoadCycle

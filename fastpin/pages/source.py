@@ -15,7 +15,8 @@ import numpy as np
 
 from fastpin import storage
 from fastpin.assess.crack import CrackStops
-from fastpin.assess.fatigue import Assessed, assess
+from fastpin.assess.fatigue import SWT, Assessed, assess, fatigue_bodies, spectrum_damages
+from fastpin.assess.strength import StrengthFound, assess_strength
 from fastpin.cracks import Growth
 from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
 from fastpin.damage.margins import MOST_STOPS
@@ -26,9 +27,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.points import edge_body, elastic_bodies
-from fastpin.report.cycle import SWT, fatigue_bodies, spectrum_damages
 from fastpin.report.states import stored_rows
-from fastpin.report.strength import StrengthFound, assess_strength
 from fastpin.solver.result import Result
 from fastpin.solver.wear_result import WearResult
 from fastpin.states.choice import even_choice, span_of

@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from fastpin.assess.table import columns_at, printed_rows
+from fastpin.assess.wear import DEBRIS, cycle_columns, cycle_lines, followed_words, law_rows
 from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import criterion_title
 from fastpin.figures.damage import damage_of
@@ -35,8 +37,6 @@ from fastpin.pages.sections import (
 from fastpin.pages.source import Source
 from fastpin.report.notes import way_on
 from fastpin.report.states import TableRows
-from fastpin.report.table import columns_at, printed_rows
-from fastpin.report.wear import DEBRIS, cycle_columns, cycle_lines, followed_words, law_rows
 from fastpin.solver.wear_result import WearResult
 from fastpin.states.margins import over_yield_words
 from fastpin.states.quantities import load_point

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.bodies import Disk, Plate, Ring, Tube
 from fastpin.bodies.ring import SUPPORTS, Support
 from fastpin.bodies.tube import TubeLoad
@@ -23,7 +24,6 @@ from fastpin.model.problem import Problem
 from fastpin.published.drawing import add_legend, grey, head, marked, panels
 from fastpin.published.records import PaperFigure, Report, curves_of, steps
 from fastpin.published.tractions import Panel, chosen, traction_curve, traction_figure
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 PAIR = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))

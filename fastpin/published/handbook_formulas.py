@@ -15,13 +15,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from fastpin.assess.outputs import Curve
 from fastpin.figures.style import COLOURS, Line, line
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.published.drawing import head, legend_below, panels
 from fastpin.published.formulas import half_angle, load_term, peak_pressure
 from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from fastpin.verification.rows import half_width

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
@@ -21,7 +22,6 @@ from fastpin.published.drawing import add_legend, grey, head, marked, panels
 from fastpin.published.fretting import FRICTION
 from fastpin.published.records import PaperFigure, Report, curves_of, steps
 from fastpin.published.tractions import PAIRS
-from fastpin.report.curves import Curve
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

@@ -13,8 +13,8 @@ from typing import Any, TypeVar
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.report.curves import Curve
-from fastpin.report.table import aligned
+from fastpin.assess.outputs import Curve
+from fastpin.assess.table import aligned
 
 AGREES = "agrees to the digits printed"
 """The verdict on a number that differs by at most one unit of the last digit printed."""

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess.outputs import Curve, write_csv
+from fastpin.assess.table import aligned
 from fastpin.charts.formulas import HEAD, MOST_FRICTION, MOST_LOAD_PARAMETER, chart_formulas
 from fastpin.charts.groups import GROUPS, TableAxis, parameter_range
 from fastpin.charts.lookups import CHARTS, ChartQuantity, ChartValue
 from fastpin.charts.tables import STORED, ChartTable, tables
-from fastpin.report.curves import Curve, write_csv
-from fastpin.report.table import aligned
 from fastpin.version import __version__
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import groupby
 
-from fastpin.report.table import aligned
+from fastpin.assess.table import aligned
 from fastpin.verification.rows import Check
 
 

@@ -8,12 +8,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fastpin.assess.asked import strength_words
+from fastpin.assess.outputs import Curve
+from fastpin.assess.strength import strength_words
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.loads import LOADS
 from fastpin.model.strength import StrengthAssessment
-from fastpin.report.curves import Curve
 from fastpin.report.sweep import TableRow, printed_rows, value_words
 from fastpin.studies.plan import Plan
 

@@ -12,16 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fastpin.assess.outputs import ROUNDING
-from fastpin.model.angles import from_bottom, interval_from_bottom
-from fastpin.model.checks import instance, instances
-from fastpin.model.loads import LOADS
-from fastpin.model.points import Body, edge_body, elastic_bodies
-from fastpin.model.problem import Problem
-from fastpin.model.ties import top
-from fastpin.model.units import Unit, units
-from fastpin.reading.zones import is_all_round
-from fastpin.report.case import load_columns
-from fastpin.report.table import (
+from fastpin.assess.table import (
     MAX_ROWS,
     Column,
     TableLine,
@@ -34,6 +25,15 @@ from fastpin.report.table import (
     table_of_lines,
     with_rows,
 )
+from fastpin.model.angles import from_bottom, interval_from_bottom
+from fastpin.model.checks import instance, instances
+from fastpin.model.loads import LOADS
+from fastpin.model.points import Body, edge_body, elastic_bodies
+from fastpin.model.problem import Problem
+from fastpin.model.ties import top
+from fastpin.model.units import Unit, units
+from fastpin.reading.zones import is_all_round
+from fastpin.report.case import load_columns
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.error_bars import known_bar
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, sizes
@@ -60,7 +60,7 @@ class TableRows:
     Attributes
     ----------
     lines : list of int, Repeat or LeftOut
-        The lines of the table, see :mod:`fastpin.report.table`. A row has the place of its state as number.
+        The lines of the table, see :mod:`fastpin.assess.table`. A row has the place of its state as number.
     points : ndarray, shape (rows,)
         Load points of all rows.
     """

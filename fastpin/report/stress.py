@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fastpin.assess.outputs import Curve
 from fastpin.damage.hole_strength import laminate_of
 from fastpin.damage.laminates import first_ply_failure
 from fastpin.errors import InputError
@@ -25,7 +26,6 @@ from fastpin.model.points import (
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.reading.stress import Stress
-from fastpin.report.curves import Curve
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 

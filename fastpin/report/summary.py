@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
@@ -10,11 +9,16 @@ from typing import Any
 import numpy as np
 
 from fastpin import cracks
-from fastpin.assess import fatigue as fatigue_of
+from fastpin.assess import crack as crack_room
+from fastpin.assess import cycle as cycle_room
+from fastpin.assess import fatigue as fatigue_room
 from fastpin.assess import outputs
-from fastpin.assess.crack import GROWTH
+from fastpin.assess import strength as strength_room
 from fastpin.assess.fatigue import Assessed
+from fastpin.assess.margins import document as margins_document
 from fastpin.assess.margins import result_margins
+from fastpin.assess.outputs import json_ready, unit_names
+from fastpin.assess.strength import StrengthFound
 from fastpin.bodies.body import BodyBase
 from fastpin.cracks.margins import crack_margins
 from fastpin.errors import ReadingError, reading
@@ -26,11 +30,6 @@ from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.problem import Problem
 from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
-from fastpin.report import crack_growth
-from fastpin.report import cycle as cycle_report
-from fastpin.report import strength as strength_report
-from fastpin.report.margins import document as margins_document
-from fastpin.report.strength import StrengthFound
 from fastpin.solver.result import Result
 from fastpin.states.extremes import READINGS, Found, KeptStates, marked_extremes
 from fastpin.states.load_cycle import LoadCycle
@@ -102,10 +101,10 @@ def document(
             row._asdict() | {"dissipation": unit["energy"].factor * row.dissipation}
             for row in (() if result is None else result.cycles)
         ],
-        "cycle": None if cycle is None else cycle_report.document(cycle),
-        "fatigue": None if fatigue is None else fatigue_of.document(fatigue, over_yield(margins)),
-        "crack": None if crack is None else outputs.document(GROWTH, crack, unit),
-        "strength": None if strength is None else strength_report.document(strength),
+        "cycle": None if cycle is None else cycle_room.document(cycle),
+        "fatigue": None if fatigue is None else fatigue_room.document(fatigue, over_yield(margins)),
+        "crack": None if crack is None else outputs.document(crack_room.GROWTH, crack, unit),
+        "strength": None if strength is None else strength_room.document(strength),
     }
     return json_ready(found)
 
@@ -132,12 +131,6 @@ def _in_its_unit(problem: Problem, name: str) -> Any:
     if FIELDS[name].has_section:
         return {key: profile.toml() for key, profile in value.given.items()}
     return units(problem)[kind].factor * value if kind and value is not None else value
-
-
-def unit_names(problem: Problem) -> dict[str, str]:
-    """Return the name of the unit of every kind of quantity in the JSON of a problem."""
-    angle = {"angle": "deg from the bottom of the hole, counter-clockwise"}
-    return {kind: unit.name for kind, unit in units(problem).items()} | angle
 
 
 def _material_summary(material: Material) -> dict[str, Any]:
@@ -225,27 +218,14 @@ def _margins(
 
 def crack_document(case: Case, growth: cracks.Growth) -> dict[str, Any]:
     """Return the growth of a crack with its numbers at all lengths and its margins as a JSON-ready dict."""
-    columns = {name: values.tolist() for name, values in crack_growth.growth_curve(growth).columns.items()}
+    columns = {name: values.tolist() for name, values in crack_room.growth_curve(growth).columns.items()}
     return json_ready(
         {
             "fastpin": __version__,
             "title": case.title,
             "units": unit_names(growth.problem),
-            "crack": outputs.document(GROWTH, growth, units(growth.problem)),
+            "crack": outputs.document(crack_room.GROWTH, growth, units(growth.problem)),
             "lengths": columns,
             "margins": margins_document(growth.problem, crack_margins(growth)),
         }
     )
-
-
-def json_ready(value: Any) -> Any:
-    """Return `value` JSON-ready: Python numbers for NumPy's, lists for tuples, None for NaN and infinity."""
-    if isinstance(value, Mapping):
-        return {str(key): json_ready(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [json_ready(item) for item in value]
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.outputs import ROUNDING, csv_cell
+from fastpin.assess.table import Column, table
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
@@ -24,8 +25,6 @@ from fastpin.model.profile_terms import TERMS
 from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, Unit, scaled, units
 from fastpin.model.wear import Wear
-from fastpin.report.curves import csv_cell
-from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.index import DONE, FAILED

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess.table import Column, table
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
 from fastpin.model.synonyms import closest
 from fastpin.model.units import scaled
 from fastpin.report.sweep import TableRow, axis_label, printed_rows, unit_name
-from fastpin.report.table import Column, table
 from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.run_end import bar_column

@@ -4,8 +4,6 @@ from . import plan as plan
 from . import sweep as sweep
 from . import tolerances as tolerances
 from .convergence import converge as converge
-from .failure import FailureLoad as FailureLoad
-from .failure import failure_load as failure_load
 from .outcome_tables import read_outcomes as read_outcomes
 from .plan import parse_plan as parse_plan
 from .plan import read_plan as read_plan

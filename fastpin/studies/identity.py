@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.assess.kept import kept
+from fastpin.assess.outputs import kept
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries

@@ -20,8 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fastpin.assess.kept import kept
-from fastpin.assess.outputs import ROUNDING, Output
+from fastpin.assess.outputs import ROUNDING, Output, kept
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from fastpin.assess.crack import GROWTH, grown
 from fastpin.assess.fatigue import DAMAGE, worst_damage
 from fastpin.assess.outputs import Output, chosen
-from fastpin.assess.strength import PLACE, worst_state
+from fastpin.assess.strength import PLACE, FailureLoad, failure_load, worst_state
 from fastpin.model.doubts import doubts_given
 from fastpin.model.strength import StrengthAssessment
-from fastpin.studies.failure import FailureLoad, failure_load
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.solver.result import Result

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import fastpin
+from fastpin.assess.table import MAX_ROWS
 from fastpin.bodies import Bushing
 from fastpin.errors import InputError, OutputError
 from fastpin.figures.stick_slip import stick_slip_plot
@@ -22,7 +23,6 @@ from fastpin.pages import album, sections, write_report
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Text
 from fastpin.pages.source import MOST_DRAWN, Source
-from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.states.quantities import QUANTITIES
 from fastpin.storage.layout import RESIDUALS

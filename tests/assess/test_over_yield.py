@@ -3,6 +3,9 @@
 import pytest
 
 from fastpin.assess import fatigue as assessment
+from fastpin.assess.crack import growth_line
+from fastpin.assess.fatigue import fatigue_lines, spectrum_damages, spectrum_line
+from fastpin.assess.margins import document, margin_rows
 from fastpin.cracks import planned_growth
 from fastpin.damage import cycle_states
 from fastpin.damage.margins import reserve_margins
@@ -16,9 +19,6 @@ from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.pages.source import Source
-from fastpin.report.crack_growth import growth_line
-from fastpin.report.cycle import fatigue_lines, spectrum_damages, spectrum_line
-from fastpin.report.margins import document, margin_rows
 from fastpin.report.summary import document as summary
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
