@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fastpin import cracks, damage
-from fastpin.assess.outputs import Curve, Output, kept
+from fastpin.assess.outputs import Curve, Output, Progress, Schema, chosen, kept, object_of, properties
+from fastpin.assess.outputs import document as document_of
 from fastpin.assess.table import table
 from fastpin.cracks.fates import CRACK_FATES, CrackFate
+from fastpin.cracks.margins import crack_margins
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
+from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, law_of
 from fastpin.model.doubts import doubts_given
 from fastpin.model.growth import Nasgro, Walker, law_entries, law_words
@@ -25,6 +28,9 @@ from fastpin.states.choice import missing_corners, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.margins import over_yield_words
 from fastpin.states.state import State
+
+if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
+    from fastpin.storage.held import Held
 
 GROWTH = (
     Output("angle_of_mouth", "angle", lambda found: found.crack.theta),
@@ -61,6 +67,11 @@ LENGTHS = (
     Output("cycles", "", lambda found: found.cycles),
 )
 """Outputs at each length: columns of CSV, JSON and the table of ``fastpin crack``."""
+
+
+BAR = "{whole} of {total} places"
+FAILED = "no crack is followed"
+MARGINS = ("fracture", "growth")
 
 
 class CrackStops(NamedTuple):
@@ -115,7 +126,7 @@ class CrackStops(NamedTuple):
             raise InputError("states", 'not all corners of the history are kept; keep = "all" keeps them')
         return cls(states, True)
 
-    def growth(self, how: CrackGrowth, progress: Callable[[float, float], None] | None = None) -> cracks.Growth:
+    def growth(self, how: CrackGrowth, progress: Progress | None = None) -> cracks.Growth:
         """Follow a crack under this pass, again and again. See :func:`fastpin.cracks.planned_growth`."""
         return cracks.planned_growth(self.states, how, self.is_spectrum, progress)
 
@@ -137,6 +148,50 @@ def grown(result: Any, how: CrackGrowth) -> cracks.Growth:
     stops = CrackStops.of(len(result.history), result.cycles, lambda first, last: result)
     with doubts_given():
         return stops.growth(how)
+
+
+OUTCOMES = {
+    name: (output, grown)
+    for name, output in {
+        **chosen(GROWTH, ("fate", "life", "arrest")),
+        "theta": GROWTH[0],
+        "largest_K": Output("largest_K", "stress intensity", lambda found: found.K_max.max()),
+    }.items()
+}
+"""Outcomes of sweeps: "theta" is its mouth, and "largest_K" the largest K_I up to the last length."""
+
+judged = grown
+
+
+def find(case: Case, held: Held | None, progress: Progress | None = None) -> cracks.Growth | None:
+    """Follow the crack of a case under its last cycle or its spectrum; None without a state.
+
+    Raises
+    ------
+    InputError
+        If it can't be followed.
+    """
+    if held is None or case.crack is None:
+        return None
+    return CrackStops.of(len(case.history), held.result.cycles, held.between).growth(case.crack, progress)
+
+
+def lines(growth: cracks.Growth, over: Mapping[str, float]) -> list[str]:
+    """Return :func:`growth_line` in a list."""
+    return [growth_line(growth, over)]
+
+
+def document(growth: cracks.Growth, over: Mapping[str, float]) -> dict[str, Any]:
+    """Return the growth as a dict for JSON."""
+    return document_of(GROWTH, growth, units(growth.problem))
+
+
+def schema() -> Schema:
+    """Return the JSON schema of :func:`document`."""
+    return object_of(properties(GROWTH))
+
+
+margins = crack_margins
 
 
 def crack_words(problem: Problem, crack: CrackGrowth) -> str:

@@ -3,16 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fastpin import damage
-from fastpin.assess.outputs import ROUNDING, Curve, Output, kept
+from fastpin.assess.outputs import (
+    NUMBER,
+    OPTIONAL_TEXT,
+    ROUNDING,
+    UNKNOWN,
+    WHOLE,
+    Curve,
+    Output,
+    Progress,
+    Schema,
+    chosen,
+    kept,
+    list_of,
+    object_of,
+    properties,
+)  # fmt: skip
 from fastpin.assess.outputs import document as document_of
 from fastpin.damage.criteria import Criterion, criterion_title
-from fastpin.damage.margins import MOST_STOPS
+from fastpin.damage.margins import MOST_STOPS, reserve_margins
 from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
@@ -25,11 +40,12 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import over_yield_words
+from fastpin.states.margins import Margin, over_yield_words
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
     from fastpin.solver.result import Result
+    from fastpin.storage.held import Held
 
 SWT: Criterion = "smith-watson-topper"
 """The criterion of printed texts and pages. It finds the hot spot without constants of the material."""
@@ -77,6 +93,12 @@ DAMAGE = (
 """Outputs of a :class:`fastpin.damage.SpectrumDamage`: those of its hot spot. The plane's normal counts from +x."""
 
 
+BAR = "damage of the spectrum"
+FAILED = ""
+"""Never said: what is found holds the reason."""
+MARGINS = ("fatigue",)
+
+
 @kept
 def worst_damage(result: Any, how: FatigueAssessment) -> Any:
     """Return the largest damage by the first criterion. It is kept while the result lives.
@@ -115,16 +137,15 @@ class Assessed(NamedTuple):
         return self.how.method == "edge" and self.how.angles is None
 
 
-def assess(
-    case: Case, result: Result | None, progress: Callable[[float, float], None] | None = None
-) -> Assessed | None:
+def find(case: Case, held: Held | None, progress: Progress | None = None) -> Assessed | None:
     """Assess the fatigue of a whole result as its case asks for it; None if the case does not."""
     if case.fatigue is None:
         return None
-    if result is None or not result.complete:
+    if held is None or not held.result.complete:
         return Assessed(case.fatigue, [], [], "the history has not come to its end")
+    result = held.whole()
 
-    def half(begin: float) -> Callable[[float, float], None] | None:
+    def half(begin: float) -> Progress | None:
         return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
 
     try:
@@ -134,17 +155,40 @@ def assess(
         return Assessed(case.fatigue, [], [], str(error))
 
 
-def assessment_lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]:
+OUTCOMES = {name: (output, worst_damage) for name, output in chosen(DAMAGE, ("life", "damage", "angle")).items()}
+"""Outcomes of sweeps: those of the hot spot with the largest damage of all bodies."""
+
+
+def judged(result: Result, how: FatigueAssessment) -> Assessed:
+    """Return the reserves of a whole result, for its margins."""
+    return Assessed(how, [], result.assessed_reserves(how))
+
+
+def margins(assessed: Assessed) -> list[Margin]:
+    """Return the margins on the stresses, see :func:`fastpin.damage.margins.reserve_margins`."""
+    return reserve_margins(assessed.reserves, assessed.how)
+
+
+def schema() -> Schema:
+    """Return the JSON schema of :func:`document`."""
+    numbers = dict.fromkeys(("start", "stop", "largest", "parameter", "damage"), NUMBER)
+    words = "counted cycles at the hot spot, the largest damage first; start and stop are load points"
+    cycles = list_of(object_of(numbers | {"times": WHOLE})) | {"description": words}
+    body = object_of(properties(DAMAGE) | {"cycles": cycles, "over_yield": UNKNOWN})
+    return object_of(properties(HOW) | {"error": OPTIONAL_TEXT, "bodies": list_of(body)})
+
+
+def lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]:
     """Return lines of text: how fatigue is assessed, then each body with its hot spot, the largest damage first.
 
     `over` has the bodies that yield, see :func:`fastpin.states.margins.over_yield`: their lives are marked.
     """
     if assessed.reason:
         return [f"fatigue: not known, {assessed.reason}"]
-    lines = [
+    of_bodies = (
         _line(one, assessed.how) + over_yield_words(over, owner_of(one.problem, one.body)) for one in assessed.found
-    ]
-    return [f"fatigue over {assessment_words(assessed.how)}", *lines]
+    )
+    return [f"fatigue over {assessment_words(assessed.how)}", *of_bodies]
 
 
 def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
@@ -172,7 +216,7 @@ def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
 def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
     """Return an assessment as a dict: angles in degrees, from the bottom of the hole for places, from +x for planes.
 
-    `over` is that of :func:`assessment_lines`. A body without damage has no angle, depth, plane and life: all None.
+    `over` is that of :func:`lines`. A body without damage has no angle, depth, plane and life: all None.
     """
     bodies = []
     for one in assessed.found:

@@ -7,16 +7,13 @@ terminal, JSON and reports. Extremes are those of all kept states.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-from fastpin.assess.crack import grown
-from fastpin.assess.fatigue import Assessed
-from fastpin.assess.outputs import kept
-from fastpin.assess.strength import WorstState, worst_state
+from fastpin.assess.outputs import NUMBER, TEXT, TRUTH, UNKNOWN, Schema, kept, list_of, map_of, object_of
+from fastpin.assess.questions import QUESTIONS
 from fastpin.assess.table import aligned
-from fastpin.cracks.margins import crack_margins
-from fastpin.damage.margins import last_cycle_margins, reserve_margins, strength_margins
+from fastpin.damage.margins import last_cycle_margins
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, printed_loads, units
 from fastpin.states.cycles import Cycle
@@ -32,9 +29,6 @@ from fastpin.states.margins import (
 from fastpin.states.quantities import point_name
 from fastpin.states.state import State
 
-if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
-    from fastpin.cracks import Growth
-
 LEAST = "least"
 """The smallest of all margins that are known, as tables mark it."""
 
@@ -43,25 +37,19 @@ HEADS = ("subject", "value", "allowable", "margin", "load point", "loads", "rema
 """Headings of :func:`margin_rows`."""
 
 
-def all_margins(
-    static: Sequence[Margin],
-    last_cycle: Sequence[Margin],
-    fatigue: Assessed | None = None,
-    crack: Growth | None = None,
-    strength: WorstState | None = None,
-) -> list[Margin]:
-    """Return the margins of a result: those of all states and of the last cycle, and of what its case asks for."""
+def all_margins(static: Sequence[Margin], last_cycle: Sequence[Margin], found: Mapping[str, Any]) -> list[Margin]:
+    """Return the margins of a result: of all states, of the last cycle, and of what is `found` for the questions."""
     rows = [*static, *last_cycle]
-    rows += [] if fatigue is None else reserve_margins(fatigue.reserves, fatigue.how)
-    rows += [] if crack is None else crack_margins(crack)
-    return rows + ([] if strength is None else strength_margins(*strength))
+    for name, question in QUESTIONS.items():
+        rows += [] if found.get(name) is None else question.margins(found[name])
+    return rows
 
 
 def result_margins(
-    problem: Problem, static: Sequence[Margin], states: Sequence[State], cycles: Sequence[Cycle], **asked: Any
+    problem: Problem, static: Sequence[Margin], last: Sequence[State], cycles: Sequence[Cycle], found: Mapping[str, Any]
 ) -> list[Margin]:
-    """Return the known margins of a result: `states` hold its last cycle. See :func:`all_margins`."""
-    return all_margins(static, last_cycle_margins(problem, states, cycles), **asked)
+    """Return the known margins of a result: `last` holds the states of its last cycle. See :func:`all_margins`."""
+    return all_margins(static, last_cycle_margins(problem, last, cycles), found)
 
 
 def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...], result: Any) -> float:
@@ -85,16 +73,10 @@ def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...
 @kept
 def _margins(result: Any, sections: tuple[tuple[str, Any], ...]) -> list[Margin]:
     """All margins of a result, as ``fastpin run`` prints them."""
-    how, states = dict(sections), KeptStates(result.states)
-    asked: dict[str, Any] = {}
-    if "fatigue" in how:
-        asked["fatigue"] = Assessed(how["fatigue"], [], result.assessed_reserves(how["fatigue"]))
-    if "crack" in how:
-        asked["crack"] = grown(result, how["crack"])
-    if "strength" in how:
-        asked["strength"] = worst_state(result, how["strength"])
+    found = {name: QUESTIONS[name].judged(result, how) for name, how in sections}
+    states = KeptStates(result.states)
     static = static_margins(result.problem, marked_extremes(states), states.read)
-    return result_margins(result.problem, static, result.states, result.cycles, **asked)
+    return result_margins(result.problem, static, result.states, result.cycles, found)
 
 
 def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
@@ -191,3 +173,14 @@ def document(problem: Problem, margins: Sequence[Margin]) -> list[dict[str, Any]
         }
         for row in margins
     ]
+
+
+def schema() -> Schema:
+    """Return the JSON schema of :func:`document`."""
+    texts, numbers = (
+        ("subject", "name", "body", "unit", "remark", "part"),
+        ("value", "allowable", "margin", "load_point"),
+    )
+    governing = {"smallest": TRUTH, "loads": map_of(NUMBER, "loads of the state that governs")}
+    governing["over_yield"] = UNKNOWN | {"description": "stress over the yield strength where it is above 1"}
+    return list_of(object_of(dict.fromkeys(texts, TEXT) | dict.fromkeys(numbers, UNKNOWN) | governing))

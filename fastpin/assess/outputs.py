@@ -19,6 +19,12 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import DEGREE, Unit, units
 from fastpin.storage.files import replacing
 
+Schema = dict[str, Any]
+"""A JSON schema of draft 2020-12."""
+
+Progress = Callable[[float, float], None]
+"""Receives the work that is done, and all the work."""
+
 ROUNDING = 1e-9
 """Values and differences below this part of the largest of their kind are rounding. They are shown as 0."""
 
@@ -109,6 +115,41 @@ def chosen(outputs: Iterable[Output], names: Sequence[str]) -> dict[str, Output]
     """Return some of the outputs by name, in the order of the names."""
     known = {each.name: each for each in outputs}
     return {name: known[name] for name in names}
+
+
+NUMBER: Schema = {"type": "number"}
+WHOLE: Schema = {"type": "integer"}
+TEXT: Schema = {"type": "string"}
+TRUTH: Schema = {"type": "boolean"}
+UNKNOWN: Schema = {"type": ["number", "null"]}
+OPTIONAL_TEXT: Schema = {"type": ["string", "null"]}
+"""Schemas of single values. NaN and infinity are null."""
+
+
+def object_of(
+    parts: Mapping[str, Schema], required: Iterable[str] | None = None, without: Iterable[str] = ()
+) -> Schema:
+    """Return the schema of an object with these keys only.
+
+    All must be there, unless some are `required`, or it may be `without` some.
+    """
+    needed = [name for name in (parts if required is None else required) if name not in tuple(without)]
+    return {"type": "object", "properties": dict(parts), "required": needed, "additionalProperties": False}
+
+
+def map_of(item: Schema, words: str) -> Schema:
+    """Return the schema of an object with any keys."""
+    return {"type": "object", "description": words, "additionalProperties": item}
+
+
+def list_of(item: Schema, length: int | None = None) -> Schema:
+    """Return the schema of a list, perhaps of so many items."""
+    return {"type": "array", "items": item} | ({} if length is None else {"minItems": length, "maxItems": length})
+
+
+def or_null(item: Schema) -> Schema:
+    """Return the schema of a value that may be null."""
+    return {"anyOf": [item, {"type": "null"}]}
 
 
 @dataclass(frozen=True, eq=False)

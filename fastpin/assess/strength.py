@@ -3,15 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from fastpin import damage, solver
-from fastpin.assess.outputs import Output, kept
+from fastpin.assess.outputs import (
+    NUMBER,
+    OPTIONAL_TEXT,
+    UNKNOWN,
+    WHOLE,
+    Output,
+    Progress,
+    Schema,
+    chosen,
+    kept,
+    map_of,
+    object_of,
+    or_null,
+    properties,
+)  # fmt: skip
 from fastpin.assess.outputs import document as document_of
 from fastpin.damage.hole_strength import JOINT_MODES
 from fastpin.damage.laminates import MODES
+from fastpin.damage.margins import strength_margins
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.case import Case
@@ -19,13 +34,17 @@ from fastpin.model.checks import choice
 from fastpin.model.doubts import doubts_given
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, Corner
-from fastpin.model.ply import PlyCriterion
+from fastpin.model.ply import CRITERION_NAMES, PlyCriterion
 from fastpin.model.problem import Problem
 from fastpin.model.strength import LENGTHS, StrengthAssessment
 from fastpin.model.units import printed_loads, units
 from fastpin.solver.errors import ConvergenceError, SolveError
+from fastpin.states.margins import Margin
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
+
+if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
+    from fastpin.storage.held import Held
 
 CLOSE = 1e-6
 """Largest difference of the strength ratio from 1 at the load at failure."""
@@ -35,12 +54,9 @@ MOST_SOLVED = 40
 """Most histories that are solved to find it. Three or four are usual: stresses nearly grow with the load."""
 
 
-class WorstState(NamedTuple):
-    """How the strength of a laminate is assessed, the worst of some states, and the strength there."""
-
-    how: StrengthAssessment
-    state: State
-    strength: damage.JointStrength
+BAR = "state {n} of {total}"
+FAILED = "no strength is assessed"
+MARGINS = ("ply",)
 
 
 PLACE = (
@@ -60,27 +76,6 @@ PLACE = (
     Output("joint_mode", "text", lambda found: found.strength.joint_mode, allowed=("", *JOINT_MODES)),
 )  # fmt: skip
 """Outputs of a state and its strength: the least ratio, and its place."""
-
-
-@kept
-def worst_state(result: Any, how: StrengthAssessment) -> WorstState:
-    """Return the worst state of a result and its strength. They are kept while the result lives.
-
-    Raises
-    ------
-    InputError
-        If the strength can't be assessed.
-    """
-    return WorstState(how, *damage.least_strength(result.states, how))
-
-
-def strength_words(problem: Problem, how: StrengthAssessment) -> str:
-    """Criterion of an assessment of strength, and where it is evaluated."""
-    length = units(problem)["length"]
-    if how.distance is not None:
-        return f"{how.criterion} {f'{length.text(how.distance, 3)} from' if how.distance else 'at'} the edge"
-    lengths = (f"{length.text(value, 3)} in {name}" for name, value in how.lengths.items())
-    return f"{how.criterion} on the characteristic curve of {' and '.join(lengths)}"
 
 
 class StrengthFound(NamedTuple):
@@ -103,19 +98,75 @@ class StrengthFound(NamedTuple):
     states: int
     state: State
     strength: damage.JointStrength
-    failure: FailureLoad | None
-    reason: str
-
-    @property
-    def worst(self) -> WorstState:
-        """How it was assessed, the worst state and its strength."""
-        return WorstState(self.how, self.state, self.strength)
+    failure: FailureLoad | None = None
+    reason: str = ""
 
 
-def assess_strength(
-    case: Case, states: Sequence[State], progress: Callable[[float, float], None] | None = None
-) -> StrengthFound:
-    """Return the strength in the worst of some states of a case with a section [strength], and its load at failure.
+@kept
+def worst_state(result: Any, how: StrengthAssessment) -> StrengthFound:
+    """Return the strength in the worst state of a result. It is kept while the result lives.
+
+    Raises
+    ------
+    InputError
+        If the strength can't be assessed.
+    """
+    return StrengthFound(how, len(result.states), *damage.least_strength(result.states, how))
+
+
+judged = worst_state
+
+
+def _load_at_failure(result: Any, how: StrengthAssessment) -> FailureLoad:
+    """Find the load at failure, on as many nodes and with states at the same fractions of each step."""
+    fractions = sorted({state.fraction for state in result} - {1.0})
+    options: dict[str, Any] = {"between": fractions} if fractions else {}
+    with doubts_given():
+        return failure_load(
+            result.problem, result.history, how.criterion, **how.lengths, over="history",
+            nodes=result.grid.size, **options,
+        )  # fmt: skip
+
+
+OUTCOMES = {name: (output, worst_state) for name, output in chosen(PLACE, ("ratio", "angle")).items()} | {
+    "factor": (Output("factor", "", lambda found: found.factor), _load_at_failure)
+}
+"""Outcomes of sweeps. The history is solved several times for the "factor" at failure."""
+
+
+def margins(found: StrengthFound) -> list[Margin]:
+    """Return the margin of the first ply."""
+    return strength_margins(found.how, found.state, found.strength)
+
+
+def schema() -> Schema:
+    """Return the JSON schema of :func:`document`."""
+    place, loads = properties(PLACE), map_of(NUMBER, "loads of the state that fails")
+    return object_of(
+        {
+            "criterion": {"enum": list(CRITERION_NAMES)},
+            **dict.fromkeys(LENGTHS, UNKNOWN),
+            "states": WHOLE,
+            **place,
+            "failure": or_null(object_of({"factor": NUMBER, "load": loads, "solved": WHOLE, **place})),
+            "error": OPTIONAL_TEXT,
+        }
+    )
+
+
+def strength_words(problem: Problem, how: StrengthAssessment) -> str:
+    """Criterion of an assessment of strength, and where it is evaluated."""
+    length = units(problem)["length"]
+    if how.distance is not None:
+        return f"{how.criterion} {f'{length.text(how.distance, 3)} from' if how.distance else 'at'} the edge"
+    lengths = (f"{length.text(value, 3)} in {name}" for name, value in how.lengths.items())
+    return f"{how.criterion} on the characteristic curve of {' and '.join(lengths)}"
+
+
+def find(case: Case, held: Held | None, progress: Progress | None = None) -> StrengthFound | None:
+    """Return the strength in the worst state as [strength] asks for it, and its load at failure if the run is complete.
+
+    None without a state.
 
     Raises
     ------
@@ -123,10 +174,12 @@ def assess_strength(
         If the strength can't be assessed.
     """
     how = case.strength
-    assert how is not None
+    if how is None or held is None or not held.points.size:
+        return None
+    states = held.whole().states
     state, strength = damage.least_strength(states, how, progress)
     failure, reason = None, ""
-    if how.failure:
+    if how.failure and held.result.complete:
         options = case.options.keywords() | {"error_bars": False}  # they need another run each time
         try:
             with doubts_given():
@@ -138,7 +191,7 @@ def assess_strength(
     return StrengthFound(how, len(states), state, strength, failure, reason)
 
 
-def strength_lines(found: StrengthFound) -> list[str]:
+def lines(found: StrengthFound, over: Mapping[str, float]) -> list[str]:
     """Return lines of text: the least strength ratio with its place and mode, and the factor on the loads."""
     ratio, words = found.strength.least_ratio, strength_words(found.state.problem, found.how)
     if not math.isfinite(ratio):
@@ -146,14 +199,14 @@ def strength_lines(found: StrengthFound) -> list[str]:
     line = f"strength ratio {ratio:.4g} by {words}"
     if found.states > 1:
         line += f", the least of {found.states:,} kept states, at load point {load_point(found.state):.6g}"
-    lines = [f"{line}; {place_words(found.strength)}"]
+    text = [f"{line}; {place_words(found.strength)}"]
     if found.failure is not None:
         at = f"load point {load_point(found.failure.state):.6g}; " if found.states > 1 else ""
         words = f"{at}{place_words(found.failure.strength)}"
-        lines.append(f"load at failure: {found.failure.factor:.4g} times all loads; {words}")
+        text.append(f"load at failure: {found.failure.factor:.4g} times all loads; {words}")
     elif found.reason:
-        lines.append(f"load at failure: not found, {found.reason}")
-    return lines
+        text.append(f"load at failure: not found, {found.reason}")
+    return text
 
 
 def place_words(strength: damage.JointStrength) -> str:
@@ -163,7 +216,7 @@ def place_words(strength: damage.JointStrength) -> str:
     return ", ".join(filter(None, parts))
 
 
-def document(found: StrengthFound) -> dict[str, Any]:
+def document(found: StrengthFound, over: Mapping[str, float]) -> dict[str, Any]:
     """Return a strength as a JSON-ready dict. A ratio without stress is infinite."""
     unit, failure = units(found.state.problem), None
     lengths = {name: unit["length"].factor * value for name, value in found.how.lengths.items()}

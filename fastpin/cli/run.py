@@ -6,18 +6,17 @@ import argparse
 import contextlib
 import dataclasses
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fastpin import assess, casefile, cracks, figures, live, report, solver, storage
-from fastpin.assess.crack import growth_line
+from fastpin import assess, casefile, figures, live, report, solver, storage
 from fastpin.assess.margins import margin_lines
+from fastpin.assess.questions import QUESTIONS
 from fastpin.cli import wear
-from fastpin.cli.crack import PLACES
 from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.options import literal
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
@@ -39,29 +38,18 @@ from fastpin.errors import InputError, ReadingError
 from fastpin.kernels import first
 from fastpin.model.beside import beside_of
 from fastpin.model.case import Case, check_keep
-from fastpin.model.doubts import pressure_doubts, warn_of
+from fastpin.model.doubts import warn_of
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
 from fastpin.report.notes import note_lines, solver_line, way_on
-from fastpin.report.states import (
-    TableRows,
-    bush_line,
-    cycle_lines,
-    hoop_line,
-    seat_lines,
-    state_table,
-    stored_rows,
-    table_rows,
-)
+from fastpin.report.states import bush_line, cycle_lines, hoop_line, seat_lines, state_table, stored_rows
 from fastpin.runtime import beside
-from fastpin.states.choice import check_choice, last_cycle_states, span_of, states_between
-from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places, yield_doubts_of
+from fastpin.states.choice import check_choice, last_cycle_states, span_of
+from fastpin.states.extremes import marked_places
 from fastpin.states.margins import Margin, over_yield, static_margins
-from fastpin.states.walking import walk_doubts
+from fastpin.storage.held import Held, HeldInFile
 
 if TYPE_CHECKING:  # they import compiled code
-    from fastpin.assess.fatigue import Assessed
-    from fastpin.assess.strength import StrengthFound
     from fastpin.states.load_cycle import LoadCycle
     from fastpin.states.state import State
 
@@ -92,7 +80,8 @@ def run(options: argparse.Namespace) -> int:
             ended = _ending(lambda: storage.record(case.problem, case.history, options.output, **keywords))
     if options.output is not None:
         return _write_stored(case, options, ended)
-    return RunReport(case, None, solved[0] if ended is None else ended.result, ended).write(options)
+    result = solved[0] if ended is None else ended.result
+    return RunReport(case, None if result is None else Held(result), ended).write(options)
 
 
 def resume(options: argparse.Namespace) -> int:
@@ -111,7 +100,7 @@ def show(options: argparse.Namespace) -> int:
     if options.interface == "seat":
         seat = load_seat(options.output)
         shown = dataclasses.replace(case, problem=seat.problem, title=seat_title(case.title), fatigue=None)
-        code = RunReport(shown, None, seat, None).write(options)
+        code = RunReport(shown, Held(seat), None).write(options)
     else:
         code = _write_stored(case, options, None)
     if options.json != "-":
@@ -233,122 +222,78 @@ def _check_outputs(options: argparse.Namespace) -> None:
     check_outputs({flag(name): getattr(options, name) for name in names}, result="--output")
 
 
-class ShownPart(NamedTuple):
-    """The part of a stored result that was read.
-
-    Attributes
-    ----------
-    rows : TableRows
-        The rows of the table.
-    places : list of int
-        The places of the states that were read, in increasing order.
-    extremes : dict
-        The extremes that are printed, of all states of the file.
-    """
-
-    rows: TableRows
-    places: list[int]
-    extremes: Found
-
-
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
-    """Write the states of a stored run. Of many states, only those in the table and the figure are read."""
-    path: Path = options.output
-    if ended is not None and ended.result is None:  # a file with this name, if any, belongs to another run
-        return RunReport(case, path, None, ended).write(options)
-    if options.json is not None:
-        return RunReport(case, path, storage.load(path), ended).write(options)
-    points, cycles = storage.load_points(path), storage.load(path, states=[]).cycles
-    extremes = storage.marked_extremes(path)
-    peaks = marked_places(extremes)
-    rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(path, places).states, peaks)
-    places = {*rows.printed, *peaks}
-    if cycles:
-        last = range(points.size)[storage.places_between(path, *span_of(cycles[-1]))]
-        if len(last) <= MOST_STOPS or case.problem.seat is not None:
-            places |= set(last)  # the fatigue over the last cycle is printed, and whether a bush walks
-    elif _is_spectrum(case) and points.size <= MOST_STOPS:
-        places |= set(range(points.size))  # the fatigue over the whole history is printed
-    if case.problem.seat is not None:
-        places |= set(range(points.size)[-1:])
-    if options.record is not None:
-        places |= set(live.recorded_places(points.size))
-    part = ShownPart(rows, sorted(places), extremes)
-    return RunReport(case, path, storage.load(path, states=sorted(places)), ended, part).write(options)
-
-
-class Judged(NamedTuple):
-    """What is read from the states beside the table: None where the case does not ask for it, or it is not known."""
-
-    cycle: LoadCycle | None
-    fatigue: Assessed | None
-    crack: cracks.Growth | None
-    strength: StrengthFound | None
+    """Write the states of a stored run. Without a state, a file with this name belongs to another run."""
+    held = None if ended is not None and ended.result is None else HeldInFile(options.output)
+    return RunReport(case, held, ended).write(options)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class RunReport:
-    """The report of a run: why it ended early, its files, and its table.
+    """The report of a run: why it ended early, its files, and its table. Of many states, only some are read.
 
     Attributes
     ----------
     case : Case
-    path : Path or None
-        The file of the result.
-    result : Result or None
-        None if no state was reached.
+    held : Held or None
+        The result. None if no state was reached.
     ended : SolveError, Interrupted or None
         The error that ended the run early.
-    part : ShownPart or None
-        The states of the file that `result` has; None if it has all.
     """
 
     case: Case
-    path: Path | None
-    result: solver.Result | None
+    held: Held | None
     ended: solver.SolveError | solver.Interrupted | None
-    part: ShownPart | None = None
 
     def write(self, options: argparse.Namespace) -> int:
         """Write the files, then print the states, and return the exit code."""
-        case, result = self.case, self.result
+        case, held = self.case, self.held
         code, error = self._report_end()
         read = Readings()
-        read("warnings", self._warn, None)
-        cycle = None
+        if held is not None:
+            read("warnings", lambda: warn_of(held.doubts(), 2), None)
+        cycle, found = None, {}
         with contextlib.suppress(InputError):
             cycle = self._last_cycle() if case.options.slip_sums else None
-        judged = Judged(cycle, read("fatigue", self._assessed, None), self._crack(), self._strength())
-        if judged.fatigue is not None and judged.fatigue.reason and result is not None and result.complete:
-            code = fail(f"fatigue: {judged.fatigue.reason}", EXIT_FAILED)
+        for name in beside_of(case):
+            found[name] = read(name, partial(self._found, name), None)
+        why = "" if held is None or not held.result.complete or "fatigue" not in found else found["fatigue"].reason
+        code = fail(f"fatigue: {why}", EXIT_FAILED) if why else code
         document = None
         if options.json is not None:
-            document = report.summary.document(case, result, error, *judged)
+            document = report.summary.document(case, None if held is None else held.whole(), error, cycle, found)
         writers: list[tuple[Any, Callable[[Path], object]]] = []
-        if result is not None and len(result):
-            writers.append((options.plot, lambda path: self._plot(options, path)))
-            writers.append((options.record, lambda path: write_text(path, live.record_page(case, result, error or ""))))
-        if result is not None and result.cycles:
-            writers.append((options.cycles, partial(figures.plot_cycles, result, title=case.title)))
+        if held is not None and held.points.size:
+            writers.append((options.plot, lambda path: self._plot(held, options, path)))
+            writers.append((options.record, lambda path: write_text(path, self._recorded(held, error))))
+        if held is not None and held.result.cycles:
+            writers.append((options.cycles, partial(figures.plot_cycles, held.result, title=case.title)))
         elif options.cycles is not None:
             code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
         writers.append((options.cycle_csv, lambda path: assess.cycle.write_csv(self._last_cycle(), path)))
         code = write_outputs(writers, options.json, lambda: document) or code
         if options.json != "-":
-            self._print_states(read, judged)
+            self._print_states(read, cycle, found)
         if document is not None:
             for name, reason in document["unread"].items():
                 read.add(ReadingError(name, reason))
         return code or read.code
 
-    def _assessed(self) -> Assessed | None:
-        """Assess the fatigue of all states, if the case has a section for it."""
-        if self.case.fatigue is None:
+    def _found(self, name: str) -> Any:
+        """What is found for a question of the case. A note says why nothing is found."""
+        if name == "crack" and self.ended is not None:  # a run that was stopped is not to go on for long
             return None
-        from_file = self.part is not None and self.path is not None and self.result is not None
-        with Bar(1.0, "damage of the spectrum") as progress_bar:
-            whole = storage.load(self.path) if from_file and self.path is not None else self.result
-            return assess.fatigue.assess(self.case, whole, progress_to(progress_bar))
+        question = QUESTIONS[name]
+        try:
+            with Bar(1, question.BAR) as bar:
+                return question.find(self.case, self.held, progress_to(bar))
+        except InputError as error:
+            say(f"fastpin: note: {question.FAILED}: {error}", file=sys.stderr)
+            return None
+
+    def _recorded(self, held: Held, error: str | None) -> str:
+        states = held.read(live.recorded_places(held.points.size))
+        return live.record_page(self.case, states, error or "")
 
     def _report_end(self) -> tuple[int, str | None]:
         """Print why the run ended early, and return the exit code and the reason."""
@@ -356,146 +301,104 @@ class RunReport:
             return EXIT_OK, None
         if isinstance(self.ended, solver.SolveError):
             return fail(str(self.ended), EXIT_FAILED), str(self.ended)
-        if self.result is None:
+        if self.held is None:
             return fail("interrupted before the first corner", EXIT_INTERRUPTED), "interrupted"
-        where = f"after {_reached(self.result)} of {len(self.case.history):,} corners"
-        more = "" if self.path is None else f"; continue with: fastpin resume {self.path}"
+        where = f"after {_reached(self.held.result)} of {len(self.case.history):,} corners"
+        more = "" if self.held.path is None else f"; continue with: fastpin resume {self.held.path}"
         return fail(f"interrupted {where}{more}", EXIT_INTERRUPTED), "interrupted"
-
-    def _warn(self) -> None:
-        """Warn of doubtful pressures and von Mises stresses in all states."""
-        problem, history = self.case.problem, self.case.history
-        states = [] if self.result is None else self.result.states
-        if self.result is None or self.path is None:
-            warn_of(pressure_doubts(problem, history, (state.pressure for state in states)), 2)
-            warn_of(yield_doubts_of(problem, history, states), 2)
-            warn_of(walk_doubts(states, () if self.result is None else self.result.cycles), 2)
-        else:
-            largest = np.array([storage.largest_pressure(self.path)])
-            warn_of(pressure_doubts(problem, history, [largest]), 2)
-            warn_of(storage.stored_yield_doubts(self.path, problem, history), 2)
-            warn_of(storage.stored_walk_doubts(self.path, problem), 2)
 
     def _last_cycle(self) -> LoadCycle:
         """Return the last cycle. :class:`InputError` says why there is none."""
-        if self.result is None:
+        if self.held is None:
             raise InputError("cycle", "no state was reached")
-        if not self.result.cycles:
-            return self.result.cycle()
-        between = self._between(*span_of(self.result.cycles[-1]))
-        return dataclasses.replace(self.result, states=between).cycle()
+        result = self.held.result
+        if not result.cycles:
+            return result.cycle()
+        return dataclasses.replace(result, states=self.held.between(*span_of(result.cycles[-1]))).cycle()
 
-    def _between(self, first: int, last: int) -> list[State]:
-        """The kept states from one corner to another: of the file if `result` does not have all."""
-        assert self.result is not None
-        if self.part is None or self.path is None:
-            return states_between(self.result, first, last)
-        return storage.load(self.path, states=storage.places_between(self.path, first, last)).states
-
-    def _crack(self) -> cracks.Growth | None:
-        """Follow the crack of the case. None without one; a note says why it can't be followed."""
-        case, result = self.case, self.result
-        if case.crack is None or result is None or self.ended is not None:
-            return None
-        try:
-            with Bar(1, PLACES) as bar:
-                stops = assess.crack.CrackStops.of(len(case.history), result.cycles, self._between)
-                return stops.growth(case.crack, progress_to(bar))
-        except InputError as error:
-            say(f"fastpin: note: no crack is followed: {error}", file=sys.stderr)
-            return None
-
-    def _strength(self) -> StrengthFound | None:
-        """Assess the strength of the case's laminate. None without its section; a note says why it failed."""
-        case, result = self.case, self.result
-        if case.strength is None or result is None or not len(result):
-            return None
-        if not result.complete:
-            case = dataclasses.replace(case, strength=dataclasses.replace(case.strength, failure=False))
-        whole = result if self.part is None or self.path is None else storage.load(self.path)
-        try:
-            with Bar(len(whole), "state {n} of {total}") as progress_bar:
-                return assess.strength.assess_strength(case, whole.states, progress_to(progress_bar))
-        except InputError as error:
-            say(f"fastpin: note: no strength is assessed: {error}", file=sys.stderr)
-            return None
-
-    def _plot(self, options: argparse.Namespace, path: Path) -> None:
-        """Draw the tractions. States that were not read before are read from the file."""
+    def _plot(self, held: Held, options: argparse.Namespace, path: Path) -> None:
+        """Draw the tractions."""
         with as_options(["states"]):
-            if self.part is None:
-                drawn = figures.states.drawn_states(self.result or (), options.states)
+            if held.path is None:
+                drawn = figures.states.drawn_states(held.result, options.states)
             else:
-                drawn = figures.states.stored_states(options.output, options.states)
+                drawn = figures.states.stored_states(held.path, options.states)
         figures.plot_tractions(drawn, path, title=self.case.title)
         if drawn.note:
             say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)
 
-    def _print_states(self, read: Readings, judged: Judged) -> None:
-        case, result = self.case, self.result
+    def _print_states(self, read: Readings, cycle: LoadCycle | None, found: Mapping[str, Any]) -> None:
+        case, held = self.case, self.held
         if case.title:
             say(case.title)
-        if result is None or not len(result):
-            reached = result is not None and _reached(result)
+        if held is None or not held.points.size:
+            reached = held is not None and _reached(held.result)
             say("none of the states was to be kept" if reached else "no state was reached")
             return
-        if self.part is None:
-            found = dict(enumerate(result.states))
-            extremes = marked_extremes(KeptStates(result.states))
-            rows = table_rows(case.problem, result.states, wanted=list(marked_places(extremes)))
-        else:
-            found = dict(zip(self.part.places, result.states, strict=True))
-            rows, _, extremes = self.part
-        say(*state_table(case.problem, [found[place] for place in rows.printed], rows).split("\n"))
-        for error in extremes.unread.values():
+        result, marks = held.result, marked_places(held.extremes)
+        rows = stored_rows(case.problem, held.points, result.cycles, held.read, marks)
+        places = sorted({*rows.printed, *marks, *self._told(held)})
+        states = dict(zip(places, held.read(places), strict=True))
+        say(*state_table(case.problem, [states[place] for place in rows.printed], rows).split("\n"))
+        for error in held.extremes.unread.values():
             read.add(error)
-        for name, lines in self._paragraphs(result, found, extremes, judged).items():
+        for name, lines in self._paragraphs(held, states, cycle, found).items():
             told: list[str] = read(name, lines, [])
             say(*(line for line in told if line))
         say(*(f"note: {note}" for note in note_lines(case, result)))
         say(solver_line(result))
 
+    def _told(self, held: Held) -> Sequence[int]:
+        """The places of the states that are read for the lines below the table: of the last cycle, or of all."""
+        problem, cycles, size = self.case.problem, held.result.cycles, held.points.size
+        last = [] if problem.seat is None else [size - 1]
+        if cycles:
+            begin, end = span_of(cycles[-1])
+            within = np.flatnonzero((held.points >= begin) & (held.points <= end)).tolist()
+            # The fatigue over the last cycle is told, and whether a bush walks.
+            return within + last if len(within) <= MOST_STOPS or last else []
+        return range(size) if _is_spectrum(self.case) and size <= MOST_STOPS else last
+
     def _paragraphs(
-        self, result: solver.Result, found: Mapping[int, State], extremes: Found, judged: Judged
+        self, held: Held, at: Mapping[int, State], cycle: LoadCycle | None, found: Mapping[str, Any]
     ) -> dict[str, Callable[[], list[str]]]:
         """The lines below the table, each with the name of what is read for them."""
-        case, problem = self.case, self.case.problem
-        peaks = [found[place] for place in marked_places(extremes)]
-        states = result.states if judged.cycle is None else judged.cycle.states
+        case, problem, cycles = self.case, self.case.problem, held.result.cycles
+        peaks, every = [at[place] for place in marked_places(held.extremes)], list(at.values())
+        states = every if cycle is None else cycle.states
 
         def seat() -> list[str]:
-            turning = [] if problem.seat is None else last_cycle_states(result.states, result.cycles)
-            return seat_lines(problem, peaks, result.states[-1], turning)
+            turning = [] if problem.seat is None else last_cycle_states(every, cycles)
+            return seat_lines(problem, peaks, every[-1], turning)
 
         @cache
         def margins() -> list[Margin]:
-            rows = static_margins(problem, extremes, lambda places: [found[place] for place in places])
-            asked: dict[str, Any] = {"fatigue": judged.fatigue, "crack": judged.crack, "strength": judged.strength}
-            if judged.strength is not None:
-                asked["strength"] = judged.strength.worst
-            if result.cycles or any(asked.values()):
-                rows = assess.margins.result_margins(problem, rows, states, result.cycles, **asked)
+            rows = static_margins(problem, held.extremes, lambda places: [at[place] for place in places])
+            if cycles or any(each is not None for each in found.values()):
+                rows = assess.margins.result_margins(problem, rows, states, cycles, found)
             return rows
 
+        def of_question(name: str) -> list[str]:
+            known = found.get(name)
+            return [] if known is None else [*QUESTIONS[name].lines(known, over_yield(margins()))]
+
         def lives() -> list[str]:
-            over = over_yield(margins())
-            if judged.fatigue is not None:
-                return assess.fatigue.assessment_lines(judged.fatigue, over)
-            if result.cycles:
-                return assess.fatigue.fatigue_lines(states, result.cycles[-1], over)
-            damages = assess.fatigue.spectrum_damages(result.states, len(case.history)) if _is_spectrum(case) else []
-            return [assess.fatigue.spectrum_line(one, over) for one in damages]
+            if found.get("fatigue") is not None:
+                return of_question("fatigue")
+            if cycles:
+                return assess.fatigue.fatigue_lines(states, cycles[-1], over_yield(margins()))
+            damages = assess.fatigue.spectrum_damages(every, len(case.history)) if _is_spectrum(case) else []
+            return [assess.fatigue.spectrum_line(one, over_yield(margins())) for one in damages]
 
         return {
             "largest hoop stress": lambda: [hoop_line(problem, peaks, body) for body in EDGES],
             "bush": lambda: bush_line(problem, peaks).splitlines(),
             "seat": seat,
-            "cycles": lambda: cycle_lines(problem, result.cycles, peaks),
-            "last cycle": lambda: [] if judged.cycle is None else [assess.cycle.cycle_line(judged.cycle)],
+            "cycles": lambda: cycle_lines(problem, cycles, peaks),
+            "last cycle": lambda: [] if cycle is None else [assess.cycle.cycle_line(cycle)],
             "margins": lambda: margin_lines(problem, margins()),
+            **{name: partial(of_question, name) for name in QUESTIONS},
             "fatigue": lives,
-            "crack": lambda: [] if judged.crack is None else [growth_line(judged.crack, over_yield(margins()))],
-            "strength": lambda: [] if judged.strength is None else assess.strength.strength_lines(judged.strength),
         }
 
 

@@ -37,15 +37,14 @@ class PageParts:
         """The margins of yield, bush, fatigue, crack and plies, the smallest one first."""
         source, problem = self.source, self.source.case.problem
         cycle = [] if source.cycle is None else source.cycle.states
-        judged = {edge_body(problem, one.body) for one in source.assessed.reserves} if source.assessed else set()
+        found = source.found
+        judged = {edge_body(problem, one.body) for one in found["fatigue"].reserves} if "fatigue" in found else set()
         last_cycle = walk_margins(cycle) + [
             row
             for row in fatigue_margins(problem, source.fatigue, cycle)
             if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
         ]
-        crack = None if isinstance(source.crack, str) else source.crack
-        worst = None if isinstance(source.strength, str) else source.strength.worst
-        return in_order(all_margins(source.static_margins, last_cycle, source.assessed, crack, worst))
+        return in_order(all_margins(source.static_margins, last_cycle, found))
 
 
 def sentence(line: str) -> str:

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from fastpin import cracks
-from fastpin.assess import crack as crack_room
-from fastpin.assess import cycle as cycle_room
-from fastpin.assess import fatigue as fatigue_room
-from fastpin.assess import outputs
-from fastpin.assess import strength as strength_room
-from fastpin.assess.fatigue import Assessed
+from fastpin.assess import crack
+from fastpin.assess.cycle import document as cycle_document
 from fastpin.assess.margins import document as margins_document
 from fastpin.assess.margins import result_margins
 from fastpin.assess.outputs import json_ready, unit_names
-from fastpin.assess.strength import StrengthFound
+from fastpin.assess.questions import QUESTIONS
 from fastpin.bodies.body import BodyBase
 from fastpin.cracks.margins import crack_margins
 from fastpin.errors import ReadingError, reading
@@ -41,7 +38,7 @@ from fastpin.version import __version__
 
 def document(
     case: Case, result: Result | None, error: str | None = None, cycle: LoadCycle | None = None,
-    fatigue: Assessed | None = None, crack: cracks.Growth | None = None, strength: StrengthFound | None = None,
+    found: Mapping[str, Any] = MappingProxyType({}),
 ) -> dict[str, Any]:  # fmt: skip
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
@@ -57,12 +54,8 @@ def document(
         The reason why `result` is incomplete.
     cycle : LoadCycle, optional
         The cycle of the entry ``cycle``.
-    fatigue : Assessed, optional
-        The assessment of the entry ``fatigue``.
-    crack : Growth, optional
-        The crack of the entry ``crack``.
-    strength : StrengthFound, optional
-        The strength of the entry ``strength``.
+    found : mapping of str
+        What is found for the questions of the case, by their names: an entry for each.
 
     The entry ``unread`` says which quantities could not be read from the states, and why. They are None.
     """
@@ -70,8 +63,8 @@ def document(
     unread: dict[str, str] = {}
     alpha, beta = problem.surfaces.dundurs()
     unit = units(problem)
-    margins = [] if result is None else _margins(result, fatigue, crack, strength)
-    found = {
+    margins = [] if result is None else _margins(result, found)
+    whole = {
         "fastpin": __version__,
         "title": case.title,
         "complete": result is not None and result.complete,
@@ -101,12 +94,13 @@ def document(
             row._asdict() | {"dissipation": unit["energy"].factor * row.dissipation}
             for row in (() if result is None else result.cycles)
         ],
-        "cycle": None if cycle is None else cycle_room.document(cycle),
-        "fatigue": None if fatigue is None else fatigue_room.document(fatigue, over_yield(margins)),
-        "crack": None if crack is None else outputs.document(crack_room.GROWTH, crack, unit),
-        "strength": None if strength is None else strength_room.document(strength),
+        "cycle": None if cycle is None else cycle_document(cycle),
+        **{
+            name: None if found.get(name) is None else question.document(found[name], over_yield(margins))
+            for name, question in QUESTIONS.items()
+        },
     }
-    return json_ready(found)
+    return json_ready(whole)
 
 
 def _history_summary(case: Case) -> dict[str, Any]:
@@ -206,25 +200,22 @@ def _extremes_summary(result: Result, unread: dict[str, str]) -> dict[str, Any]:
     }
 
 
-def _margins(
-    result: Result, fatigue: Assessed | None, crack: cracks.Growth | None, strength: StrengthFound | None
-) -> list[Margin]:
-    """Return the margins over all states, and those of fatigue and of a crack where they are known."""
+def _margins(result: Result, found: Mapping[str, Any]) -> list[Margin]:
+    """Return the margins over all states, and those of what is found for the questions."""
     kept = KeptStates(result.states)
     static = static_margins(result.problem, marked_extremes(kept) if len(result) else Found(), kept.read)
-    worst, states = None if strength is None else strength.worst, result.states
-    return result_margins(result.problem, static, states, result.cycles, fatigue=fatigue, crack=crack, strength=worst)
+    return result_margins(result.problem, static, result.states, result.cycles, found)
 
 
 def crack_document(case: Case, growth: cracks.Growth) -> dict[str, Any]:
     """Return the growth of a crack with its numbers at all lengths and its margins as a JSON-ready dict."""
-    columns = {name: values.tolist() for name, values in crack_room.growth_curve(growth).columns.items()}
+    columns = {name: values.tolist() for name, values in crack.growth_curve(growth).columns.items()}
     return json_ready(
         {
             "fastpin": __version__,
             "title": case.title,
             "units": unit_names(growth.problem),
-            "crack": outputs.document(crack_room.GROWTH, growth, units(growth.problem)),
+            "crack": crack.document(growth, {}),
             "lengths": columns,
             "margins": margins_document(growth.problem, crack_margins(growth)),
         }

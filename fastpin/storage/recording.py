@@ -7,9 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
-import numpy as np
-
-from fastpin.errors import InputError, InputWarning
+from fastpin.errors import InputError
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.beside import checked_beside
 from fastpin.model.case import About, Case
@@ -24,7 +22,7 @@ from fastpin.model.checks import (
     whole_number,
 )
 from fastpin.model.crack import CrackGrowth
-from fastpin.model.doubts import doubts, pressure_doubts, warn_of
+from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OPTIONS, OptionValues, SolveOptions
@@ -39,6 +37,7 @@ from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
+from fastpin.storage.held import HeldInFile
 from fastpin.storage.journal import check_beside, is_empty
 from fastpin.storage.layout import (
     read_about,
@@ -47,7 +46,7 @@ from fastpin.storage.layout import (
     read_options,
     read_problem,
 )
-from fastpin.storage.origin import largest_pressure, provenance, stored_walk_doubts, stored_yield_doubts
+from fastpin.storage.origin import provenance
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
 
@@ -142,7 +141,7 @@ def record(
             task.follow(writer)
     if solve_options.error_bars:
         _record_coarse(path, task)
-    warn_of(_pressure_doubts(path, task), 2)
+    warn_of(HeldInFile(path).doubts(), 2)
 
 
 def _check_bars(options: SolveOptions, start: Result | None) -> None:
@@ -241,7 +240,7 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
             task.follow(writer, unfit=Unfit(task.grid, error))
     if task.options.error_bars:
         _record_coarse(path, task)
-    warn_of(_pressure_doubts(path, task), 2)
+    warn_of(HeldInFile(path).doubts(), 2)
 
 
 def lacks_error_bars(path: str | Path) -> bool:
@@ -284,9 +283,3 @@ def stored_case(path: str | Path) -> Case:
         title = text_of(file["solver"].attrs.get("title", ""))
         parts = read_problem(file), read_history(file), read_options(file), title, read_about(file)
         return Case(*parts, **read_beside(file))
-
-
-def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:
-    """The doubts about the largest pressure and the largest stresses of the run that has been written to a file."""
-    found = pressure_doubts(task.problem, task.history, [np.array([largest_pressure(path)])])
-    return found + stored_yield_doubts(path, task.problem, task.history) + stored_walk_doubts(path, task.problem)

@@ -21,6 +21,7 @@ from types import MappingProxyType
 from typing import Any
 
 from fastpin.assess.margins import LEAST, of_margin
+from fastpin.assess.questions import QUESTIONS, of_question
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
 from fastpin.casefile.assessment import read_assessment
 from fastpin.casefile.beside import READERS
@@ -51,7 +52,6 @@ from fastpin.studies.outcomes import (
     taken,
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
-from fastpin.studies.section_outcomes import SECTION_OUTCOMES, of_section, unit_of_life
 
 Outcomes = dict[str, StudyOutcome]
 """Outcomes by the names that the user chose."""
@@ -241,7 +241,7 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
     section.check_keys(allowed, "", f"; beside {first[0]} there {others}")
     if first[0] == "wear":
         return _of_wear(section, folder, beside)
-    if first[0] in SECTION_OUTCOMES:
+    if first[0] in QUESTIONS:
         return _of_section(first[0], source, section, beside)
     if first[0] == "margin":
         return _of_margin(section, beside)
@@ -309,7 +309,7 @@ def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> Study
 
 def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of a section beside the problem: as the case says, unless the table does."""
-    quantity = section.choice(name, tuple(SECTION_OUTCOMES[name]))
+    quantity = section.choice(name, tuple(QUESTIONS[name].OUTCOMES))
     read: Callable[..., Any] = READERS.get(name, read_assessment)
     how = read(source, section, _entries(name, beside[name]) if name in beside else {})
     if quantity is None or how is None:
@@ -319,11 +319,12 @@ def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[s
         return None
     how = _alone(name, how)
     definition = json.dumps({name: quantity, "how": _entries(name, how)}, sort_keys=True)
-    output, unit = SECTION_OUTCOMES[name][quantity].output, ""
-    kind = output.kind
-    if kind == "life":
-        kind, unit = unit_of_life(how.passes if name == "fatigue" else beside.get("passes", "cycles or spectra"))
-    return StudyOutcome(kind, unit, definition, partial(of_section, name, quantity, how), dict(output.classes))
+    output, _ = QUESTIONS[name].OUTCOMES[quantity]
+    kind, unit = output.kind, ""
+    if kind == "life":  # spectra are no cycles, and have no kind
+        passes = getattr(how, "passes", beside.get("passes", "cycles or spectra"))
+        kind, unit = ("life", "") if passes == "cycles" else ("", passes)
+    return StudyOutcome(kind, unit, definition, partial(of_question, name, quantity, how), dict(output.classes))
 
 
 def _alone(name: str, how: Any) -> Any:
@@ -346,7 +347,7 @@ def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | No
     if name is None or ("body" in section and owner is None):
         return None
     # Some kinds of margins need a section of the case.
-    needed = {"fatigue": "fatigue", "fracture": "crack", "growth": "crack", "ply": "strength"}.get(name)
+    needed = next((section for section, question in QUESTIONS.items() if name in question.MARGINS), None)
     if needed is not None and needed not in beside:
         section.report(f'margin: "{name}" needs a section [{needed}] of the case', "margin")
         return None

@@ -1,0 +1,125 @@
+"""Results whose states are read when they are needed: in memory, or in a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from fastpin.errors import InputWarning
+from fastpin.model.doubts import pressure_doubts
+from fastpin.solver.result import Result
+from fastpin.states.extremes import Found, KeptStates, marked_extremes, yield_doubts_of
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+from fastpin.states.walking import walk_doubts
+from fastpin.storage import origin
+from fastpin.storage.store import load, load_points
+
+
+class Held:
+    """A result in memory.
+
+    Attributes
+    ----------
+    result : Result
+        Perhaps without its states.
+    path : Path or None
+        Its file.
+    """
+
+    def __init__(self, result: Result, path: Path | None = None) -> None:
+        self.result, self.path = result, path
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Load points of all states, shape (states,)."""
+        return np.array([load_point(state) for state in self.result])
+
+    @cached_property
+    def extremes(self) -> Found:
+        """The extremes of all states that texts and figures show."""
+        return marked_extremes(KeptStates(self.result.states)) if self.result.states else Found()
+
+    @cached_property
+    def residuals(self) -> dict[str, float]:
+        """The largest residual of each kind over all states."""
+        found: dict[str, float] = {}
+        for state in self.result:
+            found = {name: max(value, found.get(name, 0.0)) for name, value in state.residuals.items()}
+        return found
+
+    @cached_property
+    def pressure(self) -> float:
+        """The largest pressure at a node over all states, Pa."""
+        return max((float(state.pressure.max()) for state in self.result), default=0.0)
+
+    def read(self, places: Sequence[int]) -> list[State]:
+        """Return the states at these places, in increasing order."""
+        return [self.result.states[place] for place in places]
+
+    def between(self, first: int, last: int) -> list[State]:
+        """Return the states from one corner to another."""
+        return self.read(np.flatnonzero((self.points >= first) & (self.points <= last)).tolist())
+
+    def whole(self) -> Result:
+        """Return the result with all its states."""
+        return self.result
+
+    def doubts(self) -> Iterator[InputWarning]:
+        """Yield warnings of doubtful pressures and von Mises stresses in all states, and of a bush that walks."""
+        problem, history, states = self.result.problem, self.result.history, self.result.states
+        yield from pressure_doubts(problem, history, (state.pressure for state in states))
+        yield from yield_doubts_of(problem, history, states)
+        yield from walk_doubts(states, self.result.cycles)
+
+
+class HeldInFile(Held):
+    """A stored result, of which few states are read. Its run may still be going on.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`. The methods raise it too.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(load(path, states=[]), path)
+        self._path = path
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Load points of all states, shape (states,)."""
+        return load_points(self._path)
+
+    @cached_property
+    def extremes(self) -> Found:
+        """The extremes of all states that texts and figures show."""
+        return origin.marked_extremes(self._path)
+
+    @cached_property
+    def residuals(self) -> dict[str, float]:
+        """The largest residual of each kind over all states."""
+        return origin.largest_residuals(self._path)
+
+    @cached_property
+    def pressure(self) -> float:
+        """The largest pressure at a node over all states, Pa."""
+        return origin.largest_pressure(self._path)
+
+    def read(self, places: Sequence[int]) -> list[State]:
+        """Return the states at these places, in increasing order."""
+        return load(self._path, states=list(places)).states
+
+    def whole(self) -> Result:
+        """Return the result with all its states."""
+        return load(self._path)
+
+    def doubts(self) -> Iterator[InputWarning]:
+        """Yield warnings of doubtful pressures and von Mises stresses in all states, and of a bush that walks."""
+        problem, history = self.result.problem, self.result.history
+        yield from pressure_doubts(problem, history, [np.array([self.pressure])])
+        yield from origin.stored_yield_doubts(self._path, problem, history)
+        yield from origin.stored_walk_doubts(self._path, problem)
