@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from fastpin.casefile.profiles import checked_angle
-from fastpin.casefile.sections import Inside
-from fastpin.casefile.toml_text import CaseText, Section
+from fastpin.casefile.toml_text import CaseText, Inside, Section
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
 from fastpin.model.laminate import ALONG_LOAD, LAMINATE_KEYS, MODULI, Laminate

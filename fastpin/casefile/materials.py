@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from fastpin.casefile.laminates import read_laminate
-from fastpin.casefile.sections import Inside
-from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
+from fastpin.casefile.toml_text import CaseText, Inside, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, true_or_false
 from fastpin.model.fatigue import FatigueConstants

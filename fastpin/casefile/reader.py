@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
-from fastpin.casefile.assessment import read_assessment
-from fastpin.casefile.beside import READERS
+from fastpin.casefile.beside import READERS, read_assessment
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.materials import known_materials, read_pair

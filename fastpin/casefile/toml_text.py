@@ -515,3 +515,15 @@ def _behind_value(value: str) -> str:
 
 def _block_hint(name: str) -> str:
     return "; several loads are [[load]] blocks, with double brackets" if name == "load" else ""
+
+
+class Inside(Section):
+    """The table of a key of a section. The section reports its faults."""
+
+    def __init__(self, source: CaseText, section: Section, key: str, table: dict[str, Any]) -> None:
+        super().__init__(source, (section.name, key), table)
+        self._section, self._key = section, key
+
+    def report(self, message: str, *key: str) -> None:
+        """Add a fault of a key, or of the whole table if no key is given."""
+        self._section.report(message, self._key, *key)

@@ -140,8 +140,8 @@ def _switch(command: argparse.ArgumentParser, flag: str, words: str, **more: Any
 
 def add_case_commands(commands: Any) -> None:
     """Add ``example`` and ``check``."""
-    _command(commands, "example", "case", "example", "print a commented case file")
-    check = _command(commands, "check", "case", "check", "explain a case file, or list all its faults")
+    _command(commands, "example", "texts", "example", "print a commented case file")
+    check = _command(commands, "check", "texts", "check", "explain a case file, or list all its faults")
     _option(check, "case", None, "case file (TOML)", Path)
 
 
@@ -376,7 +376,7 @@ def add_compliance(commands: Any) -> None:
 
 def add_paper(commands: Any) -> None:
     """Add ``paper``."""
-    paper = _command(commands, "paper", "paper", "run", "compute and draw the figures of the paper")
+    paper = _command(commands, "paper", "published", "paper", "compute and draw the figures of the paper")
     words = "a figure's number, 3 to 17, or one of ten more: memory, sliding-onset, half-plane, rigid-pin, rings, "
     words += "supports, hollow-pins, rectangular-lug, interference, regimes "
     words += "(repeat the option for several figures; default: figures 3 to 17)"
@@ -389,7 +389,7 @@ def add_paper(commands: Any) -> None:
 
 def add_benchmarks(commands: Any) -> None:
     """Add ``benchmarks``."""
-    benchmarks = _command(commands, "benchmarks", "benchmarks", "run", "compare with problems that others publish")
+    benchmarks = _command(commands, "benchmarks", "published", "run", "compare with problems that others publish")
     _option(benchmarks, "names", "NAME", "names of benchmarks, see --list; without one: all of them", nargs="*")
     _switch(benchmarks, "--list", "print the names and titles of the benchmarks")
     words = "also write the numbers as CSV, and figures, to this directory"
@@ -476,12 +476,14 @@ def _add_json(command: argparse.ArgumentParser, text: str) -> None:
 
 def add_schema(commands: Any) -> None:
     """Add ``schema``."""
-    schema = _command(commands, "schema", "schema", "run", "print the JSON schema of a document that commands write")
+    schema = _command(commands, "schema", "texts", "schema", "print the JSON schema of a document that commands write")
     words = "the command; resume and show write what run writes"
     _option(schema, "written_by", "COMMAND", words, choices=SCHEMAS)
 
 
 def add_completion(commands: Any) -> None:
     """Add ``completion``."""
-    completion = _command(commands, "completion", "completion", "run", "print a script that completes words in a shell")
+    completion = _command(
+        commands, "completion", "texts", "completion", "print a script that completes words in a shell"
+    )
     completion.add_argument("shell", choices=SHELLS, help="the shell")

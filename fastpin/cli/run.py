@@ -41,8 +41,17 @@ from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import warn_of
 from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
-from fastpin.report.notes import note_lines, solver_line, way_on
-from fastpin.report.states import bush_line, cycle_lines, hoop_line, seat_lines, state_table, stored_rows
+from fastpin.report.states import (
+    bush_line,
+    cycle_lines,
+    hoop_line,
+    note_lines,
+    seat_lines,
+    solver_line,
+    state_table,
+    stored_rows,
+    way_on,
+)
 from fastpin.runtime import beside
 from fastpin.states.choice import check_choice, last_cycle_states, span_of
 from fastpin.states.extremes import marked_places

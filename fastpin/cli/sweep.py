@@ -118,7 +118,7 @@ def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None
         try:
             for value in _values(options, plan):
                 if options.envelope:
-                    report.envelope.check_envelope(plan, value)
+                    report.sweep.check_envelope(plan, value)
                     continue
                 report.sweep.check_axes(plan, value, options.x, options.y)
         except InputError as error:
@@ -195,11 +195,11 @@ def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path)
     fixed = [figures.words.shown_label(words) for words in report.sweep.where_words(plan, rows, where)]
     title = ", ".join(filter(None, [plan.title, *fixed]))
     if options.envelope:
-        found = report.envelope.envelopes(plan, rows, values[0])
+        found = report.sweep.envelopes(plan, rows, values[0])
         if found:
             problem = plan.case(plan.points[0]).problem
             figures.sweep.plot_envelope(found, options.plot, title, problem=problem, varied=plan.fields)
-        missing = {"": len(rows) - sum(curve[report.envelope.BYPASS].size for curve in found)}
+        missing = {"": len(rows) - sum(curve[report.sweep.BYPASS].size for curve in found)}
     else:
         charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]
         figures.plot_sweep(charts if len(charts) > 1 else charts[0], options.plot, title)

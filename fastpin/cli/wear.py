@@ -23,7 +23,7 @@ from fastpin.cli.terminal import (
     write_text,
 )
 from fastpin.errors import InputError
-from fastpin.report.notes import way_on
+from fastpin.report.states import way_on
 
 
 def run(options: argparse.Namespace) -> int:

@@ -24,10 +24,10 @@ from .laminates import plot_stiffness as plot_stiffness
 from .laminates import plot_strength as plot_strength
 from .load_cycle import plot_loops as plot_loops
 from .load_cycle import plot_slip as plot_slip
-from .lug import plot_lug as plot_lug
 from .plotting import result_html as result_html
 from .plotting import state_html as state_html
 from .polar import plot_polar as plot_polar
+from .sketch import plot_lug as plot_lug
 from .sketch import plot_sketch as plot_sketch
 from .stick_slip import plot_stick_slip as plot_stick_slip
 from .stress import plot_hoop_stress as plot_hoop_stress

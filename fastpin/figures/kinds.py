@@ -130,7 +130,7 @@ KINDS = {
     "wear": Kind(
         "scar", "a life of wear: volume, depth, dissipation, pressure over the cycles", ("csv",), sources=("life",)
     ),
-    "damage": Kind("damage", "a life of wear: damage of the material", ("csv", "body", "criterion"), sources=("life",)),
+    "damage": Kind("scar", "a life of wear: damage of the material", ("csv", "body", "criterion"), sources=("life",)),
 }
 """The kinds of figures by their names on the command line."""
 

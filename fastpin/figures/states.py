@@ -27,7 +27,7 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import KeptStates, Side, find_extremes, marked_places
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
-from fastpin.storage.origin import marked_extremes
+from fastpin.storage.held import marked_extremes
 from fastpin.storage.store import load, load_points
 
 NEARLY_ROUND = 340.0

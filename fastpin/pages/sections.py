@@ -47,8 +47,17 @@ from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.convergence import heading, reported_series, series_columns
-from fastpin.report.notes import note_lines, solver_line, way_on
-from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_lines, state_columns
+from fastpin.report.states import (
+    bush_line,
+    cycle_lines,
+    hoop_line,
+    note_lines,
+    quantity_column,
+    seat_lines,
+    solver_line,
+    state_columns,
+    way_on,
+)
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.extremes import READINGS, yield_doubts
 from fastpin.states.load_cycle import LoadCycle

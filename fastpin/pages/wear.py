@@ -11,8 +11,7 @@ from fastpin.assess.table import columns_at, printed_rows
 from fastpin.assess.wear import DEBRIS, cycle_columns, cycle_lines, followed_words, law_rows
 from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import criterion_title
-from fastpin.figures.damage import damage_of
-from fastpin.figures.scar import scar_plot, wear_plot
+from fastpin.figures.scar import damage_of, scar_plot, wear_plot
 from fastpin.figures.subjects import InMemory
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import edge_body, owner_of
@@ -35,8 +34,7 @@ from fastpin.pages.sections import (
     zones,
 )
 from fastpin.pages.source import Source
-from fastpin.report.notes import way_on
-from fastpin.report.states import TableRows
+from fastpin.report.states import TableRows, way_on
 from fastpin.solver.wear_result import WearResult
 from fastpin.states.margins import over_yield_words
 from fastpin.states.quantities import load_point

@@ -1,6 +1,4 @@
-from . import checks as checks
 from . import convergence as convergence
-from . import envelope as envelope
 from . import stress as stress
 from . import summary as summary
 from . import sweep as sweep

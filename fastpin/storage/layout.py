@@ -49,7 +49,14 @@ from fastpin.reading.old_borders import BITS
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
-from fastpin.storage.bodies import read_bodies, read_material, write_bodies, write_material
+from fastpin.storage.bodies import (
+    read_bodies,
+    read_material,
+    read_profiles,
+    write_bodies,
+    write_material,
+    write_profiles,
+)
 from fastpin.storage.damage import (
     as_python,
     check_between,
@@ -57,7 +64,6 @@ from fastpin.storage.damage import (
     numbers_of,
     text_of,
 )
-from fastpin.storage.profiles import read_profiles, write_profiles
 from fastpin.version import __version__
 
 FORMAT = "fastpin result"

@@ -37,7 +37,7 @@ from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
-from fastpin.storage.held import HeldInFile
+from fastpin.storage.held import HeldInFile, provenance
 from fastpin.storage.journal import check_beside, is_empty
 from fastpin.storage.layout import (
     read_about,
@@ -46,7 +46,6 @@ from fastpin.storage.layout import (
     read_options,
     read_problem,
 )
-from fastpin.storage.origin import provenance
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
 

@@ -23,8 +23,7 @@ from typing import Any
 from fastpin.assess.margins import LEAST, of_margin
 from fastpin.assess.questions import QUESTIONS, of_question
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
-from fastpin.casefile.assessment import read_assessment
-from fastpin.casefile.beside import READERS
+from fastpin.casefile.beside import READERS, read_assessment
 from fastpin.casefile.profiles import read_wear
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA

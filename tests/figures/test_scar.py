@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 
 import fastpin
 from fastpin.errors import InputError
-from fastpin.figures.damage import NEAR, damage_of
-from fastpin.figures.scar import life_caption, scar_plot, wear_plot
+from fastpin.figures.scar import NEAR, damage_of, life_caption, scar_plot, wear_plot
 from fastpin.figures.sheet import Look
 from fastpin.figures.style import MAX_NAMED
 from fastpin.figures.subjects import InMemory

@@ -8,7 +8,7 @@ import pytest
 
 import fastpin
 from fastpin import assess, damage
-from fastpin.report.envelope import BEARING, BYPASS, envelopes
+from fastpin.report.sweep import BEARING, BYPASS, envelopes
 from fastpin.studies import read_plan, sweep
 from tests.support.case_texts import LAMINATED
 from tests.support.commands import printed, refused, said
