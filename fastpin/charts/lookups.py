@@ -9,17 +9,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
-from fastpin.charts.groups import (
-    COORDINATES,
-    CYCLE,
-    GROUPS,
-    ROUNDING,
-    ChartGroup,
-    TableAxis,
-    parameter_range,
-    pin_term,
-    plate_beta,
-)
+from fastpin.charts import groups
 from fastpin.charts.tables import tables
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, known_name, number, numbers, positive
@@ -49,7 +39,7 @@ class ChartQuantity:
     @property
     def is_cycle(self) -> bool:
         """Whether it belongs to a load cycle; else to the first load."""
-        return self.name in CYCLE
+        return self.name in groups.CYCLE
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -146,13 +136,13 @@ def lookup(quantity: str, **parameters: Any) -> ChartValue:
     return ChartValue(value, error, chart.unit)
 
 
-def _group(given: Mapping[str, Any]) -> ChartGroup:
+def _group(given: Mapping[str, Any]) -> groups.ChartGroup:
     """The group of charts of some parameters; a load cycle has a rotation."""
     is_like = not any(value if isinstance(value := given[name], float) else value.any() for name in ("alpha", "beta"))
     if "rotation" not in given:
-        return GROUPS[f"{'like' if is_like else 'unlike'}_{given['pin_load']}"]
+        return groups.GROUPS[f"{'like' if is_like else 'unlike'}_{given['pin_load']}"]
     name = "held" if given["rotation"] == "fixed" else f"free_{given['pin_load']}"
-    return GROUPS[name if is_like else f"unlike_{name}"]
+    return groups.GROUPS[name if is_like else f"unlike_{name}"]
 
 
 def chart_of(quantity: object) -> ChartQuantity:
@@ -199,10 +189,10 @@ def _checked(chart: ChartQuantity, parameters: Mapping[str, Any]) -> dict[str, A
     return given
 
 
-def _unit(axis: TableAxis, given: Mapping[str, Any]) -> Any:
+def _unit(axis: groups.TableAxis, given: Mapping[str, Any]) -> Any:
     """The place along an axis, 0 to 1: a float or an array. Raises :class:`InputError` if it is out of range."""
     field, low, high, words = _limits(axis, given)
-    value, slack = given[field], ROUNDING if words else 0.0
+    value, slack = given[field], groups.ROUNDING if words else 0.0
     if isinstance(value, float):
         if not low - slack <= value <= high + slack:
             raise InputError(field, f"must lie between {low:.6g} and {high:.6g}{words}, not {value:.6g}")
@@ -213,16 +203,18 @@ def _unit(axis: TableAxis, given: Mapping[str, Any]) -> Any:
             k = np.flatnonzero(outside)[0]
             least, most, first = (float(each.flat[k]) for each in (low, high, value))
             raise InputError(field, f"must lie between {least:.6g} and {most:.6g}{words}, not {first:.6g}")
-    unit = (COORDINATES[axis.name](given) - axis.least) / (axis.most - axis.least)
+    unit = (groups.COORDINATES[axis.name](given) - axis.least) / (axis.most - axis.least)
     return min(max(unit, 0.0), 1.0) if isinstance(unit, float) else np.clip(unit, 0.0, 1.0)
 
 
-def _limits(axis: TableAxis, given: Mapping[str, Any]) -> tuple[str, Any, Any, str]:
+def _limits(axis: groups.TableAxis, given: Mapping[str, Any]) -> tuple[str, Any, Any, str]:
     """The parameter of an axis, its least and largest value, and words on the limits."""
     if axis.name == "plate term":
-        low, high = (plate_beta(given["alpha"], pin_term(given), plate) for plate in (axis.most, axis.least))
+        low, high = (
+            groups.plate_beta(given["alpha"], groups.pin_term(given), plate) for plate in (axis.most, axis.least)
+        )
         return "beta", low, high, " for this alpha and kolosov"
-    field, low, high = parameter_range(axis)
+    field, low, high = groups.parameter_range(axis)
     if field == "load_ratio":
         return field, low * given["friction"], high * given["friction"], f", {low:g} and {high:g} times the friction"
     return field, low, high, ""
@@ -255,7 +247,7 @@ def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str
     force, pair = positive("P", P), problem.pair
     given: dict[str, Any] = {"load_parameter": problem.load_parameter(force), "friction": problem.uniform_friction}
     given |= {"kolosov": pair.pin_kolosov, "pin_load": problem.pin_load}
-    alpha, beta = (value if abs(value) > ROUNDING else 0.0 for value in pair.dundurs())
+    alpha, beta = (value if abs(value) > groups.ROUNDING else 0.0 for value in pair.dundurs())
     given |= {"alpha": alpha, "beta": beta}
     if Q is not None:
         given |= {"rotation": problem.rotation, "load_ratio": abs(number("Q", Q)) / force}

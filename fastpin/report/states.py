@@ -13,20 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from fastpin import storage
+from fastpin.assess import table
 from fastpin.assess.outputs import ROUNDING
-from fastpin.assess.table import (
-    MAX_ROWS,
-    Column,
-    TableLine,
-    cut_lines,
-    folded_lines,
-    line_words,
-    printed_rows,
-    repeats,
-    row_numbers,
-    table_of_lines,
-    with_rows,
-)
 from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.case import Case
 from fastpin.model.checks import instance, instances
@@ -70,13 +58,13 @@ class TableRows:
         Load points of all rows.
     """
 
-    lines: list[TableLine]
+    lines: list[table.TableLine]
     points: np.ndarray
 
     @property
     def printed(self) -> list[int]:
         """The places of the states that have a line of their own."""
-        return printed_rows(self.lines)
+        return table.printed_rows(self.lines)
 
     @property
     def names(self) -> list[str]:
@@ -92,7 +80,7 @@ class TableRows:
             if isinstance(line, int):
                 printed += 1
             else:
-                words = line_words(LOAD_POINT, names, line)
+                words = table.line_words(LOAD_POINT, names, line)
                 found[printed] = f"{found[printed]}; {words}" if printed in found else words
         return found
 
@@ -120,19 +108,21 @@ def table_rows(
     """
     if points is None:
         points = np.array([load_point(state) for state in states])
-    same = row_numbers(map(_identity, states))
+    same = table.row_numbers(map(_identity, states))
     numbers, first = np.unique(same, return_index=True)
     rows = same if rows is None else same[rows]
     if numbers.size > MOST_COMPARED:
-        return TableRows(with_rows(cut_lines(rows.size), wanted), points)
+        return TableRows(table.with_rows(table.cut_lines(rows.size), wanted), points)
     given = [name for name in LOADS if name not in problem.reactions]
-    if numbers.size < rows.size or repeats(row_numbers(tuple(state.load[name] for name in given) for state in states)):
+    if numbers.size < rows.size or table.repeats(
+        table.row_numbers(tuple(state.load[name] for name in given) for state in states)
+    ):
         columns = state_columns(problem, [states[place] for place in first.tolist()])
         # A state differs from the same state one cycle before in its number, in a sum, and by rounding.
         own = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
         cells = zip(*(cells for name, _, cells in columns if name not in own), strict=True)
-        rows = row_numbers(cells)[rows]
-    return TableRows(with_rows(folded_lines(rows), wanted), points)
+        rows = table.row_numbers(cells)[rows]
+    return TableRows(table.with_rows(table.folded_lines(rows), wanted), points)
 
 
 def stored_rows(
@@ -159,7 +149,7 @@ def stored_rows(
     alike = _places_alike(points, cycles)
     places, rows = np.unique(alike, return_inverse=True)
     if places.size > MOST_COMPARED:
-        return TableRows(with_rows(cut_lines(points.size), wanted), points)
+        return TableRows(table.with_rows(table.cut_lines(points.size), wanted), points)
     return table_rows(problem, read(places.tolist()), rows, points, wanted)
 
 
@@ -219,10 +209,10 @@ def state_table(problem: Problem, states: Sequence[State], rows: TableRows | Non
     if rows is None:
         rows = table_rows(problem, states)
         states = [states[place] for place in rows.printed]
-    return table_of_lines(state_columns(problem, states), rows.lines, rows.names)
+    return table.table_of_lines(state_columns(problem, states), rows.lines, rows.names)
 
 
-def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
+def state_columns(problem: Problem, states: Sequence[State]) -> list[table.Column]:
     """Return the columns of :func:`state_table`, with a cell for each state.
 
     Raises
@@ -232,10 +222,10 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
     """
     states = _checked(problem, states)
 
-    def column(name: str, digits: int = 5, natural: float = 0.0) -> Column:
+    def column(name: str, digits: int = 5, natural: float = 0.0) -> table.Column:
         return quantity_column(problem, states, name, digits, natural)
 
-    def angles(name: str) -> Column:
+    def angles(name: str) -> table.Column:
         return ("at", *quantity_column(problem, states, name)[1:])
 
     strain = problem.surfaces.beta_star * max((state.peak_pressure for state in states), default=0.0)
@@ -264,7 +254,7 @@ def _checked(problem: Problem, states: Sequence[State]) -> list[State]:
 
 def quantity_column(
     problem: Problem, states: Sequence[State], name: str, digits: int = 5, natural: float = 0.0
-) -> Column:
+) -> table.Column:
     """Return the label of a quantity, its unit, and its value in each state with its error bar, if there is one.
 
     Values below :data:`ROUNDING` of the largest, or of the size `natural`, become 0.
@@ -406,8 +396,10 @@ def cycle_lines(problem: Problem, cycles: Sequence[Cycle], states: Sequence[Stat
     found = [sizes(state) for state in states]
     natural = {kind: max((each[kind] for each in found), default=0.0) for kind in ("energy", "rotation")}
     lines = [_block_line(problem, block, natural) for block in consecutive_cycles(cycles)]
-    if len(lines) > MAX_ROWS // 2:
-        lines[MAX_ROWS // 4 : -MAX_ROWS // 4] = [f"... {len(lines) - MAX_ROWS // 2} more blocks of cycles ..."]
+    if len(lines) > table.MAX_ROWS // 2:
+        lines[table.MAX_ROWS // 4 : -table.MAX_ROWS // 4] = [
+            f"... {len(lines) - table.MAX_ROWS // 2} more blocks of cycles ..."
+        ]
     return lines
 
 

@@ -17,22 +17,8 @@ from fastpin.states import extremes
 from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Kept
 from fastpin.states.reading_bounds import NUMBERS, StateBlock
 from fastpin.states.state import State
-from fastpin.storage import hdf5
+from fastpin.storage import hdf5, layout
 from fastpin.storage.damage import check_finite, dataset_of, text_of
-from fastpin.storage.layout import (
-    BORDER_FIELDS,
-    SEAT_NUMBERS,
-    SEATED,
-    Rows,
-    all_loads,
-    check_states,
-    count,
-    node_fields,
-    read_grid,
-    read_history,
-    read_problem,
-    read_rows,
-)
 from fastpin.storage.stored_states import read_states
 
 LEAST_STORED = 500
@@ -43,28 +29,31 @@ class StoredStates:
     """The states of an open file, see :class:`fastpin.states.extremes.Kept`."""
 
     def __init__(self, file: h5py.File) -> None:
-        self.problem, self.grid, self._file = read_problem(file), read_grid(file), file
-        check_states(file, self.grid.size)
-        self._corners = len(read_history(file))
-        rows = read_rows(file["states"], ("step", "fraction"), slice(None))
+        self.problem, self.grid, self._file = layout.read_problem(file), layout.read_grid(file), file
+        layout.check_states(file, self.grid.size)
+        self._corners = len(layout.read_history(file))
+        rows = layout.read_rows(file["states"], ("step", "fraction"), slice(None))
         self.points = rows["step"] + rows["fraction"]
 
     def blocks(self) -> Iterator[StateBlock]:
         """Give the nodal values of all states, in order."""
         group = self._file["states"]
-        marks = [name for name in BORDER_FIELDS if name in node_fields(group)]
+        marks = [name for name in layout.BORDER_FIELDS if name in layout.node_fields(group)]
         names = ["pressure", "shear", "status", *marks, *NUMBERS]
-        seated = [f"{SEATED[1]}{name}" for name in ("pressure", "shear", "status", "slip", *marks, *SEAT_NUMBERS)]
+        seated = [
+            f"{layout.SEATED[1]}{name}"
+            for name in ("pressure", "shear", "status", "slip", *marks, *layout.SEAT_NUMBERS)
+        ]
         seated = seated if "seat" in group else []
         for begin in range(0, self.points.size, AT_ONCE):
-            rows = read_rows(group, [*names, "loads", *seated], slice(begin, begin + AT_ONCE))
+            rows = layout.read_rows(group, [*names, "loads", *seated], slice(begin, begin + AT_ONCE))
             for name in ("pressure", "shear", "loads", *NUMBERS, *seated):
-                if not name.endswith(tuple(BORDER_FIELDS)):
+                if not name.endswith(tuple(layout.BORDER_FIELDS)):
                     check_finite(f"states/{name}", rows[name])
-            loads = all_loads(rows["loads"], 0.0)
+            loads = layout.all_loads(rows["loads"], 0.0)
             block = _block_of(rows, loads, marks)
             if seated:
-                own = {name.removeprefix(SEATED[1]): rows[name] for name in seated}
+                own = {name.removeprefix(layout.SEATED[1]): rows[name] for name in seated}
                 block.numbers["seat_slip"] = peak_slips(own["slip"], own["status"], self.grid.theta)
                 block = block._replace(seat=_block_of({**rows, **own}, loads, marks))
             yield block
@@ -74,7 +63,7 @@ class StoredStates:
         return read_states(self._file, self.problem, self.grid, places, self._corners)
 
 
-def _block_of(rows: Rows, loads: np.ndarray, marks: list[str]) -> StateBlock:
+def _block_of(rows: layout.Rows, loads: np.ndarray, marks: list[str]) -> StateBlock:
     """The nodal values of some states from their rows. `marks` are the names of the arrays of old borders."""
     more = tuple(rows[name] for name in marks), {name: rows[name] for name in NUMBERS}
     return StateBlock(rows["pressure"], rows["shear"], rows["status"], loads, *more)
@@ -88,7 +77,7 @@ def read_extremes(file: h5py.File, find: Callable[[Kept], Found] = extremes.mark
 
 def write_extremes(file: h5py.File, kept: Kept | None = None) -> None:
     """Write the extremes of a complete result with many states to its file. `kept` has the states of the file."""
-    size = count(file["states"])
+    size = layout.count(file["states"])
     if size < LEAST_STORED:
         return
     try:

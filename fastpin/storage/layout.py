@@ -49,6 +49,7 @@ from fastpin.reading.old_borders import BITS
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
+from fastpin.storage import damage
 from fastpin.storage.bodies import (
     read_bodies,
     read_material,
@@ -56,13 +57,6 @@ from fastpin.storage.bodies import (
     write_bodies,
     write_material,
     write_profiles,
-)
-from fastpin.storage.damage import (
-    as_python,
-    check_between,
-    dataset_of,
-    numbers_of,
-    text_of,
 )
 from fastpin.version import __version__
 
@@ -248,7 +242,7 @@ def read_problem(file: h5py.File) -> Problem:
     """Read the problem of a result."""
     group = file["problem"]
     pair = MaterialPair(read_material(group["pin"]), read_material(group["plate"]), group.attrs["plane"])
-    given = {name: as_python(group.attrs[name]) for name in (*FIELDS, "dimensionless") if name in group.attrs}
+    given = {name: damage.as_python(group.attrs[name]) for name in (*FIELDS, "dimensionless") if name in group.attrs}
     return Problem(pair, **given, **read_profiles(group), **read_bodies(group))
 
 
@@ -290,7 +284,7 @@ def option_attributes(options: SolveOptions) -> dict[str, Any]:
 
 def read_options(file: h5py.File) -> SolveOptions:
     """Read the options of a result. A file of :func:`fastpin.save` has only the nodes and the method."""
-    stored = {name: as_python(value) for name, value in file["solver"].attrs.items()}
+    stored = {name: damage.as_python(value) for name, value in file["solver"].attrs.items()}
     options: dict[str, Any] = {"nodes": stored.get("nodes", len(file["grid/theta"])), "method": stored["method"]}
     if options["method"] == "increment":
         options["increments"] = stored.get("increments")
@@ -308,7 +302,7 @@ def read_options(file: h5py.File) -> SolveOptions:
 def read_about(file: h5py.File) -> About:
     """Read who made the case of a result, and for what."""
     stored = file["solver"].attrs
-    return About(**{each.name: text_of(stored.get(each.name, "")) for each in fields(About)})
+    return About(**{each.name: damage.text_of(stored.get(each.name, "")) for each in fields(About)})
 
 
 def beside_attributes(given: Mapping[str, Any]) -> dict[str, str]:
@@ -319,7 +313,7 @@ def beside_attributes(given: Mapping[str, Any]) -> dict[str, str]:
 def read_beside(file: h5py.File) -> dict[str, Any]:
     """Read the sections beside the problem that the case of a result has, by name; none in older files."""
     stored = file["solver"].attrs
-    found = {name: read_text(name, text_of(stored.get(name, ""))) for name in BESIDE}
+    found = {name: read_text(name, damage.text_of(stored.get(name, ""))) for name in BESIDE}
     return {name: value for name, value in found.items() if value is not None}
 
 
@@ -330,7 +324,7 @@ def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:
 
 def read_statistics(file: h5py.File) -> dict[str, float]:
     """Read the statistics of the solver, by name."""
-    return numbers_of(file["solver/statistics"])
+    return damage.numbers_of(file["solver/statistics"])
 
 
 # -- growing arrays: states, cycles -------------------------------------------------------------------------
@@ -488,7 +482,7 @@ def read_rows(group: h5py.Group, names: Sequence[str], picked: slice | Sequence[
         If the arrays have different numbers of rows.
     """
     size = count(group)
-    arrays = {name: dataset_of(group, name, _dtype(name)) for name in names}
+    arrays = {name: damage.dataset_of(group, name, _dtype(name)) for name in names}
     for name, array in arrays.items():
         if len(array) != size:
             raise ValueError(f"{group.name[1:]}/{name} has {len(array)} rows, not {size}")
@@ -508,15 +502,15 @@ def check_states(file: h5py.File, nodes: int) -> None:
     """Raise :class:`ValueError` if an array of states is missing, or its rows don't fit the nodes of the pin."""
     group = file["states"]
     for name in node_fields(group):
-        dataset_of(group, name, _dtype(name), (nodes,))
+        damage.dataset_of(group, name, _dtype(name), (nodes,))
     for name in NUMBER_FIELDS:
-        dataset_of(group, name, _dtype(name), ())
+        damage.dataset_of(group, name, _dtype(name), ())
     if "seat" in group:
-        around = (len(dataset_of(group["seat"], "theta", float, ())),)
+        around = (len(damage.dataset_of(group["seat"], "theta", float, ())),)
         for name in (*node_fields(group), *SEAT_NUMBERS):
-            dataset_of(group, f"{SEATED[1]}{name}", _dtype(name), around if name not in SEAT_NUMBERS else ())
-    dataset_of(group, "residuals", float, (len(RESIDUALS),))
-    if dataset_of(group, "loads", float).ndim != 2 or group["loads"].shape[1] > len(LOADS):
+            damage.dataset_of(group, f"{SEATED[1]}{name}", _dtype(name), around if name not in SEAT_NUMBERS else ())
+    damage.dataset_of(group, "residuals", float, (len(RESIDUALS),))
+    if damage.dataset_of(group, "loads", float).ndim != 2 or group["loads"].shape[1] > len(LOADS):
         raise ValueError(f"states/loads has the shape {group['loads'].shape}")
 
 
@@ -533,7 +527,7 @@ def check_growing(file: h5py.File, nodes: int) -> None:
         group = file[part]
         size = count(group)
         for name in arrays:
-            dataset = dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
+            dataset = damage.dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
             check_rows(f"{part}/{name}", dataset, size)
 
 
@@ -547,8 +541,8 @@ def check_rows(label: str, dataset: h5py.Dataset, size: int) -> None:
 
 def check_old_borders(label: str, marks: np.ndarray, places: np.ndarray) -> None:
     """Raise :class:`ValueError` if marks or places of old borders are out of range. Unknown places are NaN."""
-    check_between(f"{label}/old_borders", marks, 0, sum(BITS.values()))
-    check_between(f"{label}/old_places", places[~np.isnan(places)], LEAST_PLACE, MOST_PLACE)
+    damage.check_between(f"{label}/old_borders", marks, 0, sum(BITS.values()))
+    damage.check_between(f"{label}/old_places", places[~np.isnan(places)], LEAST_PLACE, MOST_PLACE)
 
 
 def read_cycles(file: h5py.File) -> list[Cycle]:

@@ -8,19 +8,10 @@ from pathlib import Path
 from typing import Unpack
 
 from fastpin.errors import InputError
+from fastpin.model import checks
 from fastpin.model.assessment import FatigueAssessment
 from fastpin.model.beside import checked_beside
 from fastpin.model.case import About, Case
-from fastpin.model.checks import (
-    as_toml,
-    check_callable,
-    file_path,
-    instance,
-    items,
-    string,
-    true_or_false,
-    whole_number,
-)
 from fastpin.model.crack import CrackGrowth
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
@@ -109,11 +100,11 @@ def record(
 
     A KeyboardInterrupt ends the file properly, with all earlier states.
     """
-    path = file_path("path", path)
+    path = checks.file_path("path", path)
     check_writable(path, result=True)
-    string("title", title)
-    about = About() if about is None else instance("about", about, About, "an About")
-    true_or_false("overwrite", overwrite)
+    checks.string("title", title)
+    about = About() if about is None else checks.instance("about", about, About, "an About")
+    checks.true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
     history = as_history(history)
@@ -153,11 +144,11 @@ def _check_bars(options: SolveOptions, start: Result | None) -> None:
 
 def _checked_corners(save_after: Sequence[int], count: int) -> frozenset[int]:
     """Check the corners with a restart, of a history of so many corners, counted from 1."""
-    given = items("save_after", save_after, "a list of corners")
-    corners = frozenset(whole_number("save_after", corner, 1) for corner in given)
+    given = checks.items("save_after", save_after, "a list of corners")
+    corners = frozenset(checks.whole_number("save_after", corner, 1) for corner in given)
     most = max(corners, default=0)
     if most > count:
-        raise InputError("save_after", f"must be corners from 1 to {count}, not {as_toml(most)}")
+        raise InputError("save_after", f"must be corners from 1 to {count}, not {checks.as_toml(most)}")
     return corners
 
 
@@ -218,8 +209,8 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
     SolveError, OutputError
         See :func:`record`.
     """
-    path = file_path("path", path)
-    check_callable("progress", progress)
+    path = checks.file_path("path", path)
+    checks.check_callable("progress", progress)
     check_exists(path)
     if not is_empty(path) and lacks_error_bars(path):
         with open_result(path) as file:
@@ -252,7 +243,7 @@ def lacks_error_bars(path: str | Path) -> bool:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(file_path("path", path)) as file:
+    with open_result(checks.file_path("path", path)) as file:
         wanted = read_options(file).error_bars and bool(file.attrs["complete"]) and "run" in file.attrs
         return wanted and "coarse" not in file
 
@@ -265,7 +256,7 @@ def stored_error(path: str | Path) -> str | None:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(file_path("path", path)) as file:
+    with open_result(checks.file_path("path", path)) as file:
         error = file.attrs.get("error")
         return None if error is None else text_of(error)
 
@@ -278,7 +269,7 @@ def stored_case(path: str | Path) -> Case:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(file_path("path", path)) as file:
+    with open_result(checks.file_path("path", path)) as file:
         title = text_of(file["solver"].attrs.get("title", ""))
         parts = read_problem(file), read_history(file), read_options(file), title, read_about(file)
         return Case(*parts, **read_beside(file))

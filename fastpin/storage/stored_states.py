@@ -14,22 +14,8 @@ from fastpin.model.loads import named_load
 from fastpin.model.problem import Problem
 from fastpin.reading.marks import Marks
 from fastpin.states.state import State
+from fastpin.storage import layout
 from fastpin.storage.damage import check_between, check_extremes, check_finite, dataset_of
-from fastpin.storage.layout import (
-    BORDER_FIELDS,
-    EXTREMES,
-    NUMBER_FIELDS,
-    RESIDUALS,
-    SEATED,
-    STATUS_LIMITS,
-    Rows,
-    all_loads,
-    check_old_borders,
-    check_states,
-    node_fields,
-    read_rows,
-    state_rows,
-)
 
 
 def read_seat_grid(file: h5py.Group, problem: Problem, grid: Grid) -> Grid | None:
@@ -70,49 +56,53 @@ def read_states(
         If the arrays don't fit each other or the nodes of `grid`, or a number is out of range or not finite.
     """
     group, seat = file["states"], read_seat_grid(file, problem, grid)
-    check_states(file, grid.size)
-    rows = read_rows(group, state_rows(group), picked)
+    layout.check_states(file, grid.size)
+    rows = layout.read_rows(group, layout.state_rows(group), picked)
     check_finite("states/loads", rows["loads"])
     # A life of wear has the state before the first corner, too, if its first cycle begins there.
     check_between("states/step", rows["step"], -1 if "wear" in file else 0, corners - 1)
     check_between("states/fraction", rows["fraction"], 0.0, 1.0)
-    loads = all_loads(rows["loads"], 0.0)
-    residuals = [zip(RESIDUALS, row, strict=True) for row in rows["residuals"].tolist()]
+    loads = layout.all_loads(rows["loads"], 0.0)
+    residuals = [zip(layout.RESIDUALS, row, strict=True) for row in rows["residuals"].tolist()]
     common = [
         {"load": named_load(load), "residuals": {name: value for name, value in pairs if not np.isnan(value)}}
         for load, pairs in zip(loads, residuals, strict=True)
     ]
-    fields = [name for name in node_fields(group) if name not in BORDER_FIELDS]
+    fields = [name for name in layout.node_fields(group) if name not in layout.BORDER_FIELDS]
     seats: list[State] | list[None] = [None] * len(common)
     if seat is not None and problem.seat is not None:
-        own = {name.removeprefix(SEATED[1]): array for name, array in rows.items() if name.startswith(SEATED[1])}
+        own = {
+            name.removeprefix(layout.SEATED[1]): array
+            for name, array in rows.items()
+            if name.startswith(layout.SEATED[1])
+        }
         still = [{**each, "load": {**each["load"], "friction_change": 0.0}} for each in common]
         seats = _states_of({**rows, **own}, fields, still, (problem.seat, seat), "states/seat", [None] * len(common))
     return _states_of(rows, fields, common, (problem, grid), "states", seats)
 
 
 def _states_of(
-    rows: Rows, fields: list[str], common: list[dict[str, Any]], where: tuple[Problem, Grid], label: str,
+    rows: layout.Rows, fields: list[str], common: list[dict[str, Any]], where: tuple[Problem, Grid], label: str,
     seats: Sequence[State | None],
 ) -> list[State]:  # fmt: skip
     """The states of pin or seat from their checked rows. `common` are more fields of each, `where` problem and grid."""
-    for name in (*fields, *NUMBER_FIELDS):
-        if name not in EXTREMES:
+    for name in (*fields, *layout.NUMBER_FIELDS):
+        if name not in layout.EXTREMES:
             check_finite(f"{label}/{name}", rows[name])
-    if EXTREMES[0] in rows:
-        lowest, highest = (rows[name] for name in EXTREMES)
+    if layout.EXTREMES[0] in rows:
+        lowest, highest = (rows[name] for name in layout.EXTREMES)
         check_extremes(f"{label}/slip_lowest", lowest, highest, np.isnan(lowest) & np.isnan(highest))
-    check_between(f"{label}/status", rows["status"], *STATUS_LIMITS)
+    check_between(f"{label}/status", rows["status"], *layout.STATUS_LIMITS)
     if "old_borders" in rows:
         check_finite(f"{label}/old_borders", rows["old_borders"])
-        check_old_borders(label, rows["old_borders"], rows["old_places"])
+        layout.check_old_borders(label, rows["old_borders"], rows["old_places"])
     states, (problem, grid) = [], where
     for k, (each, seat) in enumerate(zip(common, seats, strict=True)):
         per_node = {name: rows[name][k] for name in fields}
         for array in per_node.values():
             array.setflags(write=False)
         marks = Marks.stored(rows["old_borders"][k], rows["old_places"][k]) if "old_borders" in rows else None
-        numbers = {name: rows[name][k].item() for name in NUMBER_FIELDS}
+        numbers = {name: rows[name][k].item() for name in layout.NUMBER_FIELDS}
         states.append(
             State(**per_node, **numbers, **each, theta=grid.theta, problem=problem, grid=grid, marks=marks, seat=seat)
         )

@@ -33,25 +33,10 @@ from fastpin.solver.run import RunProgress
 from fastpin.solver.task import as_history
 from fastpin.solver.wear import CyclesInMemory, FrictionRule, WearTask
 from fastpin.solver.wear_result import WearResult, WornCycle
-from fastpin.storage import hdf5
+from fastpin.storage import hdf5, layout
 from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of, text_of
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.journal import is_empty
-from fastpin.storage.layout import (
-    append,
-    beside_attributes,
-    check_growing,
-    check_rows,
-    count,
-    option_attributes,
-    read_grid,
-    read_history,
-    read_problem,
-    rows_of,
-    state_rows,
-    write_head,
-    write_statistics,
-)
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import load, open_result
 from fastpin.storage.writer import GrowingFile, check_overwriting, clear_checkpoints, closing_file
@@ -218,10 +203,10 @@ class WearFile:
         """
         with self.file.again("resume") as stored:
             _check_same(self.file.path, stored, self.task)
-            grid = read_grid(stored)
-            check_growing(stored, grid.size)
+            grid = layout.read_grid(stored)
+            layout.check_growing(stored, grid.size)
             for name, rows in _read_rows(stored, grid.size).items():
-                check_rows(f"wear/{name}", stored["wear"][name], len(rows))
+                layout.check_rows(f"wear/{name}", stored["wear"][name], len(rows))
             place = _read_place(stored["wear/place"], grid.size) if "place" in stored["wear"] else None
             noted = self.file.noted(lambda group: _read_place(group["place"], grid.size), "cycle")
             is_later = noted is not None and (place is None or noted.cycle > place.cycle)
@@ -238,9 +223,9 @@ class WearFile:
         self.file.begin()
         task = self.task
         nodes = task.options.nodes if task.grid is None else grid.size
-        attributes = {**option_attributes(task.options), "nodes": nodes, "slip_sums": True, "title": self._title}
-        attributes |= beside_attributes(self._beside)
-        write_head(self._h5, task.problem, task.stored_history, grid, attributes)
+        attributes = {**layout.option_attributes(task.options), "nodes": nodes, "slip_sums": True, "title": self._title}
+        attributes |= layout.beside_attributes(self._beside)
+        layout.write_head(self._h5, task.problem, task.stored_history, grid, attributes)
         self._h5.attrs["run"] = self.file.run
         group = self._h5.create_group("wear")
         group.attrs.update(law=task.wear.law, tolerance=task.wear.tolerance, chosen=np.array(task.wear.chosen))
@@ -262,13 +247,13 @@ class WearFile:
 
     def add(self, cycle: WornCycle, place: Worn, statistics: dict[str, float]) -> None:
         """Write a chosen cycle, and the place from which the life goes on, in one transaction."""
-        group, states = self._h5["wear"], rows_of(cycle.states)
-        append(self._h5["states"], {name: states[name] for name in state_rows(self._h5["states"])})
+        group, states = self._h5["wear"], layout.rows_of(cycle.states)
+        layout.append(self._h5["states"], {name: states[name] for name in layout.state_rows(self._h5["states"])})
         for name in (*DEPTHS, *NUMBERS):
             array = group[name]
             array.resize(len(array) + 1, axis=0)
             array[-1] = getattr(cycle, name)
-        write_statistics(self._h5, statistics)
+        layout.write_statistics(self._h5, statistics)
         self._put_place(place)
         self.file.commit()
 
@@ -326,7 +311,7 @@ def load_wear(path: str | Path) -> WearResult:
     with open_result(path) as file:
         if "wear" not in file:
             raise InputError(str(path), "holds no wear: it is the result of a run; fastpin.load reads it")
-        group, grid, history = file["wear"], read_grid(file), read_history(file)
+        group, grid, history = file["wear"], layout.read_grid(file), layout.read_history(file)
         corners, arrays = len(history.blocks[-1].given) + 1, _read_rows(file, grid.size)
         coefficients = dataset_of(group, "coefficients", float, (grid.size,))[()]
         check_between("wear/coefficients", coefficients, 0.0, np.finfo(float).max)
@@ -338,7 +323,7 @@ def load_wear(path: str | Path) -> WearResult:
             for k in range(len(arrays["cycle"]))
         )
         return WearResult(
-            problem=read_problem(file),
+            problem=layout.read_problem(file),
             history=history,
             law=text_of(group.attrs["law"]),
             tolerance=float(group.attrs["tolerance"]),
@@ -358,10 +343,10 @@ def _check_same(path: Path, file: hdf5.Group, task: WearTask) -> None:
         raise InputError(
             str(path), f"holds a finished life of wear: there is nothing to continue; try fastpin show {path} --json"
         )
-    group, grid = file["wear"], read_grid(file)
-    begun, wanted = read_history(file).blocks, task.stored_history.blocks
+    group, grid = file["wear"], layout.read_grid(file)
+    begun, wanted = layout.read_history(file).blocks, task.stored_history.blocks
     same = {
-        "problem": read_problem(file) == task.problem,
+        "problem": layout.read_problem(file) == task.problem,
         "history": len(begun) == len(wanted)
         and all(
             one.count == other.count and np.array_equal(one.given, other.given, equal_nan=True)
@@ -387,14 +372,14 @@ def _read_rows(file: hdf5.Group, nodes: int) -> dict[str, np.ndarray]:
     ValueError
         If an array is missing, does not fit the others, or has a number out of range. It names the array.
     """
-    group, corners = file["wear"], len(read_history(file).blocks[-1].given) + 1
+    group, corners = file["wear"], len(layout.read_history(file).blocks[-1].given) + 1
     arrays = {name: dataset_of(group, name, float, (nodes,)) for name in DEPTHS}
     arrays |= {name: dataset_of(group, name, kind, ()) for name, kind in NUMBERS.items()}
     size = len(arrays["cycle"])
     for name, array in arrays.items():
         if len(array) != size:
             raise ValueError(f"wear/{name} has {len(array)} rows, not {size}")
-    if count(file["states"]) != size * corners:
+    if layout.count(file["states"]) != size * corners:
         raise ValueError(f"wear/cycle has {size} rows, which don't fit the states")
     rows = {name: array[()] for name, array in arrays.items()}
     for name in (*DEPTHS, "dissipation", "removed"):

@@ -24,36 +24,12 @@ from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.task import Task, deferred_interrupts
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
-from fastpin.storage import hdf5
+from fastpin.storage import hdf5, layout
 from fastpin.storage.damage import reading
 from fastpin.storage.extremes import write_extremes
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import forget_temporaries, replacing
 from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
-from fastpin.storage.layout import (
-    Rows,
-    append,
-    beside_attributes,
-    check_format,
-    check_growing,
-    count,
-    cycle_rows,
-    node_fields,
-    option_attributes,
-    read_about,
-    read_beside,
-    read_cycles,
-    read_grid,
-    read_history,
-    read_problem,
-    read_rows,
-    read_statistics,
-    rows_of,
-    state_rows,
-    write_grid,
-    write_head,
-    write_statistics,
-)
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.stored_states import all_nodes
@@ -178,7 +154,7 @@ class GrowingFile:
         try:
             with reading(self.path, *arguments):
                 stored = hdf5.Group(self.h5)
-                check_format(stored, str(self.path))
+                layout.check_format(stored, str(self.path))
                 yield stored
                 self.run = str(self.h5.attrs["run"])
                 self.h5.attrs.pop("error", None)
@@ -306,14 +282,14 @@ class FileRecorder:
         self.overwrite = True
         self._title, self._about, self._beside = title, about, beside
         self._run: Run
-        self._states: list[Rows] = []  # waiting for the next commit
+        self._states: list[layout.Rows] = []  # waiting for the next commit
         self._cycles: list[Cycle] = []
         self._pending = 0
         # Pairs of numbers: states, cycles.
         self._at = [0, 0]  # received from the run
         self._stored = [0, 0]  # in the file
         self._corner = [0, 0]  # received up to the last corner
-        self._copied: Rows | None = None
+        self._copied: layout.Rows | None = None
         self._next_commit = 0.0
         self._seconds = 0.0
         self._began = time.monotonic()
@@ -325,7 +301,7 @@ class FileRecorder:
     def reopen(self, file: GrowingFile, restart_group: hdf5.Group) -> None:
         """Continue a file from a restart in it. The run gives the later states again."""
         self.file = file
-        self._stored = [count(self._h5["states"]), count(self._h5["cycles"])]
+        self._stored = [layout.count(self._h5["states"]), layout.count(self._h5["cycles"])]
         counts = int(restart_group.attrs["states"]), int(restart_group.attrs["cycles"])
         self._at, self._corner = list(counts), list(counts)
         self._seconds = float(restart_group["statistics"].attrs.get("seconds", 0.0))
@@ -356,16 +332,16 @@ class FileRecorder:
         extra = {
             "title": self._title,
             **self._about.given(),
-            **beside_attributes(self._beside),
+            **layout.beside_attributes(self._beside),
             "arc_chosen": self.chosen_arc,
             "save_after": sorted(task.stops),
         }
-        write_head(
+        layout.write_head(
             self._h5,
             task.problem,
             task.history,
             run.grid,
-            {**option_attributes(task.options), "nodes": run.grid.size, **extra},
+            {**layout.option_attributes(task.options), "nodes": run.grid.size, **extra},
         )
         self._h5.attrs["run"] = self.file.run
         for name in ("start", "latest"):
@@ -375,8 +351,8 @@ class FileRecorder:
     def add(self, state: State) -> None:
         """Take a state. It is in the file after the next commit."""
         self._copied = None
-        rows = rows_of([state])
-        self._put({name: rows[name] for name in state_rows(self._h5["states"])})
+        rows = layout.rows_of([state])
+        self._put({name: rows[name] for name in layout.state_rows(self._h5["states"])})
 
     def add_cycle(self, cycle: Cycle) -> None:
         """Take a cycle, unless the file has it already."""
@@ -393,7 +369,7 @@ class FileRecorder:
             for first in range(0, size, PIECE):
                 last = min(first + PIECE, size)
                 group = self._h5["states"]
-                rows = read_rows(group, state_rows(group), slice(begin + first, begin + last))
+                rows = layout.read_rows(group, layout.state_rows(group), slice(begin + first, begin + last))
                 rows = rows if first else _with_first(rows, slip)
                 self._put_again(rows, steps[first:last], dissipation[first:last], work[first:last])
                 self._copied = rows if size <= PIECE else None
@@ -426,7 +402,7 @@ class FileRecorder:
             self._commit()
         del self._h5["restart/latest"]
         self._write_restart(self._h5.create_group("restart/latest"))
-        write_statistics(self._h5, {**run.statistics, "seconds": self._all_seconds()})
+        layout.write_statistics(self._h5, {**run.statistics, "seconds": self._all_seconds()})
         self._h5.attrs["complete"] = run.complete
         self._h5.attrs.pop("error", None)
         if error is not None:
@@ -441,7 +417,7 @@ class FileRecorder:
         """Return the result with the last state in the file."""
         return load(self.file.path, states=slice(-1, None))
 
-    def _put(self, rows: Rows) -> None:
+    def _put(self, rows: layout.Rows) -> None:
         """Take the next rows. Rows that are in the file already are compared, and not written again."""
         size = len(rows["step"])
         known = min(max(self._stored[0] - self._at[0], 0), size)
@@ -459,7 +435,7 @@ class FileRecorder:
             if self._pending >= MOST_PENDING or time.monotonic() > self._next_commit:
                 self._commit()
 
-    def _put_again(self, rows: Rows, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
+    def _put_again(self, rows: layout.Rows, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
         self._put({**rows, "step": steps, "dissipation": dissipation, "work": work})
 
     def _commit(self) -> None:
@@ -468,9 +444,9 @@ class FileRecorder:
         try:
             if self._states:
                 rows = {name: np.concatenate([part[name] for part in self._states]) for name in self._states[0]}
-                append(self._h5["states"], rows)
+                layout.append(self._h5["states"], rows)
             if self._cycles:
-                append(self._h5["cycles"], cycle_rows(self._cycles))
+                layout.append(self._h5["cycles"], layout.cycle_rows(self._cycles))
             self.file.commit()
         except OutputError:
             self.file.abort()
@@ -497,20 +473,22 @@ def add_coarse(path: Path, beside: Path) -> None:
     """
     file = GrowingFile(path)
     with file.again(), open_result(beside) as stored:
-        group, grid, history = file.h5.create_group("coarse"), read_grid(stored), read_history(stored)
-        write_grid(group, read_problem(stored), history, grid, node_fields(stored["states"]))
+        group, grid, history = file.h5.create_group("coarse"), layout.read_grid(stored), layout.read_history(stored)
+        layout.write_grid(group, layout.read_problem(stored), history, grid, layout.node_fields(stored["states"]))
         states = stored["states"]
-        for first in range(0, count(states), PIECE):
-            append(group["states"], read_rows(states, state_rows(states), slice(first, first + PIECE)))
-        append(group["cycles"], cycle_rows(read_cycles(stored)))
-        nodes = all_nodes(stored, read_problem(stored), grid)
+        for first in range(0, layout.count(states), PIECE):
+            layout.append(
+                group["states"], layout.read_rows(states, layout.state_rows(states), slice(first, first + PIECE))
+            )
+        layout.append(group["cycles"], layout.cycle_rows(layout.read_cycles(stored)))
+        nodes = all_nodes(stored, layout.read_problem(stored), grid)
         write_restart(group.create_group("restart/latest"), read_restart(stored["restart/latest"], nodes))
         file.commit()
     file.close()
     beside.unlink()
 
 
-def _with_first(rows: Rows, values: SlipFields) -> Rows:
+def _with_first(rows: layout.Rows, values: SlipFields) -> layout.Rows:
     """Rows of states with other node values of the first state, by quantity."""
     return {**rows, **{name: np.concatenate([[first], rows[name][1:]]) for name, first in values.items()}}
 
@@ -533,10 +511,10 @@ def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Rest
             raise InputError(str(path), "holds a finished run: there is nothing to continue")
         task = replace(stored_task(stored), progress=progress)
         assert task.grid is not None
-        check_growing(stored, task.grid.size)
-        read_statistics(stored)  # they are written again at the end
+        layout.check_growing(stored, task.grid.size)
+        layout.read_statistics(stored)  # they are written again at the end
         options, latest = stored["solver"].attrs, stored["restart/latest"]
-        writer = FileRecorder(path, task, str(options["title"]), read_about(stored), read_beside(stored))
+        writer = FileRecorder(path, task, str(options["title"]), layout.read_about(stored), layout.read_beside(stored))
         writer.chosen_arc = bool(options["arc_chosen"])
         nodes = all_nodes(stored, task.problem, task.grid)
 

@@ -24,18 +24,8 @@ from fastpin.casefile.profiles import PROFILES, part_fault
 from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, InputWarning
+from fastpin.model import checks
 from fastpin.model.case import Case
-from fastpin.model.checks import (
-    any_text,
-    as_toml,
-    check_callable,
-    choice,
-    file_path,
-    instance,
-    number,
-    string,
-    whole_number,
-)
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
 from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
@@ -204,7 +194,7 @@ class Plan:
         InputError
             If a file of its loads, plate or materials has changed since the plan was read, or `point` is no point.
         """
-        instance("point", point, Point, "a Point of this plan")
+        checks.instance("point", point, Point, "a Point of this plan")
         if point.id in self._cases:
             return self._cases[point.id]
         return self._varied(point, has_strengths(self.outcomes))
@@ -229,8 +219,8 @@ def read_plan(path: str | Path, progress: SweepProgress | None = None) -> Plan:
     InputError
         If `path` is no path, or `progress` can't be called.
     """
-    path = file_path("path", path)
-    check_callable("progress", progress)
+    path = checks.file_path("path", path)
+    checks.check_callable("progress", progress)
     plan = _parsed(read_text(path, MOST_BYTES_OF_PLAN), str(path), path.parent, progress)
     warn_of(plan.doubts, 2)
     return plan
@@ -263,13 +253,13 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
 
 def _parsed(text: str, name: str, folder: str | Path, progress: SweepProgress | None = None) -> Plan:
     """Read a plan from `text`, see :func:`parse_plan`. No warnings are given."""
-    place = file_path("folder", folder)
+    place = checks.file_path("folder", folder)
     return parse_text(text, name, "plan", lambda source: _plan(source, text, place, progress))
 
 
 def describe_values(values: dict[str, Any]) -> str:
     """Return the values of a point as text."""
-    return ", ".join(f"{name} = {as_toml(value)}" for name, value in values.items())
+    return ", ".join(f"{name} = {checks.as_toml(value)}" for name, value in values.items())
 
 
 # -- text of a plan ------------------------------------------------------------------------------------------
@@ -278,7 +268,7 @@ def describe_values(values: dict[str, Any]) -> str:
 def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | None) -> Plan | None:
     """Read the plan. It has no meaning if the text has faults."""
     check_root(source)
-    title = source.root.checked("title", string) or ""
+    title = source.root.checked("title", checks.string) or ""
     base = base_case(source, folder)
     places: dict[str, KeyPath] = {}
     spacings: dict[str, Spacing] = {}
@@ -317,7 +307,7 @@ def labels_in(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
             source.report(f'labels: the plan has no "{name}"{hint}', *place)
             continue
         try:
-            labels[name] = string(f"labels: {name}", words)
+            labels[name] = checks.string(f"labels: {name}", words)
             if not 1 <= len(words.strip()) <= LONGEST_LABEL:
                 raise InputError(f"labels: {name}", f"must be text of 1 to {LONGEST_LABEL} letters")
         except InputError as error:
@@ -359,7 +349,7 @@ def _varied(section: str, key: str) -> str:
 
 def base_case(source: CaseText, folder: Path) -> BaseCase | None:
     """Read the base case, and report its faults on the line of the plan's ``case``."""
-    name = source.root.checked("case", any_text)
+    name = source.root.checked("case", checks.any_text)
     try:
         if name is None:
             return BaseCase(EXAMPLE, "built-in case", folder)
@@ -405,7 +395,7 @@ def _axes(
         else:
             allowed = "a list of values, or { from = 0.1, to = 1.0, count = 10 }"
             source.report(
-                f"{name}: must be {allowed}, not {'an empty list' if value == [] else as_toml(value)}", *place
+                f"{name}: must be {allowed}, not {'an empty list' if value == [] else checks.as_toml(value)}", *place
             )
     return axes
 
@@ -494,9 +484,9 @@ def range_in(
     def checked(key: str, check: Callable[..., Any], *limits: Any) -> Any:
         return section.checked(key, lambda _, value: check(f"{name}: {key}", value, *limits))
 
-    first, last = checked("from", number), checked("to", number)
-    count = checked("count", whole_number, 2, MAX_RUNS) if usual is None or "count" in table else usual
-    spacing: Any = checked("spacing", choice, ("linear", "log")) or "linear"
+    first, last = checked("from", checks.number), checked("to", checks.number)
+    count = checked("count", checks.whole_number, 2, MAX_RUNS) if usual is None or "count" in table else usual
+    spacing: Any = checked("spacing", checks.choice, ("linear", "log")) or "linear"
     if first is None or last is None or count is None or len(source.placed) > before:
         return [], spacing
     if spacing == "log" and not first * last > 0.0:
