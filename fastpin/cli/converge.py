@@ -10,6 +10,7 @@ from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
     EXIT_OK,
+    as_options,
     check_outputs,
     fail,
     say,
@@ -28,7 +29,8 @@ def run(options: argparse.Namespace) -> int:
     outputs = {"--csv": options.csv, "--json": options.json, "--plot": options.plot}
     check_outputs(outputs)
     code, trouble = EXIT_OK, ""
-    with Bar(1, "{desc}") as progress_bar:
+    fields = ("nodes", "increments", "increment_nodes", "corner", "outcomes")
+    with Bar(1, "{desc}") as progress_bar, as_options(fields):
 
         def progress(done: float, total: float, what: str) -> None:
             progress_bar.describe(what)
@@ -44,10 +46,6 @@ def run(options: argparse.Namespace) -> int:
             study, code, trouble = ended.study, EXIT_INTERRUPTED, "interrupted"
         except studies.convergence.StudyLostError as lost:
             study, code, trouble = lost.study, EXIT_FAILED, str(lost)
-        except InputError as error:
-            option = error.field.replace("_", "-")
-            known = option in ("nodes", "increments", "increment-nodes", "corner", "outcomes")
-            raise InputError(f"--{option}" if known else error.field, error.reason) from None
     if study is None:
         return fail(f"{trouble}; less than three grids were finished", code)
     written = _write_study(study, options, case.title)

@@ -9,7 +9,7 @@ from typing import Any
 
 from fastpin.assess.outputs import json_ready
 from fastpin.cli.progress import Bar
-from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_outputs
+from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, as_options, check_outputs, fail, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.published import catalog, records
 from fastpin.version import __version__
@@ -24,10 +24,8 @@ def run(options: argparse.Namespace) -> int:
     names = list(dict.fromkeys(catalog.benchmark_name(name) for name in options.names or catalog.BENCHMARKS))
     formats = list(dict.fromkeys(options.format or ("png",)))
     if options.output is not None:
-        try:
+        with as_options():
             catalog.check_benchmarks(names, options.output, formats)
-        except InputError as error:
-            raise InputError(f"--{error.field}", error.reason) from None
     elif options.format:
         raise InputError("--format", "has a meaning with -o only")
     check_outputs({"--json": options.json})
@@ -60,13 +58,10 @@ def run(options: argparse.Namespace) -> int:
 def paper(options: argparse.Namespace) -> int:
     """Compute, draw and write figures. Print the files of each figure and its seconds."""
     nodes = catalog.NODES if options.nodes is None else options.nodes
-    try:
+    with as_options(vars(options)):
         names = list(dict.fromkeys(catalog.figure_name(name) for name in options.figure or catalog.PAPER))
         formats = list(dict.fromkeys(options.format or catalog.FORMATS[:1]))
         catalog.check(names, options.output, nodes, formats)
-    except InputError as error:
-        option = f"--{error.field}" if error.field in vars(options) else error.field
-        raise InputError(option, error.reason) from None
     finished: list[str] = []
     try:
         with Bar(len(names), "figure {desc}") as progress_bar:

@@ -115,14 +115,12 @@ def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None
     if options.envelope and (options.x or options.y or len(_values(options, plan)) > 1):
         raise InputError("--envelope", "has axes of its own, and shows one value: leave out --x, --y and other values")
     if options.plot is not None:
-        try:
+        with as_options():
             for value in _values(options, plan):
                 if options.envelope:
                     report.sweep.check_envelope(plan, value)
-                    continue
-                report.sweep.check_axes(plan, value, options.x, options.y)
-        except InputError as error:
-            raise InputError(f"--{error.field}", error.reason) from None
+                else:
+                    report.sweep.check_axes(plan, value, options.x, options.y)
 
 
 def _where(options: argparse.Namespace) -> dict[str, Any]:
@@ -137,10 +135,8 @@ def _where(options: argparse.Namespace) -> dict[str, Any]:
 
 def _shown(options: argparse.Namespace, plan: studies.plan.Plan) -> studies.plan.Plan:
     """Return the part of a plan that a figure shows."""
-    try:
+    with as_options():
         return report.sweep.restricted(plan, _where(options))
-    except InputError as error:
-        raise InputError("--where", error.reason) from None
 
 
 def _values(options: argparse.Namespace, plan: studies.plan.Plan) -> list[str]:

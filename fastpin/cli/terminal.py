@@ -69,12 +69,12 @@ def flag(name: str) -> str:
 
 
 @contextlib.contextmanager
-def as_options(fields: Collection[str]) -> Iterator[None]:
-    """Name the option in place of the field in errors raised within, if it is one of these fields."""
+def as_options(fields: Collection[str] | None = None) -> Iterator[None]:
+    """Name the option in place of the field in errors raised within, if it is one of these fields; None: any field."""
     try:
         yield
     except InputError as error:
-        if error.field in fields:
+        if fields is None or error.field in fields:
             raise InputError(flag(error.field), error.reason) from None
         raise
 

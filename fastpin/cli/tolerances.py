@@ -8,7 +8,7 @@ from pathlib import Path
 from fastpin import figures, report, studies
 from fastpin.cli.progress import READ_POINTS, Bar, progress_to
 from fastpin.cli.sweep import check_combination, fail_interrupted, print_summary, run_plan
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_outputs
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, as_options, check_outputs, say, write_outputs
 from fastpin.errors import InputError
 
 
@@ -52,10 +52,8 @@ def _check_outputs(options: argparse.Namespace, study: studies.tolerances.Tolera
     if options.value is None:
         return [*study.plan.outcomes][:3]  # the first ones
     shown = [name.strip() for name in str(options.value).split(",")]
-    try:
+    with as_options():
         report.tolerances.check_outcomes(study, shown)
-    except InputError as error:
-        raise InputError(f"--{error.field}", error.reason) from None
     return shown
 
 
