@@ -15,14 +15,12 @@ from fastpin.assess.table import table
 from fastpin.cracks.fates import CRACK_FATES, CrackFate
 from fastpin.cracks.margins import crack_margins
 from fastpin.errors import InputError
+from fastpin.model import Case, LoadHistory, Problem
 from fastpin.model.angles import from_bottom
-from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, law_of
 from fastpin.model.doubts import doubts_given
 from fastpin.model.growth import Nasgro, Walker, law_entries, law_words
-from fastpin.model.history import LoadHistory
 from fastpin.model.points import EDGES, owner_of
-from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.choice import missing_corners, span_of
 from fastpin.states.cycles import Cycle

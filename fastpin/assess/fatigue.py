@@ -30,13 +30,12 @@ from fastpin.damage.criteria import Criterion, criterion_title
 from fastpin.damage.margins import MOST_STOPS, reserve_margins
 from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
+from fastpin.model import Case, Problem
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA, FatigueAssessment
-from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.points import BODIES, EDGES, Body, edge_body, elastic_bodies, material_of, owner_of
-from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle

@@ -28,14 +28,12 @@ from fastpin.damage.hole_strength import JOINT_MODES
 from fastpin.damage.laminates import MODES
 from fastpin.damage.margins import strength_margins
 from fastpin.errors import InputError
+from fastpin.model import Case, LoadHistory, Problem
 from fastpin.model.angles import from_bottom
-from fastpin.model.case import Case
 from fastpin.model.checks import choice
 from fastpin.model.doubts import doubts_given
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, Corner
 from fastpin.model.ply import CRITERION_NAMES, PlyCriterion
-from fastpin.model.problem import Problem
 from fastpin.model.strength import LENGTHS, StrengthAssessment
 from fastpin.model.units import printed_loads, units
 from fastpin.solver.errors import ConvergenceError, SolveError

@@ -23,16 +23,14 @@ from fastpin.casefile.materials import known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
+from fastpin.model import LOADS, LoadHistory, SolveOptions
 from fastpin.model.assessment import FatigueAssessment, check_assessment
 from fastpin.model.beside import BESIDE
 from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
 from fastpin.model.checks import file_path, string
 from fastpin.model.fields import FIELDS
-from fastpin.model.history import LoadHistory
 from fastpin.model.laminate import LAMINATE_KEYS
-from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
-from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
 from fastpin.model.synonyms import closest, meant
 from fastpin.model.units import PER_THICKNESS

@@ -11,10 +11,9 @@ from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import draw_zero, line
 from fastpin.figures.subjects import Subject, problem_of
 from fastpin.figures.words import caption, quantity
+from fastpin.model import Case, Profile
 from fastpin.model.angles import from_bottom
-from fastpin.model.case import Case
 from fastpin.model.problem import LOOKED_AT, Problem
-from fastpin.model.profile import Profile
 from fastpin.model.units import units
 from fastpin.solver.result import Result
 

@@ -14,10 +14,9 @@ from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import MAX_NAMED, Line, line
 from fastpin.figures.words import caption, quantity
+from fastpin.model import LoadHistory, Problem
 from fastpin.model.checks import instance, number_array
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.problem import Problem
 from fastpin.model.units import units
 
 

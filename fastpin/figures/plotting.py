@@ -25,8 +25,7 @@ from fastpin.model.case import Case
 from fastpin.model.checks import choice, instance
 from fastpin.model.wear import cycles_text
 from fastpin.report.states import state_table
-from fastpin.solver.result import Result
-from fastpin.solver.wear_result import WearResult
+from fastpin.solver import Result, WearResult
 from fastpin.states.state import State
 
 

@@ -21,13 +21,10 @@ from fastpin.figures.style import COLOURS, line
 from fastpin.figures.subjects import Subject
 from fastpin.figures.words import caption, point_text, quantity, range_text
 from fastpin.kernels.status import STICK
-from fastpin.model.case import Case
+from fastpin.model import Case, LoadHistory, Lug, Part, PartLoad, Problem
 from fastpin.model.checks import as_toml, instance
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.lug import Lug, Part, PartLoad
 from fastpin.model.points import edge_body
-from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State

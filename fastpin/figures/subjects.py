@@ -8,12 +8,10 @@ from typing import Any
 
 from fastpin.errors import InputError
 from fastpin.figures.states import DrawnStates, drawn_states, stored_states
+from fastpin.model import Case, Problem
 from fastpin.model.beside import beside_of
-from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, instance
-from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
-from fastpin.solver.wear_result import WearResult
+from fastpin.solver import Result, WearResult
 from fastpin.states.choice import NO_CYCLE, StateChoice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State

@@ -10,13 +10,10 @@ import numpy as np
 
 from fastpin.assess.outputs import ROUNDING
 from fastpin.bodies.bushing import STUCK
+from fastpin.model import Laminate, Material, Problem, Profile
 from fastpin.model.checks import shortened
-from fastpin.model.laminate import Laminate
 from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.materials import Material
 from fastpin.model.points import owner_of
-from fastpin.model.problem import Problem
-from fastpin.model.profile import Profile
 from fastpin.model.units import PASCAL, Unit, acting_loads, units
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State

@@ -19,8 +19,7 @@ from fastpin.pages.sections import SECTIONS, crack, seat, strength
 from fastpin.pages.source import Source, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
 from fastpin.pages.writing import check_page, write_page
-from fastpin.solver.result import Result
-from fastpin.solver.wear_result import WearResult
+from fastpin.solver import Result, WearResult
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical
 from fastpin.version import __version__

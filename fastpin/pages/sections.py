@@ -59,10 +59,9 @@ from fastpin.report.states import (
     way_on,
 )
 from fastpin.solver.configuration import MAX_RESIDUAL
+from fastpin.states import LoadCycle, State
 from fastpin.states.extremes import READINGS, yield_doubts
-from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
-from fastpin.states.state import State
 from fastpin.states.walking import walk_doubts
 from fastpin.studies.identity import canonical, run_id
 

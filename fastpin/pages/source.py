@@ -19,20 +19,15 @@ from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_f
 from fastpin.damage.margins import MOST_STOPS
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
-from fastpin.model.case import Case
-from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS
-from fastpin.model.options import SolveOptions
+from fastpin.model import LOADS, Case, LoadHistory, SolveOptions
 from fastpin.model.points import edge_body, elastic_bodies
 from fastpin.report.states import stored_rows
-from fastpin.solver.result import Result
-from fastpin.solver.wear_result import WearResult
+from fastpin.solver import Result, WearResult
+from fastpin.states import LoadCycle, State
 from fastpin.states.choice import even_choice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import marked_places
-from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.margins import Margin, over_yield, static_margins
-from fastpin.states.state import State
 from fastpin.storage.held import Held, HeldInFile
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result

@@ -17,8 +17,7 @@ from numpy.typing import ArrayLike
 
 from fastpin.assess.outputs import Curve
 from fastpin.figures.style import COLOURS, Line, line
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin.model import MATERIALS, MaterialPair, Problem
 from fastpin.published.drawing import head, legend_below, panels
 from fastpin.published.formulas import half_angle, load_term, peak_pressure
 from fastpin.published.records import Benchmark, Outcome, Report, Row, steps

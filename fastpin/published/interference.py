@@ -20,8 +20,7 @@ from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import line
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
+from fastpin.model import Grid, Problem
 from fastpin.published.drawing import add_legend, head, panels
 from fastpin.published.records import PaperFigure, Report, curves_of, steps
 from fastpin.published.tractions import ANGLE, traction_curve

@@ -17,10 +17,9 @@ from fastpin.assess.outputs import Curve
 from fastpin.bodies import Plate, Ring
 from fastpin.bodies.body import PinLoad, PlateBody
 from fastpin.figures.style import Line
+from fastpin.model import Material, MaterialPair, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import Method
-from fastpin.model.problem import Problem
 from fastpin.published.drawing import add_legend, head, marked, panels
 from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
 from fastpin.solver.solving import solve

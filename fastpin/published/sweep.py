@@ -26,9 +26,8 @@ from matplotlib.figure import Figure
 from fastpin.assess.outputs import Curve
 from fastpin.figures.style import line
 from fastpin.kernels.status import STICK
+from fastpin.model import Grid, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
 from fastpin.published.drawing import add_legend, grey, head, marked, panels
 from fastpin.published.records import PaperFigure, Report, steps
 from fastpin.published.tractions import NAMES, PAIRS, values_of

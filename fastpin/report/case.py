@@ -12,15 +12,11 @@ from fastpin.assess.fatigue import assessment_words
 from fastpin.assess.outputs import ROUNDING
 from fastpin.assess.strength import strength_words
 from fastpin.assess.table import Column, table, visible_rows
-from fastpin.model.case import Case
+from fastpin.model import Case, LoadHistory, Material, Problem, Wear
 from fastpin.model.checks import instance
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
-from fastpin.model.materials import Material
 from fastpin.model.points import owner_of
-from fastpin.model.problem import Problem
 from fastpin.model.units import PASCAL, acting_loads, units
-from fastpin.model.wear import Wear
 
 
 def describe(case: Case) -> str:

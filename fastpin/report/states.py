@@ -15,23 +15,19 @@ import numpy as np
 from fastpin import storage
 from fastpin.assess import table
 from fastpin.assess.outputs import ROUNDING
+from fastpin.model import LOADS, Case, Problem
 from fastpin.model.angles import from_bottom, interval_from_bottom
-from fastpin.model.case import Case
 from fastpin.model.checks import instance, instances
-from fastpin.model.loads import LOADS
 from fastpin.model.points import Body, edge_body, elastic_bodies
-from fastpin.model.problem import Problem
 from fastpin.model.ties import top
 from fastpin.model.units import Unit, units
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import load_columns
-from fastpin.solver.errors import Interrupted
-from fastpin.solver.result import Result
+from fastpin.solver import Interrupted, Result
+from fastpin.states import Regime, State
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.error_bars import known_bar
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, sizes
-from fastpin.states.regimes import Regime
-from fastpin.states.state import State
 from fastpin.states.walking import walk_words
 
 LOAD_POINT = "load point"

@@ -19,20 +19,17 @@ from fastpin.assess.questions import QUESTIONS
 from fastpin.bodies.body import BodyBase
 from fastpin.cracks.margins import crack_margins
 from fastpin.errors import ReadingError, reading
+from fastpin.model import Case, Problem, Profile
 from fastpin.model.angles import interval_from_bottom
-from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LATER, LOAD_KIND, LOADS
 from fastpin.model.materials import STRENGTHS, Material
-from fastpin.model.problem import Problem
-from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
 from fastpin.solver.result import Result
+from fastpin.states import LoadCycle, State
 from fastpin.states.extremes import READINGS, Found, KeptStates, marked_extremes
-from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
-from fastpin.states.state import State
 from fastpin.version import __version__
 
 

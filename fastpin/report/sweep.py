@@ -18,17 +18,12 @@ from fastpin.assess.strength import strength_words
 from fastpin.assess.table import Column, table
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import InputError
-from fastpin.model.case import Case
+from fastpin.model import LOADS, Case, Problem, Profile, StrengthAssessment, Wear
 from fastpin.model.checks import as_toml
-from fastpin.model.loads import LOADS
 from fastpin.model.points import BODIES
-from fastpin.model.problem import Problem
-from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import TERMS
-from fastpin.model.strength import StrengthAssessment
 from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, Unit, scaled, units
-from fastpin.model.wear import Wear
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.outcome_tables import KEYS

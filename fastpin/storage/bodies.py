@@ -14,14 +14,13 @@ import numpy as np
 
 from fastpin.bodies.body import BodyBase
 from fastpin.bodies.kinds import KINDS
+from fastpin.model import FatigueConstants, Problem
 from fastpin.model.checks import as_toml
-from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries, law_from
 from fastpin.model.laminate import Laminate, laminate_from
 from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.ply import PLY_KEYS
-from fastpin.model.problem import Problem
 from fastpin.model.profile import MOST_TERMS, InitialGap, Profile
 from fastpin.model.profile_terms import MOST_SAMPLES, TERMS, Term
 from fastpin.storage.damage import as_python, dataset_of, text_of

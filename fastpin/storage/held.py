@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from fastpin.errors import InputWarning
+from fastpin.model import LoadHistory, Problem
 from fastpin.model.checks import file_path, instance
 from fastpin.model.doubts import pressure_doubts
-from fastpin.model.history import LoadHistory
-from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.states import extremes
 from fastpin.states.choice import span_of

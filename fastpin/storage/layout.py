@@ -34,15 +34,12 @@ from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
 from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
+from fastpin.model import About, Grid, MaterialPair, Problem
 from fastpin.model.beside import BESIDE, read_text, stored_text
-from fastpin.model.case import About
 from fastpin.model.fields import FIELDS
-from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.materials import MaterialPair
 from fastpin.model.options import OPTIONS, SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.model.units import units_per_thickness
 from fastpin.reading.marks import Marks
 from fastpin.reading.old_borders import BITS

@@ -8,21 +8,23 @@ from pathlib import Path
 from typing import Unpack
 
 from fastpin.errors import InputError
-from fastpin.model import checks
-from fastpin.model.assessment import FatigueAssessment
+from fastpin.model import (
+    About,
+    Case,
+    CrackGrowth,
+    FatigueAssessment,
+    Grid,
+    LoadHistory,
+    Problem,
+    StrengthAssessment,
+    checks,
+)
 from fastpin.model.beside import checked_beside
-from fastpin.model.case import About, Case
-from fastpin.model.crack import CrackGrowth
 from fastpin.model.doubts import doubts, warn_of
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
 from fastpin.model.options import OPTIONS, OptionValues, SolveOptions
-from fastpin.model.problem import Problem
-from fastpin.model.strength import StrengthAssessment
 from fastpin.model.synonyms import unknown_keyword
+from fastpin.solver import ArcError, ConvergenceError, Interrupted, Result, SolveError
 from fastpin.solver.attempts import Unfit
-from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
-from fastpin.solver.result import Result
 from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, as_history, check_options, check_start

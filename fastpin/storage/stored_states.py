@@ -9,9 +9,8 @@ import h5py
 import numpy as np
 
 from fastpin.elasticity.interfaces import seat_grid
-from fastpin.model.grid import Grid
+from fastpin.model import Grid, Problem
 from fastpin.model.loads import named_load
-from fastpin.model.problem import Problem
 from fastpin.reading.marks import Marks
 from fastpin.states.state import State
 from fastpin.storage import layout

@@ -16,23 +16,18 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.assessment import FatigueAssessment
+from fastpin.model import FatigueAssessment, Grid, LoadHistory, Problem, Wear
 from fastpin.model.beside import checked_beside
 from fastpin.model.checks import check_callable, file_path, string, true_or_false
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.model.profile import ProfileLike
 from fastpin.model.units import units_per_thickness
-from fastpin.model.wear import Wear
-from fastpin.solver.errors import Interrupted, SolveError
+from fastpin.solver import Interrupted, SolveError, WearResult, WornCycle
 from fastpin.solver.fat_cycles import Worn
 from fastpin.solver.run import RunProgress
 from fastpin.solver.task import as_history
 from fastpin.solver.wear import CyclesInMemory, FrictionRule, WearTask
-from fastpin.solver.wear_result import WearResult, WornCycle
 from fastpin.storage import hdf5, layout
 from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of, text_of
 from fastpin.storage.files import check_exists, check_writable

@@ -18,8 +18,7 @@ import numpy as np
 
 from fastpin.errors import InputError, OutputError
 from fastpin.model.case import About
-from fastpin.solver.errors import Interrupted, SolveError
-from fastpin.solver.result import Restart, Result
+from fastpin.solver import Interrupted, Restart, Result, SolveError
 from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.task import Task, deferred_interrupts
 from fastpin.states.cycles import Cycle

@@ -24,10 +24,8 @@ from fastpin.casefile.profiles import PROFILES, part_fault
 from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, InputWarning
-from fastpin.model import checks
-from fastpin.model.case import Case
+from fastpin.model import LOADS, Case, checks
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
-from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
 from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, bar_faults, has_strengths, outcomes_from, outcomes_in_text

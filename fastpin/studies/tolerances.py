@@ -24,11 +24,10 @@ import numpy as np
 from fastpin.assess.outputs import ROUNDING
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, parse_text, read_text
 from fastpin.errors import InputError, InputWarning
-from fastpin.model.case import Case
+from fastpin.model import Case, Problem
 from fastpin.model.checks import as_toml, check_callable, file_path, string, true_or_false, whole_number
 from fastpin.model.doubts import warn_of
 from fastpin.model.points import elastic_bodies
-from fastpin.model.problem import Problem
 from fastpin.studies.index import DONE
 from fastpin.studies.outcome_tables import Outcomes, has_strengths, outcomes_from, outcomes_in_text
 from fastpin.studies.plan import (

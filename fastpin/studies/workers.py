@@ -29,9 +29,8 @@ from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.runtime.jit import limit_to_one_thread
 from fastpin.runtime.threads import in_one_thread
-from fastpin.solver.errors import SolveError
+from fastpin.solver import SolveError, solve
 from fastpin.solver.result import Result, without_restart
-from fastpin.solver.solving import solve
 from fastpin.storage import store
 from fastpin.storage.layout import versions
 from fastpin.studies.outcomes import OutcomeValue, values_in_worker
