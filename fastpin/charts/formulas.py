@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.charts.groups import load_parameter_at, width_coordinate
+from fastpin.charts.groups import STORED, load_parameter_at, width_coordinate
 from fastpin.charts.lookups import lookup
-from fastpin.charts.tables import STORED
 from fastpin.model.checks import in_one_shape, numbers
 
 MOST_LOAD_PARAMETER, MOST_FRICTION = 10.0, 0.6
@@ -34,7 +33,7 @@ HEAD = ("x     =1/SQRT(0.4563+PI()*Lp)", "z     =mu/SQRT(mu^2+0.2*x^2)")
 
 
 FACTORS = {"peak_pressure": "*SQRT(1.438+16*Lp/PI())", "contact_angle": "*x", "kt_bearing": ""}
-"""The quantities with a formula, and the factor of :data:`fastpin.charts.tables.STORED` as a spreadsheet has it."""
+"""The quantities with a formula, and the factor of :data:`fastpin.charts.groups.STORED` as a spreadsheet has it."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.charts import groups
-from fastpin.charts.tables import tables
+from fastpin.charts.groups import tables
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, known_name, number, numbers, positive
 from fastpin.model.problem import Problem

@@ -353,7 +353,7 @@ def _add_runs(command: argparse.ArgumentParser) -> None:
 def add_tolerances(commands: Any) -> None:
     """Add ``tolerances``."""
     words = "run a case at the limits of its fields: one at a time, at all corners, and at random samples"
-    tolerances = _command(commands, "tolerances", "tolerances", "run", words)
+    tolerances = _command(commands, "tolerances", "sweep", "tolerances", words)
     _option(tolerances, "plan", None, "plan (TOML): a case, and the limits of its fields [tolerances]", Path)
     _add_runs(tolerances)
     _add_outcomes(tolerances)

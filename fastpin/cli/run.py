@@ -17,8 +17,8 @@ from fastpin import assess, casefile, figures, live, report, solver, storage
 from fastpin.assess.margins import margin_lines
 from fastpin.assess.questions import QUESTIONS
 from fastpin.cli import wear
-from fastpin.cli.interface import load_seat, seat_title
 from fastpin.cli.options import literal
+from fastpin.cli.plot import load_seat, seat_title
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.cli.terminal import (
     EXIT_FAILED,

@@ -1,4 +1,4 @@
-"""``fastpin sweep`` and ``fastpin merge``."""
+"""``fastpin sweep``, ``merge`` and ``tolerances``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,16 @@ from typing import Any
 from fastpin import figures, report, studies
 from fastpin.cli.options import literal
 from fastpin.cli.progress import READ_POINTS, Bar, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, as_options, check_outputs, fail, say
+from fastpin.cli.terminal import (
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    as_options,
+    check_outputs,
+    fail,
+    say,
+    write_outputs,
+)
 from fastpin.errors import InputError
 from fastpin.figures.kinds import DEFAULT_KEY_FIGURE
 
@@ -188,7 +197,7 @@ def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path)
     """Draw the figure of a plan, or of the points with the values of ``--where``."""
     values, where, plan = _values(options, plan), _where(options), _shown(options, plan)
     rows = studies.sweep.rows(plan, directory)
-    fixed = [figures.words.shown_label(words) for words in report.sweep.where_words(plan, rows, where)]
+    fixed = [figures.style.shown_label(words) for words in report.sweep.where_words(plan, rows, where)]
     title = ", ".join(filter(None, [plan.title, *fixed]))
     if options.envelope:
         found = report.sweep.envelopes(plan, rows, values[0])
@@ -211,3 +220,65 @@ def merge(options: argparse.Namespace) -> int:
     count = studies.sweep.merge(options.parts, options.output)
     say(f"{count} runs in {options.output}")
     return EXIT_OK
+
+
+def tolerances(options: argparse.Namespace) -> int:
+    """Run all points of a tolerance plan that are not finished, then write tables and figures."""
+    check_combination(options)
+    if options.value is not None and options.plot is None and options.scatter is None:
+        raise InputError("--value", "says what a figure shows; --plot FILE or --scatter FILE is missing")
+    with Bar(1, READ_POINTS) as progress_bar:
+        study = studies.read_tolerances(options.plan, progress_to(progress_bar))
+    if options.outcomes is not None:
+        study = study.with_outcomes(studies.read_outcomes(options.outcomes))
+    directory = Path(options.plan.stem) if options.output is None else options.output
+    shown = _check_figures(options, study)
+    if options.status:
+        summary = studies.sweep.status(study.plan, directory)
+    else:
+        try:
+            summary = run_plan(options, study.plan, directory, None)
+        except KeyboardInterrupt:
+            return fail_interrupted(study.plan, directory, None)
+    code = _write_effects(options, study, directory, shown)
+    if options.json == "-":
+        return code or _exit_code(options, summary)
+    print_summary(study.plan, directory, summary, options.status, options.retry)
+    if summary.done:
+        say("", *report.tolerances.text(study, studies.sweep.rows(study.plan, directory)).split("\n"))
+    return code or _exit_code(options, summary)
+
+
+def _exit_code(options: argparse.Namespace, summary: studies.sweep.Summary) -> int:
+    return EXIT_FAILED if (summary.failed or summary.unread) and not options.status else EXIT_OK
+
+
+def _check_figures(options: argparse.Namespace, study: studies.tolerances.Tolerances) -> list[str]:
+    """Check before the work that all files can be made and written. Return the outcomes of the figures."""
+    outputs = {"--table": options.table, "--json": options.json, "--plot": options.plot, "--scatter": options.scatter}
+    check_outputs(outputs, ("--plot", "--scatter"))
+    if options.scatter is not None and not study.samples:
+        raise InputError("--scatter", "draws samples, and the plan has none; give it samples = 200")
+    if options.value is None:
+        return [*study.plan.outcomes][:3]  # the first ones
+    shown = [name.strip() for name in str(options.value).split(",")]
+    with as_options():
+        report.tolerances.check_outcomes(study, shown)
+    return shown
+
+
+def _write_effects(
+    options: argparse.Namespace, study: studies.tolerances.Tolerances, directory: Path, shown: list[str]
+) -> int:
+    """Write the files that are asked for, and return the exit code."""
+    outputs = (options.table, options.json, options.plot, options.scatter)
+    if all(each is None for each in outputs):
+        return EXIT_OK
+    rows = studies.sweep.rows(study.plan, directory)
+    charts = [report.tolerances.tolerance_chart(study, rows, name) for name in shown]
+    files = [
+        (options.table, lambda path: report.sweep.write_csv(study.plan, rows, path)),
+        (options.plot, lambda path: figures.plot_tornado(charts, path)),
+        (options.scatter, lambda path: figures.plot_samples(charts, path)),
+    ]
+    return write_outputs(files, options.json, lambda: report.tolerances.document(study, rows))

@@ -20,11 +20,21 @@ from matplotlib.lines import Line2D
 from fastpin.errors import InputError
 from fastpin.figures.sheet import HEADING, Look, Plot
 from fastpin.figures.sketch import draw_sketch, load_ranges
-from fastpin.figures.states import DrawnStates, Frame
+from fastpin.figures.states import DrawnStates, Frame, InMemory, Subject
 from fastpin.figures.stick_slip import LOOKS, zone_look, zone_patch
-from fastpin.figures.style import COLOURS, house_style, line, new_figure
-from fastpin.figures.subjects import InMemory, Subject
-from fastpin.figures.words import ANGLE, CAPTION_SIZE, caption, load_text, point_text, quantity, wrapped_parts
+from fastpin.figures.style import (
+    ANGLE,
+    CAPTION_SIZE,
+    COLOURS,
+    caption,
+    house_style,
+    line,
+    load_text,
+    new_figure,
+    point_text,
+    quantity,
+    wrapped_parts,
+)
 from fastpin.kernels.status import STICK
 from fastpin.model.checks import check_callable, file_path, number
 from fastpin.model.units import acting_loads, units

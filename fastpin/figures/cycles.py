@@ -17,9 +17,8 @@ from fastpin.assess.cycle import cycles_curve
 from fastpin.assess.outputs import ROUNDING, write_csv
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.style import MAX_NAMED, line
-from fastpin.figures.subjects import Subject, with_cycles
-from fastpin.figures.words import caption, quantity, without_rounding
+from fastpin.figures.states import Subject, with_cycles
+from fastpin.figures.style import MAX_NAMED, caption, line, quantity, without_rounding
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import units

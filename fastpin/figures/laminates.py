@@ -15,10 +15,8 @@ from fastpin.assess.outputs import Curve, write_csv
 from fastpin.damage.hole_strength import JointStrength, joint_strength, laminate_of
 from fastpin.damage.laminates import MODES
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import DrawnStates, name_states, state_lines
-from fastpin.figures.style import angle_axis, line
-from fastpin.figures.subjects import InMemory, Subject, problem_of
-from fastpin.figures.words import ANGLE, quantity, short
+from fastpin.figures.states import DrawnStates, InMemory, Subject, name_states, problem_of, state_lines
+from fastpin.figures.style import ANGLE, angle_axis, line, quantity, short
 from fastpin.model import Case, Problem, StrengthAssessment
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instance

@@ -20,17 +20,18 @@ from fastpin.assess.cycle import write_csv as write_cycle
 from fastpin.assess.outputs import ROUNDING, Curve, write_csv
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import Frame
-from fastpin.figures.style import MAX_NAMED, line, spread
-from fastpin.figures.subjects import Subject, with_cycles
-from fastpin.figures.words import (
+from fastpin.figures.states import Frame, Subject, with_cycles
+from fastpin.figures.style import (
     ANGLE,
+    MAX_NAMED,
     caption,
+    line,
     load_text,
     loads_by_change,
     quantity,
     short,
     shown_unit,
+    spread,
     without_rounding,
 )
 from fastpin.model.checks import choice, instance, items, string

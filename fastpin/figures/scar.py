@@ -19,10 +19,22 @@ from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import Criterion, criterion_title
 from fastpin.figures.sheet import Look, Plot, Sheet
 from fastpin.figures.sketch import load_ranges
-from fastpin.figures.style import COLOURS, MAX_NAMED, Line, angle_axis, draw_grid, line
-from fastpin.figures.subjects import Subject, with_stored_cycles
+from fastpin.figures.states import Subject, with_stored_cycles
+from fastpin.figures.style import (
+    ANGLE,
+    COLOURS,
+    MAX_NAMED,
+    Line,
+    angle_axis,
+    caption,
+    draw_grid,
+    line,
+    quantity,
+    range_text,
+    short,
+    without_rounding,
+)
 from fastpin.figures.sweep import round_numbers
-from fastpin.figures.words import ANGLE, caption, quantity, range_text, short, without_rounding
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import Body, edge_body
 from fastpin.model.units import units

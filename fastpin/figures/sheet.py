@@ -18,7 +18,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from fastpin.errors import InputError
 from fastpin.figures import style
-from fastpin.figures.words import ANGLE, CAPTION_SIZE, wrapped, wrapped_parts
+from fastpin.figures.style import ANGLE, CAPTION_SIZE, wrapped, wrapped_parts
 from fastpin.model.checks import file_path, instance, number, string
 from fastpin.storage.files import check_writable, no_figure
 

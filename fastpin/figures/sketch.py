@@ -16,10 +16,9 @@ from fastpin.assess.outputs import ROUNDING
 from fastpin.bodies.body import Shape
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
+from fastpin.figures.states import Subject
 from fastpin.figures.stick_slip import zone_look, zone_patch
-from fastpin.figures.style import COLOURS, line
-from fastpin.figures.subjects import Subject
-from fastpin.figures.words import caption, point_text, quantity, range_text
+from fastpin.figures.style import COLOURS, caption, line, point_text, quantity, range_text
 from fastpin.kernels.status import STICK
 from fastpin.model import Case, LoadHistory, Lug, Part, PartLoad, Problem
 from fastpin.model.checks import as_toml, instance

@@ -16,10 +16,8 @@ from matplotlib.patheffects import Normal, Stroke
 
 from fastpin.assess.outputs import Curve, write_csv
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import HOOP, DrawnStates, name_states, state_lines
-from fastpin.figures.style import draw_zero, line
-from fastpin.figures.subjects import InMemory, Subject
-from fastpin.figures.words import caption, loads_text, point_text, points_text, quantity
+from fastpin.figures.states import HOOP, DrawnStates, InMemory, Subject, name_states, state_lines
+from fastpin.figures.style import caption, draw_zero, line, loads_text, point_text, points_text, quantity
 from fastpin.model.checks import choice, instance
 from fastpin.model.points import BODIES, Body, bodies_of, edge_body
 from fastpin.model.units import named_loads, units

@@ -24,8 +24,7 @@ from matplotlib.transforms import Bbox
 from fastpin.assess.outputs import Curve, write_csv
 from fastpin.errors import InputError
 from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet, plotter
-from fastpin.figures.style import MAX_NAMED, Line, line, spread
-from fastpin.figures.words import caption, quantity, shown_label, wrapped
+from fastpin.figures.style import MAX_NAMED, Line, caption, line, quantity, shown_label, spread, wrapped
 from fastpin.model.checks import instances
 from fastpin.model.problem import Problem
 from fastpin.model.units import PASCAL

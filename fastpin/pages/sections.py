@@ -17,18 +17,15 @@ from fastpin.assess.table import MAX_ROWS, Column
 from fastpin.assess.wear import wear_input
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
-from fastpin.figures.crack_growth import crack_growth_of
 from fastpin.figures.cycles import cycles_of
-from fastpin.figures.fatigue import fatigue_of, spectrum_of
-from fastpin.figures.gap import gap_of
-from fastpin.figures.history import history_of
+from fastpin.figures.fatigue import crack_growth_of, fatigue_of, spectrum_of
+from fastpin.figures.history import gap_of, history_of
 from fastpin.figures.laminates import strength_of
 from fastpin.figures.load_cycle import STRAIGHT, area_doubt, loops_of, slip_of
 from fastpin.figures.sketch import sketch_of
-from fastpin.figures.states import DrawnStates
+from fastpin.figures.states import DrawnStates, InMemory
 from fastpin.figures.stick_slip import stick_slip_plot
 from fastpin.figures.stress import hoop_plot, map_plot
-from fastpin.figures.subjects import InMemory
 from fastpin.figures.tractions import tractions_plot
 from fastpin.kernels.status import SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom

@@ -12,7 +12,7 @@ from fastpin.assess.wear import DEBRIS, cycle_columns, cycle_lines, followed_wor
 from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import criterion_title
 from fastpin.figures.scar import damage_of, scar_plot, wear_plot
-from fastpin.figures.subjects import InMemory
+from fastpin.figures.states import InMemory
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import edge_body, owner_of
 from fastpin.model.ties import top, top_angle

@@ -28,8 +28,7 @@ from fastpin.published import (
     sweep,
     textbooks,
 )
-from fastpin.published.drawing import save_drawing
-from fastpin.published.records import Benchmark, Outcome, PaperFigure, Report, row_curves
+from fastpin.published.records import Benchmark, Outcome, PaperFigure, Report, row_curves, save_drawing
 from fastpin.storage.files import check_writable
 from fastpin.version import __version__
 

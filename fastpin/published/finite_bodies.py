@@ -20,8 +20,7 @@ from fastpin.bodies.ring import SUPPORTS, Support
 from fastpin.bodies.tube import TubeLoad
 from fastpin.figures.style import Line, line
 from fastpin.model import Material, MaterialPair, Problem
-from fastpin.published.drawing import add_legend, grey, head, marked, panels
-from fastpin.published.records import PaperFigure, Report, curves_of, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, marked, panels, steps
 from fastpin.published.tractions import Panel, chosen, traction_curve, traction_figure
 from fastpin.solver.solving import solve
 

@@ -18,9 +18,8 @@ from numpy.typing import ArrayLike
 from fastpin.assess.outputs import Curve
 from fastpin.figures.style import COLOURS, Line, line
 from fastpin.model import MATERIALS, MaterialPair, Problem
-from fastpin.published.drawing import head, legend_below, panels
 from fastpin.published.formulas import half_angle, load_term, peak_pressure
-from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
+from fastpin.published.records import Benchmark, Outcome, Report, Row, head, legend_below, panels, steps
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from fastpin.verification.rows import half_width

@@ -21,8 +21,7 @@ from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import line
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model import Grid, Problem
-from fastpin.published.drawing import add_legend, head, panels
-from fastpin.published.records import PaperFigure, Report, curves_of, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, head, panels, steps
 from fastpin.published.tractions import ANGLE, traction_curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

@@ -20,8 +20,7 @@ from fastpin.figures.style import Line
 from fastpin.model import Material, MaterialPair, Problem
 from fastpin.model.angles import BOTTOM
 from fastpin.model.options import Method
-from fastpin.published.drawing import add_legend, head, marked, panels
-from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
+from fastpin.published.records import Benchmark, Outcome, Report, Row, add_legend, head, marked, panels, steps
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification.rows import NODES, half_width

@@ -16,9 +16,8 @@ from matplotlib.figure import Figure
 from fastpin.assess.outputs import Curve
 from fastpin.model import Grid, LoadHistory, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.published.drawing import add_legend, grey, head, marked, panels
 from fastpin.published.fretting import FRICTION
-from fastpin.published.records import PaperFigure, Report, curves_of, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, marked, panels, steps
 from fastpin.published.tractions import PAIRS
 from fastpin.solver import Result, solve
 from fastpin.states.state import State

@@ -25,8 +25,7 @@ from fastpin.assess.outputs import Curve
 from fastpin.figures.style import line
 from fastpin.kernels.status import OPEN
 from fastpin.model import Grid, Problem
-from fastpin.published.drawing import head, panels
-from fastpin.published.records import PaperFigure, Report, steps
+from fastpin.published.records import PaperFigure, Report, head, panels, steps
 from fastpin.published.tractions import NAMES, PAIRS, Panel, pushed, traction_curve, traction_figure
 from fastpin.reading.zones import runs
 from fastpin.solver import Result, solve

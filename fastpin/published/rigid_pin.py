@@ -18,8 +18,7 @@ from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, angle_axis
 from fastpin.model import MATERIALS, Material, MaterialPair, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.published.drawing import add_legend, grey, head, marked, panels
-from fastpin.published.records import PaperFigure, Report, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, marked, panels, steps
 from fastpin.published.tractions import ANGLE, QUANTITIES, traction_curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

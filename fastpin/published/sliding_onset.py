@@ -17,8 +17,7 @@ from matplotlib.figure import Figure
 from fastpin.assess.outputs import Curve
 from fastpin.figures.style import Line, line
 from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, grey, head, legend_below, marked, panels
-from fastpin.published.records import PaperFigure, Report, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, legend_below, marked, panels, steps
 from fastpin.published.tractions import PAIRS
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

@@ -28,8 +28,7 @@ from fastpin.figures.style import line
 from fastpin.kernels.status import STICK
 from fastpin.model import Grid, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.published.drawing import add_legend, grey, head, marked, panels
-from fastpin.published.records import PaperFigure, Report, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, marked, panels, steps
 from fastpin.published.tractions import NAMES, PAIRS, values_of
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

@@ -15,7 +15,7 @@ from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, angle_axis
 from fastpin.model import MATERIALS, MaterialPair, Problem
 from fastpin.model.angles import interval_near_bottom
-from fastpin.published.drawing import add_legend, head, panels
+from fastpin.published.records import add_legend, head, panels
 from fastpin.reading.zones import ALL_ROUND, Interval, is_all_round
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

@@ -20,9 +20,9 @@ from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.states.walking import walk_doubts
 from fastpin.storage.damage import text_of
-from fastpin.storage.extremes import read_extremes
 from fastpin.storage.layout import RESIDUALS
 from fastpin.storage.store import load, load_points, open_result, places_between
+from fastpin.storage.stored_states import read_extremes
 
 STATES_AT_ONCE = 1_000
 """States whose pressures are in memory at once."""

@@ -28,12 +28,11 @@ from fastpin.states.extremes import KeptStates
 from fastpin.states.state import State
 from fastpin.storage import hdf5, layout, packed
 from fastpin.storage.damage import reading, text_of
-from fastpin.storage.extremes import write_extremes
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import open_h5
 from fastpin.storage.restarts import read_restart, write_restart
-from fastpin.storage.stored_states import all_nodes, read_states
+from fastpin.storage.stored_states import all_nodes, read_states, write_extremes
 
 ALL = slice(None)
 """All states of a file."""

@@ -25,13 +25,12 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 from fastpin.storage import hdf5, layout
 from fastpin.storage.damage import reading
-from fastpin.storage.extremes import write_extremes
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import forget_temporaries, replacing
 from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
-from fastpin.storage.stored_states import all_nodes
+from fastpin.storage.stored_states import all_nodes, write_extremes
 
 log = logging.getLogger(__name__)
 

@@ -35,7 +35,7 @@ from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, SweepProgress
 from fastpin.studies.run_end import KEY_FIGURES, bar_column
 from fastpin.studies.variation import field_kind, field_words
-from fastpin.studies.work import Work, pickled_outcomes
+from fastpin.studies.workers import Work, pickled_outcomes
 
 if TYPE_CHECKING:  # they import compiled code, and a plan is read without it
     import xarray

@@ -14,8 +14,8 @@ import fastpin
 from fastpin.assess.table import MAX_ROWS
 from fastpin.bodies import Bushing
 from fastpin.errors import InputError, OutputError
+from fastpin.figures.states import InMemory
 from fastpin.figures.stick_slip import stick_slip_plot
-from fastpin.figures.subjects import InMemory
 from fastpin.model import Laminate, Material, MaterialPair
 from fastpin.model.loads import LOAD, LOADS
 from fastpin.model.options import OPTIONS, SolveOptions
