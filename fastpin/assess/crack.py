@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fastpin import cracks, damage
-from fastpin.assess.outputs import Curve, Output, Progress, Schema, chosen, kept, object_of, properties
+from fastpin.assess.outputs import Curve, Output, Progress, Schema, chosen, kept, object_of, properties, table
 from fastpin.assess.outputs import document as document_of
-from fastpin.assess.table import table
 from fastpin.cracks.fates import CRACK_FATES, CrackFate
 from fastpin.cracks.margins import crack_margins
 from fastpin.errors import InputError

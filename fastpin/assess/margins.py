@@ -10,9 +10,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fastpin.assess.outputs import NUMBER, TEXT, TRUTH, UNKNOWN, Schema, kept, list_of, map_of, object_of
+from fastpin.assess.outputs import NUMBER, TEXT, TRUTH, UNKNOWN, Schema, aligned, kept, list_of, map_of, object_of
 from fastpin.assess.questions import QUESTIONS
-from fastpin.assess.table import aligned
 from fastpin.damage.margins import last_cycle_margins
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, printed_loads, units

@@ -6,9 +6,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fastpin.assess.outputs import Curve, Output, chosen, json_ready, kept, unit_names
+from fastpin.assess.outputs import (
+    Column,
+    Curve,
+    Output,
+    TableLine,
+    chosen,
+    columns_at,
+    cut_lines,
+    json_ready,
+    kept,
+    printed_rows,
+    table_of_lines,
+    unit_names,
+    with_rows,
+)
 from fastpin.assess.outputs import document as document_of
-from fastpin.assess.table import Column, TableLine, columns_at, cut_lines, printed_rows, table_of_lines, with_rows
 from fastpin.damage.race import Race
 from fastpin.model.angles import from_bottom
 from fastpin.model.doubts import doubts_given

@@ -11,11 +11,20 @@ from typing import Any
 import numpy as np
 
 from fastpin import figures
-from fastpin.assess.outputs import Curve, write_csv
-from fastpin.assess.table import aligned
-from fastpin.charts.formulas import HEAD, MOST_FRICTION, MOST_LOAD_PARAMETER, chart_formulas
+from fastpin.assess.outputs import Curve, aligned, write_csv
 from fastpin.charts.groups import GROUPS, STORED, ChartTable, TableAxis, parameter_range, tables
-from fastpin.charts.lookups import CHARTS, CYCLE_PARAMETERS, ChartQuantity, ChartValue, chart_of, lookup
+from fastpin.charts.lookups import (
+    CHARTS,
+    CYCLE_PARAMETERS,
+    HEAD,
+    MOST_FRICTION,
+    MOST_LOAD_PARAMETER,
+    ChartQuantity,
+    ChartValue,
+    chart_formulas,
+    chart_of,
+    lookup,
+)
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError

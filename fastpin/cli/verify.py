@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from fastpin import storage, verification
-from fastpin.assess.outputs import json_ready
-from fastpin.assess.table import aligned
+from fastpin.assess.outputs import aligned, json_ready
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_outputs
 from fastpin.runtime.threads import cores

@@ -11,9 +11,8 @@ from fastpin.assess.crack import growth_line
 from fastpin.assess.cycle import cycle_line
 from fastpin.assess.fatigue import Assessed, hot_spot_line, spectrum_line
 from fastpin.assess.margins import verdict
-from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.outputs import MAX_ROWS, ROUNDING, Column
 from fastpin.assess.questions import QUESTIONS
-from fastpin.assess.table import MAX_ROWS, Column
 from fastpin.assess.wear import wear_input
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
@@ -39,8 +38,7 @@ from fastpin.model.points import EDGES, edge_body
 from fastpin.model.ties import top
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
-from fastpin.pages.margins import PageParts, margins, sentence
-from fastpin.pages.source import Source
+from fastpin.pages.source import PageParts, Source, margins, sentence
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.convergence import heading, reported_series, series_columns

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import math
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import cached_property
@@ -14,13 +15,15 @@ import numpy as np
 
 from fastpin import storage
 from fastpin.assess.fatigue import SWT, fatigue_bodies, spectrum_damages
+from fastpin.assess.margins import HEADS, all_margins, in_order, margin_rows, verdict
 from fastpin.assess.questions import QUESTIONS
 from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
-from fastpin.damage.margins import MOST_STOPS
+from fastpin.damage.margins import MOST_STOPS, fatigue_margins
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
 from fastpin.model import LOADS, Case, LoadHistory, SolveOptions
 from fastpin.model.points import edge_body, elastic_bodies
+from fastpin.pages.content import Album, Facts, PageSection, Text
 from fastpin.report.states import stored_rows
 from fastpin.solver import Result, WearResult
 from fastpin.states import LoadCycle, State
@@ -28,9 +31,11 @@ from fastpin.states.choice import even_choice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import marked_places
 from fastpin.states.margins import Margin, over_yield, static_margins
+from fastpin.states.walking import walk_margins
 from fastpin.storage.held import Held, HeldInFile
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
+from fastpin.studies.convergence import Convergence
 
 MOST_DRAWN = 6
 """Most states that a figure or a table of all quantities shows: as many have a legend of their own."""
@@ -370,3 +375,62 @@ def _digest(path: Path) -> str:
 def now() -> str:
     """Return the date and time, UTC, as text."""
     return datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+
+
+@dataclass(frozen=True)
+class PageParts:
+    """What the sections of one page share.
+
+    Attributes
+    ----------
+    source : Source
+    album : Album
+    convergence : Convergence or None
+    """
+
+    source: Source
+    album: Album
+    convergence: Convergence | None = None
+
+    @cached_property
+    def margins(self) -> list[Margin]:
+        """The margins of yield, bush, fatigue, crack and plies, the smallest one first."""
+        source, problem = self.source, self.source.case.problem
+        cycle = [] if source.cycle is None else source.cycle.states
+        found = source.found
+        judged = {edge_body(problem, one.body) for one in found["fatigue"].reserves} if "fatigue" in found else set()
+        last_cycle = walk_margins(cycle) + [
+            row
+            for row in fatigue_margins(problem, source.fatigue, cycle)
+            if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
+        ]
+        return in_order(all_margins(source.static_margins, last_cycle, found))
+
+
+def sentence(line: str) -> str:
+    """Return a line of a report as a sentence."""
+    return f"{line[0].upper()}{line[1:]}."
+
+
+def margins(page: PageParts) -> PageSection:
+    """Return the margins, each with the state that governs it, and the lines of those who answer for the report."""
+    source, found = page.source, page.margins
+    run = "" if source.result.complete else " of an unfinished run"
+    states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
+    words = f"Margins of safety over {states}{run}: allowable/value - 1"
+    remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
+    remarks += "down to a third of the hole's radius below them; fastpin is elastic."
+    if any(row.part for row in found):
+        remarks += " Of the plate only the edge of its hole is looked at: its other places may fail first."
+    rows, author = margin_rows(source.case.problem, found), source.case.about.author
+    signed = [("prepared", author, "", ""), ("checked", "", "", ""), ("approved", "", "", "")]
+    return PageSection(
+        "margins",
+        "Margins",
+        [
+            Text(sentence(verdict(found, source.result.complete))),
+            Facts(words, rows, HEADS),
+            Text(remarks),
+            Facts("Signatures", signed, ("", "name", "date", "signature"), tall=True),
+        ],
+    )

@@ -14,8 +14,7 @@ from fastpin.figures.sweep import sweep_of, sweeps_of
 from fastpin.figures.tolerances import samples_of, tornado_of
 from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance
-from fastpin.pages.album import Album
-from fastpin.pages.content import Facts, Items, Listing, Page, PageSection, SectionPart, Table, Text
+from fastpin.pages.content import Album, Facts, Items, Listing, Page, PageSection, SectionPart, Table, Text
 from fastpin.pages.result import merged
 from fastpin.pages.source import now
 from fastpin.pages.writing import check_page, write_page

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fastpin.assess.table import columns_at, printed_rows
+from fastpin.assess.outputs import columns_at, printed_rows
 from fastpin.assess.wear import DEBRIS, cycle_columns, cycle_lines, followed_words, law_rows
 from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import criterion_title
@@ -19,7 +19,6 @@ from fastpin.model.ties import top, top_angle
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
 from fastpin.pages.content import Facts, Items, PageSection, SectionPart, Table, Text
-from fastpin.pages.margins import PageParts, margins, sentence
 from fastpin.pages.sections import (
     ANGLES,
     case,
@@ -33,7 +32,7 @@ from fastpin.pages.sections import (
     warnings_and_notes,
     zones,
 )
-from fastpin.pages.source import Source
+from fastpin.pages.source import PageParts, Source, margins, sentence
 from fastpin.report.states import TableRows, way_on
 from fastpin.solver.wear_result import WearResult
 from fastpin.states.margins import over_yield_words

@@ -18,8 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
-from fastpin.assess.outputs import Curve
-from fastpin.assess.table import aligned
+from fastpin.assess.outputs import Curve, aligned
 from fastpin.figures.sheet import Look
 from fastpin.figures.style import (
     Line,

@@ -9,9 +9,8 @@ import numpy as np
 
 from fastpin.assess.crack import crack_words
 from fastpin.assess.fatigue import assessment_words
-from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.outputs import ROUNDING, Column, table, visible_rows
 from fastpin.assess.strength import strength_words
-from fastpin.assess.table import Column, table, visible_rows
 from fastpin.model import Case, LoadHistory, Material, Problem, Wear
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load

@@ -15,8 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fastpin.assess.outputs import ROUNDING, csv_cell, json_ready, unit_names
-from fastpin.assess.table import Column, table
+from fastpin.assess.outputs import ROUNDING, Column, csv_cell, json_ready, table, unit_names
 from fastpin.model.problem import Problem
 from fastpin.model.units import DEGREE, named_loads, printed_loads, scaled, units
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from fastpin import storage
-from fastpin.assess import table
+from fastpin.assess import outputs
 from fastpin.assess.outputs import ROUNDING
 from fastpin.model import LOADS, Case, Problem
 from fastpin.model.angles import from_bottom, interval_from_bottom
@@ -49,18 +49,18 @@ class TableRows:
     Attributes
     ----------
     lines : list of int, Repeat or LeftOut
-        The lines of the table, see :mod:`fastpin.assess.table`. A row has the place of its state as number.
+        The lines of the table, see :mod:`fastpin.assess.outputs`. A row has the place of its state as number.
     points : ndarray, shape (rows,)
         Load points of all rows.
     """
 
-    lines: list[table.TableLine]
+    lines: list[outputs.TableLine]
     points: np.ndarray
 
     @property
     def printed(self) -> list[int]:
         """The places of the states that have a line of their own."""
-        return table.printed_rows(self.lines)
+        return outputs.printed_rows(self.lines)
 
     @property
     def names(self) -> list[str]:
@@ -76,7 +76,7 @@ class TableRows:
             if isinstance(line, int):
                 printed += 1
             else:
-                words = table.line_words(LOAD_POINT, names, line)
+                words = outputs.line_words(LOAD_POINT, names, line)
                 found[printed] = f"{found[printed]}; {words}" if printed in found else words
         return found
 
@@ -104,21 +104,21 @@ def table_rows(
     """
     if points is None:
         points = np.array([load_point(state) for state in states])
-    same = table.row_numbers(map(_identity, states))
+    same = outputs.row_numbers(map(_identity, states))
     numbers, first = np.unique(same, return_index=True)
     rows = same if rows is None else same[rows]
     if numbers.size > MOST_COMPARED:
-        return TableRows(table.with_rows(table.cut_lines(rows.size), wanted), points)
+        return TableRows(outputs.with_rows(outputs.cut_lines(rows.size), wanted), points)
     given = [name for name in LOADS if name not in problem.reactions]
-    if numbers.size < rows.size or table.repeats(
-        table.row_numbers(tuple(state.load[name] for name in given) for state in states)
+    if numbers.size < rows.size or outputs.repeats(
+        outputs.row_numbers(tuple(state.load[name] for name in given) for state in states)
     ):
         columns = state_columns(problem, [states[place] for place in first.tolist()])
         # A state differs from the same state one cycle before in its number, in a sum, and by rounding.
         own = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
         cells = zip(*(cells for name, _, cells in columns if name not in own), strict=True)
-        rows = table.row_numbers(cells)[rows]
-    return TableRows(table.with_rows(table.folded_lines(rows), wanted), points)
+        rows = outputs.row_numbers(cells)[rows]
+    return TableRows(outputs.with_rows(outputs.folded_lines(rows), wanted), points)
 
 
 def stored_rows(
@@ -145,7 +145,7 @@ def stored_rows(
     alike = _places_alike(points, cycles)
     places, rows = np.unique(alike, return_inverse=True)
     if places.size > MOST_COMPARED:
-        return TableRows(table.with_rows(table.cut_lines(points.size), wanted), points)
+        return TableRows(outputs.with_rows(outputs.cut_lines(points.size), wanted), points)
     return table_rows(problem, read(places.tolist()), rows, points, wanted)
 
 
@@ -205,10 +205,10 @@ def state_table(problem: Problem, states: Sequence[State], rows: TableRows | Non
     if rows is None:
         rows = table_rows(problem, states)
         states = [states[place] for place in rows.printed]
-    return table.table_of_lines(state_columns(problem, states), rows.lines, rows.names)
+    return outputs.table_of_lines(state_columns(problem, states), rows.lines, rows.names)
 
 
-def state_columns(problem: Problem, states: Sequence[State]) -> list[table.Column]:
+def state_columns(problem: Problem, states: Sequence[State]) -> list[outputs.Column]:
     """Return the columns of :func:`state_table`, with a cell for each state.
 
     Raises
@@ -218,10 +218,10 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[table.Colum
     """
     states = _checked(problem, states)
 
-    def column(name: str, digits: int = 5, natural: float = 0.0) -> table.Column:
+    def column(name: str, digits: int = 5, natural: float = 0.0) -> outputs.Column:
         return quantity_column(problem, states, name, digits, natural)
 
-    def angles(name: str) -> table.Column:
+    def angles(name: str) -> outputs.Column:
         return ("at", *quantity_column(problem, states, name)[1:])
 
     strain = problem.surfaces.beta_star * max((state.peak_pressure for state in states), default=0.0)
@@ -250,7 +250,7 @@ def _checked(problem: Problem, states: Sequence[State]) -> list[State]:
 
 def quantity_column(
     problem: Problem, states: Sequence[State], name: str, digits: int = 5, natural: float = 0.0
-) -> table.Column:
+) -> outputs.Column:
     """Return the label of a quantity, its unit, and its value in each state with its error bar, if there is one.
 
     Values below :data:`ROUNDING` of the largest, or of the size `natural`, become 0.
@@ -392,9 +392,9 @@ def cycle_lines(problem: Problem, cycles: Sequence[Cycle], states: Sequence[Stat
     found = [sizes(state) for state in states]
     natural = {kind: max((each[kind] for each in found), default=0.0) for kind in ("energy", "rotation")}
     lines = [_block_line(problem, block, natural) for block in consecutive_cycles(cycles)]
-    if len(lines) > table.MAX_ROWS // 2:
-        lines[table.MAX_ROWS // 4 : -table.MAX_ROWS // 4] = [
-            f"... {len(lines) - table.MAX_ROWS // 2} more blocks of cycles ..."
+    if len(lines) > outputs.MAX_ROWS // 2:
+        lines[outputs.MAX_ROWS // 4 : -outputs.MAX_ROWS // 4] = [
+            f"... {len(lines) - outputs.MAX_ROWS // 2} more blocks of cycles ..."
         ]
     return lines
 

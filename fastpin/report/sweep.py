@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.assess.outputs import ROUNDING, Curve, csv_cell
+from fastpin.assess.outputs import ROUNDING, Column, Curve, csv_cell, table
 from fastpin.assess.strength import strength_words
-from fastpin.assess.table import Column, table
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import InputError
 from fastpin.model import LOADS, Case, Problem, Profile, StrengthAssessment, Wear

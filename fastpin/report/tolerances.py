@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.assess.table import Column, table
+from fastpin.assess.outputs import Column, table
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
 from fastpin.model.synonyms import closest

@@ -23,7 +23,7 @@ from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.ply import PLY_KEYS
 from fastpin.model.profile import MOST_TERMS, InitialGap, Profile
 from fastpin.model.profile_terms import MOST_SAMPLES, TERMS, Term
-from fastpin.storage.damage import as_python, dataset_of, text_of
+from fastpin.storage.hdf5 import as_python, dataset_of, text_of
 
 LAMINATE = "laminate"
 """Group of a material that is a laminate: its axis, and its compliances or its plies."""

@@ -15,7 +15,7 @@ from fastpin.model.units import units_per_thickness
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.storage import layout
-from fastpin.storage.damage import as_python
+from fastpin.storage.hdf5 import as_python
 from fastpin.storage.store import open_result
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from fastpin.states.extremes import Found, KeptStates, yield_doubts, yield_doubt
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.states.walking import walk_doubts
-from fastpin.storage.damage import text_of
+from fastpin.storage.hdf5 import text_of
 from fastpin.storage.layout import RESIDUALS
 from fastpin.storage.store import load, load_points, open_result, places_between
 from fastpin.storage.stored_states import read_extremes

@@ -27,9 +27,9 @@ from fastpin.solver.task import Task
 from fastpin.states.extremes import KeptStates
 from fastpin.states.state import State
 from fastpin.storage import hdf5, layout, packed
-from fastpin.storage.damage import reading, text_of
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import check_exists, check_writable, replacing
+from fastpin.storage.hdf5 import reading, text_of
 from fastpin.storage.journal import open_h5
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.stored_states import all_nodes, read_states, write_extremes

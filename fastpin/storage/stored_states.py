@@ -20,7 +20,7 @@ from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Ke
 from fastpin.states.reading_bounds import NUMBERS, StateBlock
 from fastpin.states.state import State
 from fastpin.storage import hdf5, layout
-from fastpin.storage.damage import check_between, check_extremes, check_finite, dataset_of, text_of
+from fastpin.storage.hdf5 import check_between, check_extremes, check_finite, dataset_of, text_of
 
 
 def read_seat_grid(file: h5py.Group, problem: Problem, grid: Grid) -> Grid | None:

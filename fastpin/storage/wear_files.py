@@ -29,8 +29,8 @@ from fastpin.solver.run import RunProgress
 from fastpin.solver.task import as_history
 from fastpin.solver.wear import CyclesInMemory, FrictionRule, WearTask
 from fastpin.storage import hdf5, layout
-from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of, text_of
 from fastpin.storage.files import check_exists, check_writable
+from fastpin.storage.hdf5 import as_python, check_between, check_finite, dataset_of, numbers_of, text_of
 from fastpin.storage.journal import is_empty
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import load, open_result

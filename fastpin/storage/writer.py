@@ -24,9 +24,9 @@ from fastpin.solver.task import Task, deferred_interrupts
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 from fastpin.storage import hdf5, layout
-from fastpin.storage.damage import reading
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import forget_temporaries, replacing
+from fastpin.storage.hdf5 import reading
 from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin.assess.table import (
+from fastpin.assess.outputs import (
     MAX_ROWS,
     LeftOut,
     Repeat,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.assess.table import MAX_ROWS
+from fastpin.assess.outputs import MAX_ROWS
 from fastpin.errors import InputError
 from fastpin.model.case import About
 from fastpin.model.wear import cycles_text

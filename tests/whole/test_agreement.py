@@ -16,8 +16,8 @@ from fastpin.model import FatigueAssessment
 from fastpin.model.beside import beside_of
 from fastpin.model.materials import MaterialPair
 from fastpin.model.units import units
-from fastpin.pages.margins import margins
 from fastpin.pages.sections import crack, fatigue, strength
+from fastpin.pages.source import margins
 from fastpin.pages.wear import damage, numbers, overview
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import value_of
