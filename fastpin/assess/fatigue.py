@@ -9,23 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fastpin import damage
-from fastpin.assess.outputs import (
-    NUMBER,
-    OPTIONAL_TEXT,
-    ROUNDING,
-    UNKNOWN,
-    WHOLE,
-    Curve,
-    Output,
-    Progress,
-    Schema,
-    chosen,
-    kept,
-    list_of,
-    object_of,
-    properties,
-)  # fmt: skip
-from fastpin.assess.outputs import document as document_of
+from fastpin.assess import outputs
 from fastpin.damage.criteria import Criterion, criterion_title
 from fastpin.damage.margins import MOST_STOPS, reserve_margins
 from fastpin.damage.spectrum import bodies_with_lives
@@ -67,27 +51,27 @@ MOST_LISTED = 100
 
 
 HOW = (
-    Output("criterion", "texts", lambda how: list(how.criteria), allowed=LIFE_CONSTANTS),
-    Output("over", "text", lambda how: how.over, allowed=SPECTRA),
-    Output("method", "text", lambda how: how.method, allowed=DISTANCES),
-    Output("small_cycles", "text", lambda how: how.small_cycles, allowed=MINER_RULES),
-    Output("knee", "", lambda how: how.knee, optional=True),
-    Output("life_asked", "", lambda how: how.life, optional=True),
+    outputs.Output("criterion", "texts", lambda how: list(how.criteria), allowed=LIFE_CONSTANTS),
+    outputs.Output("over", "text", lambda how: how.over, allowed=SPECTRA),
+    outputs.Output("method", "text", lambda how: how.method, allowed=DISTANCES),
+    outputs.Output("small_cycles", "text", lambda how: how.small_cycles, allowed=MINER_RULES),
+    outputs.Output("knee", "", lambda how: how.knee, optional=True),
+    outputs.Output("life_asked", "", lambda how: how.life, optional=True),
 )
 """Outputs of a :class:`fastpin.model.FatigueAssessment`."""
 
 
 DAMAGE = (
-    Output("criterion", "text", lambda found: found.criterion, allowed=LIFE_CONSTANTS),
-    Output("body", "text", lambda found: found.body, allowed=BODIES),
-    Output("damage", "", lambda found: found.hot_spot.damage),
-    Output(
+    outputs.Output("criterion", "text", lambda found: found.criterion, allowed=LIFE_CONSTANTS),
+    outputs.Output("body", "text", lambda found: found.body, allowed=BODIES),
+    outputs.Output("damage", "", lambda found: found.hot_spot.damage),
+    outputs.Output(
         "life", "life", lambda found: found.hot_spot.life,
         "spectra, or cycles over the last cycle; null without damage", optional=True,
     ),
-    Output("angle", "angle", lambda found: found.hot_spot.theta, optional=True),
-    Output("depth", "length", lambda found: found.hot_spot.depth, optional=True),
-    Output("plane", "width", lambda found: found.hot_spot.plane, optional=True),
+    outputs.Output("angle", "angle", lambda found: found.hot_spot.theta, optional=True),
+    outputs.Output("depth", "length", lambda found: found.hot_spot.depth, optional=True),
+    outputs.Output("plane", "width", lambda found: found.hot_spot.plane, optional=True),
 )  # fmt: skip
 """Outputs of a :class:`fastpin.damage.SpectrumDamage`: those of its hot spot. The plane's normal counts from +x."""
 
@@ -98,7 +82,7 @@ FAILED = ""
 MARGINS = ("fatigue",)
 
 
-@kept
+@outputs.kept
 def worst_damage(result: Any, how: FatigueAssessment) -> Any:
     """Return the largest damage by the first criterion. It is kept while the result lives.
 
@@ -136,7 +120,7 @@ class Assessed(NamedTuple):
         return self.how.method == "edge" and self.how.angles is None
 
 
-def find(case: Case, held: Held | None, progress: Progress | None = None) -> Assessed | None:
+def find(case: Case, held: Held | None, progress: outputs.Progress | None = None) -> Assessed | None:
     """Assess the fatigue of a whole result as its case asks for it; None if the case does not."""
     if case.fatigue is None:
         return None
@@ -144,7 +128,7 @@ def find(case: Case, held: Held | None, progress: Progress | None = None) -> Ass
         return Assessed(case.fatigue, [], [], "the history has not come to its end")
     result = held.whole()
 
-    def half(begin: float) -> Progress | None:
+    def half(begin: float) -> outputs.Progress | None:
         return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
 
     try:
@@ -154,7 +138,9 @@ def find(case: Case, held: Held | None, progress: Progress | None = None) -> Ass
         return Assessed(case.fatigue, [], [], str(error))
 
 
-OUTCOMES = {name: (output, worst_damage) for name, output in chosen(DAMAGE, ("life", "damage", "angle")).items()}
+OUTCOMES = {
+    name: (output, worst_damage) for name, output in outputs.chosen(DAMAGE, ("life", "damage", "angle")).items()
+}
 """Outcomes of sweeps: those of the hot spot with the largest damage of all bodies."""
 
 
@@ -168,13 +154,15 @@ def margins(assessed: Assessed) -> list[Margin]:
     return reserve_margins(assessed.reserves, assessed.how)
 
 
-def schema() -> Schema:
+def schema() -> outputs.Schema:
     """Return the JSON schema of :func:`document`."""
-    numbers = dict.fromkeys(("start", "stop", "largest", "parameter", "damage"), NUMBER)
+    numbers = dict.fromkeys(("start", "stop", "largest", "parameter", "damage"), outputs.NUMBER)
     words = "counted cycles at the hot spot, the largest damage first; start and stop are load points"
-    cycles = list_of(object_of(numbers | {"times": WHOLE})) | {"description": words}
-    body = object_of(properties(DAMAGE) | {"cycles": cycles, "over_yield": UNKNOWN})
-    return object_of(properties(HOW) | {"error": OPTIONAL_TEXT, "bodies": list_of(body)})
+    cycles = outputs.list_of(outputs.object_of(numbers | {"times": outputs.WHOLE})) | {"description": words}
+    body = outputs.object_of(outputs.properties(DAMAGE) | {"cycles": cycles, "over_yield": outputs.UNKNOWN})
+    return outputs.object_of(
+        outputs.properties(HOW) | {"error": outputs.OPTIONAL_TEXT, "bodies": outputs.list_of(body)}
+    )
 
 
 def lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]:
@@ -222,8 +210,8 @@ def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
         cycles = {name: getattr(one.cycles, name)[:MOST_LISTED].tolist() for name in one.cycles._fields}
         rows = [dict(zip(cycles, row, strict=True)) for row in zip(*cycles.values(), strict=True)]
         over_yield = over.get(owner_of(one.problem, one.body))
-        bodies.append(document_of(DAMAGE, one, units(one.problem)) | {"cycles": rows, "over_yield": over_yield})
-    return document_of(HOW, assessed.how, {}) | {"error": assessed.reason or None, "bodies": bodies}
+        bodies.append(outputs.document(DAMAGE, one, units(one.problem)) | {"cycles": rows, "over_yield": over_yield})
+    return outputs.document(HOW, assessed.how, {}) | {"error": assessed.reason or None, "bodies": bodies}
 
 
 def assessment_words(how: FatigueAssessment) -> str:
@@ -300,7 +288,7 @@ def hot_spot_line(found: damage.Fatigue, states: Sequence[State], over: Mapping[
     spot, problem = found.hot_spot, found.problem
     name = f"fatigue of the {edge_body(problem, found.body)} in the last cycle, {criterion_title(found.criterion)}"
     pressure = max((state.peak_pressure for state in states), default=0.0)
-    if spot.parameter <= ROUNDING * problem.surfaces.beta_star * pressure**2:
+    if spot.parameter <= outputs.ROUNDING * problem.surfaces.beta_star * pressure**2:
         return f"{name}: none, no plane has both tension and a changing strain"
     parts = [f"{units(problem)['stress times strain'].text(spot.parameter, 4)} at {from_bottom(spot.theta):z.2f} deg"]
     if np.isfinite(spot.plane):
@@ -310,7 +298,7 @@ def hot_spot_line(found: damage.Fatigue, states: Sequence[State], over: Mapping[
     return f"{name}: {', '.join(parts)}{over_yield_words(over, owner_of(problem, found.body))}"
 
 
-def spectrum_curve(found: damage.SpectrumDamage) -> Curve:
+def spectrum_curve(found: damage.SpectrumDamage) -> outputs.Curve:
     """Return angle, depth, damage, plane and life of the points, in the order of the angles, as :func:`fatigue_curve`.
 
     The damage is that of one spectrum, and the life counts spectra.
@@ -319,7 +307,7 @@ def spectrum_curve(found: damage.SpectrumDamage) -> Curve:
     return _by_angle(found, columns | {"life [spectra]": found.life})
 
 
-def fatigue_curve(found: damage.Fatigue) -> Curve:
+def fatigue_curve(found: damage.Fatigue) -> outputs.Curve:
     """Return angle, depth, parameter, plane and life of the points, in the order of the angles.
 
     Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis.
@@ -332,9 +320,11 @@ def fatigue_curve(found: damage.Fatigue) -> Curve:
     return _by_angle(found, columns)
 
 
-def _by_angle(found: damage.Fatigue | damage.SpectrumDamage, columns: dict[str, np.ndarray]) -> Curve:
+def _by_angle(found: damage.Fatigue | damage.SpectrumDamage, columns: dict[str, np.ndarray]) -> outputs.Curve:
     """Return columns of points with their angles and depths, in the order of the angles."""
     angles = np.array([from_bottom(angle) for angle in found.theta.ravel().tolist()])
     places = {"angle [deg]": angles, f"depth [{units(found.problem)['length'].name}]": found.depth}
     order = np.argsort(angles, kind="stable")
-    return Curve({"body": found.body}, {name: np.ravel(each)[order] for name, each in (places | columns).items()})
+    return outputs.Curve(
+        {"body": found.body}, {name: np.ravel(each)[order] for name, each in (places | columns).items()}
+    )

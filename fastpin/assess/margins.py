@@ -16,7 +16,7 @@ from fastpin.damage.margins import last_cycle_margins
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, printed_loads, units
 from fastpin.states.cycles import Cycle
-from fastpin.states.extremes import KeptStates, marked_extremes
+from fastpin.states.extremes import Found, KeptStates, marked_extremes
 from fastpin.states.margins import (
     Margin,
     over_yield,
@@ -72,9 +72,13 @@ def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...
 @kept
 def _margins(result: Any, sections: tuple[tuple[str, Any], ...]) -> list[Margin]:
     """All margins of a result, as ``fastpin run`` prints them."""
-    found = {name: QUESTIONS[name].judged(result, how) for name, how in sections}
-    states = KeptStates(result.states)
-    static = static_margins(result.problem, marked_extremes(states), states.read)
+    return margins_of(result, {name: QUESTIONS[name].judged(result, how) for name, how in sections})
+
+
+def margins_of(result: Any, found: Mapping[str, Any]) -> list[Margin]:
+    """Return the known margins of a result in memory over all its states. See :func:`all_margins`."""
+    kept = KeptStates(result.states)
+    static = static_margins(result.problem, marked_extremes(kept) if result.states else Found(), kept.read)
     return result_margins(result.problem, static, result.states, result.cycles, found)
 
 

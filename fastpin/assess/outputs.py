@@ -28,6 +28,33 @@ Progress = Callable[[float, float], None]
 ROUNDING = 1e-9
 """Values and differences below this part of the largest of their kind are rounding. They are shown as 0."""
 
+NUMBER: Schema = {"type": "number"}
+
+WHOLE: Schema = {"type": "integer"}
+
+TEXT: Schema = {"type": "string"}
+
+TRUTH: Schema = {"type": "boolean"}
+
+UNKNOWN: Schema = {"type": ["number", "null"]}
+
+OPTIONAL_TEXT: Schema = {"type": ["string", "null"]}
+"""Schemas of single values. NaN and infinity are null."""
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+MAX_ROWS = 40
+"""Most lines of a printed table, below its head."""
+
+LEAST_REPEATED = 3
+"""Least rows that one line replaces: of fewer rows the table is as short."""
+
+LONGEST_PERIOD = 1_000
+"""Most rows of a period that is looked for: a table of more rows is cut before it repeats itself."""
+
+Column = tuple[str, str, list[str]]
+"""A column of a table: its name, its unit and its cells."""
+
 
 class Output(NamedTuple):
     """An output of a subject, such as a crack that grows.
@@ -117,15 +144,6 @@ def chosen(outputs: Iterable[Output], names: Sequence[str]) -> dict[str, Output]
     return {name: known[name] for name in names}
 
 
-NUMBER: Schema = {"type": "number"}
-WHOLE: Schema = {"type": "integer"}
-TEXT: Schema = {"type": "string"}
-TRUTH: Schema = {"type": "boolean"}
-UNKNOWN: Schema = {"type": ["number", "null"]}
-OPTIONAL_TEXT: Schema = {"type": ["string", "null"]}
-"""Schemas of single values. NaN and infinity are null."""
-
-
 def object_of(
     parts: Mapping[str, Schema], required: Iterable[str] | None = None, without: Iterable[str] = ()
 ) -> Schema:
@@ -211,9 +229,6 @@ def _cell(value: Any) -> str:
     return "" if math.isnan(value) else f"{value:.9g}"
 
 
-Function = TypeVar("Function", bound=Callable[..., Any])
-
-
 def kept(function: Function) -> Function:
     """Let a function keep its values while its first argument lives, such as a result of which several outcomes ask.
 
@@ -248,19 +263,6 @@ def json_ready(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
-
-
-MAX_ROWS = 40
-"""Most lines of a printed table, below its head."""
-
-LEAST_REPEATED = 3
-"""Least rows that one line replaces: of fewer rows the table is as short."""
-
-LONGEST_PERIOD = 1_000
-"""Most rows of a period that is looked for: a table of more rows is cut before it repeats itself."""
-
-Column = tuple[str, str, list[str]]
-"""A column of a table: its name, its unit and its cells."""
 
 
 class Repeat(NamedTuple):

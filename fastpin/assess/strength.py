@@ -8,22 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from fastpin import damage, solver
-from fastpin.assess.outputs import (
-    NUMBER,
-    OPTIONAL_TEXT,
-    UNKNOWN,
-    WHOLE,
-    Output,
-    Progress,
-    Schema,
-    chosen,
-    kept,
-    map_of,
-    object_of,
-    or_null,
-    properties,
-)  # fmt: skip
-from fastpin.assess.outputs import document as document_of
+from fastpin.assess import outputs
 from fastpin.damage.hole_strength import JOINT_MODES
 from fastpin.damage.laminates import MODES
 from fastpin.damage.margins import strength_margins
@@ -58,20 +43,20 @@ MARGINS = ("ply",)
 
 
 PLACE = (
-    Output("load_point", "", lambda found: load_point(found.state)),
-    Output(
+    outputs.Output("load_point", "", lambda found: load_point(found.state)),
+    outputs.Output(
         "ratio", "", lambda found: found.strength.least_ratio,
         "factor on the stresses at which the first ply fails; null: no stress", optional=True,
     ),
-    Output("angle", "angle", lambda found: found.strength.angle),
-    Output("depth", "length", lambda found: float(found.strength.depth[found.strength.least])),
-    Output(
+    outputs.Output("angle", "angle", lambda found: found.strength.angle),
+    outputs.Output("depth", "length", lambda found: float(found.strength.depth[found.strength.least])),
+    outputs.Output(
         "ply", "whole", lambda found: int(found.strength.ply[found.strength.least]),
         "place in the stack, 0 for the lowest ply",
     ),
-    Output("ply_angle", "", lambda found: found.strength.ply_angle),
-    Output("ply_mode", "text", lambda found: found.strength.ply_mode, allowed=MODES),
-    Output("joint_mode", "text", lambda found: found.strength.joint_mode, allowed=("", *JOINT_MODES)),
+    outputs.Output("ply_angle", "", lambda found: found.strength.ply_angle),
+    outputs.Output("ply_mode", "text", lambda found: found.strength.ply_mode, allowed=MODES),
+    outputs.Output("joint_mode", "text", lambda found: found.strength.joint_mode, allowed=("", *JOINT_MODES)),
 )  # fmt: skip
 """Outputs of a state and its strength: the least ratio, and its place."""
 
@@ -100,7 +85,7 @@ class StrengthFound(NamedTuple):
     reason: str = ""
 
 
-@kept
+@outputs.kept
 def worst_state(result: Any, how: StrengthAssessment) -> StrengthFound:
     """Return the strength in the worst state of a result. It is kept while the result lives.
 
@@ -126,8 +111,8 @@ def _load_at_failure(result: Any, how: StrengthAssessment) -> FailureLoad:
         )  # fmt: skip
 
 
-OUTCOMES = {name: (output, worst_state) for name, output in chosen(PLACE, ("ratio", "angle")).items()} | {
-    "factor": (Output("factor", "", lambda found: found.factor), _load_at_failure)
+OUTCOMES = {name: (output, worst_state) for name, output in outputs.chosen(PLACE, ("ratio", "angle")).items()} | {
+    "factor": (outputs.Output("factor", "", lambda found: found.factor), _load_at_failure)
 }
 """Outcomes of sweeps. The history is solved several times for the "factor" at failure."""
 
@@ -137,17 +122,19 @@ def margins(found: StrengthFound) -> list[Margin]:
     return strength_margins(found.how, found.state, found.strength)
 
 
-def schema() -> Schema:
+def schema() -> outputs.Schema:
     """Return the JSON schema of :func:`document`."""
-    place, loads = properties(PLACE), map_of(NUMBER, "loads of the state that fails")
-    return object_of(
+    place, loads = outputs.properties(PLACE), outputs.map_of(outputs.NUMBER, "loads of the state that fails")
+    return outputs.object_of(
         {
             "criterion": {"enum": list(CRITERION_NAMES)},
-            **dict.fromkeys(LENGTHS, UNKNOWN),
-            "states": WHOLE,
+            **dict.fromkeys(LENGTHS, outputs.UNKNOWN),
+            "states": outputs.WHOLE,
             **place,
-            "failure": or_null(object_of({"factor": NUMBER, "load": loads, "solved": WHOLE, **place})),
-            "error": OPTIONAL_TEXT,
+            "failure": outputs.or_null(
+                outputs.object_of({"factor": outputs.NUMBER, "load": loads, "solved": outputs.WHOLE, **place})
+            ),
+            "error": outputs.OPTIONAL_TEXT,
         }
     )
 
@@ -161,7 +148,7 @@ def strength_words(problem: Problem, how: StrengthAssessment) -> str:
     return f"{how.criterion} on the characteristic curve of {' and '.join(lengths)}"
 
 
-def find(case: Case, held: Held | None, progress: Progress | None = None) -> StrengthFound | None:
+def find(case: Case, held: Held | None, progress: outputs.Progress | None = None) -> StrengthFound | None:
     """Return the strength in the worst state as [strength] asks for it, and its load at failure if the run is complete.
 
     None without a state.
@@ -221,13 +208,13 @@ def document(found: StrengthFound, over: Mapping[str, float]) -> dict[str, Any]:
     if found.failure is not None:
         load = printed_loads(found.state.problem, found.failure.state.load)
         failure = {"factor": found.failure.factor, "load": load, "solved": found.failure.solved}
-        failure |= document_of(PLACE, found.failure, unit)
+        failure |= outputs.document(PLACE, found.failure, unit)
     return {
         "criterion": found.how.criterion,
         **dict.fromkeys(LENGTHS),
         **lengths,
         "states": found.states,
-        **document_of(PLACE, found, unit),
+        **outputs.document(PLACE, found, unit),
         "failure": failure,
         "error": found.reason or None,
     }

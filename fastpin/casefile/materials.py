@@ -29,6 +29,9 @@ FILE_KEYS = ("E", "nu", "yield_strength", "ultimate_strength", "fatigue", "growt
 
 _FATIGUE_KEYS = tuple(field.name for field in fields(FatigueConstants))
 
+KINDS = {"layup": ("layup", "ply"), "E1": MODULI, "compliance": ("compliance",)}
+"""The ways to give a laminate: the key that names the way, and all its keys."""
+
 
 def read_pair(source: CaseText, materials: Mapping[str, Material]) -> MaterialPair | None:
     """The materials of pin and plate. None if they can't be used. The reason is reported.
@@ -272,10 +275,6 @@ def _materials_in(source: CaseText) -> dict[str, Material]:
         if material is not None:
             found[name] = replace(material, name=name)
     return found
-
-
-KINDS = {"layup": ("layup", "ply"), "E1": MODULI, "compliance": ("compliance",)}
-"""The ways to give a laminate: the key that names the way, and all its keys."""
 
 
 def read_laminate(source: CaseText, section: Section) -> Laminate | None:

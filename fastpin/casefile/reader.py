@@ -241,11 +241,10 @@ def _check_keys(source: CaseText) -> None:
         if name in KEYS:
             for section in source.blocks(name):
                 section.check_keys(KEYS[name], f" in {_in_brackets(name)}", hint=partial(key_hint, name))
-        elif shown := written(name, value):
-            source.report(f"unknown section {shown}{_section_hint(name)}", name)
+        elif written(name, value):
+            source.report_unknown(name, _section_hint(name))
         else:
-            hint = _owners(name) or closest(name, ROOT_KEYS) or _elsewhere(name)
-            source.report(f'unknown key "{name}" before the first section{hint}', name)
+            source.report_unknown(name, _owners(name) or closest(name, ROOT_KEYS) or _elsewhere(name))
 
 
 def _section_hint(name: str) -> str:

@@ -23,6 +23,24 @@ ROUNDING = 1e-9
 NEAT = 0.4563
 """1/epsilon^2 of a neat fit of like bodies without friction, with the half-angle epsilon of 84.8 degrees."""
 
+FIRST_LOAD = ("peak_pressure", "peak_pressure_angle", "contact_angle", "stick_angle", "kt_bearing", "peak_hoop_angle")
+"""Quantities of the first load, in the order of ``scripts/charts_runs.py``."""
+
+CYCLE = ("cycle_energy", "cycle_slip_range", "cycle_stick_angle", "cycle_peak_pressure", "cycle_kt_bearing")
+"""Quantities of a load cycle, in the order of ``scripts/charts_runs.py``."""
+
+METALS = 1.0 / 3.2, 1.0 / 2.5
+"""1/(kappa + 1) of Kolosov's constants 2.2 and 1.5: nu from 0.2 to 0.375 in plane strain, from 0.25 in plane stress."""
+
+DATA = Path(__file__).parent / "charts.npz"
+"""The data of the package."""
+
+VERSION = 4
+"""Version of the data: of the axes, the quantities and their scales."""
+
+FEW = 4
+"""Numbers of nodes of an axis up to which one polynomial goes through all nodes."""
+
 
 def width_coordinate(load_parameter: Any) -> Any:
     """The coordinate x = 1/sqrt(0.4563 + pi L_p) along the load parameter: about the frictionless half-angle, rad."""
@@ -148,17 +166,9 @@ class ChartGroup(NamedTuple):
         return found
 
 
-FIRST_LOAD = ("peak_pressure", "peak_pressure_angle", "contact_angle", "stick_angle", "kt_bearing", "peak_hoop_angle")
-"""Quantities of the first load, in the order of ``scripts/charts_runs.py``."""
-
-CYCLE = ("cycle_energy", "cycle_slip_range", "cycle_stick_angle", "cycle_peak_pressure", "cycle_kt_bearing")
-"""Quantities of a load cycle, in the order of ``scripts/charts_runs.py``."""
-
 WIDTHS = width_coordinate(100.0), width_coordinate(0.0)
 """Coordinates of the load parameters 100 and 0."""
 
-METALS = 1.0 / 3.2, 1.0 / 2.5
-"""1/(kappa + 1) of Kolosov's constants 2.2 and 1.5: nu from 0.2 to 0.375 in plane strain, from 0.25 in plane stress."""
 
 CYCLE_WIDTHS = width_coordinate(3.0), width_coordinate(0.02)
 """Coordinates of the load parameters 3 and 0.02."""
@@ -218,16 +228,6 @@ def _cycle_groups() -> list[ChartGroup]:
 
 GROUPS = {group.name: group for group in (*_first_load_groups(), *_cycle_groups())}
 """All groups by name."""
-
-
-DATA = Path(__file__).parent / "charts.npz"
-"""The data of the package."""
-
-VERSION = 4
-"""Version of the data: of the axes, the quantities and their scales."""
-
-FEW = 4
-"""Numbers of nodes of an axis up to which one polynomial goes through all nodes."""
 
 
 class Stored(NamedTuple):

@@ -19,6 +19,38 @@ from fastpin.model.checks import choice, in_one_shape, instance, known_name, num
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 
+FIRST_PARAMETERS = ("load_parameter", "friction", "alpha", "beta", "kolosov", "pin_load")
+"""Parameters of a chart of the first load."""
+
+CYCLE_PARAMETERS = ("load_parameter", "friction", "load_ratio", "alpha", "beta", "kolosov", "pin_load", "rotation")
+"""Parameters of a chart of a load cycle: those of the first load, and two more."""
+
+DEFAULTS: dict[str, Any] = {"alpha": 0.0, "beta": 0.0, "kolosov": 1.8, "pin_load": "centre", "rotation": "free"}
+"""Parameters that may be left out: like bodies with nu = 0.3 in plane strain, load at the centre, free rotation."""
+
+_CHOICES = {"pin_load": ("centre", "body"), "rotation": ("free", "fixed")}
+
+MOST_LOAD_PARAMETER, MOST_FRICTION = 10.0, 0.6
+"""Largest load parameter and coefficient of friction of the formulas."""
+
+DEGREE = 3
+"""Largest sum of powers of the polynomials."""
+
+SAMPLES = 61
+"""Values of load parameter and friction at which a formula is fitted, and twice as many for its error."""
+
+ROUNDS = 15
+"""Rounds of the fit. They lower its largest error."""
+
+DIGITS = 4
+"""Decimal places of the coefficients."""
+
+HEAD = ("x     =1/SQRT(0.4563+PI()*Lp)", "z     =mu/SQRT(mu^2+0.2*x^2)")
+"""Cells that all formulas use."""
+
+FACTORS = {"peak_pressure": "*SQRT(1.438+16*Lp/PI())", "contact_angle": "*x", "kt_bearing": ""}
+"""The quantities with a formula, and the factor of :data:`fastpin.charts.groups.STORED` as a spreadsheet has it."""
+
 
 @dataclass(frozen=True)
 class ChartQuantity:
@@ -70,15 +102,6 @@ class ChartValue:
         return float(self.value)
 
 
-FIRST_PARAMETERS = ("load_parameter", "friction", "alpha", "beta", "kolosov", "pin_load")
-"""Parameters of a chart of the first load."""
-
-CYCLE_PARAMETERS = ("load_parameter", "friction", "load_ratio", "alpha", "beta", "kolosov", "pin_load", "rotation")
-"""Parameters of a chart of a load cycle: those of the first load, and two more."""
-
-DEFAULTS: dict[str, Any] = {"alpha": 0.0, "beta": 0.0, "kolosov": 1.8, "pin_load": "centre", "rotation": "free"}
-"""Parameters that may be left out: like bodies with nu = 0.3 in plane strain, load at the centre, free rotation."""
-
 CHARTS = {
     chart.name: chart
     for chart in (
@@ -96,8 +119,6 @@ CHARTS = {
     )
 }
 """The charts by name."""
-
-_CHOICES = {"pin_load": ("centre", "body"), "rotation": ("free", "fixed")}
 
 
 def lookup(quantity: str, **parameters: Any) -> ChartValue:
@@ -281,29 +302,6 @@ def _check_joint(problem: Problem) -> None:
         raise InputError("rotation", 'must be "free" or "fixed" in the charts')
     if not problem.pair.plate.is_isotropic:
         raise InputError("plate", "must be isotropic in the charts: solve this joint")
-
-
-MOST_LOAD_PARAMETER, MOST_FRICTION = 10.0, 0.6
-"""Largest load parameter and coefficient of friction of the formulas."""
-
-DEGREE = 3
-"""Largest sum of powers of the polynomials."""
-
-SAMPLES = 61
-"""Values of load parameter and friction at which a formula is fitted, and twice as many for its error."""
-
-ROUNDS = 15
-"""Rounds of the fit. They lower its largest error."""
-
-DIGITS = 4
-"""Decimal places of the coefficients."""
-
-HEAD = ("x     =1/SQRT(0.4563+PI()*Lp)", "z     =mu/SQRT(mu^2+0.2*x^2)")
-"""Cells that all formulas use."""
-
-
-FACTORS = {"peak_pressure": "*SQRT(1.438+16*Lp/PI())", "contact_angle": "*x", "kt_bearing": ""}
-"""The quantities with a formula, and the factor of :data:`fastpin.charts.groups.STORED` as a spreadsheet has it."""
 
 
 @dataclass(frozen=True)

@@ -12,38 +12,27 @@ import numpy as np
 
 from fastpin import figures
 from fastpin.assess.outputs import Curve, aligned, write_csv
+from fastpin.charts import lookups
 from fastpin.charts.groups import GROUPS, STORED, ChartTable, TableAxis, parameter_range, tables
-from fastpin.charts.lookups import (
-    CHARTS,
-    CYCLE_PARAMETERS,
-    HEAD,
-    MOST_FRICTION,
-    MOST_LOAD_PARAMETER,
-    ChartQuantity,
-    ChartValue,
-    chart_formulas,
-    chart_of,
-    lookup,
-)
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.version import __version__
 
 
-def tables_of(chart: ChartQuantity) -> list[ChartTable]:
+def tables_of(chart: lookups.ChartQuantity) -> list[ChartTable]:
     """The tables that have a chart, in the order of their words."""
     found = [table for table in tables().values() if chart.name in table.group.quantities]
     return sorted(found, key=lambda table: table.group.words)
 
 
-def bounds_of(table: ChartTable, chart: ChartQuantity) -> tuple[float, float]:
+def bounds_of(table: ChartTable, chart: lookups.ChartQuantity) -> tuple[float, float]:
     """The middle and the largest bound of the cells of a table: parts of the value, or its unit."""
     bounds = table.bounds[..., table.group.quantities.index(chart.name)]
     return float(np.median(bounds)), float(bounds.max())
 
 
-def bound_text(chart: ChartQuantity, bound: float) -> str:
+def bound_text(chart: lookups.ChartQuantity, bound: float) -> str:
     """An error bound as text: a percentage, an angle in degrees, or a number with its unit."""
     if STORED[chart.name].is_relative:
         return f"{100.0 * bound:.2g} %"
@@ -53,12 +42,12 @@ def bound_text(chart: ChartQuantity, bound: float) -> str:
 def chart_list() -> str:
     """Return the list of all charts, with the error bounds of their tables, and the ranges of the parameters."""
     rows = [("chart", "table", "usual bound", "largest bound")]
-    for chart in CHARTS.values():
+    for chart in lookups.CHARTS.values():
         for table in tables_of(chart):
             usual, largest = (bound_text(chart, bound) for bound in bounds_of(table, chart))
             rows.append((chart.name, table.group.words, usual, largest))
-    width = max(map(len, CHARTS))
-    words = [f"  {name:<{width}}  {chart.words}" for name, chart in CHARTS.items()]
+    width = max(map(len, lookups.CHARTS))
+    words = [f"  {name:<{width}}  {chart.words}" for name, chart in lookups.CHARTS.items()]
     return "\n".join([*words, "", *aligned(rows, "llrr"), "", *_range_lines()])
 
 
@@ -87,7 +76,7 @@ def _span(axis: TableAxis) -> str:
     return f"{least:.4g} to {most:.4g}"
 
 
-def value_text(chart: ChartQuantity, found: ChartValue) -> str:
+def value_text(chart: lookups.ChartQuantity, found: lookups.ChartValue) -> str:
     """Return a value with its error, as text: angles in degrees."""
     value, error, unit = found.value, found.error, found.unit
     if unit == "rad":
@@ -98,9 +87,11 @@ def value_text(chart: ChartQuantity, found: ChartValue) -> str:
     return f"{chart.name} = {value:.{places}f} +- {error:.{places}f} {unit}".rstrip()
 
 
-def chart_document(chart: ChartQuantity | None, given: dict[str, Any], found: ChartValue | None) -> dict[str, Any]:
+def chart_document(
+    chart: lookups.ChartQuantity | None, given: dict[str, Any], found: lookups.ChartValue | None
+) -> dict[str, Any]:
     """Return the charts as a document for JSON: of all charts, or of one with the value at given parameters."""
-    listed = CHARTS.values() if chart is None else [chart]
+    listed = lookups.CHARTS.values() if chart is None else [chart]
     document: dict[str, Any] = {"fastpin": __version__, "charts": {}}
     for each in listed:
         bounds = {table.group.name: bounds_of(table, each) for table in tables_of(each)}
@@ -116,7 +107,7 @@ def chart_document(chart: ChartQuantity | None, given: dict[str, Any], found: Ch
     return document
 
 
-def write_chart(chart: ChartQuantity, path: Path) -> None:
+def write_chart(chart: lookups.ChartQuantity, path: Path) -> None:
     """Write the nodes of a chart as CSV: parameters, value and error bound, in SI angles.
 
     Raises
@@ -143,14 +134,14 @@ def write_chart(chart: ChartQuantity, path: Path) -> None:
 def formula_text() -> str:
     """Return the formulas for a spreadsheet, with the error of each."""
     lines = [
-        f"Cells: Lp, 0 to {MOST_LOAD_PARAMETER:g}, and mu, 0 to {MOST_FRICTION:g}.",
+        f"Cells: Lp, 0 to {lookups.MOST_LOAD_PARAMETER:g}, and mu, 0 to {lookups.MOST_FRICTION:g}.",
         "Like bodies with nu = 0.3 in plane strain, first load.",
         "Pressure and Kt are over the bearing stress P/(2 R); angles are in rad.",
         "",
-        *HEAD,
+        *lookups.HEAD,
     ]
-    for formula in chart_formulas():
-        chart = CHARTS[formula.quantity]
+    for formula in lookups.chart_formulas():
+        chart = lookups.CHARTS[formula.quantity]
         load = "body load" if formula.pin_load == "body" else "load at the centre"
         lines += ["", f"{chart.words}; {load}; error at most {100.0 * formula.error:.2g} %", formula.cell]
     return "\n".join(lines)
@@ -158,8 +149,8 @@ def formula_text() -> str:
 
 def run(options: argparse.Namespace) -> int:
     """Print the list of charts, the value of one, or formulas; draw the book; write the nodes of a chart."""
-    given = {name: value for name in CYCLE_PARAMETERS if (value := getattr(options, name)) is not None}
-    chart = None if options.chart is None else chart_of(options.chart)
+    given = {name: value for name in lookups.CYCLE_PARAMETERS if (value := getattr(options, name)) is not None}
+    chart = None if options.chart is None else lookups.chart_of(options.chart)
     if chart is None and given:
         raise InputError(flag(next(iter(given))), "has a meaning with the name of a chart only")
     if chart is None and options.csv is not None:
@@ -167,19 +158,22 @@ def run(options: argparse.Namespace) -> int:
     if options.book is not None and options.book.suffix.lower() != ".pdf":
         raise InputError("--book", f'must be the name of a PDF, which ends in .pdf, not "{options.book.name}"')
     check_outputs({"--csv": options.csv, "--json": options.json, "--book": options.book})
-    with as_options(CYCLE_PARAMETERS):
-        found = lookup(chart.name, **given) if chart is not None and given else None
+    with as_options(lookups.CYCLE_PARAMETERS):
+        found = lookups.lookup(chart.name, **given) if chart is not None and given else None
     if options.formulas and options.json != "-":
         say(*formula_text().split("\n"))
     elif chart is not None and found is not None and options.json != "-":
         say(value_text(chart, found))
     elif options.csv is None and options.book is None and options.json is None:
         say(*chart_list().split("\n"))
-    files = [(options.csv, lambda path: write_chart(chart_of(options.chart), path)), (options.book, _write_book)]
+    files = [
+        (options.csv, lambda path: write_chart(lookups.chart_of(options.chart), path)),
+        (options.book, _write_book),
+    ]
     return write_outputs(files, options.json, lambda: chart_document(chart, given, found))
 
 
 def _write_book(path: Path) -> None:
     """Write the book with a progress bar."""
-    with Bar(len(CHARTS) + 1, "{whole} of {total:,} pages") as bar:
+    with Bar(len(lookups.CHARTS) + 1, "{whole} of {total:,} pages") as bar:
         figures.write_chart_book(path, progress_to(bar))

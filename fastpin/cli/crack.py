@@ -33,10 +33,12 @@ def run(options: argparse.Namespace) -> int:
         (options.output, lambda path: figures.plot_crack_growth(found, path, case.title)),
         (options.csv, lambda path: write_csv([growth_curve(found)], path)),
     ]
-    code = write_outputs(files, options.json, lambda: report.summary.crack_document(case, found))
-    if options.json != "-":
-        say(growth_line(found), "")
-        say(*growth_table(found).split("\n"))
+    code = write_outputs(
+        files,
+        options.json,
+        lambda: report.summary.crack_document(case, found),
+        lambda: [growth_line(found), "", *growth_table(found).split("\n")],
+    )
     if not stops.is_spectrum and all(state.fraction == 1.0 for state in stops.states):
         words = "K between the corners is unknown: run --between 10 keeps states there"
         say(f"note: the cycle has only its {len(stops.states)} corners; {words}", file=sys.stderr)

@@ -16,23 +16,10 @@ import numpy as np
 from fastpin import assess, casefile, figures, live, report, solver, storage
 from fastpin.assess.margins import margin_lines
 from fastpin.assess.questions import QUESTIONS
-from fastpin.cli import wear
+from fastpin.cli import terminal, wear
 from fastpin.cli.options import literal
 from fastpin.cli.plot import load_seat, seat_title
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
-from fastpin.cli.terminal import (
-    EXIT_FAILED,
-    EXIT_INTERRUPTED,
-    EXIT_OK,
-    Readings,
-    as_options,
-    check_outputs,
-    fail,
-    flag,
-    say,
-    write_outputs,
-    write_text,
-)
 from fastpin.damage.margins import MOST_STOPS
 from fastpin.errors import InputError, ReadingError
 from fastpin.kernels import first
@@ -72,14 +59,14 @@ def run(options: argparse.Namespace) -> int:
     _check_outputs(options)
     if start is not None and start.grid.size != case.options.nodes:
         nodes = f"the {start.grid.size} nodes of {options.start} are used, not {case.options.nodes}"
-        say(f"note: {nodes}", file=sys.stderr)
+        terminal.say(f"note: {nodes}", file=sys.stderr)
     saved = _corners(len(case.history), options.save_after)
     keywords: dict[str, Any] = {**case.options.keywords(), "start": start}
     if start is not None:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
     beside.module = first.MODULE  # compiles in a second process during a first run
-    with Bar(len(case.history), LOAD_POINTS) as progress_bar, as_options(_given(options)):
+    with Bar(len(case.history), LOAD_POINTS) as progress_bar, terminal.as_options(_given(options)):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:
             ended = _ending(lambda: solved.append(solver.solve(case.problem, case.history, **keywords)))
@@ -129,14 +116,16 @@ def _note_unfinished(case: Case, path: Path) -> None:
     """Say that a stored run has not come to its end, how far it is, and why or how to continue it."""
     last = storage.load(path, states=slice(-1, None))
     if storage.lacks_error_bars(path):
-        say(f"note: no error bars: their run on the coarse grid has not ended; continue with: fastpin resume {path}")
+        terminal.say(
+            f"note: no error bars: their run on the coarse grid has not ended; continue with: fastpin resume {path}"
+        )
     if last.complete:
         return
     reached = f"{last[0].step + 1:,}" if len(last) else "0"
     reason = storage.stored_error(path)
     why = f": {reason}" if reason else ""
     more = f"; {how}" if (how := way_on(path, reason)) else ""
-    say(f"note: unfinished, at corner {reached} of {len(case.history):,}{why}{more}")
+    terminal.say(f"note: unfinished, at corner {reached} of {len(case.history):,}{why}{more}")
 
 
 def _ending(work: Callable[[], object]) -> solver.SolveError | solver.Interrupted | None:
@@ -152,7 +141,7 @@ def _with_options(case: Case, options: argparse.Namespace) -> Case:
     """Return the case with the solver's options of the command line in place of its own."""
     texts = {name: text for name in OPTIONS if (text := getattr(options, name)) is not None}
     given = {name: _value(text, name in ("arc", "between")) for name, text in texts.items()}  # these may be lists
-    with as_options(_given(options)):
+    with terminal.as_options(_given(options)):
         changed = case.options.changed(**given)
         check_keep(case.history, changed)
     return dataclasses.replace(case, options=changed)
@@ -176,7 +165,7 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
     """Refuse options that would have no effect, and figures that can't be drawn."""
     for name in ("save_after", "overwrite"):
         if getattr(options, name) and options.output is None:
-            raise InputError(flag(name), "needs --output FILE")
+            raise InputError(terminal.flag(name), "needs --output FILE")
     for name in ("nodes", "arc"):
         if options.start is not None and getattr(options, name) is not None:
             raise InputError(f"--{name}", "is fixed by the result to continue from (--start)")
@@ -187,12 +176,12 @@ def _check_shown(case: Case, options: argparse.Namespace) -> None:
     """Refuse figures and files of cycles that the history lacks, and a wrong choice of states."""
     for name in ("cycles", "cycle_csv"):
         if getattr(options, name) is not None and not case.history.longest_cycle:
-            raise InputError(flag(name), "the history has no cycles: none of its blocks is repeated")
+            raise InputError(terminal.flag(name), "the history has no cycles: none of its blocks is repeated")
     if options.states is None:
         return
     if options.plot is None:
         raise InputError("--states", "chooses the states of a figure: it needs --plot FILE")
-    with as_options(["states"]):
+    with terminal.as_options(["states"]):
         check_choice(options.states, case.history)
 
 
@@ -215,7 +204,7 @@ def _start(options: argparse.Namespace) -> solver.Result | None:
         return None
     if options.output is not None and options.output.resolve() == options.start.resolve():
         raise InputError("--output", "is the file to start from; a branch needs a file of its own")
-    with as_options(["after"]):
+    with terminal.as_options(["after"]):
         start = storage.load(options.start, states=[], after=options.after)
     if start.restart is None:
         why = "its run has not finished: resume it, or say after which corner (--after)"
@@ -228,7 +217,7 @@ def _start(options: argparse.Namespace) -> solver.Result | None:
 def _check_outputs(options: argparse.Namespace) -> None:
     """Check before the work that all output files can be written. Only ``run`` has an output that is a result."""
     names = ("json", "plot", "cycles", "cycle_csv", "record", *(("output",) if "overwrite" in options else ()))
-    check_outputs({flag(name): getattr(options, name) for name in names}, result="--output")
+    terminal.check_outputs({terminal.flag(name): getattr(options, name) for name in names}, result="--output")
 
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
@@ -258,7 +247,7 @@ class RunReport:
         """Write the files, then print the states, and return the exit code."""
         case, held = self.case, self.held
         code, error = self._report_end()
-        read = Readings()
+        read = terminal.Readings()
         if held is not None:
             read("warnings", lambda: warn_of(held.doubts(), 2), None)
         cycle, found = None, {}
@@ -267,20 +256,20 @@ class RunReport:
         for name in beside_of(case):
             found[name] = read(name, partial(self._found, name), None)
         why = "" if held is None or not held.result.complete or "fatigue" not in found else found["fatigue"].reason
-        code = fail(f"fatigue: {why}", EXIT_FAILED) if why else code
+        code = terminal.fail(f"fatigue: {why}", terminal.EXIT_FAILED) if why else code
         document = None
         if options.json is not None:
             document = report.summary.document(case, None if held is None else held.whole(), error, cycle, found)
         writers: list[tuple[Any, Callable[[Path], object]]] = []
         if held is not None and held.points.size:
             writers.append((options.plot, lambda path: self._plot(held, options, path)))
-            writers.append((options.record, lambda path: write_text(path, self._recorded(held, error))))
+            writers.append((options.record, lambda path: terminal.write_text(path, self._recorded(held, error))))
         if held is not None and held.result.cycles:
             writers.append((options.cycles, partial(figures.plot_cycles, held.result, title=case.title)))
         elif options.cycles is not None:
-            code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
+            code = terminal.fail(f"can't write {options.cycles}: no cycle came to its end", terminal.EXIT_FAILED)
         writers.append((options.cycle_csv, lambda path: assess.cycle.write_csv(self._last_cycle(), path)))
-        code = write_outputs(writers, options.json, lambda: document) or code
+        code = terminal.write_outputs(writers, options.json, lambda: document) or code
         if options.json != "-":
             self._print_states(read, cycle, found)
         if document is not None:
@@ -297,7 +286,7 @@ class RunReport:
             with Bar(1, question.BAR) as bar:
                 return question.find(self.case, self.held, progress_to(bar))
         except InputError as error:
-            say(f"fastpin: note: {question.FAILED}: {error}", file=sys.stderr)
+            terminal.say(f"fastpin: note: {question.FAILED}: {error}", file=sys.stderr)
             return None
 
     def _recorded(self, held: Held, error: str | None) -> str:
@@ -307,14 +296,14 @@ class RunReport:
     def _report_end(self) -> tuple[int, str | None]:
         """Print why the run ended early, and return the exit code and the reason."""
         if self.ended is None:
-            return EXIT_OK, None
+            return terminal.EXIT_OK, None
         if isinstance(self.ended, solver.SolveError):
-            return fail(str(self.ended), EXIT_FAILED), str(self.ended)
+            return terminal.fail(str(self.ended), terminal.EXIT_FAILED), str(self.ended)
         if self.held is None:
-            return fail("interrupted before the first corner", EXIT_INTERRUPTED), "interrupted"
+            return terminal.fail("interrupted before the first corner", terminal.EXIT_INTERRUPTED), "interrupted"
         where = f"after {_reached(self.held.result)} of {len(self.case.history):,} corners"
         more = "" if self.held.path is None else f"; continue with: fastpin resume {self.held.path}"
-        return fail(f"interrupted {where}{more}", EXIT_INTERRUPTED), "interrupted"
+        return terminal.fail(f"interrupted {where}{more}", terminal.EXIT_INTERRUPTED), "interrupted"
 
     def _last_cycle(self) -> LoadCycle:
         """Return the last cycle. :class:`InputError` says why there is none."""
@@ -323,39 +312,38 @@ class RunReport:
         result = self.held.result
         if not result.cycles:
             return result.cycle()
-        return dataclasses.replace(result, states=self.held.between(*span_of(result.cycles[-1]))).cycle()
+        return self.held.part(*span_of(result.cycles[-1])).cycle()
 
     def _plot(self, held: Held, options: argparse.Namespace, path: Path) -> None:
         """Draw the tractions."""
-        with as_options(["states"]):
-            if held.path is None:
-                drawn = figures.states.drawn_states(held.result, options.states)
-            else:
-                drawn = figures.states.stored_states(held.path, options.states)
+        with terminal.as_options(["states"]):
+            drawn = figures.states.held_states(held, options.states)
         figures.plot_tractions(drawn, path, title=self.case.title)
         if drawn.note:
-            say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)
+            terminal.say(
+                f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout
+            )
 
-    def _print_states(self, read: Readings, cycle: LoadCycle | None, found: Mapping[str, Any]) -> None:
+    def _print_states(self, read: terminal.Readings, cycle: LoadCycle | None, found: Mapping[str, Any]) -> None:
         case, held = self.case, self.held
         if case.title:
-            say(case.title)
+            terminal.say(case.title)
         if held is None or not held.points.size:
             reached = held is not None and _reached(held.result)
-            say("none of the states was to be kept" if reached else "no state was reached")
+            terminal.say("none of the states was to be kept" if reached else "no state was reached")
             return
         result, marks = held.result, marked_places(held.extremes)
         rows = stored_rows(case.problem, held.points, result.cycles, held.read, marks)
         places = sorted({*rows.printed, *marks, *self._told(held)})
         states = dict(zip(places, held.read(places), strict=True))
-        say(*state_table(case.problem, [states[place] for place in rows.printed], rows).split("\n"))
+        terminal.say(*state_table(case.problem, [states[place] for place in rows.printed], rows).split("\n"))
         for error in held.extremes.unread.values():
             read.add(error)
         for name, lines in self._paragraphs(held, states, cycle, found).items():
             told: list[str] = read(name, lines, [])
-            say(*(line for line in told if line))
-        say(*(f"note: {note}" for note in note_lines(case, result)))
-        say(solver_line(result))
+            terminal.say(*(line for line in told if line))
+        terminal.say(*(f"note: {note}" for note in note_lines(case, result)))
+        terminal.say(solver_line(result))
 
     def _told(self, held: Held) -> Sequence[int]:
         """The places of the states that are read for the lines below the table: of the last cycle, or of all."""

@@ -11,7 +11,7 @@ from itertools import groupby
 from fastpin import storage, verification
 from fastpin.assess.outputs import aligned, json_ready
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_outputs
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, write_outputs
 from fastpin.runtime.threads import cores
 from fastpin.verification.rows import Check
 from fastpin.version import __version__
@@ -26,10 +26,8 @@ def run(options: argparse.Namespace) -> int:
     seconds = time.perf_counter() - began
     count = sum(check.passed for check in checks)
     code = EXIT_OK if count == len(checks) else EXIT_FAILED
-    if options.json != "-":
-        libraries = ", ".join(f"{name} {version}" for name, version in storage.versions().items())
-        say(*check_table(checks).split("\n"), "")
-        say(f"{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {cores()} cores")
+    libraries = ", ".join(f"{name} {version}" for name, version in storage.versions().items())
+    end = f"{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {cores()} cores"
     document = {
         "fastpin": __version__,
         "versions": storage.versions(),
@@ -38,7 +36,8 @@ def run(options: argparse.Namespace) -> int:
         "passed": code == EXIT_OK,
         "checks": [{**dataclasses.asdict(check), "passed": check.passed} for check in checks],
     }
-    return write_outputs([], options.json, lambda: json_ready(document)) or code
+    lines = [*check_table(checks).split("\n"), "", end]
+    return write_outputs([], options.json, lambda: json_ready(document), lambda: lines) or code
 
 
 def check_table(checks: Sequence[Check]) -> str:

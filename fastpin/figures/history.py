@@ -23,6 +23,12 @@ from fastpin.model.problem import LOOKED_AT
 from fastpin.model.units import units
 from fastpin.solver.result import Result
 
+Folded = tuple[np.ndarray, list[int], list[tuple[int, int, int]]]
+"""Loads of corners, the numbers of these corners, and the repeated blocks, see :func:`_folded`."""
+
+BESIDE = 1e-6
+"""Distance from a jump, rad, at which the values on both sides of it are drawn."""
+
 
 def history_of(problem: Problem, history: LoadHistory, initial: Sequence[float] | np.ndarray | None = None) -> Plot:
     """Draw the loads of a history over its corners, with a panel for each kind of load.
@@ -46,10 +52,6 @@ def history_of(problem: Problem, history: LoadHistory, initial: Sequence[float] 
 
 
 plot_history: Callable[..., Figure] = plotter("plot_history", history_of)
-
-
-Folded = tuple[np.ndarray, list[int], list[tuple[int, int, int]]]
-"""Loads of corners, the numbers of these corners, and the repeated blocks, see :func:`_folded`."""
 
 
 def _draw(look: Look, problem: Problem, folded: Folded) -> Sheet:
@@ -119,10 +121,6 @@ def _shade(panel: Axes, repeated: list[tuple[int, int, int]], named: bool) -> No
                 0.5 * (first + last), 1.02, f"× {count:,}", transform=panel.get_xaxis_transform(), ha="center",
                 va="bottom", fontsize=8.0,
             )  # fmt: skip
-
-
-BESIDE = 1e-6
-"""Distance from a jump, rad, at which the values on both sides of it are drawn."""
 
 
 def gap_plot(subject: Subject) -> Plot:

@@ -44,6 +44,21 @@ from fastpin.solver.wear_result import WearResult, WornCycle
 MARGIN = 0.15
 """Angles beside the contact that are shown, in parts of its width."""
 
+DECADES = 6
+"""Decades of damage that a figure shows."""
+
+NEAR = 1e-4
+"""Damage from which on a figure shows the damage 1, of a crack, too."""
+
+SURFACE = line(1, 0, 1.6)
+"""Line of the worn surface."""
+
+CRACK: Line = {"marker": "o", "markersize": 5.0, "linestyle": "none", "color": COLOURS[1]}
+"""Mark of the first crack."""
+
+LEFT, EVER = line(0, 0), line(2, 1)
+"""Lines of the largest damage of all material still there, and of all material."""
+
 
 def scar_plot(subject: Subject) -> Plot:
     """Return the profiles of wear, and the pressure on them, after some of the stored cycles."""
@@ -215,22 +230,6 @@ def _draw_wear(look: Look, life: WearResult) -> Sheet:
     if len(bodies) > 1:
         sheet.legend([Line2D([], [], label=name, **line(k, k)) for k, name in enumerate(bodies)], len(bodies))
     return sheet
-
-
-DECADES = 6
-"""Decades of damage that a figure shows."""
-
-NEAR = 1e-4
-"""Damage from which on a figure shows the damage 1, of a crack, too."""
-
-SURFACE = line(1, 0, 1.6)
-"""Line of the worn surface."""
-
-CRACK: Line = {"marker": "o", "markersize": 5.0, "linestyle": "none", "color": COLOURS[1]}
-"""Mark of the first crack."""
-
-LEFT, EVER = line(0, 0), line(2, 1)
-"""Lines of the largest damage of all material still there, and of all material."""
 
 
 def damage_plot(subject: Subject, criterion: Criterion = "smith-watson-topper", body: Body | None = None) -> Plot:

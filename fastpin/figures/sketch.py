@@ -69,6 +69,15 @@ BOX = {"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8}
 FORCE, STRESS = "#B2182B", "#2166AC"
 """Colours of forces and of remote stresses."""
 
+HOLD_WORDS = {"both": "held", "x": "held along x", "y": "held along y", "normal": "held along the normal"}
+"""Words of the legend for supports."""
+
+ARROWS = 5
+"""Arrows of a load on each part."""
+
+LOAD_ARROW = 0.08
+"""Length of the longest arrow of a load, in parts of the plate's extent."""
+
 
 class Scale(NamedTuple):
     """What the arrows of a sketch have in common.
@@ -314,16 +323,6 @@ def _draw_remote(panel: Axes, name: str, span: LoadRange, words: str, scale: Sca
             _arrow(panel, complex(beside, ends[0]), complex(beside, ends[1]), span, STRESS)
     place = {"sxx": (half + 0.2, 0.9 * half), "syy": (0.0, out + SHORT + 0.25), "sxy": (0.0, -out - SHORT - 0.25)}[name]
     panel.text(*place, words, color=STRESS, bbox=BOX, **LETTERS)
-
-
-HOLD_WORDS = {"both": "held", "x": "held along x", "y": "held along y", "normal": "held along the normal"}
-"""Words of the legend for supports."""
-
-ARROWS = 5
-"""Arrows of a load on each part."""
-
-LOAD_ARROW = 0.08
-"""Length of the longest arrow of a load, in parts of the plate's extent."""
 
 
 def lug_of(lug: Lug) -> Plot:

@@ -39,6 +39,15 @@ _BAND = 0.3
 _BAR = 0.46
 """Height of the bars of a zone, in parts of a row. The arrows of narrow zones stand between the bars."""
 
+HEIGHT = 0.9
+"""Height of the largest traction over the circle, in radii of the hole."""
+
+PLIES = "0.6"
+"""Colour of a line in the direction of a ply."""
+
+RINGS = 2
+"""Circles of round values, about."""
+
 
 def tractions_plot(subject: Subject, states: StateChoice = None, sketch: bool = False, bars: bool = False) -> Plot:
     """Draw pressure and shear traction round the hole.
@@ -224,16 +233,6 @@ def _write_arrow(panel: Axes, x: float, y: float, sign: int, transform: Any, abo
         arrowprops=stroke if above else None,
         annotation_clip=False,
     )  # fmt: skip
-
-
-HEIGHT = 0.9
-"""Height of the largest traction over the circle, in radii of the hole."""
-
-PLIES = "0.6"
-"""Colour of a line in the direction of a ply."""
-
-RINGS = 2
-"""Circles of round values, about."""
 
 
 def polar_plot(subject: Subject, states: StateChoice = None) -> Plot:

@@ -19,6 +19,18 @@ from fastpin.errors import OutputError, printable
 from fastpin.figures.sheet import Plot
 from fastpin.model.case import About
 
+MOST_SVG = 250_000
+"""Most characters of an inline SVG. Curves take some 50,000; a map of filled contours takes more as SVG than as PNG."""
+
+WIDTH_OF_BITMAP = 340
+"""Width of a bitmap on paper, points: some 120 mm."""
+
+_LINK = re.compile(r"(?<=^#).+")
+"""The id in a value of ``href``."""
+
+_PAINT = re.compile(r"(?<=url\(#)[^)]+")
+"""The id in a value of any other attribute. A colour such as #a8d8f0 is no id."""
+
 
 def shown(text: str) -> str:
     """Return a text with escapes for the characters that can't be printed. Lines and tabs stay."""
@@ -194,19 +206,6 @@ class Page:
         left, right = ("project",), ("revision", "date", "author")
         project, others = ([given[name] for name in names if name in given] for names in (left, right))
         return " · ".join([*project, self.title]), " · ".join(others)
-
-
-MOST_SVG = 250_000
-"""Most characters of an inline SVG. Curves take some 50,000; a map of filled contours takes more as SVG than as PNG."""
-
-WIDTH_OF_BITMAP = 340
-"""Width of a bitmap on paper, points: some 120 mm."""
-
-_LINK = re.compile(r"(?<=^#).+")
-"""The id in a value of ``href``."""
-
-_PAINT = re.compile(r"(?<=url\(#)[^)]+")
-"""The id in a value of any other attribute. A colour such as #a8d8f0 is no id."""
 
 
 class Album:

@@ -238,7 +238,7 @@ class Source:
             if not first:
                 return "no cycle of the history has ended"
         begin, end = (first, self.reached) if found is None else span_of(found)
-        part = replace(self.result, states=self.held.between(begin, end))
+        part = self.held.part(begin, end)
         try:
             return part.cycle() if found is not None else part.cycle(first=first, last=end)
         except InputError as error:

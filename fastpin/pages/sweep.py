@@ -37,6 +37,15 @@ BELOW = 2
 MOST_FIELDS = 8
 """Most fields of an outcome that shares its figure."""
 
+BESIDE = 4
+"""Most charts of a figure, two in a row: more would not fit on a page of paper."""
+
+MOST_RUNS = 500
+"""Most runs in the table of a page; a table of more is left to a CSV file."""
+
+MOST_FAILED = 200
+"""Most failed runs that are listed with their reasons."""
+
 
 def limits_section(study: Tolerances, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
     """Return the section of the plan: fields with their limits, outcomes, and the text."""
@@ -70,16 +79,6 @@ def effects_section(study: Tolerances, runs: Sequence[dict[str, Any]], album: Al
         words = f"{len(study.plan.outcomes) - MOST_DRAWN:,} more outcomes are not drawn here"
         parts.append(Text(f"{words}. fastpin tolerances --plot FILE --value NAME draws one.", "missing"))
     return PageSection("effects", "Effects", parts)
-
-
-BESIDE = 4
-"""Most charts of a figure, two in a row: more would not fit on a page of paper."""
-
-MOST_RUNS = 500
-"""Most runs in the table of a page; a table of more is left to a CSV file."""
-
-MOST_FAILED = 200
-"""Most failed runs that are listed with their reasons."""
 
 
 def write_sweep_report(

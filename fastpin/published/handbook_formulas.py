@@ -40,6 +40,15 @@ CROSSING = 1.0 / math.pi
 LEVEL = 0.05
 """Error up to which a formula holds."""
 
+LEAST = -0.06
+"""Smallest load parameter, an interference fit. At -0.0796 the contact closes round the pin."""
+
+MOST_FRICTION = 0.9
+"""Largest coefficient of friction of the fit."""
+
+SPREAD = 0.5 / 2.8
+"""The term of a spread load in plane strain, nu = 0.3."""
+
 
 def hertz(load_parameter: np.ndarray) -> np.ndarray:
     """Return Hertz's peak pressure over F/(D L)."""
@@ -169,16 +178,6 @@ BENCHMARK = Benchmark(
     compute,
     draw,
 )
-
-
-LEAST = -0.06
-"""Smallest load parameter, an interference fit. At -0.0796 the contact closes round the pin."""
-
-MOST_FRICTION = 0.9
-"""Largest coefficient of friction of the fit."""
-
-SPREAD = 0.5 / 2.8
-"""The term of a spread load in plane strain, nu = 0.3."""
 
 
 def load_term(pin: Material, plane: Plane = "strain", pin_load: PinLoad = "body") -> float:

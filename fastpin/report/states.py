@@ -41,6 +41,12 @@ IN_PHASE = 1e-9
 
 _DEGREE = math.degrees(1.0)
 
+COUNTED = {
+    "jumps": "the pin snapped {count} times; work does not balance there",
+    "released": "{count} times a narrow contact with next to no force was let go and lost its memory",
+}
+"""Notes on counts of the statistics that are not zero."""
+
 
 @dataclass(frozen=True)
 class TableRows:
@@ -460,13 +466,6 @@ def _intervals(state: State, zone: str) -> str:
         parts.append("all round" if is_all_round(stop - start) else f"{first:z.2f} to {last:z.2f}{bar}")
     none = Regime.GROSS_SLIDING.words if zone == "stick" and state.in_contact else "none"
     return ", ".join(parts) or none
-
-
-COUNTED = {
-    "jumps": "the pin snapped {count} times; work does not balance there",
-    "released": "{count} times a narrow contact with next to no force was let go and lost its memory",
-}
-"""Notes on counts of the statistics that are not zero."""
 
 
 def note_lines(case: Case, result: Result) -> list[str]:

@@ -13,7 +13,7 @@ from fastpin import cracks
 from fastpin.assess import crack
 from fastpin.assess.cycle import document as cycle_document
 from fastpin.assess.margins import document as margins_document
-from fastpin.assess.margins import result_margins
+from fastpin.assess.margins import margins_of
 from fastpin.assess.outputs import json_ready, unit_names
 from fastpin.assess.questions import QUESTIONS
 from fastpin.bodies.body import BodyBase
@@ -27,8 +27,8 @@ from fastpin.model.materials import STRENGTHS, Material
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
 from fastpin.solver.result import Result
 from fastpin.states import LoadCycle, State
-from fastpin.states.extremes import READINGS, Found, KeptStates, marked_extremes
-from fastpin.states.margins import Margin, over_yield, static_margins
+from fastpin.states.extremes import READINGS
+from fastpin.states.margins import over_yield
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
 from fastpin.version import __version__
 
@@ -60,7 +60,7 @@ def document(
     unread: dict[str, str] = {}
     alpha, beta = problem.surfaces.dundurs()
     unit = units(problem)
-    margins = [] if result is None else _margins(result, found)
+    margins = [] if result is None else margins_of(result, found)
     whole = {
         "fastpin": __version__,
         "title": case.title,
@@ -195,13 +195,6 @@ def _extremes_summary(result: Result, unread: dict[str, str]) -> dict[str, Any]:
         name: {side: each._asdict() | {"value": shown(name, each.value)} for side, each in pair._asdict().items()}
         for name, pair in extremes.items()
     }
-
-
-def _margins(result: Result, found: Mapping[str, Any]) -> list[Margin]:
-    """Return the margins over all states, and those of what is found for the questions."""
-    kept = KeptStates(result.states)
-    static = static_margins(result.problem, marked_extremes(kept) if len(result) else Found(), kept.read)
-    return result_margins(result.problem, static, result.states, result.cycles, found)
 
 
 def crack_document(case: Case, growth: cracks.Growth) -> dict[str, Any]:

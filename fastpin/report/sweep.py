@@ -55,6 +55,9 @@ _SHOWN = {
 }
 """Key figures of the text table and their headings, unless the plan has outcomes. The CSV file has all key figures."""
 
+BYPASS, BEARING = "bypass stress [Pa]", "bearing stress [Pa]"
+"""Columns of an envelope."""
+
 
 def text(plan: Plan, rows: Sequence[TableRow]) -> str:
     """Return the table of :func:`run_columns` as text. A long table lacks its middle."""
@@ -440,10 +443,6 @@ def _is_number(value: Any) -> bool:
 
 def _different(values: Sequence[Any]) -> list[Any]:
     return list({json.dumps(value): value for value in values}.values())
-
-
-BYPASS, BEARING = "bypass stress [Pa]", "bearing stress [Pa]"
-"""Columns of an envelope."""
 
 
 def envelopes(plan: Plan, rows: Sequence[TableRow], value: str) -> list[Curve]:

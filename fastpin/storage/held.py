@@ -1,8 +1,9 @@
-"""What is read of a result on demand, in memory or in a file: its states, extremes, residuals and"""
+"""What is read of a result on demand, in memory or in a file: its origin, states, extremes and residuals."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 
@@ -164,6 +165,10 @@ class Held:
     def between(self, first: int, last: int) -> list[State]:
         """Return the states from one corner to another."""
         return self.read(np.flatnonzero((self.points >= first) & (self.points <= last)).tolist())
+
+    def part(self, first: int, last: int) -> Result:
+        """Return the result with the states from one corner to another only."""
+        return replace(self.result, states=self.between(first, last))
 
     def whole(self) -> Result:
         """Return the result with all its states."""

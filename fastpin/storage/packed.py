@@ -54,6 +54,18 @@ _PLAIN = re.compile(rf"CREATE TABLE \"?([a-z]+)\"? \({_COLUMN}(?:, {_COLUMN})*\)
 # The end of a journal that names a super-journal, which SQLite deletes: its length, a checksum, and these bytes.
 _MAGIC = bytes.fromhex("d9d505f920a163d7")
 
+FOLDER = "results"
+"""Folder of result files in the directory of a sweep."""
+
+TABLE = "CREATE TABLE IF NOT EXISTS results (run TEXT PRIMARY KEY, content BLOB NOT NULL)"
+"""The table of packed results in the index."""
+
+_HEAD = struct.Struct("<8sII")  # signature, checksum of everything after it, length of the JSON
+
+_SIGNATURE = b"fpinrun1"
+
+_KINDS = ("<f8", "<i8", "|i1", "|b1")  # types of the entries of all arrays but texts
+
 
 def open_database(path: Path, mode: Mode, timeout: float = BUSY_SECONDS) -> sqlite3.Connection:
     """Open a database, and check that its tables are those of an index.
@@ -204,17 +216,6 @@ def _repaired_copy(real: Path, path: Path) -> sqlite3.Connection:
         _check_journal(copy, path)
         _opened(copy, path, "rw", BUSY_SECONDS).close()
         return _opened(copy, path, "ro", BUSY_SECONDS)
-
-
-FOLDER = "results"
-"""Folder of result files in the directory of a sweep."""
-
-TABLE = "CREATE TABLE IF NOT EXISTS results (run TEXT PRIMARY KEY, content BLOB NOT NULL)"
-"""The table of packed results in the index."""
-
-_HEAD = struct.Struct("<8sII")  # signature, checksum of everything after it, length of the JSON
-_SIGNATURE = b"fpinrun1"
-_KINDS = ("<f8", "<i8", "|i1", "|b1")  # types of the entries of all arrays but texts
 
 
 class _Scale:

@@ -22,6 +22,9 @@ from fastpin.states.state import State
 from fastpin.storage import hdf5, layout
 from fastpin.storage.hdf5 import check_between, check_extremes, check_finite, dataset_of, text_of
 
+LEAST_STORED = 500
+"""Least states of a result whose extremes are stored. Those of fewer states are found in a second."""
+
 
 def read_seat_grid(file: h5py.Group, problem: Problem, grid: Grid) -> Grid | None:
     """Read the nodes of the seat of a bush that slips, beside the nodes `grid` of the pin; None without one.
@@ -112,10 +115,6 @@ def _states_of(
             State(**per_node, **numbers, **each, theta=grid.theta, problem=problem, grid=grid, marks=marks, seat=seat)
         )
     return states
-
-
-LEAST_STORED = 500
-"""Least states of a result whose extremes are stored. Those of fewer states are found in a second."""
 
 
 class StoredStates:

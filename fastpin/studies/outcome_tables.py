@@ -25,7 +25,7 @@ from fastpin.assess.questions import QUESTIONS, of_question
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
 from fastpin.casefile.beside import READERS, read_assessment
 from fastpin.casefile.profiles import read_wear
-from fastpin.casefile.toml_text import CaseText, Section, read_text
+from fastpin.casefile.toml_text import CaseText, Named, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA
@@ -172,7 +172,7 @@ def outcomes_in_text(source: CaseText, folder: Path, beside: Mapping[str, Any] =
             if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
-                outcome = _of_table(source, _Table(source, name, value), folder, beside)
+                outcome = _of_table(source, Named(source, ("outcomes", name), value, name), folder, beside)
                 found |= {} if outcome is None else {name: outcome}
             elif callable(value):
                 found[name] = _of_callable(value)
@@ -217,19 +217,7 @@ def _name_fault(name: object, others: Outcomes) -> str:
 # -- single outcomes ---------------------------------------------------------------------------------------------
 
 
-class _Table(Section):
-    """The table of one outcome. Its faults begin with its name."""
-
-    def __init__(self, source: CaseText, name: str, table: Mapping[str, Any]) -> None:
-        super().__init__(source, ("outcomes", name), dict(table))
-        self.outcome = name
-
-    def report(self, message: str, *key: str) -> None:
-        """Add a fault of a key, or of the whole table if no key is given."""
-        super().report(f"{self.outcome}: {message}", *key)
-
-
-def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[str, Any]) -> StudyOutcome | None:
+def _of_table(source: CaseText, section: Section, folder: Path, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read the table of one outcome, and report its faults. No outcome if a value is wrong."""
     first = [key for key in KEYS if key in section]
     if len(first) != 1:

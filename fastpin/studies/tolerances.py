@@ -23,13 +23,13 @@ import numpy as np
 
 from fastpin.assess.outputs import ROUNDING
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, parse_text, read_text
-from fastpin.errors import InputError, InputWarning
+from fastpin.errors import InputError
 from fastpin.model import Case, Problem
 from fastpin.model.checks import as_toml, check_callable, file_path, string, true_or_false, whole_number
 from fastpin.model.doubts import warn_of
 from fastpin.model.points import elastic_bodies
 from fastpin.studies.index import DONE
-from fastpin.studies.outcome_tables import Outcomes, has_strengths, outcomes_from, outcomes_in_text
+from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
 from fastpin.studies.plan import (
     MAX_RUNS,
     ROOT_KEYS,
@@ -39,10 +39,10 @@ from fastpin.studies.plan import (
     SweepProgress,
     base_case,
     check_root,
-    checked_points,
     labels_in,
     range_in,
     varied_fields,
+    with_points,
 )
 from fastpin.studies.run_end import KEY_FIGURES
 from fastpin.studies.sweep import rows
@@ -50,6 +50,25 @@ from fastpin.studies.variation import FACTORS, BaseCase
 
 PERCENTS = (5, 50, 95)
 """Percentiles of the samples."""
+
+MOST_FIELDS = 10
+"""Most fields whose corners are all run: 1,024 corners."""
+
+SAMPLES = 200
+"""Samples unless given. The rank correlation of independent numbers then scatters by 0.07."""
+
+KEYS = {name: words for name, words in ROOT_KEYS.items() if name not in ("grid", "list")} | {
+    "tolerances": "[tolerances]", "corners": "corners", "samples": "samples", "seed": "seed"
+}  # fmt: skip
+"""Keys of a tolerance plan, as they are written."""
+
+USUAL_OUTCOMES = {
+    "largest_pressure": {"quantity": "peak_pressure", "take": "largest"},
+    "largest_shear": {"quantity": "peak_shear", "take": "largest magnitude"},
+    "largest_hoop": {"quantity": "peak_hoop", "take": "largest"},
+    "least_bush_pressure": {"quantity": "bush_open_margin", "take": "smallest"},
+}
+"""The outcomes of a plan without [outcomes], as far as the joint has them: over all kept states."""
 
 
 class Reached(NamedTuple):
@@ -172,26 +191,6 @@ def _span(values: np.ndarray, places: range) -> Span | None:
         return None
     smallest, largest = (choose(known, key=values.__getitem__) for choose in (min, max))
     return Span(Reached(float(values[smallest]), smallest), Reached(float(values[largest]), largest))
-
-
-MOST_FIELDS = 10
-"""Most fields whose corners are all run: 1,024 corners."""
-
-SAMPLES = 200
-"""Samples unless given. The rank correlation of independent numbers then scatters by 0.07."""
-
-KEYS = {name: words for name, words in ROOT_KEYS.items() if name not in ("grid", "list")} | {
-    "tolerances": "[tolerances]", "corners": "corners", "samples": "samples", "seed": "seed"
-}  # fmt: skip
-"""Keys of a tolerance plan, as they are written."""
-
-USUAL_OUTCOMES = {
-    "largest_pressure": {"quantity": "peak_pressure", "take": "largest"},
-    "largest_shear": {"quantity": "peak_shear", "take": "largest magnitude"},
-    "largest_hoop": {"quantity": "peak_hoop", "take": "largest"},
-    "least_bush_pressure": {"quantity": "bush_open_margin", "take": "smallest"},
-}
-"""The outcomes of a plan without [outcomes], as far as the joint has them: over all kept states."""
 
 
 class FieldLimits(NamedTuple):
@@ -382,14 +381,10 @@ def _study(source: CaseText, text: str, folder: Path, progress: SweepProgress | 
     if len(values) > MAX_RUNS:
         source.report(f"the study has {len(values):,} runs; more than {MAX_RUNS:,} are not possible in one")
         return None
-    cases: dict[str, Case] = {}
-    doubts: list[InputWarning] = []
     plan_rows: list[PlanRow] = [{name: (places[name], row[name]) for name in limits} for row in values]
-    kept = cases, doubts
-    points = checked_points(source, base, places, plan_rows, {}, kept, progress, has_strengths(outcomes))
     fields: dict[str, Spacing] = {name: each.spacing for name, each in limits.items()}
-    plan = Plan(title, text, fields, {}, points, outcomes, doubts, labels, base, cases)
-    return Tolerances(plan, limits, alone, corners, samples)
+    plan = Plan(title, text, fields, {}, [], outcomes, [], labels, base, {})
+    return Tolerances(with_points(plan, source, places, plan_rows, progress), limits, alone, corners, samples)
 
 
 def _limits(source: CaseText, base: BaseCase, case: Case, given: tuple[KeyPath, str, Any]) -> FieldLimits | None:
