@@ -263,7 +263,12 @@ class RunReport:
         writers: list[tuple[Any, Callable[[Path], object]]] = []
         if held is not None and held.points.size:
             writers.append((options.plot, lambda path: self._plot(held, options, path)))
-            writers.append((options.record, lambda path: terminal.write_text(path, self._recorded(held, error))))
+            recorded = live.recorded_places(held.points.size)
+
+            def record(path: Path) -> None:
+                terminal.write_text(path, live.record_page(case, held.read(recorded), error or ""))
+
+            writers.append((options.record, record))
         if held is not None and held.result.cycles:
             writers.append((options.cycles, partial(figures.plot_cycles, held.result, title=case.title)))
         elif options.cycles is not None:
@@ -288,10 +293,6 @@ class RunReport:
         except InputError as error:
             terminal.say(f"fastpin: note: {question.FAILED}: {error}", file=sys.stderr)
             return None
-
-    def _recorded(self, held: Held, error: str | None) -> str:
-        states = held.read(live.recorded_places(held.points.size))
-        return live.record_page(self.case, states, error or "")
 
     def _report_end(self) -> tuple[int, str | None]:
         """Print why the run ended early, and return the exit code and the reason."""

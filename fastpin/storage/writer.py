@@ -384,12 +384,13 @@ class FileRecorder:
             self._commit()
         elif now > self._next_commit:
             self._commit()
-        self.file.note(now, self._write_checkpoint)
 
-    def _write_checkpoint(self, group: h5py.Group) -> None:
-        self._commit()
-        self._write_restart(group.create_group("restart"))
-        log.debug("checkpoint after corner %d", self._run.corner)
+        def write(group: h5py.Group) -> None:
+            self._commit()
+            self._write_restart(group.create_group("restart"))
+            log.debug("checkpoint after corner %d", self._run.corner)
+
+        self.file.note(now, write)
 
     # -- the file ------------------------------------------------------------------------------------------------
 

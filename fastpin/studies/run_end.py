@@ -21,21 +21,25 @@ if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.solver.result import Result
 
 
-PEAKS = ("peak_pressure", "peak_pressure_angle", "peak_shear", "peak_shear_angle")
-MOTION = ("contact_width", "stick_width", "rotation", "dx", "dy", "dissipation")
-"""Quantities of the last state that are key figures."""
-
-TAKEN = {name: (name, "last") for name in (*PEAKS, *MOTION)} | {
-    "max_pressure": ("peak_pressure", "largest"),
-    "max_shear": ("peak_shear", "largest magnitude"),
+KEY_FIGURES: dict[str, str] = {
+    "states": "",
+    "peak_pressure": "traction",
+    "peak_pressure_angle": "angle",
+    "peak_shear": "traction",
+    "peak_shear_angle": "angle",
+    "contact_start": "angle",
+    "contact_stop": "angle",
+    "contact_width": "angle",
+    "stick_width": "angle",
+    "rotation": "rotation",
+    "dx": "displacement",
+    "dy": "displacement",
+    "dissipation": "energy",
+    "max_pressure": "traction",
+    "max_shear": "traction",
+    "residual": "",
+    "nodes": "",
 }
-"""The key figures that are read as outcomes are: the quantity of each, and how its number is taken from all states."""
-
-KEY_FIGURES: dict[str, str] = dict.fromkeys(
-    ("states", *PEAKS, "contact_start", "contact_stop", *MOTION, "max_pressure", "max_shear", "residual", "nodes"), ""
-)
-KEY_FIGURES |= {name: QUANTITIES[quantity].kind for name, (quantity, _) in TAKEN.items()}
-KEY_FIGURES |= dict.fromkeys(("contact_start", "contact_stop", "contact_width", "stick_width"), "angle")
 """Names and kinds of the key figures.
 
 A kind is a key of :func:`fastpin.model.units.units`, "angle" (deg) or "" for a plain number.
@@ -48,6 +52,12 @@ A kind is a key of :func:`fastpin.model.units.units`, "angle" (deg) or "" for a 
 * ``max_pressure``, ``max_shear``: largest peak pressure, and largest magnitude of the peak shear, of all states.
 * ``residual``: the largest residual of all states.
 """
+
+TAKEN = {name: (name, "last") for name in KEY_FIGURES if name in QUANTITIES} | {
+    "max_pressure": ("peak_pressure", "largest"),
+    "max_shear": ("peak_shear", "largest magnitude"),
+}
+"""The key figures that are read as outcomes are: the quantity of each, and how its number is taken from all states."""
 
 RUN_COLUMNS: dict[str, str] = {
     "id": "TEXT PRIMARY KEY",
