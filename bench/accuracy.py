@@ -31,7 +31,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import ALL_ROUND
 from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, panels, save_drawing
+from fastpin.published.records import add_legend, panels, save_drawing
 from fastpin.solver.configuration import elastic_energy
 from fastpin.solver.errors import SolveError
 from fastpin.solver.increment import implicit_step

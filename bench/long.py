@@ -24,7 +24,7 @@ from tqdm import tqdm
 
 import fastpin
 from fastpin.figures import style
-from fastpin.published import drawing
+from fastpin.published import records as drawing
 from fastpin.storage import store
 from fastpin.storage.recording import record
 

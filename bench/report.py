@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.figures import style
-from fastpin.published import drawing
+from fastpin.published import records as drawing
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = Path(__file__).resolve().parent / "results"

@@ -20,8 +20,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.optimize import linprog
 
-from fastpin.charts.groups import GROUPS, ChartGroup, load_parameter_at
-from fastpin.charts.tables import DATA, FEW, STORED, ChartTable, write_tables
+from fastpin.charts.groups import DATA, FEW, GROUPS, STORED, ChartGroup, ChartTable, load_parameter_at, write_tables
 from fastpin.solver.errors import SolveError
 from scripts.charts_runs import first_load_runs, first_load_values, pair_of, values_at
 

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.pages.album import Album
-from fastpin.pages.content import Picture
+from fastpin.pages.content import Album, Picture
 from tests.support.approx import quicken
 from tests.support.drawing import outline_figures
 from tests.support.processes import hear_interrupts

@@ -16,7 +16,7 @@ import fastpin
 from fastpin.model import About
 from fastpin.states.cycles import Cycle
 from fastpin.storage import layout
-from fastpin.storage.extremes import LEAST_STORED
+from fastpin.storage.stored_states import LEAST_STORED
 
 GROUPS = re.compile(r"^``(/\w*)``\s+(.*)$", re.MULTILINE)
 """A group and what it holds, in the docstring of the layout."""

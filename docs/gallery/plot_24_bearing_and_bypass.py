@@ -9,8 +9,8 @@ the load at which the first ply fails is looked for. The lines join the failures
 import matplotlib.pyplot as plt
 
 import fastpin
+from fastpin.assess import failure_load
 from fastpin.model import Laminate
-from fastpin.studies import failure_load
 
 plate = Laminate.from_layup("[0/45/-45/90]2s", "T300/914")
 pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], plate, "stress")

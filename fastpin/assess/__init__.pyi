@@ -1,6 +1,9 @@
 from . import crack as crack
+from . import cycle as cycle
 from . import fatigue as fatigue
 from . import margins as margins
 from . import outputs as outputs
 from . import strength as strength
 from . import wear as wear
+from .strength import FailureLoad as FailureLoad
+from .strength import failure_load as failure_load

@@ -1,23 +1,33 @@
-"""The crack of a case: the states under which it grows, and its outputs."""
+"""The crack of a case: the states under which it grows, its outputs and its text."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from fastpin import cracks, damage
-from fastpin.assess.kept import kept
-from fastpin.assess.outputs import Output
-from fastpin.cracks.fates import CRACK_FATES
+from fastpin.assess.outputs import Curve, Output, Progress, Schema, chosen, kept, object_of, properties, table
+from fastpin.assess.outputs import document as document_of
+from fastpin.cracks.fates import CRACK_FATES, CrackFate
+from fastpin.cracks.margins import crack_margins
 from fastpin.errors import InputError
-from fastpin.model.crack import CrackGrowth
+from fastpin.model import Case, LoadHistory, Problem
+from fastpin.model.angles import from_bottom
+from fastpin.model.crack import CrackGrowth, law_of
 from fastpin.model.doubts import doubts_given
-from fastpin.model.growth import Nasgro, Walker, law_entries
-from fastpin.model.history import LoadHistory
-from fastpin.model.points import EDGES
+from fastpin.model.growth import Nasgro, Walker, law_entries, law_words
+from fastpin.model.points import EDGES, owner_of
+from fastpin.model.units import units
 from fastpin.states.choice import missing_corners, span_of
 from fastpin.states.cycles import Cycle
+from fastpin.states.margins import over_yield_words
 from fastpin.states.state import State
+
+if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
+    from fastpin.storage.held import Held
 
 GROWTH = (
     Output("angle_of_mouth", "angle", lambda found: found.crack.theta),
@@ -42,6 +52,7 @@ GROWTH = (
 )  # fmt: skip
 """Outputs of a :class:`fastpin.cracks.Growth`."""
 
+
 LENGTHS = (
     Output("length", "length", lambda found: found.length),
     Output("K_max", "stress intensity", lambda found: found.K_max, heading="K_I largest"),
@@ -53,6 +64,11 @@ LENGTHS = (
     Output("cycles", "", lambda found: found.cycles),
 )
 """Outputs at each length: columns of CSV, JSON and the table of ``fastpin crack``."""
+
+
+BAR = "{whole} of {total} places"
+FAILED = "no crack is followed"
+MARGINS = ("fracture", "growth")
 
 
 class CrackStops(NamedTuple):
@@ -107,7 +123,7 @@ class CrackStops(NamedTuple):
             raise InputError("states", 'not all corners of the history are kept; keep = "all" keeps them')
         return cls(states, True)
 
-    def growth(self, how: CrackGrowth, progress: Callable[[float, float], None] | None = None) -> cracks.Growth:
+    def growth(self, how: CrackGrowth, progress: Progress | None = None) -> cracks.Growth:
         """Follow a crack under this pass, again and again. See :func:`fastpin.cracks.planned_growth`."""
         return cracks.planned_growth(self.states, how, self.is_spectrum, progress)
 
@@ -129,3 +145,98 @@ def grown(result: Any, how: CrackGrowth) -> cracks.Growth:
     stops = CrackStops.of(len(result.history), result.cycles, lambda first, last: result)
     with doubts_given():
         return stops.growth(how)
+
+
+OUTCOMES = {
+    name: (output, grown)
+    for name, output in {
+        **chosen(GROWTH, ("fate", "life", "arrest")),
+        "theta": GROWTH[0],
+        "largest_K": Output("largest_K", "stress intensity", lambda found: found.K_max.max()),
+    }.items()
+}
+"""Outcomes of sweeps: "theta" is its mouth, and "largest_K" the largest K_I up to the last length."""
+
+judged = grown
+
+
+def find(case: Case, held: Held | None, progress: Progress | None = None) -> cracks.Growth | None:
+    """Follow the crack of a case under its last cycle or its spectrum; None without a state.
+
+    Raises
+    ------
+    InputError
+        If it can't be followed.
+    """
+    if held is None or case.crack is None:
+        return None
+    return CrackStops.of(len(case.history), held.result.cycles, held.between).growth(case.crack, progress)
+
+
+def lines(growth: cracks.Growth, over: Mapping[str, float]) -> list[str]:
+    """Return :func:`growth_line` in a list."""
+    return [growth_line(growth, over)]
+
+
+def document(growth: cracks.Growth, over: Mapping[str, float]) -> dict[str, Any]:
+    """Return the growth as a dict for JSON."""
+    return document_of(GROWTH, growth, units(growth.problem))
+
+
+def schema() -> Schema:
+    """Return the JSON schema of :func:`document`."""
+    return object_of(properties(GROWTH))
+
+
+margins = crack_margins
+
+
+def crack_words(problem: Problem, crack: CrackGrowth) -> str:
+    """Lengths, place, direction, law and residual stress of a crack that is to grow."""
+    length = units(problem)["length"]
+    place = "where it grows fastest" if crack.theta is None else f"at {from_bottom(crack.theta):.4g} deg"
+    parts = [f"{length.text(crack.first)} to {length.text(crack.last)}", place]
+    parts += [f"{math.degrees(crack.angle):.4g} deg from the radius"] if crack.angle else []
+    parts += ["in the plate round the bush"] if crack.body == "seat" else []
+    parts += [law_words(law_of(problem, crack))]
+    return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
+
+
+def growth_curve(growth: cracks.Growth) -> Curve:
+    """Return length, stress intensities, range, threshold, rate and cycles of a crack, by its length."""
+    unit = units(growth.problem)
+    columns = {each.column(unit).replace("cycle", growth.per): each.shown(growth, unit) for each in LENGTHS[:-1]}
+    mouth = {"mouth [deg]": from_bottom(growth.crack.theta), "body": growth.crack.body}
+    return Curve(mouth, columns | {growth.passes: growth.cycles})
+
+
+def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) -> str:
+    """Return a line of text: the place of a crack, and what becomes of it.
+
+    `over` has the bodies that yield, see :func:`fastpin.states.margins.over_yield`: their lives are marked.
+    """
+    mark = over_yield_words(over or {}, owner_of(growth.problem, growth.crack.body))
+    where = " in the plate round the bush" if growth.crack.body == "seat" else ""
+    line = f"crack{where} at {from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}"
+    if growth.fate == CrackFate.NONE or math.isnan(growth.error):
+        return line + mark
+    of = "length" if growth.fate == CrackFate.STOPS else "life"
+    if not growth.error < 1.0:
+        return f"{line}; the error of this {of} is not known{mark}"
+    power = math.floor(math.log10(max(growth.error, 1e-9)))
+    return f"{line}; numerical error of this {of} below {math.ceil(growth.error / 10.0**power):g}e{power:03d}{mark}"
+
+
+def growth_table(growth: cracks.Growth) -> str:
+    """Return some lengths of a crack with its stress intensities, threshold, rate and cycles, as text."""
+    unit = units(growth.problem)
+    rows = np.geomspace(growth.length[0], growth.length[-1], 13)  # at most so many lengths
+    at = np.unique(np.abs(np.log(growth.length[:, None] / rows)).argmin(axis=0))
+    cells = []
+    for each in LENGTHS:
+        same = [float(value) for other in LENGTHS if other.kind == each.kind for value in other.of(growth)]
+        factor, label = unit[each.kind].scale(same) if each.kind else (1.0, "")
+        texts = [f"{factor * value:.4g}" for value in each.of(growth)[at].tolist()]
+        name = each.short or each.heading or each.name if each.kind else growth.passes
+        cells.append((name, label.replace("cycle", growth.per), ["never" if text == "inf" else text for text in texts]))
+    return table(cells)

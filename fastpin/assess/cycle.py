@@ -1,15 +1,26 @@
-"""A load cycle: the outputs of its largest values."""
+"""A load cycle: its largest values, its text, its nodes and its loops. Angles are in degrees from the bottom."""
 
 from __future__ import annotations
 
+import csv
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from fastpin.assess.outputs import Output
-from fastpin.states.load_cycle import LoadCycle
+from fastpin.assess.outputs import ROUNDING, Curve, Output
+from fastpin.assess.outputs import document as document_of
+from fastpin.model.angles import from_bottom
+from fastpin.model.loads import LOAD_KIND
+from fastpin.model.problem import Problem
+from fastpin.model.units import units
+from fastpin.states.cycles import Cycle
+from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
+from fastpin.states.quantities import load_point, sizes
 from fastpin.states.regimes import REGIMES
+from fastpin.storage.files import replacing
 
 
 def _largest(name: str, kind: str) -> Iterator[Output]:
@@ -36,3 +47,102 @@ CYCLE = (
     Output("dissipation", "energy", lambda cycle: cycle.dissipation, optional=True),
 )
 """Outputs of a :class:`fastpin.states.LoadCycle`."""
+
+
+WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
+"""Words for the behaviours of a node: "no contact", "sticks", "slips" and "opens"."""
+
+
+def cycle_line(cycle: LoadCycle) -> str:
+    """Return a line of text: the regime, and the largest slip range, slip distance and friction energy of a node.
+
+    The places of the largest values stand beside them. Values that are rounding beside the sizes of
+    :func:`natural_sizes` are 0.
+    """
+    natural, found = natural_sizes(cycle), document(cycle)
+    unit = units(cycle.states[0].problem)
+
+    def words(name: str, kind: str) -> str:
+        """The largest value of a quantity with its place; 0 if it is rounding."""
+        largest, label = found[f"largest_{name}"], name.replace("_", " ")
+        if not largest > ROUNDING * natural[kind]:
+            return f"{label} 0"
+        return f"{label} up to {unit[kind].text(largest, 4)} at {found[f'largest_{name}_angle']:z.2f} deg"
+
+    regime = cycle.regime.words + ("" if cycle.has_exact_slip_range else " (read from the kept states)")
+    parts = [words("slip_range", "displacement") + ("" if cycle.has_exact_slip_range else " at the kept states")]
+    if cycle.friction_energy is not None:
+        parts += [words("slip_distance", "displacement"), words("friction_energy", "energy density")]
+    return f"from corner {cycle.first:,} to {cycle.last:,}: {regime}, {', '.join(parts)}"
+
+
+def natural_sizes(cycle: LoadCycle) -> dict[str, float]:
+    """Return natural sizes of slip, traction and friction energy in a cycle. Much smaller values are rounding."""
+    found = [sizes(state) for state in cycle.states]
+    largest = {kind: max(each[kind] for each in found) for kind in ("displacement", "traction")}
+    return largest | {"energy density": largest["displacement"] * largest["traction"]}
+
+
+def document(cycle: LoadCycle) -> dict[str, Any]:
+    """Return the largest values of a cycle with their places, and its energies, as a dict.
+
+    A value that is not known is NaN. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load;
+    it is not known if only the ends of the cycle were kept.
+    """
+    unit, inside = units(cycle.states[0].problem), len(cycle.states) > 2
+    nodes = {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
+    work = {name: unit["energy"].factor * loop.work if inside else None for name, loop in cycle.loops.items()}
+    return document_of(CYCLE, cycle, unit) | {"nodes": nodes, "work": work}
+
+
+def write_csv(cycle: LoadCycle, path: Path) -> None:
+    """Write the values of all nodes as CSV, a line for each node. The header names the units.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
+    """
+    columns = {name: column for name, column in cycle.columns().items() if name != "theta"}
+    header = [f"{name} [{unit}]" if unit else name for name, (_, unit) in columns.items()]
+    cells: dict[str, list[Any]] = {name: values.tolist() for name, (values, _) in columns.items()}
+    cells["behaviour"] = [WORDS[NodeBehaviour(value)] for value in cells["behaviour"]]
+    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["angle [deg]", *header])
+        for angle, *values in zip(cycle.theta.tolist(), *cells.values(), strict=True):
+            writer.writerow([from_bottom(angle), *values])
+
+
+CONJUGATES = {
+    "force": ("displacement", "displacement"),
+    "moment": ("rotation", "rotation"),
+    "traction": ("conjugate displacement", "work per stress"),
+}
+"""By kind of load: the name of the displacement on which it does work, and its kind of quantity."""
+
+
+def loop_curve(cycle: LoadCycle) -> Curve:
+    """Return the loops: a row for each state, with each load and the displacement on which it does work."""
+    unit = units(cycle.states[0].problem)
+    columns = {"load point": np.array([load_point(state) for state in cycle.states])}
+    for name, loop in cycle.loops.items():
+        words, conjugate = CONJUGATES[LOAD_KIND[name]]
+        of_load, of_displacement = unit[LOAD_KIND[name]], unit[conjugate]
+        columns[f"{name} [{of_load.name}]"] = of_load.factor * loop.load
+        columns[f"{words} of {name} [{of_displacement.name}]"] = of_displacement.factor * loop.displacement
+    return Curve({}, columns)
+
+
+def cycles_curve(problem: Problem, cycles: Sequence[Cycle]) -> Curve:
+    """Return the changes over cycles, a row for each cycle. Cycles and corners are counted from 1, as in tables."""
+    unit = units(problem)
+    kinds = {"dissipation": "energy", "rotation_change": "rotation"}
+    columns = {"cycle": np.arange(1.0, len(cycles) + 1.0)}
+    for name in Cycle._fields:
+        values = np.array([getattr(cycle, name) for cycle in cycles], dtype=float) + (name == "corner")
+        if name in kinds:
+            columns[f"{name} [{unit[kinds[name]].name}]"] = unit[kinds[name]].factor * values
+        elif name != "solved":
+            columns[name] = values
+    return Curve({}, columns)

@@ -1,68 +1,94 @@
-"""The fatigue of a case as its section [fatigue] asks for it: the assessment, its outputs and its text."""
+"""The fatigue of a result: as the section [fatigue] of its case asks for it, or else that of its last cycle."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fastpin.assess.asked import assessment_words
-from fastpin.assess.kept import kept
-from fastpin.assess.outputs import Output
-from fastpin.assess.outputs import document as document_of
-from fastpin.damage.criteria import criterion_title
+import numpy as np
+
+from fastpin import damage
+from fastpin.assess import outputs
+from fastpin.damage.criteria import Criterion, criterion_title
+from fastpin.damage.margins import MOST_STOPS, reserve_margins
+from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
+from fastpin.model import Case, Problem
 from fastpin.model.angles import from_bottom
 from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA, FatigueAssessment
-from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.model.fatigue import LIFE_CONSTANTS
-from fastpin.model.points import BODIES, edge_body, owner_of
+from fastpin.model.points import BODIES, EDGES, Body, edge_body, elastic_bodies, material_of, owner_of
 from fastpin.model.units import units
-from fastpin.states.margins import over_yield_words
+from fastpin.states.choice import missing_corners
+from fastpin.states.cycles import Cycle
+from fastpin.states.margins import Margin, over_yield_words
+from fastpin.states.state import State
 
-if TYPE_CHECKING:  # they import compiled code, and a plan is read without it
-    from fastpin.damage import SpectrumDamage, StressReserve
+if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
     from fastpin.solver.result import Result
+    from fastpin.storage.held import Held
+
+SWT: Criterion = "smith-watson-topper"
+"""The criterion of printed texts and pages. It finds the hot spot without constants of the material."""
+
+
+RULES = {
+    "elementary": "elementary Miner's rule",
+    "original": "original Miner's rule, no damage below the knee at {} cycles",
+    "haibach": "Miner's rule modified by Haibach below the knee at {} cycles",
+}
+"""Words for the variants of Miner's rule."""
+
 
 MOST_CYCLES = 3
 """Counted cycles that are printed for each body."""
 
+
 MOST_LISTED = 100
 """Counted cycles of each body in JSON: those that do the most damage."""
 
+
 HOW = (
-    Output("criterion", "texts", lambda how: list(how.criteria), allowed=LIFE_CONSTANTS),
-    Output("over", "text", lambda how: how.over, allowed=SPECTRA),
-    Output("method", "text", lambda how: how.method, allowed=DISTANCES),
-    Output("small_cycles", "text", lambda how: how.small_cycles, allowed=MINER_RULES),
-    Output("knee", "", lambda how: how.knee, optional=True),
-    Output("life_asked", "", lambda how: how.life, optional=True),
-    Output("reliability", "", lambda how: how.reliability, optional=True),
-    Output("confidence", "", lambda how: how.confidence, optional=True),
+    outputs.Output("criterion", "texts", lambda how: list(how.criteria), allowed=LIFE_CONSTANTS),
+    outputs.Output("over", "text", lambda how: how.over, allowed=SPECTRA),
+    outputs.Output("method", "text", lambda how: how.method, allowed=DISTANCES),
+    outputs.Output("small_cycles", "text", lambda how: how.small_cycles, allowed=MINER_RULES),
+    outputs.Output("knee", "", lambda how: how.knee, optional=True),
+    outputs.Output("life_asked", "", lambda how: how.life, optional=True),
+    outputs.Output("reliability", "", lambda how: how.reliability, optional=True),
+    outputs.Output("confidence", "", lambda how: how.confidence, optional=True),
 )
 """Outputs of a :class:`fastpin.model.FatigueAssessment`."""
 
+
 DAMAGE = (
-    Output("criterion", "text", lambda found: found.criterion, allowed=LIFE_CONSTANTS),
-    Output("body", "text", lambda found: found.body, allowed=BODIES),
-    Output("damage", "", lambda found: found.hot_spot.damage),
-    Output(
+    outputs.Output("criterion", "text", lambda found: found.criterion, allowed=LIFE_CONSTANTS),
+    outputs.Output("body", "text", lambda found: found.body, allowed=BODIES),
+    outputs.Output("damage", "", lambda found: found.hot_spot.damage),
+    outputs.Output(
         "life", "life", lambda found: found.hot_spot.life,
         "spectra, or cycles over the last cycle; null without damage", optional=True,
     ),
-    Output(
+    outputs.Output(
         "median_life", "life", lambda found: found.hot_spot.life * 10.0**found.shift,
         "the life that half of the specimens reach", optional=True,
     ),
-    Output("angle", "angle", lambda found: found.hot_spot.theta, optional=True),
-    Output("depth", "length", lambda found: found.hot_spot.depth, optional=True),
-    Output("plane", "width", lambda found: found.hot_spot.plane, optional=True),
+    outputs.Output("angle", "angle", lambda found: found.hot_spot.theta, optional=True),
+    outputs.Output("depth", "length", lambda found: found.hot_spot.depth, optional=True),
+    outputs.Output("plane", "width", lambda found: found.hot_spot.plane, optional=True),
 )  # fmt: skip
 """Outputs of a :class:`fastpin.damage.SpectrumDamage`: those of its hot spot. The plane's normal counts from +x."""
 
 
-@kept
+BAR = "damage of the spectrum"
+FAILED = ""
+"""Never said: what is found holds the reason."""
+MARGINS = ("fatigue",)
+
+
+@outputs.kept
 def worst_damage(result: Any, how: FatigueAssessment) -> Any:
     """Return the largest damage by the first criterion. It is kept while the result lives.
 
@@ -90,8 +116,8 @@ class Assessed(NamedTuple):
     """
 
     how: FatigueAssessment
-    found: list[SpectrumDamage]
-    reserves: list[StressReserve]
+    found: list[damage.SpectrumDamage]
+    reserves: list[damage.StressReserve]
     reason: str = ""
 
     @property
@@ -100,16 +126,15 @@ class Assessed(NamedTuple):
         return self.how.method == "edge" and self.how.angles is None
 
 
-def assess(
-    case: Case, result: Result | None, progress: Callable[[float, float], None] | None = None
-) -> Assessed | None:
+def find(case: Case, held: Held | None, progress: outputs.Progress | None = None) -> Assessed | None:
     """Assess the fatigue of a whole result as its case asks for it; None if the case does not."""
     if case.fatigue is None:
         return None
-    if result is None or not result.complete:
+    if held is None or not held.result.complete:
         return Assessed(case.fatigue, [], [], "the history has not come to its end")
+    result = held.whole()
 
-    def half(begin: float) -> Callable[[float, float], None] | None:
+    def half(begin: float) -> outputs.Progress | None:
         return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
 
     try:
@@ -119,27 +144,62 @@ def assess(
         return Assessed(case.fatigue, [], [], str(error))
 
 
-def assessment_lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]:
+OUTCOMES = {
+    **{
+        name: (output, worst_damage)
+        for name, output in outputs.chosen(DAMAGE, ("life", "median_life", "damage", "angle")).items()
+    },
+    "failure_probability": (
+        outputs.Output("failure_probability", "", lambda part: part),
+        lambda result, how: worst_damage(result, how).failure_probability(how.life),
+    ),
+}
+"""Outcomes of sweeps: those of the hot spot with the largest damage of all bodies."""
+
+
+def judged(result: Result, how: FatigueAssessment) -> Assessed:
+    """Return the reserves of a whole result, for its margins."""
+    return Assessed(how, [], result.assessed_reserves(how))
+
+
+def margins(assessed: Assessed) -> list[Margin]:
+    """Return the margins on the stresses, see :func:`fastpin.damage.margins.reserve_margins`."""
+    return reserve_margins(assessed.reserves, assessed.how)
+
+
+def schema() -> outputs.Schema:
+    """Return the JSON schema of :func:`document`."""
+    numbers = dict.fromkeys(("start", "stop", "largest", "parameter", "damage"), outputs.NUMBER)
+    words = "counted cycles at the hot spot, the largest damage first; start and stop are load points"
+    cycles = outputs.list_of(outputs.object_of(numbers | {"times": outputs.WHOLE})) | {"description": words}
+    rest = {"cycles": cycles, "failure_probability": outputs.UNKNOWN, "over_yield": outputs.UNKNOWN}
+    body = outputs.object_of(outputs.properties(DAMAGE) | rest)
+    return outputs.object_of(
+        outputs.properties(HOW) | {"error": outputs.OPTIONAL_TEXT, "bodies": outputs.list_of(body)}
+    )
+
+
+def lines(assessed: Assessed, over: Mapping[str, float]) -> list[str]:
     """Return lines of text: how fatigue is assessed, then each body with its hot spot, the largest damage first.
 
     `over` has the bodies that yield, see :func:`fastpin.states.margins.over_yield`: their lives are marked.
     """
     if assessed.reason:
         return [f"fatigue: not known, {assessed.reason}"]
-    lines = [
+    of_bodies = (
         _line(one, assessed.how) + over_yield_words(over, owner_of(one.problem, one.body)) for one in assessed.found
-    ]
-    return [f"fatigue over {assessment_words(assessed.how)}", *lines]
+    )
+    return [f"fatigue over {assessment_words(assessed.how)}", *of_bodies]
 
 
-def _line(damage: SpectrumDamage, how: FatigueAssessment) -> str:
-    spot, counted = damage.hot_spot, damage.cycles
-    name = f"fatigue of the {edge_body(damage.problem, damage.body)}, {criterion_title(damage.criterion)}"
+def _line(found: damage.SpectrumDamage, how: FatigueAssessment) -> str:
+    spot, counted = found.hot_spot, found.cycles
+    name = f"fatigue of the {edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}"
     if math.isnan(spot.theta):
         return f"{name}: no damage"
-    depth = "" if spot.depth == 0.0 else f", {units(damage.problem)['length'].text(spot.depth, 3)} below the edge"
-    failing = damage.failure_probability(how.life)
-    parts = [f"median life {spot.life * 10.0**damage.shift:.4g}"] if damage.shift else []
+    depth = "" if spot.depth == 0.0 else f", {units(found.problem)['length'].text(spot.depth, 3)} below the edge"
+    failing = found.failure_probability(how.life)
+    parts = [f"median life {spot.life * 10.0**found.shift:.4g}"] if found.shift else []
     parts += [] if math.isnan(failing) else [f"{failing:.3g} of the specimens fail within {how.life:.6g} {how.passes}"]
     parts = [
         ", ".join([f"life {spot.life:.4g} {how.passes}", *parts])
@@ -161,7 +221,7 @@ def _line(damage: SpectrumDamage, how: FatigueAssessment) -> str:
 def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
     """Return an assessment as a dict: angles in degrees, from the bottom of the hole for places, from +x for planes.
 
-    `over` is that of :func:`assessment_lines`. A body without damage has no angle, depth, plane and life: all None.
+    `over` is that of :func:`lines`. A body without damage has no angle, depth, plane and life: all None.
     """
     bodies = []
     for one in assessed.found:
@@ -170,5 +230,122 @@ def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
         over_yield = over.get(owner_of(one.problem, one.body))
         failing = one.failure_probability(assessed.how.life)
         rest = {"failure_probability": None if math.isnan(failing) else failing, "over_yield": over_yield}
-        bodies.append(document_of(DAMAGE, one, units(one.problem)) | {"cycles": rows} | rest)
-    return document_of(HOW, assessed.how, {}) | {"error": assessed.reason or None, "bodies": bodies}
+        bodies.append(outputs.document(DAMAGE, one, units(one.problem)) | {"cycles": rows} | rest)
+    return outputs.document(HOW, assessed.how, {}) | {"error": assessed.reason or None, "bodies": bodies}
+
+
+def assessment_words(how: FatigueAssessment) -> str:
+    """Return an assessment of fatigue in words: the spectrum, the rule of small cycles, the places of the stresses."""
+    spectrum = "the whole history as a spectrum" if how.over == "history" else "the last cycle"
+    rule = RULES[how.small_cycles].format("" if how.knee is None else f"{how.knee:.6g}")
+    place = "" if how.method == "edge" else f", stresses by the {how.method} method of critical distances"
+    asked = "" if how.life is None else f", for a life of {how.life:.6g} {how.passes}"
+    residual = "" if how.residual_stress is None else ", with a residual stress of the plate"
+    return f"{spectrum}, {rule}{place}{asked}{how.reliability_words}{residual}"
+
+
+def fatigue_lines(states: Sequence[State], cycle: Cycle, over: Mapping[str, float]) -> list[str]:
+    """Return lines of text: the hot spots of plate and bush by Smith, Watson and Topper, their planes and lives.
+
+    `over` has the bodies that yield, see :func:`fastpin.states.margins.over_yield`: their lives are marked.
+
+    A body without fatigue constants has no line. There is none if the states lack a corner of the cycle, or if the
+    cycle has more than :data:`MOST_STOPS` states.
+    """
+    try:
+        stops = damage.cycle_states(states, cycle)
+    except InputError:
+        return []
+    if not 2 <= len(stops) <= MOST_STOPS:
+        return []
+    bodies = [body for body in fatigue_bodies(stops[0].problem, SWT) if material_of(stops[0].problem, body).fatigue]
+    return [hot_spot_line(damage.fatigue(stops, SWT, body), stops, over) for body in bodies]
+
+
+def spectrum_damages(states: Sequence[State], corners: int) -> list[damage.SpectrumDamage]:
+    """Return the damage of plate and bush by Smith, Watson and Topper over a whole history of so many corners.
+
+    The history is one pass of a repeated spectrum. A body without constants of the life is left out. There is none for
+    less than three corners, for corners that were not kept, or for more than :data:`MOST_STOPS` states.
+    """
+    if corners < 3 or not 2 <= len(states) <= MOST_STOPS or missing_corners(states, 1, corners):
+        return []
+    bodies = [body for body in bodies_with_lives(states[0].problem, SWT) if body in EDGES]
+    return [damage.spectrum_damage(states, SWT, body) for body in bodies]
+
+
+def spectrum_line(found: damage.SpectrumDamage, over: Mapping[str, float]) -> str:
+    """Return a line of text: the hot spot of a body over a spectrum, with its life and plane.
+
+    `over` is that of :func:`fatigue_lines`.
+    """
+    spot, edge = found.hot_spot, edge_body(found.problem, found.body)
+    name = f"fatigue of the {edge} over the whole history as a spectrum, {criterion_title(found.criterion)}"
+    if math.isnan(spot.theta):
+        return f"{name}: none, no plane has both tension and a changing strain"
+    words = f"life {spot.life:.3g} spectra at {from_bottom(spot.theta):z.2f} deg"
+    mark = over_yield_words(over, owner_of(found.problem, found.body))
+    return f"{name}: {words}, normal of the plane {np.degrees(spot.plane):z.2f} deg from +x{mark}"
+
+
+def fatigue_bodies(problem: Problem, criterion: str) -> list[Body]:
+    """The edges of holes whose fatigue is reported by a criterion: those with constants; else the pin's hole.
+
+    By Smith, Watson and Topper the parameter needs no constants. A laminate has no fatigue.
+    """
+    if not material_of(problem, "plate").is_isotropic:
+        return []
+    elastic = [body for body in EDGES if body in elastic_bodies(problem)]
+    known = [body for body in elastic if criterion == SWT or material_of(problem, body).fatigue]
+    return known or ["plate"]
+
+
+def hot_spot_line(found: damage.Fatigue, states: Sequence[State], over: Mapping[str, float]) -> str:
+    """Return a line of text: the hot spot of a body over the last cycle, its plane, and its life if known.
+
+    The criterion of `found` is "smith-watson-topper". A parameter that is rounding beside the pressures of the states
+    is 0. `over` is that of :func:`fatigue_lines`.
+    """
+    spot, problem = found.hot_spot, found.problem
+    name = f"fatigue of the {edge_body(problem, found.body)} in the last cycle, {criterion_title(found.criterion)}"
+    pressure = max((state.peak_pressure for state in states), default=0.0)
+    if spot.parameter <= outputs.ROUNDING * problem.surfaces.beta_star * pressure**2:
+        return f"{name}: none, no plane has both tension and a changing strain"
+    parts = [f"{units(problem)['stress times strain'].text(spot.parameter, 4)} at {from_bottom(spot.theta):z.2f} deg"]
+    if np.isfinite(spot.plane):
+        parts.append(f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x")
+    if not np.isnan(spot.life):
+        parts.append(f"life {spot.life:.3g} cycles" if np.isfinite(spot.life) else "infinite life")
+    return f"{name}: {', '.join(parts)}{over_yield_words(over, owner_of(problem, found.body))}"
+
+
+def spectrum_curve(found: damage.SpectrumDamage) -> outputs.Curve:
+    """Return angle, depth, damage, plane and life of the points, in the order of the angles, as :func:`fatigue_curve`.
+
+    The damage is that of one spectrum, and the life counts spectra.
+    """
+    columns = {f"damage by {found.criterion}": found.damage, "plane [deg]": np.degrees(found.plane)}
+    return _by_angle(found, columns | {"life [spectra]": found.life})
+
+
+def fatigue_curve(found: damage.Fatigue) -> outputs.Curve:
+    """Return angle, depth, parameter, plane and life of the points, in the order of the angles.
+
+    Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis.
+    """
+    columns = {f"{found.criterion} [{found.unit}]": found.parameter}
+    if found.plane is not None:
+        columns["plane [deg]"] = np.degrees(found.plane)
+    if found.life is not None:
+        columns["life [cycles]"] = found.life
+    return _by_angle(found, columns)
+
+
+def _by_angle(found: damage.Fatigue | damage.SpectrumDamage, columns: dict[str, np.ndarray]) -> outputs.Curve:
+    """Return columns of points with their angles and depths, in the order of the angles."""
+    angles = np.array([from_bottom(angle) for angle in found.theta.ravel().tolist()])
+    places = {"angle [deg]": angles, f"depth [{units(found.problem)['length'].name}]": found.depth}
+    order = np.argsort(angles, kind="stable")
+    return outputs.Curve(
+        {"body": found.body}, {name: np.ravel(each)[order] for name, each in (places | columns).items()}
+    )

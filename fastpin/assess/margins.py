@@ -1,49 +1,54 @@
-"""The margins of safety of a result: all of them, and the smallest one as an outcome."""
+"""Margins of safety of a result: strengths of each body, the bush in its seat, and fatigue, each with its state.
+
+A margin of safety is allowable/value - 1, as aerospace engineers write it: below 0 the part fails. One table serves the
+terminal, JSON and reports. Extremes are those of all kept states.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-from fastpin.assess.crack import grown
-from fastpin.assess.fatigue import Assessed
-from fastpin.assess.kept import kept
-from fastpin.assess.strength import WorstState, worst_state
-from fastpin.cracks.margins import crack_margins
-from fastpin.damage.margins import last_cycle_margins, reserve_margins, strength_margins
+from fastpin.assess.outputs import NUMBER, TEXT, TRUTH, UNKNOWN, Schema, aligned, kept, list_of, map_of, object_of
+from fastpin.assess.questions import QUESTIONS
+from fastpin.damage.margins import last_cycle_margins
 from fastpin.model.problem import Problem
+from fastpin.model.units import named_loads, printed_loads, units
 from fastpin.states.cycles import Cycle
-from fastpin.states.extremes import KeptStates, marked_extremes
-from fastpin.states.margins import Margin, smallest_margin, static_margins
+from fastpin.states.extremes import Found, KeptStates, marked_extremes
+from fastpin.states.margins import (
+    Margin,
+    over_yield,
+    over_yield_of,
+    over_yield_words,
+    smallest_margin,
+    static_margins,
+)
+from fastpin.states.quantities import point_name
 from fastpin.states.state import State
-
-if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
-    from fastpin.cracks import Growth
 
 LEAST = "least"
 """The smallest of all margins that are known, as tables mark it."""
 
 
-def all_margins(
-    static: Sequence[Margin],
-    last_cycle: Sequence[Margin],
-    fatigue: Assessed | None = None,
-    crack: Growth | None = None,
-    strength: WorstState | None = None,
-) -> list[Margin]:
-    """Return the margins of a result: those of all states and of the last cycle, and of what its case asks for."""
+HEADS = ("subject", "value", "allowable", "margin", "load point", "loads", "remark")
+"""Headings of :func:`margin_rows`."""
+
+
+def all_margins(static: Sequence[Margin], last_cycle: Sequence[Margin], found: Mapping[str, Any]) -> list[Margin]:
+    """Return the margins of a result: of all states, of the last cycle, and of what is `found` for the questions."""
     rows = [*static, *last_cycle]
-    rows += [] if fatigue is None else reserve_margins(fatigue.reserves, fatigue.how)
-    rows += [] if crack is None else crack_margins(crack)
-    return rows + ([] if strength is None else strength_margins(*strength))
+    for name, question in QUESTIONS.items():
+        rows += [] if found.get(name) is None else question.margins(found[name])
+    return rows
 
 
 def result_margins(
-    problem: Problem, static: Sequence[Margin], states: Sequence[State], cycles: Sequence[Cycle], **asked: Any
+    problem: Problem, static: Sequence[Margin], last: Sequence[State], cycles: Sequence[Cycle], found: Mapping[str, Any]
 ) -> list[Margin]:
-    """Return the known margins of a result: `states` hold its last cycle. See :func:`all_margins`."""
-    return all_margins(static, last_cycle_margins(problem, states, cycles), **asked)
+    """Return the known margins of a result: `last` holds the states of its last cycle. See :func:`all_margins`."""
+    return all_margins(static, last_cycle_margins(problem, last, cycles), found)
 
 
 def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...], result: Any) -> float:
@@ -67,13 +72,118 @@ def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...
 @kept
 def _margins(result: Any, sections: tuple[tuple[str, Any], ...]) -> list[Margin]:
     """All margins of a result, as ``fastpin run`` prints them."""
-    how, states = dict(sections), KeptStates(result.states)
-    asked: dict[str, Any] = {}
-    if "fatigue" in how:
-        asked["fatigue"] = Assessed(how["fatigue"], [], result.assessed_reserves(how["fatigue"]))
-    if "crack" in how:
-        asked["crack"] = grown(result, how["crack"])
-    if "strength" in how:
-        asked["strength"] = worst_state(result, how["strength"])
-    static = static_margins(result.problem, marked_extremes(states), states.read)
-    return result_margins(result.problem, static, result.states, result.cycles, **asked)
+    return margins_of(result, {name: QUESTIONS[name].judged(result, how) for name, how in sections})
+
+
+def margins_of(result: Any, found: Mapping[str, Any]) -> list[Margin]:
+    """Return the known margins of a result in memory over all its states. See :func:`all_margins`."""
+    kept = KeptStates(result.states)
+    static = static_margins(result.problem, marked_extremes(kept) if result.states else Found(), kept.read)
+    return result_margins(result.problem, static, result.states, result.cycles, found)
+
+
+def margin_lines(problem: Problem, rows: Sequence[Margin]) -> list[str]:
+    """Return lines of text on the margins that are known; none if no margin is known.
+
+    The smallest one is marked, unless only a part of its body was looked at.
+    """
+    known = [row for row in rows if math.isfinite(row.margin)]
+    if not known:
+        return []
+    cells = []
+    for name, value, allowable, margin, point, loads, place in margin_rows(problem, known):
+        where = "" if point == "-" else f"load point {point}: {loads}"
+        cells.append((name, f"{value} of {allowable}", margin, where, place))
+    return ["margins of safety over all kept states, allowable/value - 1:", *aligned(cells, "lrrll")]
+
+
+def in_order(margins: Sequence[Margin]) -> list[Margin]:
+    """Margins from the smallest one on; then those of parts that need nothing, then those that are not known."""
+    return sorted(margins, key=lambda row: (math.isnan(row.margin), row.margin))
+
+
+def verdict(margins: Sequence[Margin], is_complete: bool = True) -> str:
+    """Return a sentence on the margin that governs, and on what is not known; without its full stop.
+
+    A run that is not complete has a verdict on the loads that it reached only.
+    """
+    least, unknown = smallest_margin(margins), [row.subject for row in margins if math.isnan(row.margin)]
+    words = "no margin is known"
+    if least is not None:
+        but = " but that of a crack that grows" if any(row.margin < 0.0 for row in margins) else ""
+        safe = f"all known margins{but} are positive; the smallest{' other' * bool(but)} is that of"
+        fails = "the joint fails by" if least.margin < 0.0 else safe
+        where = "" if math.isnan(least.load_point) else f", load point {point_name(least.load_point)}"
+        words = f"{fails} {least.subject}: {least.margin:+.2f}{where}"
+        words += f", {least.part}" if least.part else ""
+    words = words if is_complete else f"not known, the run is unfinished; up to its end {words}"
+    return words + (f"; not known: {len(unknown)} of {len(margins)}, see their remarks" if unknown else "")
+
+
+def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, ...]]:
+    """Return rows of text under :data:`HEADS`. A margin of stresses above yield is marked."""
+    unit, least, over = units(problem), smallest_margin(margins), over_yield(margins)
+
+    def verdict(row: Margin) -> str:
+        if math.isnan(row.margin):
+            return "not known"
+        words = "none needed" if math.isinf(row.margin) else f"{row.margin:+.2f}"
+        if row is not least or row.part:  # the smallest of a part says nothing of the whole
+            return words
+        return f"{words}, the smallest{' known' if any(each.part for each in margins) else ''}"
+
+    def shown(row: Margin, value: float) -> str:
+        if math.isnan(value):
+            return "-"
+        if math.isinf(value):
+            return "infinite"
+        return f"{value:.3g}" if row.kind == "ratio" else unit[row.kind].text(value, 4)
+
+    return [
+        (
+            row.subject,
+            shown(row, row.value),
+            shown(row, row.allowable),
+            verdict(row),
+            "-" if math.isnan(row.load_point) else point_name(row.load_point),
+            named_loads(problem, row.loads) if row.loads else "-",
+            "; ".join(filter(None, (row.remark, row.part)))
+            + (over_yield_words(over, row.owner) if over_yield_of(row, over) else ""),
+        )
+        for row in margins
+    ]
+
+
+def document(problem: Problem, margins: Sequence[Margin]) -> list[dict[str, Any]]:
+    """Return margins as JSON-ready dicts, in printed units."""
+    unit, least, over = units(problem), smallest_margin(margins), over_yield(margins)
+    factors = {row.kind: 1.0 if row.kind == "ratio" else unit[row.kind].factor for row in margins}
+    return [
+        {
+            "subject": row.subject,
+            "name": row.name,
+            "body": row.owner,
+            "value": factors[row.kind] * row.value,
+            "allowable": factors[row.kind] * row.allowable,
+            "unit": "" if row.kind == "ratio" else unit[row.kind].name,
+            "margin": row.margin,
+            "smallest": row is least and not row.part,
+            "part": row.part,
+            "over_yield": over_yield_of(row, over),
+            "loads": printed_loads(problem, row.loads),
+            "load_point": row.load_point,
+            "remark": row.remark,
+        }
+        for row in margins
+    ]
+
+
+def schema() -> Schema:
+    """Return the JSON schema of :func:`document`."""
+    texts, numbers = (
+        ("subject", "name", "body", "unit", "remark", "part"),
+        ("value", "allowable", "margin", "load_point"),
+    )
+    governing = {"smallest": TRUTH, "loads": map_of(NUMBER, "loads of the state that governs")}
+    governing["over_yield"] = UNKNOWN | {"description": "stress over the yield strength where it is above 1"}
+    return list_of(object_of(dict.fromkeys(texts, TEXT) | dict.fromkeys(numbers, UNKNOWN) | governing))

@@ -1,19 +1,59 @@
-"""One description of an output: JSON, its schema, columns of CSV files and outcomes of sweeps follow from it."""
+"""One description of an output: JSON, its schema, CSV files, tables and outcomes of sweeps follow from it."""
 
 from __future__ import annotations
 
+import csv
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import wraps
+from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from fastpin.model.angles import from_bottom
-from fastpin.model.units import DEGREE, Unit
+from fastpin.model.problem import Problem
+from fastpin.model.units import DEGREE, Unit, units
+from fastpin.storage.files import replacing
+
+Schema = dict[str, Any]
+"""A JSON schema of draft 2020-12."""
+
+Progress = Callable[[float, float], None]
+"""Receives the work that is done, and all the work."""
 
 ROUNDING = 1e-9
 """Values and differences below this part of the largest of their kind are rounding. They are shown as 0."""
+
+NUMBER: Schema = {"type": "number"}
+
+WHOLE: Schema = {"type": "integer"}
+
+TEXT: Schema = {"type": "string"}
+
+TRUTH: Schema = {"type": "boolean"}
+
+UNKNOWN: Schema = {"type": ["number", "null"]}
+
+OPTIONAL_TEXT: Schema = {"type": ["string", "null"]}
+"""Schemas of single values. NaN and infinity are null."""
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+MAX_ROWS = 40
+"""Most lines of a printed table, below its head."""
+
+LEAST_REPEATED = 3
+"""Least rows that one line replaces: of fewer rows the table is as short."""
+
+LONGEST_PERIOD = 1_000
+"""Most rows of a period that is looked for: a table of more rows is cut before it repeats itself."""
+
+Column = tuple[str, str, list[str]]
+"""A column of a table: its name, its unit and its cells."""
 
 
 class Output(NamedTuple):
@@ -102,3 +142,331 @@ def chosen(outputs: Iterable[Output], names: Sequence[str]) -> dict[str, Output]
     """Return some of the outputs by name, in the order of the names."""
     known = {each.name: each for each in outputs}
     return {name: known[name] for name in names}
+
+
+def object_of(
+    parts: Mapping[str, Schema], required: Iterable[str] | None = None, without: Iterable[str] = ()
+) -> Schema:
+    """Return the schema of an object with these keys only.
+
+    All must be there, unless some are `required`, or it may be `without` some.
+    """
+    needed = [name for name in (parts if required is None else required) if name not in tuple(without)]
+    return {"type": "object", "properties": dict(parts), "required": needed, "additionalProperties": False}
+
+
+def map_of(item: Schema, words: str) -> Schema:
+    """Return the schema of an object with any keys."""
+    return {"type": "object", "description": words, "additionalProperties": item}
+
+
+def list_of(item: Schema, length: int | None = None) -> Schema:
+    """Return the schema of a list, perhaps of so many items."""
+    return {"type": "array", "items": item} | ({} if length is None else {"minItems": length, "maxItems": length})
+
+
+def or_null(item: Schema) -> Schema:
+    """Return the schema of a value that may be null."""
+    return {"anyOf": [item, {"type": "null"}]}
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One curve of a figure.
+
+    Attributes
+    ----------
+    parameters : dict
+        The values that differ between the curves of a figure: L_p, mu, the pair, the load.
+    columns : dict of ndarray
+        The numbers, all of one length, by a name with its unit. NaN breaks the curve.
+    """
+
+    parameters: dict[str, Any]
+    columns: dict[str, np.ndarray] = field(repr=False)
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        return self.columns[column]
+
+
+def write_csv(curves: Sequence[Curve], path: Path, remarks: Sequence[str] = ()) -> None:
+    """Write curves as CSV, one below the other. Each line has the curve's parameters, then a row of its columns.
+
+    NaN is an empty cell. A comma in a text becomes a semicolon, for programs that do not know quotes. `remarks` become
+    lines that begin with #.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
+    """
+    names = list(dict.fromkeys(name for curve in curves for name in (*curve.parameters, *curve.columns)))
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        file.writelines(f"# {remark}\n" for remark in remarks)
+        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
+        writer.writeheader()
+        for curve in curves:
+            parameters = {name: _parameter(value) for name, value in curve.parameters.items()}
+            rows = zip(*curve.columns.values(), strict=True)
+            for row in rows:
+                writer.writerow({**parameters, **dict(zip(curve.columns, map(_cell, row), strict=True))})
+
+
+def csv_cell(value: Any) -> Any:
+    """Return the value of a cell. A text that a spreadsheet would take for a formula begins with an apostrophe."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")) else value
+
+
+def _parameter(value: float | str) -> float | str:
+    if isinstance(value, str):
+        return csv_cell(value.replace(",", ";"))
+    return "" if math.isnan(value) else value
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, str):
+        return csv_cell(value)
+    return "" if math.isnan(value) else f"{value:.9g}"
+
+
+def kept(function: Function) -> Function:
+    """Let a function keep its values while its first argument lives, such as a result of which several outcomes ask.
+
+    The other arguments are given by position, and are hashable.
+    """
+    known: WeakKeyDictionary[Any, dict[tuple[Any, ...], Any]] = WeakKeyDictionary()
+
+    @wraps(function)
+    def value(first: Any, *others: Any) -> Any:
+        values = known.setdefault(first, {})
+        if others not in values:
+            values[others] = function(first, *others)
+        return values[others]
+
+    return value  # type: ignore[return-value]
+
+
+def unit_names(problem: Problem) -> dict[str, str]:
+    """Return the name of the unit of every kind of quantity in the JSON of a problem."""
+    angle = {"angle": "deg from the bottom of the hole, counter-clockwise"}
+    return {kind: unit.name for kind, unit in units(problem).items()} | angle
+
+
+def json_ready(value: Any) -> Any:
+    """Return `value` JSON-ready: Python numbers for NumPy's, lists for tuples, None for NaN and infinity."""
+    if isinstance(value, Mapping):
+        return {str(key): json_ready(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [json_ready(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+class Repeat(NamedTuple):
+    """A line for rows that repeat the rows before: `times` times the `period` rows that end before the row `first`."""
+
+    first: int
+    period: int
+    times: int
+
+    @property
+    def end(self) -> int:
+        """The row after the repeats."""
+        return self.first + self.times * self.period
+
+
+class LeftOut(NamedTuple):
+    """A line for so many `rows` that are not printed."""
+
+    rows: int
+
+
+TableLine = int | Repeat | LeftOut
+"""A line of a table: the number of a row from 0, or a line for several rows."""
+
+
+def visible_rows(count: int) -> list[int]:
+    """Return the indices of the rows to print of `count`: all, or of a long table the first and the last ones."""
+    return printed_rows(cut_lines(count))
+
+
+def printed_rows(lines: Iterable[TableLine]) -> list[int]:
+    """Return the rows that have a line of their own."""
+    return [line for line in lines if isinstance(line, int)]
+
+
+def cut_lines(count: int, hidden: int = 0) -> list[TableLine]:
+    """Return the lines of a table of `count` rows, and of `hidden` rows that are missing in their middle.
+
+    Of more than :data:`MAX_ROWS` rows the first and the last ones are printed.
+    """
+    first = last = MAX_ROWS // 2
+    if count <= MAX_ROWS:
+        first, last = (count // 2, count - count // 2) if hidden else (count, 0)
+    left_out = hidden + count - first - last
+    return [*range(first), *([LeftOut(left_out)] if left_out else []), *range(count - last, count)]
+
+
+def folded_lines(rows: np.ndarray) -> list[TableLine]:
+    """Return the lines of a table whose repeated rows become one line. There are at most :data:`MAX_ROWS` lines.
+
+    Parameters
+    ----------
+    rows : ndarray of int, shape (rows,)
+        Equal numbers for equal rows, see :func:`row_numbers`.
+    """
+    lines: list[int | Repeat] = []
+    begin = 0
+    for repeat in repeats(rows):
+        lines += [*range(begin, repeat.first), repeat]
+        begin = repeat.end
+    lines += range(begin, len(rows))
+    if len(lines) <= MAX_ROWS:
+        return [*lines]
+    first, last = lines[: MAX_ROWS // 2], lines[-MAX_ROWS // 2 :]
+    begin = last[0].first if isinstance(last[0], Repeat) else last[0]
+    return [*first, LeftOut(begin - _end(first[-1])), *last]
+
+
+def _end(line: int | Repeat) -> int:
+    return line.end if isinstance(line, Repeat) else line + 1
+
+
+def with_rows(lines: Iterable[TableLine], rows: Collection[int]) -> list[TableLine]:
+    """Return the lines of a table in which these rows are not left out. Repeated rows stay one line."""
+    found: list[TableLine] = []
+    at = 0
+    for line in lines:
+        if isinstance(line, LeftOut):
+            end = at + line.rows
+            for row in sorted(row for row in rows if at <= row < end):
+                found += [LeftOut(row - at), row] if row > at else [row]
+                at = row + 1
+            found += [LeftOut(end - at)] if end > at else []
+            at = end
+        else:
+            found.append(line)
+            at = _end(line)
+    return found
+
+
+def row_numbers(keys: Iterable[Hashable]) -> np.ndarray:
+    """Return a number for each key, shape (rows,). Equal keys have equal numbers."""
+    numbers: dict[Hashable, int] = {}
+    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
+
+
+def table(columns: Sequence[Column], hidden: int = 0) -> str:
+    """Return a table as text, with at most :data:`MAX_ROWS` lines below its head.
+
+    Parameters
+    ----------
+    columns : sequence of (str, str, list of str)
+        Name, unit and cells of each column.
+    hidden : int
+        Number of rows that `columns` lack in their middle. The table counts them among the rows it leaves out.
+    """
+    names = columns[0][2]
+    lines = cut_lines(len(names), hidden)
+    return table_of_lines(columns_at(columns, printed_rows(lines)), lines, names)
+
+
+def columns_at(columns: Sequence[Column], rows: Sequence[int]) -> list[Column]:
+    """Return columns with the cells of these rows only."""
+    return [(name, unit, [cells[row] for row in rows]) for name, unit, cells in columns]
+
+
+def table_of_lines(columns: Sequence[Column], lines: Sequence[TableLine], names: Sequence[str]) -> str:
+    """Return a table as text.
+
+    Parameters
+    ----------
+    columns : sequence of (str, str, list of str)
+        Name and unit of each column, and its cells for each printed row.
+    lines : sequence of int, Repeat or LeftOut
+        The lines of the table.
+    names : sequence of str
+        The cells of the first column for all rows. Lines for several rows name the rows by them.
+    """
+    widths = [max(len(name), len(unit), *map(len, cells), 0) for name, unit, cells in columns]
+
+    def joined(words: Sequence[str]) -> str:
+        return "  ".join(word.rjust(width) for word, width in zip(words, widths, strict=True)).rstrip()
+
+    text = [joined([name for name, _, _ in columns]), joined([unit for _, unit, _ in columns])]
+    rows = zip(*(cells for _, _, cells in columns), strict=True)
+    for line in lines:
+        text.append(
+            joined(next(rows)) if isinstance(line, int) else f"... {line_words(columns[0][0], names, line)} ..."
+        )
+    return "\n".join(text)
+
+
+def aligned(rows: Sequence[Sequence[str]], sides: str) -> list[str]:
+    """Return a line for each row of cells, indented by two, with aligned columns.
+
+    Parameters
+    ----------
+    rows : sequence of sequences of str
+        A row with fewer cells than columns does not count in the widths of the columns.
+    sides : str
+        "l" or "r" for each column: its cells stand to the left or to the right.
+    """
+    full = [row for row in rows if len(row) == len(sides)]
+    pads = [
+        (str.ljust if side == "l" else str.rjust, max(map(len, column)))
+        for side, column in zip(sides, zip(*full, strict=True), strict=True)
+    ]
+    return [
+        "  " + "  ".join(pad(cell, width) for cell, (pad, width) in zip(row, pads, strict=False)).rstrip()
+        for row in rows
+    ]
+
+
+def line_words(heading: str, names: Sequence[str], line: Repeat | LeftOut) -> str:
+    """Return the words of a line for several rows. `heading` is the name of the first column, `names` its cells."""
+    return f"{line.rows:,} more" if isinstance(line, LeftOut) else _repeat_words(heading, names, line)
+
+
+def _repeat_words(heading: str, names: Sequence[str], repeat: Repeat) -> str:
+    last = names[repeat.end - 1]
+    before = names[repeat.first - repeat.period], names[repeat.first - 1]
+    plural = f"{heading}s {before[0]} to {before[1]}" if repeat.period > 1 else f"{heading} {before[1]}"
+    times = "once" if repeat.times == 1 else f"{repeat.times:,} times"
+    return f"{names[repeat.first]} to {last}: repeat {plural}, {times}"
+
+
+def repeats(rows: np.ndarray) -> list[Repeat]:
+    """Find the rows that repeat the rows before them, in order.
+
+    Parameters
+    ----------
+    rows : ndarray of int, shape (rows,)
+        Equal numbers for equal rows.
+    """
+    found = []
+    row = 0
+    while row < len(rows):
+        repeat = _repeat_at(rows[row:])
+        if repeat is None:
+            row += 1
+        else:
+            found.append(repeat._replace(first=row + repeat.first))
+            row = found[-1].end
+    return found
+
+
+def _repeat_at(rows: np.ndarray) -> Repeat | None:
+    """The longest repeats of a period that begins with the first of some rows. None if they are too few."""
+    found, longest = None, LEAST_REPEATED - 1
+    for period in (np.flatnonzero(rows[1 : LONGEST_PERIOD + 1] == rows[0]) + 1).tolist():
+        if not np.array_equal(rows[:period], rows[period : 2 * period]):
+            continue
+        same = rows[:-period] == rows[period:]
+        times = (len(same) if same.all() else int(np.argmin(same))) // period
+        if times * period > longest:
+            found, longest = Repeat(period, period, times), times * period
+    return found

@@ -1,58 +1,76 @@
-"""A life of wear: its outputs, and those of its damage."""
+"""A life of wear: its outputs, those of its damage, its table, curves and JSON."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fastpin.assess.kept import kept
-from fastpin.assess.outputs import Output, chosen
+import numpy as np
+
+from fastpin.assess import outputs
 from fastpin.damage.race import Race
+from fastpin.model.angles import from_bottom
 from fastpin.model.doubts import doubts_given
-from fastpin.model.points import Body
-from fastpin.model.wear import Wear
+from fastpin.model.points import Body, edge_body
+from fastpin.model.ties import top
+from fastpin.model.units import units
+from fastpin.model.wear import Wear, cycles_text
+from fastpin.version import __version__
 
 if TYPE_CHECKING:  # they import compiled code, and a plan is read without it
-    from fastpin.damage.worn import WornFatigue
+    from fastpin.damage import WornFatigue
     from fastpin.solver.wear_result import WearResult
 
 COUNTS = (
-    Output("cycle", "whole", lambda one: one.cycle),
-    Output("next_jump", "whole", lambda one: one.next_jump),
-    Output("solved", "whole", lambda one: one.solved),
+    outputs.Output("cycle", "whole", lambda one: one.cycle),
+    outputs.Output("next_jump", "whole", lambda one: one.next_jump),
+    outputs.Output("solved", "whole", lambda one: one.solved),
 )
 """Counts of a :class:`fastpin.solver.WornCycle`."""
 
+
 WORN = (
-    Output("depth", "displacement", lambda one: one.depth),
-    Output("volume", "work per stress", lambda one: one.volume),
-    Output("pin_volume", "work per stress", lambda one: one.volumes[0]),
-    Output("plate_volume", "work per stress", lambda one: one.volumes[1]),
-    Output("energy_per_cycle", "energy", lambda one: one.energy_per_cycle, short="energy/cycle"),
-    Output("dissipation", "energy", lambda one: one.dissipation),
-    Output("removed", "energy", lambda one: one.removed),
-    Output("largest_pressure", "traction", lambda one: one.largest_pressure, short="largest p"),
+    outputs.Output("depth", "displacement", lambda one: one.depth),
+    outputs.Output("volume", "work per stress", lambda one: one.volume),
+    outputs.Output("pin_volume", "work per stress", lambda one: one.volumes[0]),
+    outputs.Output("plate_volume", "work per stress", lambda one: one.volumes[1]),
+    outputs.Output("energy_per_cycle", "energy", lambda one: one.energy_per_cycle, short="energy/cycle"),
+    outputs.Output("dissipation", "energy", lambda one: one.dissipation),
+    outputs.Output("removed", "energy", lambda one: one.removed),
+    outputs.Output("largest_pressure", "traction", lambda one: one.largest_pressure, short="largest p"),
 )
 """Outputs of a :class:`fastpin.solver.WornCycle`. Dissipation and removed energy are those of all cycles so far."""
 
+
 PROFILES = (
-    Output("pin_depth", "displacement", lambda one: one.pin_depth),
-    Output("plate_depth", "displacement", lambda one: one.plate_depth),
-    Output("pressure", "traction", lambda one: one.states[-1].pressure),
+    outputs.Output("pin_depth", "displacement", lambda one: one.pin_depth),
+    outputs.Output("plate_depth", "displacement", lambda one: one.plate_depth),
+    outputs.Output("pressure", "traction", lambda one: one.states[-1].pressure),
 )
 """Outputs at each node. The pressure is that on the profile at the end of one more cycle."""
 
-WEAR_OUTCOMES = chosen(
-    (*WORN, Output("pin_share", "", lambda one: one.pin_share)),
+
+WEAR_OUTCOMES = outputs.chosen(
+    (*WORN, outputs.Output("pin_share", "", lambda one: one.pin_share)),
     ("volume", "depth", "pin_share", "energy_per_cycle", "largest_pressure"),
 )
 """Outcomes of the last cycle: the last profile, and one cycle on it."""
 
+
 RACE_OUTCOMES = {
-    "life": Output("life", "life", lambda found: found.life),
-    "damage": Output("damage", "", lambda found: found.damage[-1].max()),
-    "race": Output("race", "class", lambda found: found.race, classes={int(race): race.words for race in Race}),
+    "life": outputs.Output("life", "life", lambda found: found.life),
+    "damage": outputs.Output("damage", "", lambda found: found.damage[-1].max()),
+    "race": outputs.Output("race", "class", lambda found: found.race, classes={int(race): race.words for race in Race}),
 }
 """Outcomes of a :class:`fastpin.damage.WornFatigue`: cycles until a crack starts, largest sum of damage, who wins."""
+
+DEBRIS = "debris is not modelled"
+"""A limit of the model that every report names."""
+
+LAW_WORDS = {
+    "archard": "depth = coefficient times int p |ds|, with the pressure p and the slip s",
+    "energy": "depth = coefficient times the energy that friction dissipates per area",
+}
+"""Words for the laws of wear."""
 
 
 def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Any) -> float:
@@ -62,12 +80,157 @@ def of_wear(quantity: str, wear: Wear, criterion: str, body: Body, result: Any) 
     return RACE_OUTCOMES[quantity].number(_worn_fatigue(result, wear, criterion, body))
 
 
-@kept
+@outputs.kept
 def _worn(result: Any, wear: Wear) -> WearResult:
     with doubts_given():
         return result.wear(**wear.given)
 
 
-@kept
+@outputs.kept
 def _worn_fatigue(result: Any, wear: Wear, criterion: str, body: Body) -> WornFatigue:
     return _worn(result, wear).fatigue(criterion, body)
+
+
+def table(result: WearResult) -> str:
+    """Return the chosen cycles as a table. A long table lacks its middle, but for the extremes."""
+    columns, lines = cycle_columns(result), cycle_lines(result)
+    return outputs.table_of_lines(outputs.columns_at(columns, outputs.printed_rows(lines)), lines, columns[0][2])
+
+
+def cycle_lines(result: WearResult) -> list[outputs.TableLine]:
+    """Return the lines of the table of the chosen cycles, with those of the largest pressure and dissipation."""
+    pressures, energies = [each.largest_pressure for each in result], [each.energy_per_cycle for each in result]
+    extremes = {top(values) for values in (pressures, energies) if values}
+    return outputs.with_rows(outputs.cut_lines(len(result)), extremes)
+
+
+def cycle_columns(result: WearResult) -> list[outputs.Column]:
+    """Return the columns of the table of all chosen cycles."""
+    unit = units(result.problem)
+    columns: list[outputs.Column] = [("cycle", "", [f"{each.cycle:,}" for each in result])]
+    for each in outputs.chosen(WORN, ("depth", "volume", "energy_per_cycle", "largest_pressure")).values():
+        values = [each.of(one) for one in result]
+        factor, label = unit[each.kind].scale(values)
+        columns.append((each.short or each.name, label, [f"{factor * value:.5g}" for value in values]))
+    shares = ["-" if np.isnan(each.pin_share) else f"{100.0 * each.pin_share:.3g}" for each in result]
+    columns.append(("of the pin", "%", shares))
+    columns.append(("solved", "", [f"{each.solved:,}" for each in result]))
+    return columns
+
+
+def coefficient_words(result: WearResult) -> dict[str, str]:
+    """Return the wear coefficients in words, of each body at the contact that wears."""
+    unit = units(result.problem)["wear coefficient"]
+    found = {}
+    for body, values in zip(("pin", edge_body(result.problem, "plate")), result.coefficients, strict=True):
+        if not values.any():
+            continue
+        least, most = (unit.text(float(value), 4) for value in (values.min(), values.max()))
+        found[body] = most if least == most else f"{least.partition(' ')[0]} to {most} along the rim"
+    return found
+
+
+def wear_input(result: WearResult) -> dict[str, Any]:
+    """Return what a life of wear depends on beside its problem and its loads, JSON-ready, in SI units.
+
+    A coefficient that is the same at all nodes is one number.
+    """
+    pin, plate = (row.tolist() if np.ptp(row) else float(row[0]) for row in result.coefficients)
+    control = {"cycles": result.all_cycles, "tolerance": result.tolerance}
+    return {"law": result.law, "pin": pin, "plate": plate, **control}
+
+
+def law_rows(result: WearResult) -> list[tuple[str, str]]:
+    """Return the law of wear, its coefficients, the cycles and the control of their error: rows of (subject, text)."""
+    tolerance = "0: every cycle is solved"
+    if result.tolerance:
+        tolerance = f"{result.tolerance:g} of the largest depth, for the error by cycles that stand for many"
+    return [
+        ("law", f"{result.law}: {LAW_WORDS[result.law]}"),
+        *((f"wear coefficient of the {body}", words) for body, words in coefficient_words(result).items()),
+        ("cycles", f"{result.all_cycles:,}"),
+        ("tolerance", tolerance),
+    ]
+
+
+def followed_words(result: WearResult) -> str:
+    """Return words on how many cycles were followed; an unfinished life says so."""
+    if result.complete:
+        return cycles_text(result[-1].cycle)
+    return f"unfinished: {result[-1].cycle if len(result) else 0:,} of {cycles_text(result.all_cycles)}"
+
+
+def reached_line(result: WearResult) -> str:
+    """Return a line of text: how many cycles were followed, and how many of them were solved."""
+    solved = f", {result[-1].solved:,} of them solved" if len(result) else ""
+    return f"{followed_words(result)}{solved}; {DEBRIS}"
+
+
+def scar_curves(result: WearResult) -> list[outputs.Curve]:
+    """Return the profiles after all stored cycles, a curve each, in the order of the angles.
+
+    The pressure is that on the profile at the end of one more cycle.
+    """
+    unit = units(result.problem)
+    angles = np.array([from_bottom(angle) for angle in result.theta.tolist()])
+    order = np.argsort(angles)
+    curves = []
+    for each in result:
+        columns = {"angle [deg]": angles} | {one.column(unit): one.shown(each, unit) for one in PROFILES}
+        curves.append(outputs.Curve({"cycle": each.cycle}, {name: values[order] for name, values in columns.items()}))
+    return curves
+
+
+def cycles_curve(result: WearResult) -> outputs.Curve:
+    """Return the numbers of all stored cycles."""
+    unit = units(result.problem)
+    names = ("cycle", "pin_volume", "plate_volume", "depth", "energy_per_cycle", "largest_pressure")
+    shown = outputs.chosen((*COUNTS, *WORN), names).values()
+    return outputs.Curve(
+        {}, {each.column(unit): np.array([float(each.shown(one, unit)) for one in result]) for each in shown}
+    )
+
+
+def damage_curve(damage: WornFatigue) -> outputs.Curve:
+    """Return the damage of all material points after the last cycle, and whether they are gone."""
+    length = units(damage.problem)["length"]
+    shape = damage.damage[-1].shape
+    angles = np.array([from_bottom(angle) for angle in damage.theta.tolist()])
+    columns = {
+        "angle [deg]": np.broadcast_to(angles, shape),
+        f"depth [{length.name}]": np.broadcast_to(length.factor * damage.depth[:, None], shape),
+        "damage": damage.damage[-1],
+        "worn off": damage.is_gone[-1].astype(float),
+        "cycles to damage 1": np.where(np.isfinite(damage.broken), damage.broken, np.nan),
+    }
+    return outputs.Curve({"body": damage.body}, {name: np.ravel(values) for name, values in columns.items()})
+
+
+def document(result: WearResult | None, title: str = "", error: str | None = None) -> dict[str, Any]:
+    """Return a life of wear as a JSON-ready dict. Angles are in degrees from the bottom of the hole.
+
+    `error` is the reason why it is incomplete. Without a result no cycle was reached.
+    """
+    found: dict[str, Any] = {"fastpin": __version__, "title": title, "error": error}
+    if result is None:
+        empty: dict[str, Any] = {key: [] for key in ("angles", "pin_coefficient", "plate_coefficient", "cycles")}
+        rest = {"complete": False, "units": {}, "law": "", "tolerance": 0.0, "statistics": {}}
+        return found | rest | empty
+    unit = units(result.problem)
+    pin, plate = unit["wear coefficient"].factor * result.coefficients
+    found |= {
+        "complete": result.complete,
+        "units": outputs.unit_names(result.problem),
+        "law": result.law,
+        "tolerance": result.tolerance,
+        "angles": [from_bottom(angle) for angle in result.theta.tolist()],
+        "pin_coefficient": pin.tolist(),
+        "plate_coefficient": plate.tolist(),
+        "statistics": result.statistics,
+        "cycles": [
+            outputs.document(COUNTS, each, unit) | {"tau": tau} | outputs.document((*WORN, *PROFILES), each, unit)
+            for each, tau in zip(result, (unit["wear coefficient"].factor * result.tau).tolist(), strict=True)
+        ],
+    }
+    ready: dict[str, Any] = outputs.json_ready(found)
+    return ready

@@ -15,7 +15,7 @@ from fastpin.model.materials import Material, MaterialPair
 
 
 @dataclass(frozen=True)
-class Joint:
+class BodyPair:
     """Pin and plate in the hole radius `radius`, m. The fields are those of :class:`fastpin.Problem`."""
 
     pair: MaterialPair

@@ -8,6 +8,7 @@ import numpy as np
 
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
+from fastpin.model import LOADS, Problem
 from fastpin.model.checks import any_text, as_toml, number, true_or_false, whole_number
 from fastpin.model.csv_columns import COLUMN_KEYS, COUNT, ColumnChoice, column_choice
 from fastpin.model.history import (
@@ -21,8 +22,6 @@ from fastpin.model.history import (
 )
 from fastpin.model.history_csv import MAX_ROWS
 from fastpin.model.load_units import Basis
-from fastpin.model.loads import LOADS
-from fastpin.model.problem import Problem
 from fastpin.model.recorded import turning_corners
 
 MOST_BLOCKS = 10_000

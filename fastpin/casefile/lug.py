@@ -117,10 +117,7 @@ def _check_keys(source: CaseText) -> None:
         are_tables = isinstance(value, list) and all(isinstance(table, dict) for table in value)
         if name not in LUG_KEYS:
             hint = closest(name, tuple(LUG_KEYS)) or f"; the sections are {', '.join(map(_in_brackets, LUG_KEYS))}"
-            kind = (
-                f"section {written(name, value)}" if written(name, value) else f'key "{name}" before the first section'
-            )
-            source.report(f"unknown {kind}{hint}", name)
+            source.report_unknown(name, hint)
         elif not (isinstance(value, dict) or (name in BLOCKS and are_tables)):
             source.report(f"{name}: must be a section {shown}, not {written(name, value) or as_toml(value)}", name)
         else:

@@ -16,24 +16,21 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
-from fastpin.casefile.assessment import read_assessment
-from fastpin.casefile.beside import READERS
+from fastpin.casefile.beside import READERS, read_assessment
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.materials import known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
+from fastpin.model import LOADS, LoadHistory, SolveOptions
 from fastpin.model.assessment import FatigueAssessment, check_assessment
 from fastpin.model.beside import BESIDE
 from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
 from fastpin.model.checks import file_path, string
 from fastpin.model.fields import FIELDS
-from fastpin.model.history import LoadHistory
 from fastpin.model.laminate import LAMINATE_KEYS
-from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
-from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
 from fastpin.model.synonyms import closest, meant
 from fastpin.model.units import PER_THICKNESS
@@ -244,11 +241,10 @@ def _check_keys(source: CaseText) -> None:
         if name in KEYS:
             for section in source.blocks(name):
                 section.check_keys(KEYS[name], f" in {_in_brackets(name)}", hint=partial(key_hint, name))
-        elif shown := written(name, value):
-            source.report(f"unknown section {shown}{_section_hint(name)}", name)
+        elif written(name, value):
+            source.report_unknown(name, _section_hint(name))
         else:
-            hint = _owners(name) or closest(name, ROOT_KEYS) or _elsewhere(name)
-            source.report(f'unknown key "{name}" before the first section{hint}', name)
+            source.report_unknown(name, _owners(name) or closest(name, ROOT_KEYS) or _elsewhere(name))
 
 
 def _section_hint(name: str) -> str:

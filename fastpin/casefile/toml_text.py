@@ -196,6 +196,11 @@ class CaseText:
             self._add(0, f"has {MOST_FAULTS} faults or more; reading ended there")
             raise TooManyFaultsError
 
+    def report_unknown(self, name: str, hint: str, where: str = " before the first section") -> None:
+        """Report an unknown section, or an unknown key `where` no section is. The message ends with `hint`."""
+        section = written(name, self.root.table[name])
+        self.report(f"unknown section {section}{hint}" if section else f'unknown key "{name}"{where}{hint}', name)
+
     def line(self, *place: str | int) -> int:
         """Line (from 1) of the value at `place`, or of the smallest table around it; 0 if neither is in the text."""
         places = self._lines.located[0]
@@ -516,3 +521,27 @@ def _behind_value(value: str) -> str:
 
 def _block_hint(name: str) -> str:
     return "; several loads are [[load]] blocks, with double brackets" if name == "load" else ""
+
+
+class Named(Section):
+    """A table whose faults begin with a name."""
+
+    def __init__(self, source: CaseText, place: KeyPath, table: Mapping[str, Any], name: str) -> None:
+        super().__init__(source, place, dict(table))
+        self._title = name
+
+    def report(self, message: str, *key: str) -> None:
+        """Add a fault of a key, or of the whole table if no key is given."""
+        super().report(f"{self._title}: {message}", *key)
+
+
+class Inside(Section):
+    """The table of a key of a section. The section reports its faults."""
+
+    def __init__(self, source: CaseText, section: Section, key: str, table: dict[str, Any]) -> None:
+        super().__init__(source, (section.name, key), table)
+        self._section, self._key = section, key
+
+    def report(self, message: str, *key: str) -> None:
+        """Add a fault of a key, or of the whole table if no key is given."""
+        self._section.report(message, self._key, *key)

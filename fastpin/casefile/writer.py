@@ -16,16 +16,11 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.model import Case, LoadHistory, Material, Problem, Profile, SolveOptions
 from fastpin.model.beside import BESIDE, beside_of
-from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.fields import FIELDS
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.materials import Material
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
-from fastpin.model.profile import Profile
 from fastpin.model.units import PER_THICKNESS
 
 PER_LINE = 8

@@ -2,29 +2,54 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
-from fastpin.charts.groups import (
-    COORDINATES,
-    CYCLE,
-    GROUPS,
-    ROUNDING,
-    ChartGroup,
-    TableAxis,
-    parameter_range,
-    pin_term,
-    plate_beta,
-)
-from fastpin.charts.tables import tables
+from fastpin.charts import groups
+from fastpin.charts.groups import STORED, load_parameter_at, tables, width_coordinate
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, instance, known_name, number, numbers, positive
+from fastpin.model.checks import choice, in_one_shape, instance, known_name, number, numbers, positive
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
+
+FIRST_PARAMETERS = ("load_parameter", "friction", "alpha", "beta", "kolosov", "pin_load")
+"""Parameters of a chart of the first load."""
+
+CYCLE_PARAMETERS = ("load_parameter", "friction", "load_ratio", "alpha", "beta", "kolosov", "pin_load", "rotation")
+"""Parameters of a chart of a load cycle: those of the first load, and two more."""
+
+DEFAULTS: dict[str, Any] = {"alpha": 0.0, "beta": 0.0, "kolosov": 1.8, "pin_load": "centre", "rotation": "free"}
+"""Parameters that may be left out: like bodies with nu = 0.3 in plane strain, load at the centre, free rotation."""
+
+_CHOICES = {"pin_load": ("centre", "body"), "rotation": ("free", "fixed")}
+
+MOST_LOAD_PARAMETER, MOST_FRICTION = 10.0, 0.6
+"""Largest load parameter and coefficient of friction of the formulas."""
+
+DEGREE = 3
+"""Largest sum of powers of the polynomials."""
+
+SAMPLES = 61
+"""Values of load parameter and friction at which a formula is fitted, and twice as many for its error."""
+
+ROUNDS = 15
+"""Rounds of the fit. They lower its largest error."""
+
+DIGITS = 4
+"""Decimal places of the coefficients."""
+
+HEAD = ("x     =1/SQRT(0.4563+PI()*Lp)", "z     =mu/SQRT(mu^2+0.2*x^2)")
+"""Cells that all formulas use."""
+
+FACTORS = {"peak_pressure": "*SQRT(1.438+16*Lp/PI())", "contact_angle": "*x", "kt_bearing": ""}
+"""The quantities with a formula, and the factor of :data:`fastpin.charts.groups.STORED` as a spreadsheet has it."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +74,7 @@ class ChartQuantity:
     @property
     def is_cycle(self) -> bool:
         """Whether it belongs to a load cycle; else to the first load."""
-        return self.name in CYCLE
+        return self.name in groups.CYCLE
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -77,15 +102,6 @@ class ChartValue:
         return float(self.value)
 
 
-FIRST_PARAMETERS = ("load_parameter", "friction", "alpha", "beta", "kolosov", "pin_load")
-"""Parameters of a chart of the first load."""
-
-CYCLE_PARAMETERS = ("load_parameter", "friction", "load_ratio", "alpha", "beta", "kolosov", "pin_load", "rotation")
-"""Parameters of a chart of a load cycle: those of the first load, and two more."""
-
-DEFAULTS: dict[str, Any] = {"alpha": 0.0, "beta": 0.0, "kolosov": 1.8, "pin_load": "centre", "rotation": "free"}
-"""Parameters that may be left out: like bodies with nu = 0.3 in plane strain, load at the centre, free rotation."""
-
 CHARTS = {
     chart.name: chart
     for chart in (
@@ -103,8 +119,6 @@ CHARTS = {
     )
 }
 """The charts by name."""
-
-_CHOICES = {"pin_load": ("centre", "body"), "rotation": ("free", "fixed")}
 
 
 def lookup(quantity: str, **parameters: Any) -> ChartValue:
@@ -146,13 +160,13 @@ def lookup(quantity: str, **parameters: Any) -> ChartValue:
     return ChartValue(value, error, chart.unit)
 
 
-def _group(given: Mapping[str, Any]) -> ChartGroup:
+def _group(given: Mapping[str, Any]) -> groups.ChartGroup:
     """The group of charts of some parameters; a load cycle has a rotation."""
     is_like = not any(value if isinstance(value := given[name], float) else value.any() for name in ("alpha", "beta"))
     if "rotation" not in given:
-        return GROUPS[f"{'like' if is_like else 'unlike'}_{given['pin_load']}"]
+        return groups.GROUPS[f"{'like' if is_like else 'unlike'}_{given['pin_load']}"]
     name = "held" if given["rotation"] == "fixed" else f"free_{given['pin_load']}"
-    return GROUPS[name if is_like else f"unlike_{name}"]
+    return groups.GROUPS[name if is_like else f"unlike_{name}"]
 
 
 def chart_of(quantity: object) -> ChartQuantity:
@@ -199,10 +213,10 @@ def _checked(chart: ChartQuantity, parameters: Mapping[str, Any]) -> dict[str, A
     return given
 
 
-def _unit(axis: TableAxis, given: Mapping[str, Any]) -> Any:
+def _unit(axis: groups.TableAxis, given: Mapping[str, Any]) -> Any:
     """The place along an axis, 0 to 1: a float or an array. Raises :class:`InputError` if it is out of range."""
     field, low, high, words = _limits(axis, given)
-    value, slack = given[field], ROUNDING if words else 0.0
+    value, slack = given[field], groups.ROUNDING if words else 0.0
     if isinstance(value, float):
         if not low - slack <= value <= high + slack:
             raise InputError(field, f"must lie between {low:.6g} and {high:.6g}{words}, not {value:.6g}")
@@ -213,16 +227,18 @@ def _unit(axis: TableAxis, given: Mapping[str, Any]) -> Any:
             k = np.flatnonzero(outside)[0]
             least, most, first = (float(each.flat[k]) for each in (low, high, value))
             raise InputError(field, f"must lie between {least:.6g} and {most:.6g}{words}, not {first:.6g}")
-    unit = (COORDINATES[axis.name](given) - axis.least) / (axis.most - axis.least)
+    unit = (groups.COORDINATES[axis.name](given) - axis.least) / (axis.most - axis.least)
     return min(max(unit, 0.0), 1.0) if isinstance(unit, float) else np.clip(unit, 0.0, 1.0)
 
 
-def _limits(axis: TableAxis, given: Mapping[str, Any]) -> tuple[str, Any, Any, str]:
+def _limits(axis: groups.TableAxis, given: Mapping[str, Any]) -> tuple[str, Any, Any, str]:
     """The parameter of an axis, its least and largest value, and words on the limits."""
     if axis.name == "plate term":
-        low, high = (plate_beta(given["alpha"], pin_term(given), plate) for plate in (axis.most, axis.least))
+        low, high = (
+            groups.plate_beta(given["alpha"], groups.pin_term(given), plate) for plate in (axis.most, axis.least)
+        )
         return "beta", low, high, " for this alpha and kolosov"
-    field, low, high = parameter_range(axis)
+    field, low, high = groups.parameter_range(axis)
     if field == "load_ratio":
         return field, low * given["friction"], high * given["friction"], f", {low:g} and {high:g} times the friction"
     return field, low, high, ""
@@ -255,7 +271,7 @@ def joint_values(problem: Problem, P: float, Q: float | None = None) -> dict[str
     force, pair = positive("P", P), problem.pair
     given: dict[str, Any] = {"load_parameter": problem.load_parameter(force), "friction": problem.uniform_friction}
     given |= {"kolosov": pair.pin_kolosov, "pin_load": problem.pin_load}
-    alpha, beta = (value if abs(value) > ROUNDING else 0.0 for value in pair.dundurs())
+    alpha, beta = (value if abs(value) > groups.ROUNDING else 0.0 for value in pair.dundurs())
     given |= {"alpha": alpha, "beta": beta}
     if Q is not None:
         given |= {"rotation": problem.rotation, "load_ratio": abs(number("Q", Q)) / force}
@@ -286,3 +302,89 @@ def _check_joint(problem: Problem) -> None:
         raise InputError("rotation", 'must be "free" or "fixed" in the charts')
     if not problem.pair.plate.is_isotropic:
         raise InputError("plate", "must be isotropic in the charts: solve this joint")
+
+
+@dataclass(frozen=True)
+class ChartFormula:
+    """A formula for a spreadsheet.
+
+    Attributes
+    ----------
+    quantity : str
+        A name of :data:`fastpin.charts.CHARTS`.
+    pin_load : str
+    cell : str
+        The formula, with the cells Lp, mu and those of :data:`HEAD`.
+    error : float
+        Bound of its error in parts of the value: the largest distance from the chart, with the bound of the chart.
+    coefficients : dict
+        By the powers of x and z.
+    """
+
+    quantity: str
+    pin_load: str
+    cell: str
+    error: float
+    coefficients: dict[tuple[int, int], float]
+
+    def at(self, load_parameter: ArrayLike, friction: ArrayLike) -> np.ndarray:
+        """The value of the formula; the arguments broadcast.
+
+        Raises
+        ------
+        InputError
+            If an argument is beyond the range of the formula.
+        """
+        parameter = numbers("load_parameter", load_parameter, 0.0, MOST_LOAD_PARAMETER)
+        parameter, mu = in_one_shape("load_parameter", parameter, numbers("friction", friction, 0.0, MOST_FRICTION))
+        x, z = _cells(parameter, mu)
+        total = sum(value * x**a * z**b for (a, b), value in self.coefficients.items())
+        return np.asarray(STORED[self.quantity].value(total, parameter))
+
+
+@functools.cache
+def chart_formulas() -> tuple[ChartFormula, ...]:
+    """The formulas of like bodies with nu = 0.3 in plane strain, for load parameters and friction up to the limits."""
+    return tuple(_fitted(*pair) for pair in itertools.product(FACTORS, ("body", "centre")))
+
+
+def _fitted(quantity: str, pin_load: str) -> ChartFormula:
+    """Fit a polynomial in x and z to a chart. The largest relative distances get more and more weight."""
+    powers = [(a, b) for a in range(DEGREE + 1) for b in range(DEGREE + 1 - a)]
+    at, friction = _samples(SAMPLES)
+    value = lookup(quantity, load_parameter=at, friction=friction, pin_load=pin_load).value
+    x, z = _cells(at, friction)
+    goal = STORED[quantity].stored(value, at)
+    columns = np.stack([x**a * z**b for a, b in powers], axis=-1) / goal[:, None]
+    weights = np.ones(len(goal))
+    for _ in range(ROUNDS):
+        found = np.linalg.lstsq(columns * weights[:, None], weights, rcond=None)[0]
+        away = np.abs(columns @ found - 1.0)
+        weights *= np.sqrt(away / away.max() + 0.05)
+    coefficients = {pair: round(float(value), DIGITS) for pair, value in zip(powers, found, strict=True)}
+    terms = "".join(f"{c:+.{DIGITS}f}{_power('x', a)}{_power('z', b)}" for (a, b), c in coefficients.items() if c)
+    cell = f"=({terms.lstrip('+')}){FACTORS[quantity]}"
+    formula = ChartFormula(quantity, pin_load, cell, 0.0, coefficients)
+    at, friction = _samples(2 * SAMPLES)
+    chart = lookup(quantity, load_parameter=at, friction=friction, pin_load=pin_load)
+    error = float(np.max((np.abs(formula.at(at, friction) - chart.value) + chart.error) / chart.value))
+    return ChartFormula(quantity, pin_load, cell, error, coefficients)
+
+
+def _cells(load_parameter: np.ndarray, friction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The cells x and z of :data:`HEAD`. The smaller z, the more slips."""
+    x = np.asarray(width_coordinate(load_parameter))
+    return x, friction / np.sqrt(friction**2 + 0.2 * x**2)
+
+
+def _samples(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Load parameters and frictions of a grid, each shape (count**2,), equally spaced in x and sqrt(mu)."""
+    x = np.linspace(width_coordinate(MOST_LOAD_PARAMETER), width_coordinate(0.0), count)
+    at = np.clip(load_parameter_at(x), 0.0, MOST_LOAD_PARAMETER)
+    friction = np.minimum(np.linspace(0.0, MOST_FRICTION**0.5, count) ** 2, MOST_FRICTION)
+    grid = np.meshgrid(at, friction, indexing="ij")
+    return grid[0].ravel(), grid[1].ravel()
+
+
+def _power(cell: str, power: int) -> str:
+    return "" if power == 0 else f"*{cell}" if power == 1 else f"*{cell}^{power}"

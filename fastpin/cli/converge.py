@@ -5,16 +5,8 @@ from __future__ import annotations
 import argparse
 
 from fastpin import casefile, figures, report, studies
+from fastpin.cli import terminal
 from fastpin.cli.progress import Bar
-from fastpin.cli.terminal import (
-    EXIT_FAILED,
-    EXIT_INTERRUPTED,
-    EXIT_OK,
-    check_outputs,
-    fail,
-    say,
-    write_outputs,
-)
 from fastpin.errors import InputError
 
 
@@ -26,9 +18,10 @@ def run(options: argparse.Namespace) -> int:
     case = casefile.builtin_case() if options.case is None else casefile.read_case(options.case)
     outcomes = {} if options.outcomes is None else studies.read_outcomes(options.outcomes)
     outputs = {"--csv": options.csv, "--json": options.json, "--plot": options.plot}
-    check_outputs(outputs)
-    code, trouble = EXIT_OK, ""
-    with Bar(1, "{desc}") as progress_bar:
+    terminal.check_outputs(outputs)
+    code, trouble = terminal.EXIT_OK, ""
+    fields = ("nodes", "increments", "increment_nodes", "corner", "outcomes")
+    with Bar(1, "{desc}") as progress_bar, terminal.as_options(fields):
 
         def progress(done: float, total: float, what: str) -> None:
             progress_bar.describe(what)
@@ -41,25 +34,21 @@ def run(options: argparse.Namespace) -> int:
                 case.options.arc, progress, outcomes,
             )  # fmt: skip
         except studies.convergence.StudyInterrupted as ended:
-            study, code, trouble = ended.study, EXIT_INTERRUPTED, "interrupted"
+            study, code, trouble = ended.study, terminal.EXIT_INTERRUPTED, "interrupted"
         except studies.convergence.StudyLostError as lost:
-            study, code, trouble = lost.study, EXIT_FAILED, str(lost)
-        except InputError as error:
-            option = error.field.replace("_", "-")
-            known = option in ("nodes", "increments", "increment-nodes", "corner", "outcomes")
-            raise InputError(f"--{option}" if known else error.field, error.reason) from None
+            study, code, trouble = lost.study, terminal.EXIT_FAILED, str(lost)
     if study is None:
-        return fail(f"{trouble}; less than three grids were finished", code)
+        return terminal.fail(f"{trouble}; less than three grids were finished", code)
     written = _write_study(study, options, case.title)
     for name, reason in study.unread.items():
-        code = code or EXIT_FAILED
-        fail(f"outcome {name} can't be read with {reason}", code)
+        code = code or terminal.EXIT_FAILED
+        terminal.fail(f"outcome {name} can't be read with {reason}", code)
     if not trouble:
         return written or code
     counts = [", ".join(map(str, each.counts)) for each in study.studies]
     more = f" and {counts[1]} increments" if len(counts) > 1 else ""
     kept = f"kept: corner {', '.join(map(str, study.loads))} with {counts[0]} nodes{more}"
-    return fail(f"{trouble}; {kept}", written or code)
+    return terminal.fail(f"{trouble}; {kept}", written or code)
 
 
 def _numbers(option: str, text: str) -> list[int]:
@@ -70,12 +59,14 @@ def _numbers(option: str, text: str) -> list[int]:
 
 
 def _write_study(study: studies.convergence.Convergence, options: argparse.Namespace, title: str) -> int:
-    """Write the files, then print the tables. Printing comes last: the reader of the output may close it early."""
+    """Write the files, then print the tables."""
     files = [
         (options.csv, lambda path: report.convergence.write_csv(study, path)),
         (options.plot, lambda path: figures.plot_convergence(study, path, title=title)),
     ]
-    code = write_outputs(files, options.json, lambda: report.convergence.document(study, title))
-    if options.json != "-":
-        say(*([title] if title else []), *report.convergence.text(study).split("\n"))
-    return code
+    return terminal.write_outputs(
+        files,
+        options.json,
+        lambda: report.convergence.document(study, title),
+        lambda: [*([title] if title else []), *report.convergence.text(study).split("\n")],
+    )

@@ -6,34 +6,25 @@ import argparse
 import sys
 
 from fastpin import casefile, figures, report, storage
-from fastpin.assess.crack import CrackStops
+from fastpin.assess.crack import BAR, CrackStops, growth_curve, growth_line, growth_table
+from fastpin.assess.outputs import write_csv
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
 from fastpin.model.growth import LAWS
-from fastpin.report.crack_growth import growth_curve, growth_line, growth_table
-from fastpin.report.curves import write_csv
-from fastpin.states.state import State
-
-PLACES = "{whole} of {total} places"
-"""Text of the bar while the fastest crack is looked for."""
+from fastpin.storage.held import HeldInFile
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the growth of a crack, at one place or where a crack grows fastest, and draw it."""
-    path, case = options.result, storage.stored_case(options.result)
-    cycles = storage.load(path, states=[]).cycles
-
-    def between(first: int, last: int) -> list[State]:
-        return storage.load(path, storage.places_between(path, first, last)).states
-
-    stops = CrackStops.of(len(case.history), cycles, between, options.spectrum)
+    case, held = storage.stored_case(options.result), HeldInFile(options.result)
+    stops = CrackStops.of(len(case.history), held.result.cycles, held.between, options.spectrum)
     outputs = {"--output": options.output, "--csv": options.csv, "--json": options.json}
     check_outputs(outputs, figures=("--output",))
     try:
-        with Bar(1, PLACES) as bar:
+        with Bar(1, BAR) as bar:
             found = stops.growth(_how(options, case), progress_to(bar))
     except InputError as error:
         name = "at" if error.field == "theta" else error.field
@@ -42,10 +33,12 @@ def run(options: argparse.Namespace) -> int:
         (options.output, lambda path: figures.plot_crack_growth(found, path, case.title)),
         (options.csv, lambda path: write_csv([growth_curve(found)], path)),
     ]
-    code = write_outputs(files, options.json, lambda: report.summary.crack_document(case, found))
-    if options.json != "-":
-        say(growth_line(found), "")
-        say(*growth_table(found).split("\n"))
+    code = write_outputs(
+        files,
+        options.json,
+        lambda: report.summary.crack_document(case, found),
+        lambda: [growth_line(found), "", *growth_table(found).split("\n")],
+    )
     if not stops.is_spectrum and all(state.fraction == 1.0 for state in stops.states):
         words = "K between the corners is unknown: run --between 10 keeps states there"
         say(f"note: the cycle has only its {len(stops.states)} corners; {words}", file=sys.stderr)

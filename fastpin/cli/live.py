@@ -8,8 +8,7 @@ import webbrowser
 
 from fastpin import casefile, live
 from fastpin.cli.options import literal
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail, say
-from fastpin.errors import InputError
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, as_options, fail, say
 from fastpin.live.contact import NODES, NODES_OF_CLASS, LiveContact
 from fastpin.live.protocol import ALONE, CLASS
 from fastpin.model.checks import whole_number
@@ -30,13 +29,12 @@ def run(options: argparse.Namespace) -> int:
     nodes = whole_number("--nodes", given, LEAST_NODES, limits.nodes)
     port = whole_number("--port", literal(options.port), 0, 65_535)
     try:
-        serve, host = live.serve, "" if options.host is None else live.address_of_machine(options.host)
+        with as_options(("host", "port")):
+            serve, host = live.serve, "" if options.host is None else live.address_of_machine(options.host)
     except ImportError as error:
         if error.name not in ("aiohttp", "segno"):  # the extra "live" installs them
             raise
         return fail(f"the live page needs the package {error.name}: pip install 'fastpin[live]'", EXIT_FAILED)
-    except InputError as error:
-        raise _option(error) from None
 
     def ready(address: str) -> None:
         say(f"live page: {address}")
@@ -47,14 +45,6 @@ def run(options: argparse.Namespace) -> int:
         if options.browser and not webbrowser.open(address):
             say("note: no browser was found; open the address above in one", file=sys.stderr)
 
-    try:
-        with doubts_given():  # the page shows them, for each problem that is tried
-            serve(lambda: LiveContact(case, nodes, limits), port, ready, host, limits)
-    except InputError as error:
-        raise _option(error) from None
+    with doubts_given(), as_options(("host", "port")):  # the page shows doubts, for each problem that is tried
+        serve(lambda: LiveContact(case, nodes, limits), port, ready, host, limits)
     return EXIT_OK
-
-
-def _option(error: InputError) -> InputError:
-    """Return the error with the name of an option as its field."""
-    return InputError(f"--{error.field}" if error.field in ("host", "port") else error.field, error.reason)

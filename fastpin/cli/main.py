@@ -5,22 +5,27 @@ The file of a command is imported only when the command is chosen. Help and wron
 
 from __future__ import annotations
 
+import _thread
 import contextlib
 import gc
 import importlib
 import io
 import logging
 import os
+import signal
 import sys
+import threading
+import time
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from fastpin.cli.options import read_options
-from fastpin.cli.signals import stopped_by_signals
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, EXIT_READING, fail, say
 from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning, ReadingError, printable
 from fastpin.model.inputs import remembered_inputs
+from fastpin.runtime.stopping import STOPPING
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -101,3 +106,46 @@ def _log(verbose: int) -> None:
     logger.setLevel((logging.WARNING, logging.INFO, logging.DEBUG)[min(verbose, 2)])
     # Compiling takes some seconds. A user at a terminal is told.
     logging.getLogger("fastpin.compiler").setLevel(logging.INFO if sys.stderr.isatty() else logging.NOTSET)
+
+
+AGAIN = 0.05
+"""Seconds until a lost interrupt is raised again."""
+
+
+@contextmanager
+def stopped_by_signals() -> Iterator[None]:
+    """Interrupt the block by each of these signals, unless the parent of this process has made it ignore the signal.
+
+    Python drops an interrupt that falls into a finalizer or a callback, and prints a note. It is raised again.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    taken = [number for number in STOPPING if signal.getsignal(number) == signal.SIG_DFL]
+    hook, thread = sys.unraisablehook, threading.get_ident()
+
+    def hear_again(lost: Any) -> None:
+        if issubclass(lost.exc_type, KeyboardInterrupt):
+            _thread.start_new_thread(_interrupt, (thread,))
+        else:
+            hook(lost)
+
+    for number in taken:
+        signal.signal(number, signal.default_int_handler)
+    sys.unraisablehook = hear_again
+    try:
+        yield
+    finally:
+        sys.unraisablehook = hook
+        for number in taken:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _interrupt(thread: int) -> None:
+    """Interrupt the main thread once it has left its callback, by a signal that it does not ignore."""
+    time.sleep(AGAIN)
+    heard = [number for number in STOPPING if callable(signal.getsignal(number))]
+    if heard and hasattr(signal, "pthread_kill"):  # it also wakes a thread that sleeps or waits
+        signal.pthread_kill(thread, heard[0])
+    else:
+        _thread.interrupt_main(*heard[:1])

@@ -13,9 +13,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
-from fastpin.cli.chart_options import add_chart_options
-from fastpin.cli.crack_options import add_crack_options
-from fastpin.cli.loop_options import add_loop_options
 from fastpin.errors import printable
 from fastpin.figures.kinds import DEFAULT_KEY_FIGURE, KIND_OPTIONS, KINDS, STATES_HELP
 from fastpin.model.synonyms import closest, meant
@@ -25,6 +22,9 @@ EXIT_CODES = (
     "Exit codes: 0 for success; 1 if loads could not be followed to their end, a run or a check failed, or a file "
     "could not be written; 2 for wrong input; 3 if a quantity could not be read from the states; 130 after Ctrl-C."
 )
+
+BUILT_IN = "case file (TOML); without one: the built-in case"
+"""Help of a case that may be left out."""
 
 SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""
@@ -64,26 +64,13 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     )
     root.add_argument("--version", action="version", version=f"fastpin {__version__}")
     commands = root.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    add_case_commands(commands)
-    add_run(commands)
-    add_stored_commands(commands)
-    add_wear(commands)
-    add_plot(commands)
-    add_crack(commands)
-    add_report(commands)
-    add_live(commands)
-    add_converge(commands)
-    add_sweep(commands)
-    add_tolerances(commands)
-    add_identify(commands)
-    add_compliance(commands)
-    add_joint(commands)
-    add_paper(commands)
-    add_benchmarks(commands)
-    add_charts(commands)
-    add_verify(commands)
-    add_schema(commands)
-    add_completion(commands)
+    for add in (
+        add_case_commands, add_run, add_stored_commands, add_wear, add_plot, add_crack, add_report, add_live,
+        add_converge, add_sweep, add_tolerances, add_identify, add_compliance, add_joint, add_paper, add_benchmarks,
+        add_charts, add_verify,
+        add_schema, add_completion,
+    ):  # fmt: skip
+        add(commands)
     return root, commands.choices
 
 
@@ -142,113 +129,132 @@ def _command(commands: Any, name: str, file: str, function: str, text: str) -> a
     return command
 
 
+def _option(
+    command: argparse.ArgumentParser, flags: str, metavar: str | None, words: str, kind: Any = None, **more: Any
+) -> None:
+    """Add an option with a value, or an argument: flags with spaces between, the value's name, help and kind."""
+    command.add_argument(*flags.split(), metavar=metavar, help=words, type=kind, **more)
+
+
+def _switch(command: argparse.ArgumentParser, flag: str, words: str, **more: Any) -> None:
+    """Add an option without a value."""
+    command.add_argument(flag, action="store_true", help=words, **more)
+
+
 def add_case_commands(commands: Any) -> None:
     """Add ``example`` and ``check``."""
-    _command(commands, "example", "case", "example", "print a commented case file")
-    check = _command(commands, "check", "case", "check", "explain a case file, or list all its faults")
-    check.add_argument("case", type=Path, help="case file (TOML)")
+    _command(commands, "example", "texts", "example", "print a commented case file")
+    check = _command(commands, "check", "texts", "check", "explain a case file, or list all its faults")
+    _option(check, "case", None, "case file (TOML)", Path)
 
 
 def add_run(commands: Any) -> None:
     """Add ``run``."""
     run = _command(commands, "run", "run", "run", "solve a case and print its states")
-    run.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
+    _option(run, "case", None, BUILT_IN, Path, nargs="?")
     _add_outputs(run)
-    words = "write each kept state to an HDF5 file as soon as it is solved"
-    run.add_argument("-o", "--output", metavar="FILE", type=Path, help=words)
-    run.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
+    _option(run, "-o --output", "FILE", "write each kept state to an HDF5 file as soon as it is solved", Path)
+    _switch(run, "--overwrite", "with -o: replace a file that exists")
     _add_solver_options(run)
-    run.add_argument("--start", metavar="FILE", type=Path, help="continue from the end of this result, with new loads")
-    run.add_argument(
-        "--after",
-        metavar="N",
-        type=literal,
-        help="with --start: continue from corner N of that result, not from its end",
-    )
-    run.add_argument(
-        "--save-after",
-        metavar="N,N",
-        help="with -o: corners at which a restart is stored; a later run starts there without delay",
-    )
+    _option(run, "--start", "FILE", "continue from the end of this result, with new loads", Path)
+    _option(run, "--after", "N", "with --start: continue from corner N of that result, not from its end", literal)
+    words = "with -o: corners at which a restart is stored; a later run starts there without delay"
+    _option(run, "--save-after", "N,N", words)
 
 
 def add_stored_commands(commands: Any) -> None:
     """Add ``resume`` and ``show``."""
     resume = _command(commands, "resume", "run", "resume", "continue a run that ended early")
-    resume.add_argument("output", metavar="FILE", type=Path, help="HDF5 file of the run (run -o FILE)")
+    _option(resume, "output", "FILE", "HDF5 file of the run (run -o FILE)", Path)
     _add_outputs(resume)
     show = _command(commands, "show", "run", "show", "print and draw a stored result")
-    show.add_argument(
-        "output", metavar="FILE", type=Path, help="HDF5 file (run or wear -o FILE); the run may still be going"
-    )
+    _option(show, "output", "FILE", "HDF5 file (run or wear -o FILE); the run may still be going", Path)
     _add_interface(show)
     _add_outputs(show)
 
 
 def add_wear(commands: Any) -> None:
     """Add ``wear``."""
-    wear = _command(
-        commands, "wear", "wear", "run", "follow a load cycle many times on a profile that wears (without debris)"
-    )
-    wear.add_argument("case", type=Path, help="case file (TOML), with the section [wear], or with --coefficient")
-    wear.add_argument("--cycles", metavar="N", type=literal, help="number of cycles, such as 1e5")
-    wear.add_argument("--coefficient", metavar="K", type=literal, help="wear coefficient of both bodies together, 1/Pa")
-    wear.add_argument("--law", metavar="LAW", help="archard: per pressure and slip; energy: per friction energy")
-    wear.add_argument("--at", metavar="N,N", help="cycles after which profile and states are stored")
-    wear.add_argument(
-        "--tolerance",
-        metavar="T",
-        type=literal,
-        help="largest error of the worn gap by cycles that stand for many (default 0.01); 0 solves every cycle",
-    )
-    wear.add_argument("--nodes", metavar="N", type=literal, help="number of nodes, 5 to 20000")
-    wear.add_argument("-o", "--output", metavar="FILE", type=Path, help="write the result to an HDF5 file, as it grows")
-    wear.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
-    wear.add_argument("--resume", action="store_true", help="with -o: continue the file of a life that ended early")
+    words = "follow a load cycle many times on a profile that wears (without debris)"
+    wear = _command(commands, "wear", "wear", "run", words)
+    _option(wear, "case", None, "case file (TOML), with the section [wear], or with --coefficient", Path)
+    _option(wear, "--cycles", "N", "number of cycles, such as 1e5", literal)
+    _option(wear, "--coefficient", "K", "wear coefficient of both bodies together, 1/Pa", literal)
+    _option(wear, "--law", "LAW", "archard: per pressure and slip; energy: per friction energy")
+    _option(wear, "--at", "N,N", "cycles after which profile and states are stored")
+    words = "largest error of the worn gap by cycles that stand for many (default 0.01); 0 solves every cycle"
+    _option(wear, "--tolerance", "T", words, literal)
+    _option(wear, "--nodes", "N", "number of nodes, 5 to 20000", literal)
+    _option(wear, "-o --output", "FILE", "write the result to an HDF5 file, as it grows", Path)
+    _switch(wear, "--overwrite", "with -o: replace a file that exists")
+    _switch(wear, "--resume", "with -o: continue the file of a life that ended early")
     _add_json(wear, "write the chosen cycles as JSON")
-    wear.add_argument("--record", metavar="FILE", type=Path, help="write a page (html) with a slider of the cycles")
+    _option(wear, "--record", "FILE", "write a page (html) with a slider of the cycles", Path)
     wear.add_argument("-v", "--verbose", action="count", default=0, help="log each grid; -vv: more")
 
 
 def add_plot(commands: Any) -> None:
     """Add ``plot``."""
     plot = _command(commands, "plot", "plot", "run", "draw a stored result: stresses, slip, loops, fatigue, wear")
-    plot.add_argument(
-        "result",
-        metavar="FILE",
-        type=Path,
-        help="HDF5 file (run or wear -o FILE); for sketch and gap also a case file (TOML)",
-    )
+    words = "HDF5 file (run or wear -o FILE); for sketch and gap also a case file (TOML)"
+    _option(plot, "result", "FILE", words, Path)
     words = "; ".join(f"{name}: {kind.words}" if kind.words else name for name, kind in KINDS.items())
     defaults = "default: tractions; scar of a life of wear, sketch of a case file"
     plot.add_argument("kind", nargs="?", choices=tuple(KINDS), help=f"{words} ({defaults})")
-    plot.add_argument(
-        "-o",
-        "--output",
-        metavar="FIGURE",
-        type=Path,
-        help="the figure (png, pdf or svg; default KIND.png), or the animation (gif, or mp4 by ffmpeg)",
-    )
-    plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
+    words = "the figure (png, pdf or svg; default KIND.png), or the animation (gif, or mp4 by ffmpeg)"
+    _option(plot, "-o --output", "FIGURE", words, Path)
+    _option(plot, "--csv", "FILE", "also write the numbers of the figure", Path)
     _add_interface(plot)
-    plot.add_argument(
-        "--after",
-        metavar="N",
-        type=literal,
-        help="of a life of wear: show one cycle on the profile after N cycles (default: the last one stored)",
-    )
+    words = "of a life of wear: show one cycle on the profile after N cycles (default: the last one stored)"
+    _option(plot, "--after", "N", words, literal)
     for name, option in KIND_OPTIONS.items():
         if option.type == "flag":
             plot.add_argument(f"--{name}", action="store_const", const=True, help=option.words)
         else:
-            read = literal if option.type == "number" else str
-            plot.add_argument(f"--{name}", metavar=option.metavar, type=read, help=option.words)
+            _option(plot, f"--{name}", option.metavar, option.words, literal if option.type == "number" else str)
+
+
+_LAW_WORDS = {
+    "C": "growth in a cycle under the range --unit, m",
+    "m": "exponent of Paris and Walker: da/dN = C (dK (1 - R)^(g - 1))^m",
+    "n": "exponent of NASGRO",
+    "p": "NASGRO's exponent near the threshold",
+    "q": "NASGRO's exponent near the toughness",
+    "exponent": "Walker's g (default 1: Paris's law)",
+    "threshold_range": "threshold of long cracks at R = 0, Pa sqrt(m) (default 0)",
+    "threshold_exponent": "Walker: exponent of 1 - R in the threshold (default 1 - g)",
+    "threshold_slope": "NASGRO's C_th for R >= 0 (default 0)",
+    "compressive_slope": "NASGRO's C_th for R < 0 (default 0)",
+    "constraint": "NASGRO's alpha, 1 to 3 (default 2)",
+    "stress_level": "NASGRO's largest stress over the flow stress (default 0.3)",
+    "intrinsic_length": "El Haddad's length of the threshold of short cracks, m (default 0)",
+    "toughness": "K at which the plate breaks, Pa sqrt(m)",
+    "unit": "range that C belongs to, Pa sqrt(m) (default 1e6)",
+}
+"""Help of the constants of the laws of growth."""
 
 
 def add_crack(commands: Any) -> None:
     """Add ``crack``."""
     crack = _command(commands, "crack", "crack", "run", "grow a crack from the hole under the loads of a result")
-    add_crack_options(crack, literal)
+    _option(crack, "result", "FILE", "HDF5 file (run -o FILE)", Path)
+    whose = "default: [crack] of the case"
+    for name, words in (
+        ("first", f"first length of the crack, m ({whose})"),
+        ("last", f"last length, m ({whose})"),
+        ("at", "angle of its mouth from the bottom, deg (default: [crack], else where a crack grows fastest)"),
+        ("angle", "its direction from the radius, counter-clockwise, deg (default: [crack], else 0)"),
+    ):
+        _option(crack, f"--{name}", "X", words, literal)
+    crack.add_argument("--body", choices=("plate", "seat"), help="seat: the plate round a bush (default: plate)")
+    _option(crack, "--case", "CASE", "case file whose [crack] replaces that of the result", Path)
+    _switch(crack, "--spectrum", "count the cycles of the whole history")
+    laws = "law of the constants below (default walker; without constants: [crack], else the material)"
+    crack.add_argument("--law", choices=("paris", "walker", "nasgro"), help=laws)
+    for name, words in _LAW_WORDS.items():
+        _option(crack, f"--{name.replace('_', '-')}", "X", words, literal)
+    _option(crack, "-o --output", "FIGURE", "draw the growth (png, pdf, svg)", Path)
+    _option(crack, "--csv", "FILE", "write the numbers at all lengths", Path)
     _add_json(crack, "write the growth and its margins as JSON")
 
 
@@ -269,135 +275,95 @@ ABOUT = {
 def add_report(commands: Any) -> None:
     """Add ``report``."""
     report = _command(commands, "report", "report", "run", "write a page or a PDF on a result, a case or a sweep")
-    report.add_argument(
-        "source",
-        metavar="FILE_OR_DIR",
-        type=Path,
-        help="HDF5 file (run or wear -o FILE); case file (TOML), which is solved first; or directory of a sweep",
-    )
-    words = "the report (html, pdf; default: the name with .html)"
-    report.add_argument("-o", "--output", metavar="PAGE", type=Path, help=words)
-    report.add_argument("--title", help="title of the page of a result (default: the title of the case)")
+    words = "HDF5 file (run or wear -o FILE); case file (TOML), which is solved first; or directory of a sweep"
+    _option(report, "source", "FILE_OR_DIR", words, Path)
+    _option(report, "-o --output", "PAGE", "the report (html, pdf; default: the name with .html)", Path)
+    _option(report, "--title", None, "title of the page of a result (default: the title of the case)")
     for name, words in ABOUT.items():
-        report.add_argument(f"--{name}", metavar="TEXT", help=f"{words} (default: that of the case)")
-    report.add_argument("--case", metavar="FILE", type=Path, help="case file of an HDF5 file; the page shows its text")
-    report.add_argument(
-        "--plan", metavar="FILE", type=Path, help="plan of a sweep (default: the copy in its directory)"
-    )
-    report.add_argument(
-        "--error-bars",
-        action="store_true",
-        default=None,
-        help="with a case file: solve a second time on a grid with half the intervals, for error bars",
-    )
+        _option(report, f"--{name}", "TEXT", f"{words} (default: that of the case)")
+    _option(report, "--case", "FILE", "case file of an HDF5 file; the page shows its text", Path)
+    _option(report, "--plan", "FILE", "plan of a sweep (default: the copy in its directory)", Path)
+    words = "with a case file: solve a second time on a grid with half the intervals, for error bars"
+    _switch(report, "--error-bars", words, default=None)
 
 
 def add_live(commands: Any) -> None:
     """Add ``live``."""
     live = _command(commands, "live", "live", "run", "open a page in the browser: drag the load with the mouse")
-    live.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
-    live.add_argument("--nodes", metavar="N", help="number of nodes round the hole, 5 to 1600 (default 200)")
-    live.add_argument(
-        "--host",
-        metavar="ADDRESS",
-        help="share the page with a class at this address of the machine, such as 192.168.1.20; "
-        "everyone who reaches it and has the page's address can use the page (5 to 400 nodes, default 100)",
-    )
-    live.add_argument("--port", metavar="N", default="0", help="port of the page (default: a free one)")
-    live.add_argument(
-        "--no-browser", dest="browser", action="store_false", help="print the address, and open no browser"
-    )
+    _option(live, "case", None, BUILT_IN, Path, nargs="?")
+    _option(live, "--nodes", "N", "number of nodes round the hole, 5 to 1600 (default 200)")
+    words = "share the page with a class at this address of the machine, such as 192.168.1.20; everyone who reaches it "
+    words += "and has the page's address can use the page (5 to 400 nodes, default 100)"
+    _option(live, "--host", "ADDRESS", words)
+    _option(live, "--port", "N", "port of the page (default: a free one)", default="0")
+    words = "print the address, and open no browser"
+    live.add_argument("--no-browser", dest="browser", action="store_false", help=words)
 
 
 def add_converge(commands: Any) -> None:
     """Add ``converge``."""
-    converge = _command(
-        commands, "converge", "converge", "run", "solve a case on several grids: orders, limits, error bars"
-    )
-    converge.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
-    converge.add_argument(
-        "--nodes", metavar="N,N,N", default="101,201,401,801", help="numbers of nodes (default 101,201,401,801)"
-    )
-    converge.add_argument(
-        "--increments", metavar="N,N,N", help="also run the increment solver, with these numbers of increments a step"
-    )
-    converge.add_argument(
-        "--increment-nodes",
-        metavar="N",
-        type=literal,
-        help="number of nodes for the increment solver (default: the first of --nodes from 201 on, or else the last)",
-    )
-    converge.add_argument(
-        "--corner",
-        metavar="K",
-        type=literal,
-        help="corner to study (default: all corners if there are at most six, otherwise the last)",
-    )
+    words = "solve a case on several grids: orders, limits, error bars"
+    converge = _command(commands, "converge", "converge", "run", words)
+    _option(converge, "case", None, BUILT_IN, Path, nargs="?")
+    nodes = "101,201,401,801"
+    _option(converge, "--nodes", "N,N,N", f"numbers of nodes (default {nodes})", default=nodes)
+    words = "also run the increment solver, with these numbers of increments a step"
+    _option(converge, "--increments", "N,N,N", words)
+    words = "number of nodes for the increment solver (default: the first of --nodes from 201 on, or else the last)"
+    _option(converge, "--increment-nodes", "N", words, literal)
+    words = "corner to study (default: all corners if there are at most six, otherwise the last)"
+    _option(converge, "--corner", "K", words, literal)
     _add_outcomes(converge)
-    converge.add_argument("--csv", metavar="FILE", type=Path, help="write all values, orders, limits and error bars")
+    _option(converge, "--csv", "FILE", "write all values, orders, limits and error bars", Path)
     _add_json(converge, "write the study as JSON")
-    converge.add_argument("--plot", metavar="FILE", type=Path, help="write a figure of the last corner (png, pdf, svg)")
+    _option(converge, "--plot", "FILE", "write a figure of the last corner (png, pdf, svg)", Path)
 
 
 def add_sweep(commands: Any) -> None:
     """Add ``sweep`` and ``merge``."""
     sweep = _command(commands, "sweep", "sweep", "run", "solve all runs of a plan that are not finished")
-    sweep.add_argument("plan", type=Path, help="plan (TOML): a case, and the fields that are varied")
+    _option(sweep, "plan", None, "plan (TOML): a case, and the fields that are varied", Path)
     _add_runs(sweep)
-    sweep.add_argument(
-        "--shard", metavar="I/N", help="solve only the I-th of N parts; each part needs a directory of its own"
-    )
+    _option(sweep, "--shard", "I/N", "solve only the I-th of N parts; each part needs a directory of its own")
     _add_outcomes(sweep)
-    sweep.add_argument(
-        "--table",
-        metavar="FILE",
-        nargs="?",
-        const="-",
-        help="print the table of fields and outcomes, or write it to FILE as CSV with all key figures",
-    )
-    sweep.add_argument("--plot", metavar="FILE", type=Path, help="map or curves of one value (png, pdf or svg)")
-    sweep.add_argument(
-        "--value",
-        metavar="NAME",
-        help=f"outcome or key figure to plot, or several: a,b,c (default: the first outcome, or {DEFAULT_KEY_FIGURE})",
-    )
-    sweep.add_argument("--x", metavar="FIELD", help="field along the figure's x axis")
-    sweep.add_argument("--y", metavar="FIELD", help="field along the figure's y axis (for a map)")
+    words = "print the table of fields and outcomes, or write it to FILE as CSV with all key figures"
+    _option(sweep, "--table", "FILE", words, nargs="?", const="-")
+    _option(sweep, "--plot", "FILE", "map or curves of one value (png, pdf or svg)", Path)
+    usual = f"default: the first outcome, or {DEFAULT_KEY_FIGURE}"
+    _option(sweep, "--value", "NAME", f"outcome or key figure to plot, or several: a,b,c ({usual})")
+    _option(sweep, "--x", "FIELD", "field along the figure's x axis")
+    _option(sweep, "--y", "FIELD", "field along the figure's y axis (for a map)")
     words = "fix a field of the figure, such as contact.friction=0.3; may be given several times"
-    sweep.add_argument("--where", metavar="FIELD=VALUE", action="append", help=words)
+    _option(sweep, "--where", "FIELD=VALUE", words, action="append")
     words = "plot bearing over bypass stress at failure; the value is an outcome strength = factor"
-    sweep.add_argument("--envelope", action="store_true", default=None, help=words)
+    _switch(sweep, "--envelope", words, default=None)
 
     merge = _command(commands, "merge", "sweep", "merge", "join the directories of the parts of a sweep")
-    merge.add_argument("parts", metavar="DIR", type=Path, nargs="+", help="directories of the parts")
-    merge.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="directory of the whole")
+    _option(merge, "parts", "DIR", "directories of the parts", Path, nargs="+")
+    _option(merge, "-o --output", "DIR", "directory of the whole", Path, required=True)
 
 
 def _add_runs(command: argparse.ArgumentParser) -> None:
     """Add the options of the runs of a plan."""
-    command.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, help="directory of index and results (default: the plan's name)"
-    )
-    command.add_argument("--status", action="store_true", help="report the progress; solve nothing")
-    command.add_argument("--retry", action="store_true", help="also solve failed runs again")
-    command.add_argument("--files", action="store_true", help="also write each result to an HDF5 file of its own")
-    command.add_argument(
-        "--workers", metavar="N", type=literal, help="worker processes (default: one for each processor)"
-    )
-    command.add_argument("--dask", metavar="ADDRESS", help="use the workers of a dask scheduler")
+    _option(command, "-o --output", "DIR", "directory of index and results (default: the plan's name)", Path)
+    _switch(command, "--status", "report the progress; solve nothing")
+    _switch(command, "--retry", "also solve failed runs again")
+    _switch(command, "--files", "also write each result to an HDF5 file of its own")
+    _option(command, "--workers", "N", "worker processes (default: one for each processor)", literal)
+    _option(command, "--dask", "ADDRESS", "use the workers of a dask scheduler")
 
 
 def add_tolerances(commands: Any) -> None:
     """Add ``tolerances``."""
     words = "run a case at the limits of its fields: one at a time, at all corners, and at random samples"
-    tolerances = _command(commands, "tolerances", "tolerances", "run", words)
-    tolerances.add_argument("plan", type=Path, help="plan (TOML): a case, and the limits of its fields [tolerances]")
+    tolerances = _command(commands, "tolerances", "sweep", "tolerances", words)
+    _option(tolerances, "plan", None, "plan (TOML): a case, and the limits of its fields [tolerances]", Path)
     _add_runs(tolerances)
     _add_outcomes(tolerances)
-    tolerances.add_argument("--table", metavar="FILE", type=Path, help="write all runs to FILE as CSV")
-    tolerances.add_argument("--plot", metavar="FILE", type=Path, help="tornado of the fields (png, pdf or svg)")
-    tolerances.add_argument("--scatter", metavar="FILE", type=Path, help="samples over the fields (png, pdf or svg)")
-    tolerances.add_argument("--value", metavar="NAME", help="outcomes of the figures: a,b (default: the first ones)")
+    _option(tolerances, "--table", "FILE", "write all runs to FILE as CSV", Path)
+    _option(tolerances, "--plot", "FILE", "tornado of the fields (png, pdf or svg)", Path)
+    _option(tolerances, "--scatter", "FILE", "samples over the fields (png, pdf or svg)", Path)
+    _option(tolerances, "--value", "NAME", "outcomes of the figures: a,b (default: the first ones)")
     _add_json(tolerances, "write the effects as JSON")
 
 
@@ -405,182 +371,157 @@ def add_identify(commands: Any) -> None:
     """Add ``identify``."""
     words = "fit friction, rig stiffness and offsets to a measured loop of displacement and force"
     identify = _command(commands, "identify", "identify", "run", words)
-    add_loop_options(identify, literal)
+    _option(identify, "case", None, "case file (TOML) of the joint, with the loads that are constant", Path)
+    _option(identify, "loop", "CSV", "the samples, equally spaced in time", Path)
+    _option(identify, "--over", "LOAD", "measured displacement: ux, uy or rotation (default: drive)")
+    whose = "default: that of its name, or the only one with such a unit"
+    _option(identify, "--displacement", "COLUMN", f"its column of the file ({whose})")
+    _option(identify, "--force", "COLUMN", f"column of the force or moment ({whose})")
+    words = "factor of this column; -1 turns its sign"
+    _option(identify, "--force-factor", "X", words, literal, default=1.0)
+    words = "fitted beside friction and offsets: stiffness (of the rig), clearance, drift, scale (of the force); "
+    words += 'default stiffness; "" for none'
+    _option(identify, "--fit", "A,B", words, default="stiffness")
+    _switch(identify, "--by-cycle", "a friction of its own for each cycle")
+    words = "rest: the record begins at no displacement (default); cycle: it begins in a steady cycle"
+    _option(identify, "--start", "WHERE", words, default="rest")
+    _option(identify, "--nodes", "N", "nodes of the first fit (default 61)", literal, default=61)
+    _option(identify, "--csv", "FILE", "write the measured and the computed loop", Path)
+    _option(identify, "--plot", "FILE", "draw both loops and the energies (png, pdf, svg)", Path)
     _add_json(identify, "write what the loop tells as JSON")
 
 
 def add_compliance(commands: Any) -> None:
     """Add ``compliance``."""
-    compliance = _command(
-        commands, "compliance", "compliance", "run", "make the compliance file of a finite plate with a hole"
-    )
-    compliance.add_argument("lug", type=Path, nargs="?", help="lug file (TOML): outline, supports and loads")
-    compliance.add_argument("--example", action="store_true", help="print a commented lug file")
-    compliance.add_argument(
-        "-o", "--output", metavar="FILE", type=Path, help="the compliance file (default: the lug's name with .json)"
-    )
-    compliance.add_argument(
-        "--plot", metavar="FILE", type=Path, help="draw outline, supports and loads (png, pdf, svg)"
-    )
+    words = "make the compliance file of a finite plate with a hole"
+    compliance = _command(commands, "compliance", "compliance", "run", words)
+    _option(compliance, "lug", None, "lug file (TOML): outline, supports and loads", Path, nargs="?")
+    _switch(compliance, "--example", "print a commented lug file")
+    _option(compliance, "-o --output", "FILE", "the compliance file (default: the lug's name with .json)", Path)
+    _option(compliance, "--plot", "FILE", "draw outline, supports and loads (png, pdf, svg)", Path)
 
 
 def add_joint(commands: Any) -> None:
     """Add ``joint``."""
     joint = _command(commands, "joint", "joint", "run", "solve a joint of several pins and plates")
-    joint.add_argument("file", type=Path, nargs="?", help="joint file (TOML): plates, pins and loads")
-    joint.add_argument("--example", action="store_true", help="print a commented joint file")
-    joint.add_argument("--nodes", metavar="N", type=literal, help="nodes of each contact (default: those of the file)")
-    joint.add_argument("--plot", metavar="FILE", type=Path, help="draw all holes at the last load point")
-    joint.add_argument("--shares", metavar="FILE", type=Path, help="draw the force of each pin at all load points")
+    _option(joint, "file", None, "joint file (TOML): plates, pins and loads", Path, nargs="?")
+    _switch(joint, "--example", "print a commented joint file")
+    _option(joint, "--nodes", "N", "nodes of each contact (default: those of the file)", literal)
+    _option(joint, "--plot", "FILE", "draw all holes at the last load point (png, pdf, svg)", Path)
+    _option(joint, "--shares", "FILE", "draw the force of each pin at all load points", Path)
     _add_json(joint, "write all states as JSON")
 
 
 def add_paper(commands: Any) -> None:
     """Add ``paper``."""
-    paper = _command(commands, "paper", "paper", "run", "compute and draw the figures of the paper")
-    paper.add_argument(
-        "--figure",
-        metavar="NAME",
-        action="append",
-        help="a figure's number, 3 to 17, or one of ten more: memory, sliding-onset, half-plane, rigid-pin, rings, "
-        "supports, hollow-pins, rectangular-lug, interference, regimes "
-        "(repeat the option for several figures; default: figures 3 to 17)",
-    )
+    paper = _command(commands, "paper", "published", "paper", "compute and draw the figures of the paper")
+    words = "a figure's number, 3 to 17, or one of ten more: memory, sliding-onset, half-plane, rigid-pin, rings, "
+    words += "supports, hollow-pins, rectangular-lug, interference, regimes "
+    words += "(repeat the option for several figures; default: figures 3 to 17)"
+    _option(paper, "--figure", "NAME", words, action="append")
     paper.add_argument("--nodes", type=literal, help="number of nodes (default 400)")
-    paper.add_argument(
-        "--format",
-        metavar="FORMAT",
-        action="append",
-        help="png, pdf or svg (repeat the option for several formats; default: png)",
-    )
-    paper.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
-    )
+    words = "png, pdf or svg (repeat the option for several formats; default: png)"
+    _option(paper, "--format", "FORMAT", words, action="append")
+    _option(paper, "-o --output", "DIR", "directory of the files (default: this one)", Path, default=Path())
 
 
 def add_benchmarks(commands: Any) -> None:
     """Add ``benchmarks``."""
-    benchmarks = _command(commands, "benchmarks", "benchmarks", "run", "compare with problems that others publish")
-    benchmarks.add_argument(
-        "names", metavar="NAME", nargs="*", help="names of benchmarks, see --list; without one: all of them"
-    )
-    benchmarks.add_argument("--list", action="store_true", help="print the names and titles of the benchmarks")
-    benchmarks.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, help="also write the numbers as CSV, and figures, to this directory"
-    )
-    benchmarks.add_argument(
-        "--format",
-        metavar="FORMAT",
-        action="append",
-        help="with -o: png, pdf or svg (repeat the option for several formats; default: png)",
-    )
+    benchmarks = _command(commands, "benchmarks", "published", "run", "compare with problems that others publish")
+    _option(benchmarks, "names", "NAME", "names of benchmarks, see --list; without one: all of them", nargs="*")
+    _switch(benchmarks, "--list", "print the names and titles of the benchmarks")
+    words = "also write the numbers as CSV, and figures, to this directory"
+    _option(benchmarks, "-o --output", "DIR", words, Path)
+    words = "with -o: png, pdf or svg (repeat the option for several formats; default: png)"
+    _option(benchmarks, "--format", "FORMAT", words, action="append")
     _add_json(benchmarks, "write the numbers as JSON")
+
+
+CHART_NUMBERS = {
+    "load_parameter": "L_p = (R - R_D)/(P beta*)",
+    "friction": "coefficient of friction",
+    "alpha": "first parameter of Dundurs, in the usual sign (default 0)",
+    "beta": "second parameter of Dundurs (default 0)",
+    "kolosov": "Kolosov's constant of the pin: 3 - 4 nu or, in plane stress, (3 - nu)/(1 + nu) (default 1.8)",
+    "load_ratio": "Q/P: amplitude of the cycle (cycles only)",
+}
+"""Parameters of charts that are numbers, and their help."""
 
 
 def add_charts(commands: Any) -> None:
     """Add ``charts``."""
     charts = _command(commands, "charts", "charts", "run", "look up pressures, angles and Kt in tables, with errors")
-    add_chart_options(charts, literal)
+    _option(charts, "chart", "CHART", "a chart; without one: list them with their bounds", nargs="?")
+    for name, words in CHART_NUMBERS.items():
+        _option(charts, f"--{name.replace('_', '-')}", "X", words, literal)
+    _option(charts, "--pin-load", "LOAD", "body or centre (default centre)")
+    _option(charts, "--rotation", "HOW", "free or fixed (default free; cycles only)")
+    _switch(charts, "--formulas", "print formulas for a spreadsheet, with their errors")
+    _option(charts, "--csv", "FILE", "write the nodes of the chart", Path)
+    _option(charts, "--book", "FILE", "draw the book of charts (pdf)", Path)
     _add_json(charts, "write the charts, or a value with its error, as JSON")
 
 
 def add_verify(commands: Any) -> None:
     """Add ``verify``."""
-    verify = _command(
-        commands, "verify", "verify", "run", "check this installation against closed forms and finite elements"
-    )
-    _add_json(verify, "write the checks as JSON")
+    words = "check this installation against closed forms and finite elements"
+    _add_json(_command(commands, "verify", "verify", "run", words), "write the checks as JSON")
 
 
 def _add_outputs(command: argparse.ArgumentParser) -> None:
     """Add the options of all commands that print states."""
     _add_json(command, "write a summary as JSON")
-    command.add_argument(
-        "--plot",
-        metavar="FILE",
-        nargs="?",
-        const=Path("tractions.png"),
-        type=Path,
-        help="write a figure of the tractions (png, pdf or svg; default tractions.png)",
-    )
-    command.add_argument("--states", metavar="WHICH", help=f"states in --plot: {STATES_HELP}")
-    command.add_argument("--cycles", metavar="FILE", type=Path, help="write a figure of the changes in each cycle")
-    command.add_argument(
-        "--record", metavar="FILE", type=Path, help="write a page (html) that replays the states; --between adds states"
-    )
-    command.add_argument(
-        "--cycle-csv", metavar="FILE", type=Path, help="write slip, tractions and friction energy in the last cycle"
-    )
+    words = "write a figure of the tractions (png, pdf or svg; default tractions.png)"
+    _option(command, "--plot", "FILE", words, Path, nargs="?", const=Path("tractions.png"))
+    _option(command, "--states", "WHICH", f"states in --plot: {STATES_HELP}")
+    _option(command, "--cycles", "FILE", "write a figure of the changes in each cycle", Path)
+    words = "write a page (html) that replays the states; --between adds states"
+    _option(command, "--record", "FILE", words, Path)
+    _option(command, "--cycle-csv", "FILE", "write slip, tractions and friction energy in the last cycle", Path)
     command.add_argument("-v", "--verbose", action="count", default=0, help="log each step; -vv: more")
 
 
 def _add_solver_options(run: argparse.ArgumentParser) -> None:
     """Add the options of the solver."""
-    run.add_argument(
-        "--keep",
-        metavar="WHICH",
-        help='states to keep: all, corners, cycles (end of each cycle) or "every N" corners (default all)',
-    )
-    run.add_argument("--nodes", metavar="N", help="number of nodes, 5 to 20000")
-    run.add_argument("--method", help="path or increment")
-    run.add_argument("--increments", metavar="N", help="increments a step (only with --method increment)")
-    run.add_argument(
-        "--arc", metavar="A,B", help="first and last angle of the nodes, rad, such as -3.0,-0.2; the bottom is -1.5708"
-    )
-    run.add_argument(
-        "--between", metavar="N", help="states inside every step: a number, or fractions of the step such as 0.25,0.5"
-    )
-    run.add_argument(
-        "--no-shortcut",
-        dest="shortcut",
-        action="store_false",
-        default=None,
-        help="also solve cycles whose result is known; slower, same result",
-    )
-    run.add_argument(
-        "--error-bars",
-        action=argparse.BooleanOptionalAction,
-        default=None,
-        help="solve a second time on a grid with half the intervals, for error bars (not with both -o and --start)",
-    )
-    run.add_argument(
-        "--slip-sums",
-        action=argparse.BooleanOptionalAction,
-        default=None,
-        help="count slip distance, friction energy and exact slip range of each node, also in the last cycle",
-    )
+    words = 'states to keep: all, corners, cycles (end of each cycle) or "every N" corners (default all)'
+    _option(run, "--keep", "WHICH", words)
+    _option(run, "--nodes", "N", "number of nodes, 5 to 20000")
+    _option(run, "--method", None, "path or increment")
+    _option(run, "--increments", "N", "increments a step (only with --method increment)")
+    words = "first and last angle of the nodes, rad, such as -3.0,-0.2; the bottom is -1.5708"
+    _option(run, "--arc", "A,B", words)
+    words = "states inside every step: a number, or fractions of the step such as 0.25,0.5"
+    _option(run, "--between", "N", words)
+    words = "also solve cycles whose result is known; slower, same result"
+    run.add_argument("--no-shortcut", dest="shortcut", action="store_false", default=None, help=words)
+    yes_or_no: Any = {"action": argparse.BooleanOptionalAction, "default": None}
+    words = "solve a second time on a grid with half the intervals, for error bars (not with both -o and --start)"
+    run.add_argument("--error-bars", help=words, **yes_or_no)
+    words = "count slip distance, friction energy and exact slip range of each node, also in the last cycle"
+    run.add_argument("--slip-sums", help=words, **yes_or_no)
 
 
 def _add_outcomes(command: argparse.ArgumentParser) -> None:
     """Add ``--outcomes FILE``."""
-    command.add_argument(
-        "--outcomes",
-        metavar="FILE",
-        type=Path,
-        help="also read these numbers from each result: the functions of a Python file, or [outcomes] of a TOML file",
-    )
+    words = "also read these numbers from each result: the functions of a Python file, or [outcomes] of a TOML file"
+    _option(command, "--outcomes", "FILE", words, Path)
 
 
 def _add_json(command: argparse.ArgumentParser, text: str) -> None:
     """Add ``--json [FILE]``."""
-    command.add_argument(
-        "--json",
-        metavar="FILE",
-        nargs="?",
-        const="-",
-        help=f"{text}; without FILE, or with -: print it, and no table",
-    )
+    _option(command, "--json", "FILE", f"{text}; without FILE, or with -: print it, and no table", nargs="?", const="-")
 
 
 def add_schema(commands: Any) -> None:
     """Add ``schema``."""
-    schema = _command(commands, "schema", "schema", "run", "print the JSON schema of a document that commands write")
-    schema.add_argument(
-        "written_by", metavar="COMMAND", choices=SCHEMAS, help="the command; resume and show write what run writes"
-    )
+    schema = _command(commands, "schema", "texts", "schema", "print the JSON schema of a document that commands write")
+    words = "the command; resume and show write what run writes"
+    _option(schema, "written_by", "COMMAND", words, choices=SCHEMAS)
 
 
 def add_completion(commands: Any) -> None:
     """Add ``completion``."""
-    completion = _command(commands, "completion", "completion", "run", "print a script that completes words in a shell")
+    completion = _command(
+        commands, "completion", "texts", "completion", "print a script that completes words in a shell"
+    )
     completion.add_argument("shell", choices=SHELLS, help="the shell")

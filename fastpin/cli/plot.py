@@ -6,8 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from fastpin import casefile, figures, storage
-from fastpin.cli.interface import load_seat, seat_title
+from fastpin import casefile, figures, solver, storage
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_files
 from fastpin.errors import InputError
@@ -74,11 +73,24 @@ def _plot(options: argparse.Namespace) -> figures.sheet.Plot:
         given["after"] = options.after
     progress_bar = Bar(1.0, "damage of the spectrum")
     if options.interface == "seat":
-        subject: figures.subjects.Subject = figures.subjects.InMemory(load_seat(options.result))
+        subject: figures.states.Subject = figures.states.InMemory(load_seat(options.result))
     else:
-        subject = figures.subjects.stored_subject(options.result, progress_to(progress_bar))
+        subject = figures.states.stored_subject(options.result, progress_to(progress_bar))
     with as_options(given), progress_bar:  # the bar moves for the damage of a spectrum only
         plot = figures.plotting.plot_of(options.kind, subject, **given)
     say(*plot.notes)
     say(*(f"note: {doubt}" for doubt in plot.doubts), file=sys.stderr)
     return plot
+
+
+def seat_title(title: str) -> str:
+    """Return the title of a case with words that tell the contact in the seat from the contact of the pin."""
+    return f"{title}, seat of the bush" if title else "seat of the bush"
+
+
+def load_seat(path: Path) -> solver.Result:
+    """Return the contact of the bush in its seat, of a stored result. Without one raise :class:`InputError`."""
+    seat = None if storage.holds_wear(path) else storage.load(path).seat
+    if seat is None:
+        raise InputError("--interface", f"{path}: the joint has no seat of a bush that slips (bonded = false)")
+    return seat

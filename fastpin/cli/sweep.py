@@ -1,4 +1,4 @@
-"""``fastpin sweep`` and ``fastpin merge``."""
+"""``fastpin sweep``, ``merge`` and ``tolerances``."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from fastpin import figures, report, studies
+from fastpin.cli import terminal
 from fastpin.cli.options import literal
 from fastpin.cli.progress import READ_POINTS, Bar, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, as_options, check_outputs, fail, say
 from fastpin.errors import InputError
 from fastpin.figures.kinds import DEFAULT_KEY_FIGURE
 
@@ -48,8 +48,8 @@ def run(options: argparse.Namespace) -> int:
     rows = _written(options, plan, directory)
     print_summary(plan, directory, summary, options.status, options.retry)
     if options.table == "-":
-        say(*report.sweep.text(plan, rows).split("\n"))
-    return EXIT_FAILED if (summary.failed or summary.unread) and not options.status else EXIT_OK
+        terminal.say(*report.sweep.text(plan, rows).split("\n"))
+    return terminal.EXIT_FAILED if (summary.failed or summary.unread) and not options.status else terminal.EXIT_OK
 
 
 def run_plan(
@@ -58,7 +58,7 @@ def run_plan(
     """Solve the runs of a plan with a progress bar."""
     with _executor(options.dask) as executor, Bar(len(plan.points), "run {n} of {total}") as progress_bar:
         progress = progress_to(progress_bar)
-        with as_options(["workers"]):
+        with terminal.as_options(["workers"]):
             return studies.sweep.run(
                 plan, directory, executor, options.workers, options.retry, shard, progress, options.files
             )
@@ -68,7 +68,7 @@ def fail_interrupted(plan: studies.plan.Plan, directory: Path, shard: tuple[int,
     """Print how many runs are kept, and return the exit code."""
     now = studies.sweep.status(plan, directory, shard)
     kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command continues"
-    return fail(f"interrupted; {kept}", EXIT_INTERRUPTED)
+    return terminal.fail(f"interrupted; {kept}", terminal.EXIT_INTERRUPTED)
 
 
 @contextmanager
@@ -110,19 +110,17 @@ def check_combination(options: argparse.Namespace) -> None:
 
 def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None:
     """Check before the work that the table and the figure can be made and written."""
-    check_outputs({"--table": options.table, "--plot": options.plot})
+    terminal.check_outputs({"--table": options.table, "--plot": options.plot})
     plan = _shown(options, plan)
     if options.envelope and (options.x or options.y or len(_values(options, plan)) > 1):
         raise InputError("--envelope", "has axes of its own, and shows one value: leave out --x, --y and other values")
     if options.plot is not None:
-        try:
+        with terminal.as_options():
             for value in _values(options, plan):
                 if options.envelope:
-                    report.envelope.check_envelope(plan, value)
-                    continue
-                report.sweep.check_axes(plan, value, options.x, options.y)
-        except InputError as error:
-            raise InputError(f"--{error.field}", error.reason) from None
+                    report.sweep.check_envelope(plan, value)
+                else:
+                    report.sweep.check_axes(plan, value, options.x, options.y)
 
 
 def _where(options: argparse.Namespace) -> dict[str, Any]:
@@ -137,10 +135,8 @@ def _where(options: argparse.Namespace) -> dict[str, Any]:
 
 def _shown(options: argparse.Namespace, plan: studies.plan.Plan) -> studies.plan.Plan:
     """Return the part of a plan that a figure shows."""
-    try:
+    with terminal.as_options():
         return report.sweep.restricted(plan, _where(options))
-    except InputError as error:
-        raise InputError("--where", error.reason) from None
 
 
 def _values(options: argparse.Namespace, plan: studies.plan.Plan) -> list[str]:
@@ -154,26 +150,26 @@ def print_summary(
 ) -> None:
     """Print the progress of a plan, and its failed runs with their reasons."""
     if plan.title:
-        say(plan.title)
+        terminal.say(plan.title)
     counts = f"{summary.done} done, {len(summary.failed)} failed, {summary.waiting} waiting"
     time = "" if only_status else f"; {summary.ended} in {summary.seconds:.1f} s"
-    say(f"{summary.total} runs in {directory}: {counts}{time}")
+    terminal.say(f"{summary.total} runs in {directory}: {counts}{time}")
     same = len(plan.points) - len(plan.runs)
     if same:
-        say(f"{same} points of the plan have the same input as another and share its run")
+        terminal.say(f"{same} points of the plan have the same input as another and share its run")
     for point, reason in summary.failed[:MOST_REASONS]:
-        say(f"failed: {point.id}  {studies.plan.describe_values(point.values)}: {reason}")
+        terminal.say(f"failed: {point.id}  {studies.plan.describe_values(point.values)}: {reason}")
     if len(summary.failed) > MOST_REASONS:
-        say(f"... {len(summary.failed) - MOST_REASONS} more failed")
+        terminal.say(f"... {len(summary.failed) - MOST_REASONS} more failed")
     if summary.read:
-        say(f"outcomes of {summary.read} finished runs were read from their results")
+        terminal.say(f"outcomes of {summary.read} finished runs were read from their results")
     for name in plan.outcomes:
         unread = [(point, reason) for point, unread_name, reason in summary.unread if unread_name == name]
         if unread:
             point, reason = unread[0]
-            say(f"outcome {name} can't be read in {len(unread)} runs, first {point.id}: {reason}")
+            terminal.say(f"outcome {name} can't be read in {len(unread)} runs, first {point.id}: {reason}")
     if summary.failed and not retried:
-        say("--retry runs what failed again")
+        terminal.say("--retry runs what failed again")
 
 
 def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path) -> list[dict[str, Any]]:
@@ -192,14 +188,14 @@ def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path)
     """Draw the figure of a plan, or of the points with the values of ``--where``."""
     values, where, plan = _values(options, plan), _where(options), _shown(options, plan)
     rows = studies.sweep.rows(plan, directory)
-    fixed = [figures.words.shown_label(words) for words in report.sweep.where_words(plan, rows, where)]
+    fixed = [figures.style.shown_label(words) for words in report.sweep.where_words(plan, rows, where)]
     title = ", ".join(filter(None, [plan.title, *fixed]))
     if options.envelope:
-        found = report.envelope.envelopes(plan, rows, values[0])
+        found = report.sweep.envelopes(plan, rows, values[0])
         if found:
             problem = plan.case(plan.points[0]).problem
             figures.sweep.plot_envelope(found, options.plot, title, problem=problem, varied=plan.fields)
-        missing = {"": len(rows) - sum(curve[report.envelope.BYPASS].size for curve in found)}
+        missing = {"": len(rows) - sum(curve[report.sweep.BYPASS].size for curve in found)}
     else:
         charts = [report.sweep.chart(plan, rows, value, options.x, options.y) for value in values]
         figures.plot_sweep(charts if len(charts) > 1 else charts[0], options.plot, title)
@@ -207,11 +203,73 @@ def _draw(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path)
         missing = {part: chart.missing for part, chart in zip(parts, charts, strict=True)}
     for part, count in missing.items():
         if count:
-            say(f"note: {count} of {len(rows)} points have no value{part} in the figure", file=sys.stderr)
+            terminal.say(f"note: {count} of {len(rows)} points have no value{part} in the figure", file=sys.stderr)
 
 
 def merge(options: argparse.Namespace) -> int:
     """Join the directories of the parts of a sweep."""
     count = studies.sweep.merge(options.parts, options.output)
-    say(f"{count} runs in {options.output}")
-    return EXIT_OK
+    terminal.say(f"{count} runs in {options.output}")
+    return terminal.EXIT_OK
+
+
+def tolerances(options: argparse.Namespace) -> int:
+    """Run all points of a tolerance plan that are not finished, then write tables and figures."""
+    check_combination(options)
+    if options.value is not None and options.plot is None and options.scatter is None:
+        raise InputError("--value", "says what a figure shows; --plot FILE or --scatter FILE is missing")
+    with Bar(1, READ_POINTS) as progress_bar:
+        study = studies.read_tolerances(options.plan, progress_to(progress_bar))
+    if options.outcomes is not None:
+        study = study.with_outcomes(studies.read_outcomes(options.outcomes))
+    directory = Path(options.plan.stem) if options.output is None else options.output
+    shown = _check_figures(options, study)
+    if options.status:
+        summary = studies.sweep.status(study.plan, directory)
+    else:
+        try:
+            summary = run_plan(options, study.plan, directory, None)
+        except KeyboardInterrupt:
+            return fail_interrupted(study.plan, directory, None)
+    code = _write_effects(options, study, directory, shown)
+    if options.json == "-":
+        return code or _exit_code(options, summary)
+    print_summary(study.plan, directory, summary, options.status, options.retry)
+    if summary.done:
+        terminal.say("", *report.tolerances.text(study, studies.sweep.rows(study.plan, directory)).split("\n"))
+    return code or _exit_code(options, summary)
+
+
+def _exit_code(options: argparse.Namespace, summary: studies.sweep.Summary) -> int:
+    return terminal.EXIT_FAILED if (summary.failed or summary.unread) and not options.status else terminal.EXIT_OK
+
+
+def _check_figures(options: argparse.Namespace, study: studies.tolerances.Tolerances) -> list[str]:
+    """Check before the work that all files can be made and written. Return the outcomes of the figures."""
+    outputs = {"--table": options.table, "--json": options.json, "--plot": options.plot, "--scatter": options.scatter}
+    terminal.check_outputs(outputs, ("--plot", "--scatter"))
+    if options.scatter is not None and not study.samples:
+        raise InputError("--scatter", "draws samples, and the plan has none; give it samples = 200")
+    if options.value is None:
+        return [*study.plan.outcomes][:3]  # the first ones
+    shown = [name.strip() for name in str(options.value).split(",")]
+    with terminal.as_options():
+        report.tolerances.check_outcomes(study, shown)
+    return shown
+
+
+def _write_effects(
+    options: argparse.Namespace, study: studies.tolerances.Tolerances, directory: Path, shown: list[str]
+) -> int:
+    """Write the files that are asked for, and return the exit code."""
+    outputs = (options.table, options.json, options.plot, options.scatter)
+    if all(each is None for each in outputs):
+        return terminal.EXIT_OK
+    rows = studies.sweep.rows(study.plan, directory)
+    charts = [report.tolerances.tolerance_chart(study, rows, name) for name in shown]
+    files = [
+        (options.table, lambda path: report.sweep.write_csv(study.plan, rows, path)),
+        (options.plot, lambda path: figures.plot_tornado(charts, path)),
+        (options.scatter, lambda path: figures.plot_samples(charts, path)),
+    ]
+    return terminal.write_outputs(files, options.json, lambda: report.tolerances.document(study, rows))

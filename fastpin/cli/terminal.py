@@ -69,12 +69,12 @@ def flag(name: str) -> str:
 
 
 @contextlib.contextmanager
-def as_options(fields: Collection[str]) -> Iterator[None]:
-    """Name the option in place of the field in errors raised within, if it is one of these fields."""
+def as_options(fields: Collection[str] | None = None) -> Iterator[None]:
+    """Name the option in place of the field in errors raised within, if it is one of these fields; None: any field."""
     try:
         yield
     except InputError as error:
-        if error.field in fields:
+        if fields is None or error.field in fields:
             raise InputError(flag(error.field), error.reason) from None
         raise
 
@@ -147,15 +147,18 @@ def write_outputs(
     writers: Iterable[tuple[str | Path | None, Callable[[Path], object]]],
     to: str | Path | None,
     document: Callable[[], object],
+    lines: Callable[[], Iterable[str]] = tuple,
 ) -> int:
     """Call :func:`write_files`, then write a JSON document to a file, or to standard output for "-".
 
-    Standard output comes last: its reader may close it early.
+    Standard output comes last: its reader may close it early. It gets the lines, unless it gets the document.
     """
     text = "" if to is None else json.dumps(document(), indent=2, allow_nan=False) + "\n"
     code = write_files([*writers, (None if to == "-" else to, lambda path: write_text(path, text))])
     if to == "-":
         sys.stdout.write(text)
+    else:
+        say(*lines())
     return code
 
 

@@ -4,26 +4,16 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fastpin import casefile, live, report, solver, storage
+from fastpin import assess, casefile, live, solver, storage
+from fastpin.cli import terminal
 from fastpin.cli.options import literal
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import (
-    EXIT_FAILED,
-    EXIT_INTERRUPTED,
-    EXIT_OK,
-    as_options,
-    check_outputs,
-    fail,
-    flag,
-    say,
-    write_outputs,
-    write_text,
-)
 from fastpin.errors import InputError
-from fastpin.report.notes import way_on
+from fastpin.report.states import way_on
 
 
 def run(options: argparse.Namespace) -> int:
@@ -40,26 +30,28 @@ def run(options: argparse.Namespace) -> int:
     how |= given
     for name in ("overwrite", "resume"):
         if getattr(options, name) and options.output is None:
-            raise InputError(flag(name), "needs --output FILE")
+            raise InputError(terminal.flag(name), "needs --output FILE")
     if case.wear is None and "coefficient" not in given:
         raise InputError("--coefficient", "is needed: the case file has no section [wear]")
-    check_outputs({flag(name): getattr(options, name) for name in ("json", "record", "output")}, result="--output")
+    terminal.check_outputs(
+        {terminal.flag(name): getattr(options, name) for name in ("json", "record", "output")}, result="--output"
+    )
     settings: dict[str, Any] = {"nodes": options.nodes or case.options.nodes, "arc": case.options.arc}
     settings |= {"overwrite": options.overwrite, "resume": options.resume, "output": options.output}
     settings |= {"fatigue": case.fatigue}
     result: solver.WearResult | None = None
-    code, trouble = EXIT_OK, None
+    code, trouble = terminal.EXIT_OK, None
     with Bar(1, "{whole} of {total:,} cycles") as progress_bar:
         settings |= {"progress": progress_to(progress_bar), "title": case.title}
         try:
-            with as_options((*given, "nodes", "resume")):
+            with terminal.as_options((*given, "nodes", "resume")):
                 result = storage.wear(case.problem, case.history, **how, **settings)
         except (solver.SolveError, solver.Interrupted) as ended:
             result, trouble = ended.result, str(ended)  # type: ignore[assignment]
-            code = EXIT_FAILED if isinstance(ended, solver.SolveError) else EXIT_INTERRUPTED
+            code = terminal.EXIT_FAILED if isinstance(ended, solver.SolveError) else terminal.EXIT_INTERRUPTED
     if trouble is not None:
-        go_on = options.output is not None and code == EXIT_INTERRUPTED
-        fail(f"{trouble}{'; continue with the same command and --resume' if go_on else ''}", code)
+        go_on = options.output is not None and code == terminal.EXIT_INTERRUPTED
+        terminal.fail(f"{trouble}{'; continue with the same command and --resume' if go_on else ''}", code)
     return _write(result, options, case.title, trouble) or code
 
 
@@ -68,23 +60,27 @@ def show(options: argparse.Namespace) -> int:
     path: Path = options.output
     for name in ("plot", "states", "cycles", "cycle_csv"):
         if getattr(options, name) is not None:
-            raise InputError(flag(name), f"is for the result of a run; fastpin plot {path} draws this life of wear")
-    check_outputs({"--json": options.json, "--record": options.record})
+            raise InputError(
+                terminal.flag(name), f"is for the result of a run; fastpin plot {path} draws this life of wear"
+            )
+    terminal.check_outputs({"--json": options.json, "--record": options.record})
     life, title, error = storage.load_wear(path), storage.stored_case(path).title, storage.stored_error(path)
     code = _write(life, options, title, error)
     if not life.complete and options.json != "-":
         why, how = f": {error}" if error else "", way_on(path, error)
-        say(f"note: the life is unfinished{why}{f'; {how}' if how else ''}")
+        terminal.say(f"note: the life is unfinished{why}{f'; {how}' if how else ''}")
     return code
 
 
 def _write(result: solver.WearResult | None, options: argparse.Namespace, title: str, trouble: str | None) -> int:
-    """Write the JSON, then print the table. Printing comes last: the reader of the output may close it early."""
+    """Write the files, then print the table."""
     writers: list[tuple[Any, Callable[[Path], object]]] = []
-    if result is not None and len(result):
-        writers.append((options.record, lambda path: write_text(path, live.record_life(result, title, trouble or ""))))
-    code = write_outputs(writers, options.json, lambda: report.wear.document(result, title, trouble))
-    if options.json != "-" and result is not None:
+    lines: list[str] = []
+    if result is not None:
         rows = [*result.summary().split("\n"), ""] if len(result) else []
-        say(*([title, ""] if title else []), *rows, report.wear.reached_line(result))
-    return code
+        lines = [*([title, ""] if title else []), *rows, assess.wear.reached_line(result)]
+    if result is not None and len(result):
+        page = partial(live.record_life, result, title, trouble or "")
+        writers.append((options.record, lambda path: terminal.write_text(path, page())))
+    document = partial(assess.wear.document, result, title, trouble)
+    return terminal.write_outputs(writers, options.json, document, lambda: lines)

@@ -18,13 +18,11 @@ from matplotlib.colors import to_rgba
 from matplotlib.lines import Line2D
 
 from fastpin.errors import InputError
+from fastpin.figures import style
 from fastpin.figures.sheet import HEADING, Look, Plot
 from fastpin.figures.sketch import draw_sketch, load_ranges
-from fastpin.figures.states import DrawnStates, Frame
+from fastpin.figures.states import DrawnStates, Frame, InMemory, Subject
 from fastpin.figures.stick_slip import LOOKS, zone_look, zone_patch
-from fastpin.figures.style import COLOURS, house_style, line, new_figure
-from fastpin.figures.subjects import InMemory, Subject
-from fastpin.figures.words import ANGLE, CAPTION_SIZE, caption, load_text, point_text, quantity, wrapped_parts
 from fastpin.kernels.status import STICK
 from fastpin.model.checks import check_callable, file_path, number
 from fastpin.model.units import acting_loads, units
@@ -129,7 +127,7 @@ class Film(Plot):
 
     def write(self, path: Path, look: Look, progress: Callable[[float, float], None] | None) -> None:
         """Draw the pictures in the house style, and write them."""
-        with house_style():
+        with style.house_style():
             self.draw(look).write(path, progress)
 
 
@@ -158,7 +156,7 @@ class _Scene:
         self.states, self.frame = states, Frame(states)
         self.rate, self.dpi = rate, look.dpi
         width = 8.0  # inches
-        self.figure = new_figure(width, 4.3)
+        self.figure = style.new_figure(width, 4.3)
         self.figure.set_layout_engine("none")  # the panels must not move
         grid: dict[str, Any] = {"left": 0.42, "right": 0.98, "top": 0.82, "bottom": 0.13, "hspace": 0.12}
         rows = 1 if states[0].problem.frictionless else 2
@@ -168,8 +166,8 @@ class _Scene:
         self.joint = self.figure.add_axes((0.01, 0.17, 0.33, 0.67))
         self.heading = self.figure.text(0.02, 0.975, "", fontsize=HEADING, va="top", parse_math=False)
         self.title = look.title
-        small = "\n".join(wrapped_parts(caption(states[0].problem, states), width - 0.4))
-        self.figure.text(0.02, 0.905, small, fontsize=CAPTION_SIZE, color="0.25", va="top", parse_math=False)
+        small = "\n".join(style.wrapped_parts(style.caption(states[0].problem, states), width - 0.4))
+        self.figure.text(0.02, 0.905, small, fontsize=style.CAPTION_SIZE, color="0.25", va="top", parse_math=False)
         self.names = acting_loads([state.load for state in states])
         self.factor, unit = units(states[0].problem)["traction"].scale([state.peak_pressure for state in states])
         self.largest = self.factor * max(state.peak_pressure for state in states)
@@ -179,9 +177,11 @@ class _Scene:
         looks = dict.fromkeys(zone_look(states[0].problem, status) for status in LOOKS)
         patches: list[Artist] = [zone_patch(look) for look in looks]
         if rows > 1:
-            patches.append(Line2D([], [], color=COLOURS[0], linewidth=0.5, label="thin: bounds ±μN of T"))
-        self.figure.legend(handles=patches, loc="lower left", bbox_to_anchor=(0.0, 0.0), fontsize=CAPTION_SIZE, ncols=1)
-        self.labels = [quantity(each, unit) for each in words[:rows]]
+            patches.append(Line2D([], [], color=style.COLOURS[0], linewidth=0.5, label="thin: bounds ±μN of T"))
+        self.figure.legend(
+            handles=patches, loc="lower left", bbox_to_anchor=(0.0, 0.0), fontsize=style.CAPTION_SIZE, ncols=1
+        )
+        self.labels = [style.quantity(each, unit) for each in words[:rows]]
 
     def write(self, path: Path, progress: Callable[[float, float], None] | None) -> None:
         """Write the pictures of all states to a file."""
@@ -200,27 +200,27 @@ class _Scene:
 
     def show(self, place: int, state: State) -> None:
         """Draw one state in place of the one before."""
-        loads = ",  ".join(load_text(self.states, place, name) for name in self.names)
-        head = f"load point {point_text(state)}:  {loads}"
+        loads = ",  ".join(style.load_text(self.states, place, name) for name in self.names)
+        head = f"load point {style.point_text(state)}:  {loads}"
         self.heading.set_text(f"{self.title}:  {head}" if self.title else head)
         angle, pressure, shear = self.frame.curves(state)
         for panel, label in zip(self.panels, self.labels, strict=True):
             panel.clear()
             panel.set_ylabel(label)
             panel.grid(True, color="0.92", linewidth=0.6)
-        self.panels[0].plot(angle, self.factor * pressure, **line(0))
+        self.panels[0].plot(angle, self.factor * pressure, **style.line(0))
         self.panels[0].set_ylim(0.0, 1.08 * self.largest or 1.0)
         if len(self.panels) > 1:
             friction = friction_along(state, angle)
             for sign in (1.0, -1.0):
                 bound = sign * friction * self.factor * pressure
-                self.panels[1].plot(angle, bound, color=COLOURS[0], linewidth=0.5, alpha=0.6)
-            self.panels[1].plot(angle, self.factor * shear, **line(1))
+                self.panels[1].plot(angle, bound, color=style.COLOURS[0], linewidth=0.5, alpha=0.6)
+            self.panels[1].plot(angle, self.factor * shear, **style.line(1))
             most = 1.15 * self.most_friction * self.largest or 1.0
             self.panels[1].set_ylim(-most, most)
         self._shade(state)
         self.frame.scale(self.panels[-1])
-        self.panels[-1].set_xlabel(ANGLE)
+        self.panels[-1].set_xlabel(style.ANGLE)
         self.joint.clear()
         draw_sketch(state.problem, load_ranges([state]), Look(ax=self.joint), state, words=False, largest=self.force)
 

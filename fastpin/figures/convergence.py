@@ -14,8 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import WIDE, Look, Plot, Sheet, plotter
-from fastpin.figures.style import Line, line
-from fastpin.figures.words import caption, loads_text
+from fastpin.figures.style import Line, caption, line, loads_text
 from fastpin.model.checks import as_toml, instance, whole_number
 from fastpin.report.convergence import ReportedSeries, reported_series
 from fastpin.states.quantities import QUANTITIES

@@ -13,17 +13,15 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterSciNotation, LogLocator, MaxNLocator, NullLocator
 
-from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.cycle import cycles_curve
+from fastpin.assess.outputs import ROUNDING, write_csv
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.style import MAX_NAMED, line
-from fastpin.figures.subjects import Subject, with_cycles
-from fastpin.figures.words import caption, quantity, without_rounding
+from fastpin.figures.states import Subject, with_cycles
+from fastpin.figures.style import MAX_NAMED, caption, line, quantity, without_rounding
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import units
-from fastpin.report.curves import write_csv
-from fastpin.report.cycle import cycles_curve
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 

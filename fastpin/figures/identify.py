@@ -10,8 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.style import COLOURS, line
-from fastpin.figures.words import caption, quantity
+from fastpin.figures.style import COLOURS, caption, line, quantity
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD, LOAD_KIND
 from fastpin.model.units import units

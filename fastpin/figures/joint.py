@@ -11,8 +11,7 @@ from matplotlib.lines import Line2D
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.style import COLOURS, MAX_NAMED, draw_grid, line
-from fastpin.figures.words import quantity
+from fastpin.figures.style import COLOURS, MAX_NAMED, draw_grid, line, quantity
 from fastpin.joints import JointResult, JointState
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.checks import instance, whole_number

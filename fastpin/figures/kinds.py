@@ -68,7 +68,7 @@ class Kind(NamedTuple):
     ----------
     file : str
         The file of this folder that makes the figure. Its function ``KIND_plot(subject, **options)`` returns a
-        :class:`fastpin.figures.sheet.Plot` of a :class:`fastpin.figures.subjects.Subject`.
+        :class:`fastpin.figures.sheet.Plot` of a :class:`fastpin.figures.states.Subject`.
     words : str
         Its help on the command line; empty if the name says it.
     options : tuple of str
@@ -96,10 +96,10 @@ SOURCES = {"result": "the result of a run", "life": "a life of wear", "case": "a
 
 KINDS = {
     "tractions": Kind("tractions", "", ("states", "csv", "sketch", "bars")),
-    "polar": Kind("polar", "tractions over the circle of the hole", ("states", "csv")),
+    "polar": Kind("tractions", "tractions over the circle of the hole", ("states", "csv")),
     "stick-slip": Kind("stick_slip", "map of stick and slip over load points", ("states", "csv")),
     "sketch": Kind("sketch", "pin, plate and loads", ("states",), sources=("result", "life", "case")),
-    "gap": Kind("gap", "initial gap and friction along the rim", ("csv",), sources=("result", "life", "case")),
+    "gap": Kind("history", "initial gap and friction along the rim", ("csv",), sources=("result", "life", "case")),
     "animation": Kind("animation", "the states of the last cycle, one after the other", ("states", "rate"), "gif"),
     "hoop": Kind("stress", "hoop stress round hole and pin", ("states", "csv", "body")),
     "profile": Kind("stress", "stresses below the edge", ("states", "csv", "body", "angle", "depth")),
@@ -133,7 +133,7 @@ KINDS = {
     "wear": Kind(
         "scar", "a life of wear: volume, depth, dissipation, pressure over the cycles", ("csv",), sources=("life",)
     ),
-    "damage": Kind("damage", "a life of wear: damage of the material", ("csv", "body", "criterion"), sources=("life",)),
+    "damage": Kind("scar", "a life of wear: damage of the material", ("csv", "body", "criterion"), sources=("life",)),
 }
 """The kinds of figures by their names on the command line."""
 

@@ -11,22 +11,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.damage.hole_strength import JointStrength, joint_strength, laminate_of
 from fastpin.damage.laminates import MODES
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import DrawnStates, name_states, state_lines
-from fastpin.figures.style import angle_axis, line
-from fastpin.figures.subjects import InMemory, Subject, problem_of
-from fastpin.figures.words import ANGLE, quantity, short
+from fastpin.figures.states import DrawnStates, InMemory, Subject, name_states, problem_of, state_lines
+from fastpin.figures.style import ANGLE, angle_axis, line, quantity, short
+from fastpin.model import Case, Problem, StrengthAssessment
 from fastpin.model.angles import from_bottom
-from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.laminate import Laminate, in_axes
 from fastpin.model.ply import PlyCriterion
-from fastpin.model.problem import Problem
-from fastpin.model.strength import StrengthAssessment
 from fastpin.model.units import PASCAL, units
-from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 

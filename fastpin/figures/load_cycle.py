@@ -16,29 +16,17 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.cycle import CONJUGATES, loop_curve, natural_sizes
+from fastpin.assess.cycle import write_csv as write_cycle
+from fastpin.assess.outputs import ROUNDING, Curve, write_csv
 from fastpin.errors import InputError
+from fastpin.figures import style
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import Frame
-from fastpin.figures.style import MAX_NAMED, line, spread
-from fastpin.figures.subjects import Subject, with_cycles
-from fastpin.figures.words import (
-    ANGLE,
-    caption,
-    load_text,
-    loads_by_change,
-    quantity,
-    short,
-    shown_unit,
-    without_rounding,
-)
+from fastpin.figures.states import Frame, Subject, with_cycles
 from fastpin.model.checks import as_toml, choice, instance, items, string
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
-from fastpin.report.curves import Curve, write_csv
-from fastpin.report.cycle import CONJUGATES, loop_curve, natural_sizes
-from fastpin.report.cycle import write_csv as write_cycle
 from fastpin.solver.result import Result
 from fastpin.states.choice import chosen_cycles, span_of
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
@@ -120,19 +108,19 @@ def _draw_slip(look: Look, cycle: LoadCycle) -> Sheet:
     upper, lower = axes[:, 0]
     sizes = natural_sizes(cycle)
     named = {"slip range": cycle.slip_range, **({"slip distance": cycle.slip_distance} if known else {})}
-    curves = {name: without_rounding(np.asarray(each), sizes["displacement"]) for name, each in named.items()}
+    curves = {name: style.without_rounding(np.asarray(each), sizes["displacement"]) for name, each in named.items()}
     slips = any(each.any() for each in curves.values())
     factor, label = unit["displacement"].scale([float(each.max()) for each in curves.values()])
     for k, each in enumerate(curves.values()):
-        upper.plot(angle, factor * each[order], **line(k, k))
-    upper.set_ylabel(quantity("slip", label))
+        upper.plot(angle, factor * each[order], **style.line(k, k))
+    upper.set_ylabel(style.quantity("slip", label))
     words, kind, values = "range of shear traction", "traction", cycle.shear_range
     if cycle.friction_energy is not None:
         words, kind, values = "friction energy", "energy density", cycle.friction_energy
-    values = without_rounding(values, sizes[kind])
+    values = style.without_rounding(values, sizes[kind])
     factor, label = unit[kind].scale([float(values.max())])
-    lower.plot(angle, factor * values[order], **line(2, 2))
-    lower.set_ylabel(quantity(words, label))
+    lower.plot(angle, factor * values[order], **style.line(2, 2))
+    lower.set_ylabel(style.quantity(words, label))
     _shade(lower, cycle, frame, slips)
     shades = _shade(upper, cycle, frame, slips)
     for panel in (upper, lower):
@@ -142,9 +130,9 @@ def _draw_slip(look: Look, cycle: LoadCycle) -> Sheet:
             panel.text(0.5, 0.5, "0: no node slips", ha="center", transform=panel.transAxes)
             panel.set_yticks([0.0])
         frame.scale(panel)
-    lower.set_xlabel(ANGLE)
-    handles: list[Artist] = [Line2D([], [], label=name, **line(k, k)) for k, name in enumerate(curves)]
-    handles.append(Line2D([], [], label=words, **line(2, 2)))
+    lower.set_xlabel(style.ANGLE)
+    handles: list[Artist] = [Line2D([], [], label=name, **style.line(k, k)) for k, name in enumerate(curves)]
+    handles.append(Line2D([], [], label=words, **style.line(2, 2)))
     sheet.figure.align_ylabels(axes)
     sheet.legend([*handles, *shades], len(handles) + len(shades))
     _head(sheet, cycle, look.title)
@@ -153,10 +141,10 @@ def _draw_slip(look: Look, cycle: LoadCycle) -> Sheet:
 
 def _head(sheet: Sheet, cycle: LoadCycle, title: str, more: str = "", lift: float = 5.0) -> None:
     """Write title, corners, loads that are constant, `more`, and the parameters, `lift` points above the panel."""
-    common = ",  ".join(load_text(cycle.states, 0, name) for name in loads_by_change(cycle.states)[0])
+    common = ",  ".join(style.load_text(cycle.states, 0, name) for name in style.loads_by_change(cycle.states)[0])
     heading = f"cycle from corner {cycle.first:,} to {cycle.last:,}{f',  {common}' if common else ''}"
     heading = f"{heading}:  {more}" if more else heading
-    sheet.head(title, heading, caption=caption(cycle.states[0].problem, cycle.states), lift=lift)
+    sheet.head(title, heading, caption=style.caption(cycle.states[0].problem, cycle.states), lift=lift)
 
 
 def _shade(panel: Axes, cycle: LoadCycle, frame: Frame, slips: bool) -> list[Artist]:
@@ -195,7 +183,7 @@ def loops_plot(
         )
     result = with_cycles(subject)
     places, refusal = chosen_cycles(result.cycles, cycle), None
-    shown = [places[k] for k in spread(len(places), MAX_NAMED)]
+    shown = [places[k] for k in style.spread(len(places), style.MAX_NAMED)]
     found: dict[int, LoadCycle] = {}
     notes, doubts = [], []
     if len(shown) < len(places):
@@ -260,8 +248,8 @@ def check_loops(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None) -
     """Raise :class:`InputError` if no cycle has a hysteresis loop, there are too many, or the abscissa is unknown."""
     if abscissa is not None:
         choice("abscissa", abscissa, get_args(Abscissa))
-    if not 1 <= len(cycles) <= MAX_NAMED:
-        raise InputError("cycle", f"must be 1 to {MAX_NAMED} cycles, not {len(cycles)}")
+    if not 1 <= len(cycles) <= style.MAX_NAMED:
+        raise InputError("cycle", f"must be 1 to {style.MAX_NAMED} cycles, not {len(cycles)}")
     if any(cycle.states[0].problem != cycles[0].states[0].problem for cycle in cycles):
         raise InputError("cycle", "must be cycles of one problem")
     if abscissa == "prescribed" and not any(cycles[0].states[0].problem.driven):
@@ -301,12 +289,14 @@ def _draw_loops(look: Look, cycles: Sequence[LoadCycle], abscissa: Abscissa | No
     if single:
         _head(sheet, cycles[0], look.title, dissipated_words(cycles[0]), lift=18.0)
         return sheet
-    sheet.head(look.title, caption=caption(problem, [state for cycle in cycles for state in cycle.states]), lift=6.0)
+    sheet.head(
+        look.title, caption=style.caption(problem, [state for cycle in cycles for state in cycle.states]), lift=6.0
+    )
     handles = []
     for k, cycle in enumerate(cycles):
         name = f"{names[k]}, " if k < len(names) else ""
         label = f"{name}corners {cycle.first:,} to {cycle.last:,}: {dissipated_words(cycle)}"
-        handles.append(Line2D([], [], label=label, **line(k, k)))
+        handles.append(Line2D([], [], label=label, **style.line(k, k)))
     sheet.legend(handles, 1)
     return sheet
 
@@ -333,14 +323,14 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
         moved = 1.0 / max(float(np.abs(np.concatenate(moves)).max()), 1e-300)
         moved_unit = "largest is 1"
     for k, (loop, move) in enumerate(zip(loops, moves, strict=True)):
-        panel.plot(moved * move, load * loop.load, marker="o", markersize=2.2, **line(k, k))
-    panel.set_xlabel(f"{words}\n({shown_unit(moved_unit)})" if across > 2 else quantity(words, moved_unit))
-    panel.set_ylabel(quantity(name, load_unit))
+        panel.plot(moved * move, load * loop.load, marker="o", markersize=2.2, **style.line(k, k))
+    panel.set_xlabel(f"{words}\n({style.shown_unit(moved_unit)})" if across > 2 else style.quantity(words, moved_unit))
+    panel.set_ylabel(style.quantity(name, load_unit))
     if len(cycles) == 1:
         (loop,), area = loops, "area unknown: no states between the corners"
         if len(loop.load) > STRAIGHT:
             is_rounding = abs(loop.work) <= ROUNDING * float(np.abs(loop.load).max() * np.abs(loop.displacement).max())
-            area = f"area {'0' if is_rounding else short(float(loop.work), unit['energy'])}"
+            area = f"area {'0' if is_rounding else style.short(float(loop.work), unit['energy'])}"
         panel.text(0.0, 1.02, area, fontsize=8.0, ha="left", va="bottom", transform=panel.transAxes)
     panel.xaxis.set_major_locator(MaxNLocator({1: 9, 2: 6, 3: 3}[across], steps=[1, 2, 5, 10]))
 
@@ -357,12 +347,12 @@ def dissipated_words(cycle: LoadCycle) -> str:
     unit = units(problem)["energy"]
     size = max(abs(state.energy) for state in cycle.states)
     lost = cycle.dissipation if abs(cycle.dissipation) > ROUNDING * size else 0.0
-    exact = f"dissipated on the path {short(lost, unit, ENERGY_DIGITS)}" if lost else "nothing dissipated"
+    exact = f"dissipated on the path {style.short(lost, unit, ENERGY_DIGITS)}" if lost else "nothing dissipated"
     if len(cycle.states) <= STRAIGHT:
         return exact
     area = enclosed(cycle)
     area = area if abs(area) > ROUNDING * size else 0.0
-    return f"area {short(area, unit, ENERGY_DIGITS) if area else '0'}, {exact}"
+    return f"area {style.short(area, unit, ENERGY_DIGITS) if area else '0'}, {exact}"
 
 
 def enclosed(cycle: LoadCycle) -> float:

@@ -17,16 +17,14 @@ from matplotlib.figure import Figure
 from fastpin.errors import InputError
 from fastpin.figures.kinds import KINDS, SOURCES, kinds_with
 from fastpin.figures.sheet import Look, Plot, draw_plot
-from fastpin.figures.states import drawn_states
+from fastpin.figures.states import InMemory, Subject, drawn_states, with_stored_cycles
 from fastpin.figures.style import SCREEN_DPI
-from fastpin.figures.subjects import InMemory, Subject, with_stored_cycles
 from fastpin.figures.tractions import plot_tractions
 from fastpin.model.case import Case
 from fastpin.model.checks import choice, instance
 from fastpin.model.wear import cycles_text
 from fastpin.report.states import state_table
-from fastpin.solver.result import Result
-from fastpin.solver.wear_result import WearResult
+from fastpin.solver import Result, WearResult
 from fastpin.states.state import State
 
 

@@ -17,15 +17,8 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
 
 from fastpin.errors import InputError
-from fastpin.figures.style import (
-    angle_axis,
-    draw_grid,
-    fitted_legend,
-    house_style,
-    new_figure,
-    save_figure,
-)
-from fastpin.figures.words import ANGLE, CAPTION_SIZE, wrapped, wrapped_parts
+from fastpin.figures import style
+from fastpin.figures.style import ANGLE, CAPTION_SIZE, wrapped, wrapped_parts
 from fastpin.model.checks import file_path, instance, number, string
 from fastpin.storage.files import check_writable, no_figure
 
@@ -94,13 +87,13 @@ class Look:
         """Draw a plot in the house style, save its figure if there is a path, and return the figure."""
         if self.ax is not None and plot.alone:
             raise InputError("ax", plot.alone)
-        with house_style():
+        with style.house_style():
             with mpl.rc_context(None if self.ax is None else SMALL):
                 sheet: Sheet = plot.draw(self)
             if sheet.host is None:
                 sheet.wrap_axes()
             if self.path is not None:
-                save_figure(sheet.figure, Path(self.path), self.dpi)
+                style.save_figure(sheet.figure, Path(self.path), self.dpi)
         return sheet.figure
 
     def sheet(self, heights: Sequence[float], columns: int = 1, extra: float = 1.35, **options: Any) -> Sheet:
@@ -109,7 +102,7 @@ class Look:
         `extra` is the height for heading and legend. `options` go to ``Figure.subplots``.
         """
         if self.ax is None:
-            figure = new_figure(self.width, sum(heights) + extra)
+            figure = style.new_figure(self.width, sum(heights) + extra)
             axes = figure.subplots(len(heights), columns, squeeze=False, height_ratios=heights, **options)
             return Sheet(figure, axes, None)
         if self.ax.figure is None:
@@ -308,7 +301,7 @@ class Sheet:
             rows = -(-len(handles) // columns)
             # Figures have room for four rows of a legend. A further one is 0.16 inches high.
             self.figure.set_figheight(self.figure.get_figheight() + 0.16 * max(rows - 4, 0))
-            fitted_legend(self.figure, list(handles), columns, title)
+            style.fitted_legend(self.figure, list(handles), columns, title)
             return
         host = self.host
         # The words of the axis of angles have 0.45 inches between the axes and the legend below.
@@ -323,14 +316,14 @@ class Sheet:
         """Make the horizontal axes of a column of panels the angle all round the hole, with words below the last."""
         for panel in self.axes[:, 0]:
             panel.set_xlim(-180.0, 180.0)
-            angle_axis(panel)
+            style.angle_axis(panel)
         self.axes[-1, 0].set_xlabel(ANGLE)
         self.figure.align_ylabels(self.axes)
 
     def grid(self, axis: Any = "both") -> None:
         """Draw light lines behind the curves of all panels."""
         for panel in self.axes.flat:
-            draw_grid(panel, axis)
+            style.draw_grid(panel, axis)
 
 
 def _insets(host: Axes, heights: Sequence[float], columns: int, options: dict[str, Any]) -> np.ndarray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -13,22 +14,24 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from fastpin.errors import InputError
+from fastpin.figures import style
 from fastpin.figures.sheet import Sheet
-from fastpin.figures.style import MAX_NAMED, Line, line
-from fastpin.figures.words import caption, load_text, loads_by_change, point_text, without_rounding
 from fastpin.kernels.status import OPEN
+from fastpin.model import Case, Problem
 from fastpin.model.angles import AT_TOP, turns_from_bottom
-from fastpin.model.checks import as_toml
+from fastpin.model.beside import beside_of
+from fastpin.model.checks import as_toml, instance
 from fastpin.reading.zones import ALL_ROUND
-from fastpin.solver.result import Result
-from fastpin.states.choice import StateChoice, chosen_places, even_choice
+from fastpin.solver import Result, WearResult
+from fastpin.states.choice import NO_CYCLE, StateChoice, chosen_places, even_choice
 from fastpin.states.curves import traction_patches
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import KeptStates, Side, find_extremes, marked_places
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
-from fastpin.storage.origin import marked_extremes
-from fastpin.storage.store import load, load_points
+from fastpin.storage.held import Held, HeldInFile
+from fastpin.storage.recording import stored_case
+from fastpin.storage.wear_files import holds_wear, load_wear
 
 NEARLY_ROUND = 340.0
 """Length of an axis, degrees, from which on it goes all round: with further whole steps it would be more than that."""
@@ -90,8 +93,8 @@ class DrawnStates(list[State]):
         """Which states are drawn of how many, as text; empty if all are."""
         if len(self) == self.total:
             return ""
-        points = list(map(point_text, self))
-        named = ", ".join(points) if len(points) <= MAX_NAMED else f"{points[0]} to {points[-1]}"
+        points = list(map(style.point_text, self))
+        named = ", ".join(points) if len(points) <= style.MAX_NAMED else f"{points[0]} to {points[-1]}"
         return f"{len(self)} of {self.total:,} states: load point{'s' if len(self) > 1 else ''} {named}"
 
     @property
@@ -110,7 +113,7 @@ class DrawnStates(list[State]):
 def drawn_states(
     result: Sequence[State] | State,
     states: StateChoice = None,
-    most: int = MAX_NAMED,
+    most: int = style.MAX_NAMED,
     in_a_row: bool = False,
     whole: bool = False,
     extremes: Collection[tuple[str, Side]] = TRACTIONS,
@@ -153,7 +156,7 @@ def drawn_places(
     points: np.ndarray,
     cycles: Sequence[Cycle],
     states: StateChoice = None,
-    most: int = MAX_NAMED,
+    most: int = style.MAX_NAMED,
     in_a_row: bool = False,
     whole: bool = False,
     marked: Callable[[], dict[int, str]] = dict,
@@ -210,30 +213,28 @@ def drawn_places(
     return places, [marks.get(place, "") for place in places], count
 
 
-def stored_states(
-    path: Path,
+def held_states(
+    held: Held,
     states: StateChoice = None,
-    most: int = MAX_NAMED,
+    most: int = style.MAX_NAMED,
     in_a_row: bool = False,
     whole: bool = False,
     extremes: Collection[tuple[str, Side]] = TRACTIONS,
 ) -> DrawnStates:
-    """Return the states that a figure of a result file draws. No others are read.
+    """Return the states that a figure of a result draws. No others are read from its file.
 
     Raises
     ------
     InputError
         If there is no such state, or the file can't be read.
     """
-    points = load_points(path)
-    cycles = load(path, states=[]).cycles
+    cycles = held.result.cycles
 
     def marked() -> dict[int, str]:
-        found = marked_extremes(path)
-        return marked_places({each: found[each] for each in extremes if each in found})
+        return marked_places({each: held.extremes[each] for each in extremes if each in held.extremes})
 
-    places, marks, chosen = drawn_places(points, cycles, states, most, in_a_row, whole, marked)
-    return DrawnStates(load(path, states=places).states, len(points), cycles, marks, chosen)
+    places, marks, chosen = drawn_places(held.points, cycles, states, most, in_a_row, whole, marked)
+    return DrawnStates(held.read(places), len(held.points), cycles, marks, chosen)
 
 
 class Frame:
@@ -297,7 +298,11 @@ class Frame:
                 points[:, 0] += 360.0 * round((0.5 * sum(self.limits) - middle) / 360.0)
             parts += [points, gap]
         angle, pressure, shear = np.concatenate(parts[:-1] if len(parts) > 1 else parts).T
-        return angle, without_rounding(pressure), without_rounding(shear, float(np.nanmax(pressure, initial=0.0)))
+        return (
+            angle,
+            style.without_rounding(pressure),
+            style.without_rounding(shear, float(np.nanmax(pressure, initial=0.0))),
+        )
 
     def _rolled(self, points: np.ndarray) -> np.ndarray:
         """A curve all round that begins and ends where the axis does."""
@@ -337,18 +342,18 @@ def name_states(sheet: Sheet, states: DrawnStates, heading: Sequence[str], style
 
     `styles` are entries of the legend that hold for all states. A single state has no entry of its own.
     """
-    common, differing = loads_by_change(states)
-    loads = [load_text(states, 0, name) for name in (common if len(states) > 1 else [*common, *differing])]
+    common, differing = style.loads_by_change(states)
+    loads = [style.load_text(states, 0, name) for name in (common if len(states) > 1 else [*common, *differing])]
     if len(states) == 1:
-        loads.insert(0, f"load point {point_text(states[0])}")
+        loads.insert(0, f"load point {style.point_text(states[0])}")
     note = f"{len(states)} of {states.total:,} states drawn" if len(states) < states.total else ""
-    text = caption(states[0].problem, states)
+    text = style.caption(states[0].problem, states)
     sheet.head(*heading, ",  ".join(loads), caption=f"{text}; {note}" if note else text)
     handles: list[Artist] = []
     twins, lines = first_twins(states), state_lines(states)
     for first in dict.fromkeys(twins):
-        points = ", ".join(point_text(state) for state, twin in zip(states, twins, strict=True) if twin == first)
-        parts = ",  ".join(load_text(states, first, name) for name in differing)
+        points = ", ".join(style.point_text(state) for state, twin in zip(states, twins, strict=True) if twin == first)
+        parts = ",  ".join(style.load_text(states, first, name) for name in differing)
         marks = ", ".join(mark for mark, twin in zip(states.marks, twins, strict=True) if mark and twin == first)
         each = marks.split(", ")  # a long entry would make the letters of the legend small
         words = marks if len(each) <= 3 else f"{each[0]}, {each[1]}, and {len(each) - 2} more"
@@ -375,9 +380,9 @@ def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist
     return filled, len(columns)
 
 
-def state_lines(states: Sequence[State]) -> list[Line]:
+def state_lines(states: Sequence[State]) -> list[style.Line]:
     """Return the style of each state's line. Equal states share colour and dashes."""
-    return [line(twin, twin, 1.3) for twin in first_twins(states)]
+    return [style.line(twin, twin, 1.3) for twin in first_twins(states)]
 
 
 def first_twins(states: Sequence[State]) -> list[int]:
@@ -395,9 +400,131 @@ def first_twins(states: Sequence[State]) -> list[int]:
 def _is_twin(one: State, other: State) -> bool:
     """Whether two states have the same loads, and tractions whose lines can't be told apart."""
     pair = [one, other]
-    if any(load_text(pair, 0, name) != load_text(pair, 1, name) for name in loads_by_change(pair)[1]):
+    if any(style.load_text(pair, 0, name) != style.load_text(pair, 1, name) for name in style.loads_by_change(pair)[1]):
         return False
     peak = max(one.peak_pressure, other.peak_pressure)
     pressure = float(np.abs(one.pressure - other.pressure).max())
     shear = float(np.abs(one.shear - other.shear).max())
     return pressure <= SAME * peak and shear <= SAME * one.most_friction * peak
+
+
+class InMemory:
+    """A result, a sequence of states of one problem and on one grid, one state, or a life of wear.
+
+    The states of a life are those over one cycle on each stored profile.
+    """
+
+    progress: Callable[[float, float], None] | None = None
+
+    def __init__(self, result: Sequence[State] | State | WearResult) -> None:
+        self._life = result if isinstance(result, WearResult) else None
+        self._result = Result.of_life(result) if isinstance(result, WearResult) else result
+
+    @property
+    def source(self) -> str:
+        """A key of :data:`fastpin.figures.kinds.SOURCES`."""
+        return "result" if self._life is None else "life"
+
+    @property
+    def cycles(self) -> Sequence[Cycle]:
+        """The cycles of the history."""
+        return self._result.cycles if isinstance(self._result, Result) else ()
+
+    def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
+        """Return the states of a figure, see :func:`fastpin.figures.states.drawn_states`."""
+        return drawn_states(self._result, states, **how)
+
+    def result(self) -> Result:
+        """Return the result."""
+        return instance("result", self._result, Result, "a Result")
+
+    def part(self, first: int, last: int) -> Result:
+        """Return the result."""
+        return self.result()
+
+    def whole(self) -> Result:
+        """Return the result."""
+        return self.result()
+
+    def beside(self, name: str) -> None:
+        """Return None: a result in memory does not know the sections of its case, such as [fatigue]."""
+
+    def wear(self) -> WearResult:
+        """Return the life of wear."""
+        return instance("result", self._life, WearResult, "a WearResult")
+
+
+class InFile:
+    """The stored result of a run. Only the states that a figure shows are read.
+
+    Attributes
+    ----------
+    progress : callable or None
+        ``progress(done, total)`` follows figures that take long to compute.
+    """
+
+    source = "result"
+
+    def __init__(self, path: Path, progress: Callable[[float, float], None] | None = None) -> None:
+        self._path, self._held, self.progress = path, HeldInFile(path), progress
+
+    @property
+    def cycles(self) -> Sequence[Cycle]:
+        """The cycles of the history."""
+        return self._held.result.cycles
+
+    def states(self, states: StateChoice = None, **how: Any) -> DrawnStates:
+        """Return the states of a figure, see :func:`fastpin.figures.states.held_states`."""
+        return held_states(self._held, states, **how)
+
+    def result(self) -> Result:
+        """Return the result without its states."""
+        return self._held.result
+
+    def part(self, first: int, last: int) -> Result:
+        """Return the result with the states from one corner to another only."""
+        return self._held.part(first, last)
+
+    def whole(self) -> Result:
+        """Return the result with all its states."""
+        return self._held.whole()
+
+    def beside(self, name: str) -> Any:
+        """Return the section of its case with this name, such as "fatigue"; None if the case had none."""
+        return beside_of(stored_case(self._path)).get(name)
+
+    def wear(self) -> WearResult:
+        """Raise :class:`InputError`: there is no life of wear."""
+        return load_wear(self._path)
+
+
+def problem_of(joint: Problem | Case | Result) -> Problem:
+    """Return the problem of a joint. Anything else raises :class:`InputError`."""
+    if not isinstance(joint, (Problem, Case, Result)):
+        raise InputError("joint", f"must be a Problem, Case or Result, not {as_toml(joint)}")
+    return joint if isinstance(joint, Problem) else joint.problem
+
+
+Subject = InMemory | InFile
+"""A result, or states, of which figures are made. States alone have no result."""
+
+
+def stored_subject(path: Path, progress: Callable[[float, float], None] | None = None) -> Subject:
+    """Return the result of a run, or the life of wear, in a file. The progress is that of :class:`InFile`."""
+    return InMemory(load_wear(path)) if holds_wear(path) else InFile(path, progress)
+
+
+def with_stored_cycles(subject: Subject) -> WearResult:
+    """Return the life of wear of a subject. Without a stored cycle raise :class:`InputError`."""
+    life = subject.wear()
+    if not len(life):
+        raise InputError("result", "has no stored cycle: the life of wear ended before its first one")
+    return life
+
+
+def with_cycles(subject: Subject) -> Result:
+    """Return the result of a subject, perhaps without its states. Without a cycle raise :class:`InputError`."""
+    result = subject.result()
+    if not result.cycles:
+        raise InputError("result", f"{NO_CYCLE}; loops and slip also show --corners 21-101")
+    return result

@@ -13,15 +13,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import DrawnStates, Frame
-from fastpin.figures.style import line
-from fastpin.figures.subjects import InMemory, Subject
-from fastpin.figures.words import caption, load_text, loads_by_change, short_load
+from fastpin.figures.states import DrawnStates, Frame, InMemory, Subject
+from fastpin.figures.style import caption, line, load_text, loads_by_change, short_load
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Status
 from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
-from fastpin.report.curves import Curve, write_csv
 from fastpin.states.choice import StateChoice, span_of
 from fastpin.states.cycles import Cycle, innermost_cycles
 from fastpin.states.load_cycle import NO_SLIP

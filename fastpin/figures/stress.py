@@ -14,15 +14,13 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import Normal, Stroke
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
-from fastpin.figures.states import HOOP, DrawnStates, name_states, state_lines
-from fastpin.figures.style import draw_zero, line
-from fastpin.figures.subjects import InMemory, Subject
-from fastpin.figures.words import caption, loads_text, point_text, points_text, quantity
+from fastpin.figures.states import HOOP, DrawnStates, InMemory, Subject, name_states, state_lines
+from fastpin.figures.style import caption, draw_zero, line, loads_text, point_text, points_text, quantity
 from fastpin.model.checks import choice, instance
 from fastpin.model.points import BODIES, Body, bodies_of, edge_body
 from fastpin.model.units import named_loads, units
-from fastpin.report.curves import Curve, write_csv
 from fastpin.report.stress import FIELDS, UTILIZATION, depth_curves, field_curves, hoop_curves
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice

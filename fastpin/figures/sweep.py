@@ -21,16 +21,14 @@ from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import Bbox
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.errors import InputError
 from fastpin.figures.sheet import SMALL, WIDE, Look, Plot, Sheet, plotter
-from fastpin.figures.style import MAX_NAMED, Line, line, spread
-from fastpin.figures.words import caption, quantity, shown_label, wrapped
+from fastpin.figures.style import MAX_NAMED, Line, caption, line, quantity, shown_label, spread, wrapped
 from fastpin.model.checks import instances
 from fastpin.model.problem import Problem
 from fastpin.model.units import PASCAL
-from fastpin.report.curves import Curve, write_csv
-from fastpin.report.envelope import BEARING, BYPASS
-from fastpin.report.sweep import Axis, Chart
+from fastpin.report.sweep import BEARING, BYPASS, Axis, Chart
 
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 _UNSURE: Any = {
@@ -520,7 +518,7 @@ def _label_panels(sheet: Sheet, chart: Chart) -> None:
 
 
 def envelope_of(found: Sequence[Curve], problem: Problem | None = None, varied: Collection[str] = ()) -> Plot:
-    """Draw the envelopes of :func:`fastpin.report.envelope.envelopes`: no ply fails below a line.
+    """Draw the envelopes of :func:`fastpin.report.sweep.envelopes`: no ply fails below a line.
 
     The caption has the parameters of a `problem` without the `varied` fields of the sweep. See
     :func:`fastpin.plot_tractions` for the other arguments.

@@ -14,9 +14,8 @@ from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import WIDE, Look, Plot, Sheet, plotter
-from fastpin.figures.style import COLOURS
+from fastpin.figures.style import COLOURS, shown_label, shown_unit
 from fastpin.figures.sweep import round_numbers
-from fastpin.figures.words import shown_label, shown_unit
 from fastpin.model.checks import instances
 from fastpin.report.tolerances import MOST_OUTCOMES, ToleranceChart
 

@@ -1,6 +1,6 @@
 from .parts import Joint as Joint
-from .parts import Pin as Pin
-from .parts import Plate as Plate
+from .parts import JointPin as JointPin
+from .parts import JointPlate as JointPlate
 from .parts import tate_rosenfeld as tate_rosenfeld
 from .read import JOINT_EXAMPLE as JOINT_EXAMPLE
 from .read import JointFile as JointFile

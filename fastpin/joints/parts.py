@@ -44,7 +44,7 @@ REMOTE_NAMES = tuple(LOADS[place] for place in REMOTE)
 
 
 @dataclass(frozen=True)
-class Plate:
+class JointPlate:
     """A plate of a joint.
 
     Parameters
@@ -149,7 +149,7 @@ class Plate:
 
 
 @dataclass(frozen=True)
-class Pin:
+class JointPin:
     """A pin of a joint, through one plate or several.
 
     Parameters
@@ -222,8 +222,8 @@ class Joint:
 
     Parameters
     ----------
-    plates : sequence of Plate
-    pins : sequence of Pin
+    plates : sequence of JointPlate
+    pins : sequence of JointPin
     plane : {"stress", "strain"}
 
     Raises
@@ -232,13 +232,13 @@ class Joint:
         If a name stands twice or is unknown, holes overlap, radii differ, or a plate has no pin.
     """
 
-    plates: tuple[Plate, ...]
-    pins: tuple[Pin, ...]
+    plates: tuple[JointPlate, ...]
+    pins: tuple[JointPin, ...]
     plane: Plane = "stress"
 
     def __post_init__(self) -> None:
-        set_fields(self, plates=tuple(instances("plates", self.plates, Plate, "a list of plates")))
-        set_fields(self, pins=tuple(instances("pins", self.pins, Pin, "a list of pins")))
+        set_fields(self, plates=tuple(instances("plates", self.plates, JointPlate, "a list of plates")))
+        set_fields(self, pins=tuple(instances("pins", self.pins, JointPin, "a list of pins")))
         check_fields(self, choice, "plane", PLANES)
         for kind, most, count in (("plates", MOST_PLATES, len(self.plates)), ("pins", MOST_PINS, len(self.pins))):
             if not 1 <= count <= most:
@@ -261,7 +261,7 @@ class Joint:
         for pin, plate in self.sections:
             self.problem(pin, plate)
 
-    def _check_holes(self, plate: Plate) -> None:
+    def _check_holes(self, plate: JointPlate) -> None:
         """Check that the pinned holes of a plate keep apart and lie inside it."""
         through = [pin for pin in self.pins if plate.name in pin.plates]
         if not through:
@@ -283,7 +283,7 @@ class Joint:
         return self.pins[0].radius
 
     @cached_property
-    def sections(self) -> tuple[tuple[Pin, Plate], ...]:
+    def sections(self) -> tuple[tuple[JointPin, JointPlate], ...]:
         """Every pin in each of its plates: the interfaces, pin by pin."""
         by_name = {plate.name: plate for plate in self.plates}
         return tuple((pin, by_name[name]) for pin in self.pins for name in pin.plates)
@@ -307,7 +307,7 @@ class Joint:
         """Whether a load is a stress, Pa. The others are forces, N."""
         return load.rsplit(".", 1)[1] in REMOTE_NAMES
 
-    def problem(self, pin: Pin, plate: Plate) -> Problem:
+    def problem(self, pin: JointPin, plate: JointPlate) -> Problem:
         """The contact of a pin in one plate, as if that plate were infinite."""
         pair = MaterialPair(pin.material, plate.material, self.plane)
         try:

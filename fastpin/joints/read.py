@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from fastpin.casefile.materials import read_material
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
-from fastpin.joints.parts import MOST_PINS, Joint, Pin, Plate, tate_rosenfeld
+from fastpin.joints.parts import MOST_PINS, Joint, JointPin, JointPlate, tate_rosenfeld
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
 from fastpin.model.lug import Part, rectangle
@@ -136,7 +136,7 @@ def _words(names: tuple[str, ...]) -> str:
     return ", ".join(f"[{name}]" if name == "joint" else f"[[{name}]]" for name in names)
 
 
-def _plate(source: CaseText, block: Section) -> Plate | None:
+def _plate(source: CaseText, block: Section) -> JointPlate | None:
     """A plate; None if it is wrong (reported)."""
     for key in ("name", "thickness"):
         block.require(key)
@@ -149,7 +149,7 @@ def _plate(source: CaseText, block: Section) -> Plate | None:
     values = {"name": block.value("name"), "thickness": block.value("thickness"), "moves": block.value("moves") or ""}
     if material is None or outline is None or values["name"] is None or values["thickness"] is None:
         return None
-    return _made(block, Plate, **values, material=material, outline=outline, supports=supports)
+    return _made(block, JointPlate, **values, material=material, outline=outline, supports=supports)
 
 
 def _made(block: Section, make: Any, **values: Any) -> Any:
@@ -190,7 +190,7 @@ def _outline(block: Section) -> tuple[Part, ...] | None:
     return None if x is None or y is None else rectangle(x, y)
 
 
-def _pins(source: CaseText, block: Section, plates: list[Plate | None]) -> list[Pin | None]:
+def _pins(source: CaseText, block: Section, plates: list[JointPlate | None]) -> list[JointPin | None]:
     """The pins of a block; None for each that is wrong (reported)."""
     for key in ("name", "at", "diameter", "plates"):
         block.require(key)
@@ -208,11 +208,11 @@ def _pins(source: CaseText, block: Section, plates: list[Plate | None]) -> list[
     common = {"material": material, "radius": 0.5 * diameter, "plates": through, "flexibility": flexibility}
     for key in ("clearance", "friction"):
         common[key] = block.value(key) if key in block else 0.0
-    return [_made(block, Pin, name=name, at=at, **common) for name, at in zip(names, places, strict=True)]
+    return [_made(block, JointPin, name=name, at=at, **common) for name, at in zip(names, places, strict=True)]
 
 
 def _flexibility(
-    block: Section, material: Any, diameter: float, through: list[str], plates: list[Plate | None]
+    block: Section, material: Any, diameter: float, through: list[str], plates: list[JointPlate | None]
 ) -> float | None:
     """The flexibility of a pin, m/N; None if it is wrong (reported)."""
     given = block.value("flexibility")

@@ -13,23 +13,21 @@ import numpy as np
 from fastpin.elasticity.plates import harmonic_sizes
 from fastpin.elasticity.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
 from fastpin.errors import InputError
-from fastpin.joints.parts import MOVES, Joint, Plate
+from fastpin.joints.parts import MOVES, Joint, JointPlate
 from fastpin.joints.path import follow, unloaded
 from fastpin.joints.result import JointResult, JointState
 from fastpin.joints.states import StateMaker
-from fastpin.joints.system import JointLoads, Motion, PinsSystem, Section, build
+from fastpin.joints.system import JointLoads, Motion, PinSection, PinsSystem, build
 from fastpin.model.angles import BOTTOM
 from fastpin.model.checks import as_toml, check_callable, instance, items, known_name, number, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import Plane
 from fastpin.solver.errors import Interrupted, SolveError
+from fastpin.solver.run import RunProgress
 from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.task import deferred_interrupts, one_blas_thread
-
-Progress = Callable[[float, int], None]
-"""Called with the number of steps that are done, parts included, and the number of all steps."""
 
 LEAST_NODES, MOST_NODES = 16, 720
 """Nodes of a contact, all round."""
@@ -50,7 +48,7 @@ def solve_joint(
     *,
     nodes: int = 96,
     harmonics: int | None = None,
-    progress: Progress | None = None,
+    progress: RunProgress | None = None,
 ) -> JointResult:
     """Follow a load history of a joint and return the states at its corners.
 
@@ -155,7 +153,7 @@ def load_values(joint: Joint, corners: Sequence[Mapping[str, float]]) -> np.ndar
 
 
 def _plate_compliance(
-    joint: Joint, plate: Plate, harmonics: int | None, report: Callable[[float], None]
+    joint: Joint, plate: JointPlate, harmonics: int | None, report: Callable[[float], None]
 ) -> HolesCompliance:
     """The compliance of the pinned holes of a plate; that of equal plates is computed once."""
     report(0.0)
@@ -165,7 +163,7 @@ def _plate_compliance(
 
 @functools.lru_cache(maxsize=16)
 def _compliance(
-    plate: Plate, centres: tuple[complex, ...], radius: float, plane: Plane, harmonics: int | None
+    plate: JointPlate, centres: tuple[complex, ...], radius: float, plane: Plane, harmonics: int | None
 ) -> HolesCompliance:
     if plate.is_infinite:
         places = np.array(centres) / radius
@@ -205,7 +203,7 @@ def _joint_system(
     for pin, plate in joint.sections:
         is_first = plate.name == pin.plates[0]
         sections.append(
-            Section(
+            PinSection(
                 pins[pin.name], places[plate.name], holes[plate.name], (pin.at - first[plate.name]) / radius,
                 joint.problem(pin, plate),
                 plate.thickness / thick, 0.0 if is_first else pin.flexibility * thick / beta,

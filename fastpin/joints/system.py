@@ -42,7 +42,7 @@ where a loose pin touches; with 1e-12 the first matrix is singular."""
 
 
 @dataclass(frozen=True, eq=False)
-class Section:
+class PinSection:
     """A pin in one plate.
 
     Attributes
@@ -125,7 +125,7 @@ class PinsSystem(System):
     Attributes
     ----------
     nodes : Nodes
-    sections : tuple of Section
+    sections : tuple of PinSection
         The interfaces, pin by pin and through the thickness.
     given : JointLoads
     integrals : tuple of ndarray, shape (2 + 4 K, 2n)
@@ -135,7 +135,7 @@ class PinsSystem(System):
     """
 
     nodes: Nodes = field(kw_only=True)
-    sections: tuple[Section, ...] = field(kw_only=True)
+    sections: tuple[PinSection, ...] = field(kw_only=True)
     given: JointLoads = field(kw_only=True)
     integrals: tuple[np.ndarray, ...] = field(kw_only=True)
     springs: np.ndarray = field(kw_only=True)
@@ -195,7 +195,7 @@ class PinsSystem(System):
 
 
 def build(
-    sections: Sequence[Section],
+    sections: Sequence[PinSection],
     plates: Sequence[HolesCompliance],
     given: JointLoads,
     grids: Sequence[Grid],
@@ -205,7 +205,7 @@ def build(
 
     Parameters
     ----------
-    sections : sequence of Section
+    sections : sequence of PinSection
         Pin by pin, and through the thickness.
     plates : sequence of HolesCompliance
     given : JointLoads
@@ -250,7 +250,7 @@ def build(
 
 
 def _conditions(
-    sections: Sequence[Section], alone: Sequence[System], nodes: Nodes, given: JointLoads, beta: float
+    sections: Sequence[PinSection], alone: Sequence[System], nodes: Nodes, given: JointLoads, beta: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The conditions of equilibrium and coherence: of the tractions, the motion, the springs in it, and the loads."""
     count, size = 3 * len(sections), 2 * nodes.size

@@ -21,18 +21,14 @@ from fastpin.kernels.status import OPEN
 from fastpin.live.controls import ControlScales, changed_fields, load_controls, problem_controls, vector_axes
 from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import ALONE, MOST_UNDONE, Limits, Message, refusal
+from fastpin.model import LOADS, Case, Grid, Problem
 from fastpin.model.angles import angle_at
-from fastpin.model.case import Case
 from fastpin.model.doubts import doubts
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
 from fastpin.model.options import ALL_ROUND, SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.model.profile import CALLED
 from fastpin.model.units import FIXED_PREFIXES, units
 from fastpin.report.case import profile_words
-from fastpin.solver.errors import ConvergenceError, SolveError
-from fastpin.solver.session import Session
+from fastpin.solver import ConvergenceError, Session, SolveError
 from fastpin.states.state import State
 from fastpin.version import __version__
 

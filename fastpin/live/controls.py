@@ -11,15 +11,13 @@ from typing import Any
 from fastpin.bodies.body import MOST_DRY, Control, PlateBody
 from fastpin.bodies.kinds import PIN_CONTROLS, PLATE_CONTROLS, SOLID_PIN, TITLES, changed_pin, changed_plate
 from fastpin.errors import InputError
+from fastpin.model import InitialGap, Laminate, Problem, Profile
 from fastpin.model.angles import angle_at, degrees_from_bottom
 from fastpin.model.checks import choice, not_negative, number
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory, check_loads
-from fastpin.model.laminate import Laminate
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Term
 from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, PASCAL, Unit, units

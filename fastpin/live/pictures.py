@@ -8,16 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.outputs import ROUNDING, json_ready
+from fastpin.model import LoadHistory, Points
 from fastpin.model.angles import BOTTOM, degrees_from_bottom, from_bottom, interval_from_bottom
 from fastpin.model.doubts import pressure_doubts
-from fastpin.model.history import LoadHistory
-from fastpin.model.points import Points
-from fastpin.report.summary import json_ready
+from fastpin.states import LoadCycle, State
 from fastpin.states.curves import one_turn, thinned, traction_patches
-from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import sizes
-from fastpin.states.state import State
 
 EVERY = 2.0
 """Degrees between two points of the curve of the hoop stress."""

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess.outputs import json_ready
+from fastpin.assess.wear import DEBRIS
 from fastpin.damage import WornFatigue
 from fastpin.errors import InputError
 from fastpin.live.contact import case_document
@@ -21,8 +23,6 @@ from fastpin.model.case import Case
 from fastpin.model.checks import instance, instances, string, whole_number
 from fastpin.model.history import MAX_CORNERS
 from fastpin.model.points import edge_body
-from fastpin.report.summary import json_ready
-from fastpin.report.wear import DEBRIS
 from fastpin.solver.wear_result import WearResult, WornCycle
 from fastpin.states.state import State
 from fastpin.version import __version__

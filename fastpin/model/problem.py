@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from fastpin.bodies.body import BodyBase, PinBody, PinLoad, PlateBody
-from fastpin.bodies.joint import Joint, check_bodies, without_units
+from fastpin.bodies.joint import BodyPair, check_bodies, without_units
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.errors import InputError
 from fastpin.model.checks import (
@@ -315,9 +315,9 @@ class Problem:
         )  # fmt: skip
 
     @cached_property
-    def joint(self) -> Joint:
+    def joint(self) -> BodyPair:
         """Pin and plate with their materials."""
-        return Joint(self.pair, self.hole_radius, self.pin_body, self.plate_body, self.pin_load)
+        return BodyPair(self.pair, self.hole_radius, self.pin_body, self.plate_body, self.pin_load)
 
     @property
     def surfaces(self) -> MaterialPair:

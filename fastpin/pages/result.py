@@ -12,15 +12,12 @@ from fastpin.casefile.toml_text import read_text
 from fastpin.errors import CaseFileError, InputError, ReadingError, reading
 from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance, string
-from fastpin.pages.album import Album
-from fastpin.pages.content import Page, PageSection, Text
-from fastpin.pages.margins import PageParts
+from fastpin.pages.content import Album, Page, PageSection, Text
 from fastpin.pages.sections import SECTIONS, crack, seat, strength
-from fastpin.pages.source import Source, now, with_count
+from fastpin.pages.source import PageParts, Source, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
 from fastpin.pages.writing import check_page, write_page
-from fastpin.solver.result import Result
-from fastpin.solver.wear_result import WearResult
+from fastpin.solver import Result, WearResult
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical
 from fastpin.version import __version__

@@ -7,22 +7,24 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fastpin.assess.fatigue import Assessed, assessment_lines
-from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.crack import growth_line
+from fastpin.assess.cycle import cycle_line
+from fastpin.assess.fatigue import Assessed, hot_spot_line, spectrum_line
+from fastpin.assess.margins import verdict
+from fastpin.assess.outputs import MAX_ROWS, ROUNDING, Column
+from fastpin.assess.questions import QUESTIONS
+from fastpin.assess.wear import wear_input
 from fastpin.errors import InputError
 from fastpin.figures.convergence import convergence_of
-from fastpin.figures.crack_growth import crack_growth_of
 from fastpin.figures.cycles import cycles_of
-from fastpin.figures.fatigue import fatigue_of, spectrum_of
-from fastpin.figures.gap import gap_of
-from fastpin.figures.history import history_of
+from fastpin.figures.fatigue import crack_growth_of, fatigue_of, spectrum_of
+from fastpin.figures.history import gap_of, history_of
 from fastpin.figures.laminates import strength_of
 from fastpin.figures.load_cycle import STRAIGHT, area_doubt, loops_of, slip_of
 from fastpin.figures.sketch import sketch_of
-from fastpin.figures.states import DrawnStates
+from fastpin.figures.states import DrawnStates, InMemory
 from fastpin.figures.stick_slip import stick_slip_plot
 from fastpin.figures.stress import hoop_plot, map_plot
-from fastpin.figures.subjects import InMemory
 from fastpin.figures.tractions import tractions_plot
 from fastpin.kernels.status import SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
@@ -36,24 +38,25 @@ from fastpin.model.points import EDGES, edge_body
 from fastpin.model.ties import top
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
-from fastpin.pages.margins import PageParts, margins, sentence
-from fastpin.pages.source import Source
+from fastpin.pages.source import PageParts, Source, margins, sentence
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.convergence import heading, reported_series, series_columns
-from fastpin.report.crack_growth import growth_line
-from fastpin.report.cycle import cycle_line, hot_spot_line, spectrum_line
-from fastpin.report.margins import verdict
-from fastpin.report.notes import note_lines, solver_line, way_on
-from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, seat_lines, state_columns
-from fastpin.report.strength import strength_lines
-from fastpin.report.table import MAX_ROWS, Column
-from fastpin.report.wear import wear_input
+from fastpin.report.states import (
+    bush_line,
+    cycle_lines,
+    hoop_line,
+    note_lines,
+    quantity_column,
+    seat_lines,
+    solver_line,
+    state_columns,
+    way_on,
+)
 from fastpin.solver.configuration import MAX_RESIDUAL
+from fastpin.states import LoadCycle, State
 from fastpin.states.extremes import READINGS, yield_doubts
-from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
-from fastpin.states.state import State
 from fastpin.states.walking import walk_doubts
 from fastpin.studies.identity import canonical, run_id
 
@@ -99,8 +102,9 @@ def overview(page: PageParts) -> PageSection:
         many = f"{len(lines):,} blocks of cycles: see hysteresis and slip"
         sentences += lines if len(lines) <= MOST_BLOCKS else [many]
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
-        known = [] if isinstance(source.fatigue, str) or source.assessed else source.fatigue
-        sentences += [] if source.assessed is None else assessment_lines(source.assessed, source.over_yield)
+        assessed = source.answer("fatigue")
+        known = [] if isinstance(source.fatigue, str) or assessed else source.fatigue
+        sentences += [] if assessed is None else QUESTIONS["fatigue"].lines(assessed, source.over_yield)
         sentences += [hot_spot_line(found, source.peaks, source.over_yield) for found in known]
         sentences += [spectrum_line(found, source.over_yield) for found in source.spectrum]
         parts.append(Items([sentence(line) for line in sentences if line]))
@@ -112,8 +116,8 @@ def warnings_and_notes(source: Source) -> list[Text]:
     """Return the doubts about a result, and what a reader of it must know."""
     problem, history = source.case.problem, source.case.history
     warnings = [*doubts(problem, history, source.case.options)]
-    warnings += pressure_doubts(problem, history, [np.array([source.pressure])])
-    warnings += yield_doubts(problem, history, lambda: source.found, source.read)
+    warnings += pressure_doubts(problem, history, [np.array([source.held.pressure])])
+    warnings += yield_doubts(problem, history, lambda: source.held.extremes, source.held.read)
     warnings += [] if source.cycle is None else walk_doubts(source.cycle.states, source.result.cycles)
     warnings += [] if source.life is None else source.life.doubts
     notes = note_lines(source.case, source.result)
@@ -343,7 +347,7 @@ def seat(page: PageParts) -> PageSection:
 
 
 def _seat_lines(source: Source) -> list[str]:
-    (last,) = source.read([source.points.size - 1])
+    (last,) = source.held.read([source.points.size - 1])
     return seat_lines(source.case.problem, source.peaks, last, () if source.cycle is None else source.cycle.states)
 
 
@@ -413,8 +417,8 @@ def _assessed(page: PageParts, assessed: Assessed) -> list[SectionPart]:
     for criterion in assessed.how.criteria if assessed.is_along_edges else ():
         found = [one for one in assessed.found if one.criterion == criterion]
         parts += [page.album.figure(spectrum_of(found))] if found else []
-    kind = "missing" if assessed.reason else ""
-    return [*parts, *(Text(sentence(line), kind) for line in assessment_lines(assessed, page.source.over_yield))]
+    kind, lines = "missing" if assessed.reason else "", QUESTIONS["fatigue"].lines(assessed, page.source.over_yield)
+    return [*parts, *(Text(sentence(line), kind) for line in lines)]
 
 
 def fatigue(page: PageParts) -> PageSection:
@@ -422,8 +426,8 @@ def fatigue(page: PageParts) -> PageSection:
 
     A section [fatigue] of the case replaces it.
     """
-    if page.source.assessed is not None:
-        return PageSection("fatigue", "Fatigue", _assessed(page, page.source.assessed))
+    if (assessed := page.source.answer("fatigue")) is not None:
+        return PageSection("fatigue", "Fatigue", _assessed(page, assessed))
     found = page.source.fatigue
     if page.source.spectrum:
         lines = [spectrum_line(each, page.source.over_yield) for each in page.source.spectrum]
@@ -443,7 +447,7 @@ def fatigue(page: PageParts) -> PageSection:
 
 def crack(page: PageParts) -> PageSection:
     """Return the growth of the crack of the case, with its figure."""
-    found = page.source.crack
+    found = page.source.answer("crack")
     if isinstance(found, str):
         return PageSection("crack", "Crack", [Text(found, "missing")])
     parts: list[SectionPart] = [
@@ -458,11 +462,11 @@ def crack(page: PageParts) -> PageSection:
 
 def strength(page: PageParts) -> PageSection:
     """Return the strength of the laminate in the worst state, with its figure."""
-    found = page.source.strength
-    if isinstance(found, str):
-        return PageSection("strength", "Strength", [Text(found, "missing")])
+    found = page.source.answer("strength")
+    if found is None or isinstance(found, str):
+        return PageSection("strength", "Strength", [Text(found or NO_STATE, "missing")])
     plot = strength_of(InMemory([found.state]).states(), found.how)
-    parts: list[SectionPart] = [Text(sentence(line)) for line in strength_lines(found)]
+    parts = [Text(sentence(line)) for line in QUESTIONS["strength"].lines(found, page.source.over_yield)]
     return PageSection("strength", "Strength", [*parts, page.album.figure(plot)])
 
 
@@ -488,7 +492,7 @@ def checks(page: PageParts) -> PageSection:
     source = page.source
     rows = [
         (name, f"{value:.1e}", "met" if value <= MAX_RESIDUAL else "not met", RESIDUAL_WORDS.get(name, ""))
-        for name, value in source.residuals.items()
+        for name, value in source.held.residuals.items()
     ]
     parts: list[SectionPart] = []
     if rows:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-from collections.abc import Callable, Sequence
+import math
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import cached_property
@@ -14,32 +14,28 @@ from typing import Any
 import numpy as np
 
 from fastpin import storage
-from fastpin.assess.crack import CrackStops
-from fastpin.assess.fatigue import Assessed, assess
-from fastpin.cracks import Growth
+from fastpin.assess.fatigue import SWT, fatigue_bodies, spectrum_damages
+from fastpin.assess.margins import HEADS, all_margins, in_order, margin_rows, verdict
+from fastpin.assess.questions import QUESTIONS
 from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
-from fastpin.damage.margins import MOST_STOPS
+from fastpin.damage.margins import MOST_STOPS, fatigue_margins
 from fastpin.errors import InputError
 from fastpin.figures.states import MOST_JOINED, DrawnStates
-from fastpin.model.case import Case
-from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS
-from fastpin.model.options import SolveOptions
+from fastpin.model import LOADS, Case, LoadHistory, SolveOptions
 from fastpin.model.points import edge_body, elastic_bodies
-from fastpin.report.cycle import SWT, fatigue_bodies, spectrum_damages
+from fastpin.pages.content import Album, Facts, PageSection, Text
 from fastpin.report.states import stored_rows
-from fastpin.report.strength import StrengthFound, assess_strength
-from fastpin.solver.result import Result
-from fastpin.solver.wear_result import WearResult
+from fastpin.solver import Result, WearResult
+from fastpin.states import LoadCycle, State
 from fastpin.states.choice import even_choice, span_of
 from fastpin.states.cycles import Cycle
-from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places
-from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.extremes import marked_places
 from fastpin.states.margins import Margin, over_yield, static_margins
-from fastpin.states.quantities import load_point
-from fastpin.states.state import State
+from fastpin.states.walking import walk_margins
+from fastpin.storage.held import Held, HeldInFile
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
+from fastpin.studies.convergence import Convergence
 
 MOST_DRAWN = 6
 """Most states that a figure or a table of all quantities shows: as many have a legend of their own."""
@@ -64,24 +60,12 @@ class Source:
     Attributes
     ----------
     case : Case
-    result : Result
-        Perhaps without states: `read` gives them.
-    points : ndarray, shape (states,)
-        Load points of all states.
-    read : callable
-        ``read(places)`` gives the states at these places, in increasing order.
-    extremes : callable
-        ``extremes()`` gives the extremes of all states.
+    held : Held
+        The result, with its states on demand.
     origin : list of (str, str)
         Where the result comes from: names and values.
-    residuals : dict of str to float
-        The largest of each kind, over all states.
-    pressure : float
-        The largest pressure at a node over all states, Pa.
     error : str or None
         Why the run ended early.
-    path : Path or None
-        The file.
     case_text : str
         The text of the case file; empty if it is not known.
     knows_options : bool
@@ -91,15 +75,9 @@ class Source:
     """
 
     case: Case
-    result: Result
-    points: np.ndarray
-    read: Callable[[Sequence[int]], list[State]]
-    extremes: Callable[[], Found]
+    held: Held
     origin: list[tuple[str, str]]
-    residuals: dict[str, float]
-    pressure: float
     error: str | None = None
-    path: Path | None = None
     case_text: str = field(default="", repr=False)
     knows_options: bool = True
     life: WearResult | None = None
@@ -125,24 +103,15 @@ class Source:
         if storage.holds_wear(path):
             source = cls.of_life(storage.load_wear(path), stored.title)
             case = replace(source.case, about=stored.about, options=stored.options, fatigue=stored.fatigue)
-            return replace(source, case=case, origin=origin, error=error, path=path)
-        result, points = storage.load(path, states=[]), storage.load_points(path)
+            source.held.path = path
+            return replace(source, case=case, origin=origin, error=error)
         # The file holds the fractions of the states inside each step. Where they are equally spaced, their number gives
         # the id of the case file and of a sweep.
         spaced = stored.options.changed(between=stored.options.fractions.size - 1)
         is_spaced = np.array_equal(spaced.fractions, stored.options.fractions)
         case = replace(stored, options=spaced) if is_spaced else stored
 
-        def read(places: Sequence[int]) -> list[State]:
-            return storage.load(path, states=list(places)).states
-
-        largest = storage.largest_residuals(path), storage.largest_pressure(path)
-
-        def extremes() -> Found:
-            return storage.marked_extremes(path)
-
-        knows_options = "run" in known
-        return cls(case, result, points, read, extremes, origin, *largest, error, path, knows_options=knows_options)
+        return cls(case, HeldInFile(path), origin, error, knows_options="run" in known)
 
     @classmethod
     def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:
@@ -155,21 +124,8 @@ class Source:
             method: Any = result.method
             options = SolveOptions(nodes=result.grid.size, method=method, error_bars=result.coarse is not None)
             case = Case(result.problem, result.history, options, title)
-        residuals: dict[str, float] = {}
-        pressure = max((float(state.pressure.max()) for state in result), default=0.0)
-        for state in result:
-            residuals = {name: max(value, residuals.get(name, 0.0)) for name, value in state.residuals.items()}
-
-        def read(places: Sequence[int]) -> list[State]:
-            return [result.states[place] for place in places]
-
         origin = [("solved by", _named_versions(versions())), ("file", "none: a result in memory")]
-        points = np.array([load_point(state) for state in result])
-
-        def extremes() -> Found:
-            return marked_extremes(KeptStates(result.states)) if result.states else Found()
-
-        return cls(case, result, points, read, extremes, origin, residuals, pressure, error, knows_options=known)
+        return cls(case, Held(result), origin, error, knows_options=known)
 
     @classmethod
     def of_life(cls, life: WearResult, title: str = "") -> Source:
@@ -179,6 +135,21 @@ class Source:
         source = cls.of_result(Result.of_life(life), case=Case(life.problem, history, options, title))
         return replace(source, life=life, knows_options=False)
 
+    @property
+    def result(self) -> Result:
+        """The result, perhaps without its states."""
+        return self.held.result
+
+    @property
+    def points(self) -> np.ndarray:
+        """Load points of all states, shape (states,)."""
+        return self.held.points
+
+    @property
+    def path(self) -> Path | None:
+        """The file."""
+        return self.held.path
+
     @cached_property
     def initial(self) -> np.ndarray:
         """The load before the first corner, shape (loads,): not zero if the result continues another one.
@@ -187,7 +158,7 @@ class Source:
         """
         found = np.zeros(len(LOADS))
         if self.points.size and self.life is None:
-            (state,), problem = self.read([0]), self.case.problem
+            (state,), problem = self.held.read([0]), self.case.problem
             before = self.case.history[: state.step + 1].blocks
             given = np.any([~np.isnan(block.given).all(axis=0) for block in before], axis=0)
             for place, name in enumerate(LOADS):
@@ -205,23 +176,18 @@ class Source:
     @cached_property
     def rows(self) -> tuple[list[State], dict[int, str]]:
         """The states of the table, and words on those left out, by the row before which they are left out."""
-        rows = stored_rows(self.case.problem, self.points, self.result.cycles, self.read, self.marks)
-        return self.read(rows.printed), rows.gaps
+        rows = stored_rows(self.case.problem, self.points, self.result.cycles, self.held.read, self.marks)
+        return self.held.read(rows.printed), rows.gaps
 
     @cached_property
     def marks(self) -> dict[int, str]:
         """The places of the extremes of all states, with words on each."""
-        return marked_places(self.found)
-
-    @cached_property
-    def found(self) -> Found:
-        """The extremes of all states."""
-        return self.extremes()
+        return marked_places(self.held.extremes)
 
     @cached_property
     def static_margins(self) -> list[Margin]:
         """The margins of the strengths and of the bush over all states."""
-        return static_margins(self.case.problem, self.found, self.read)
+        return static_margins(self.case.problem, self.held.extremes, self.held.read)
 
     @property
     def over_yield(self) -> dict[str, float]:
@@ -231,7 +197,7 @@ class Source:
     @cached_property
     def peaks(self) -> list[State]:
         """The states of the extremes."""
-        return self.read(list(self.marks))
+        return self.held.read(list(self.marks))
 
     @cached_property
     def drawn(self) -> DrawnStates:
@@ -247,7 +213,7 @@ class Source:
         places = corners if corners.size else places
         chosen = even_choice(sorted({*places.tolist(), *self.marks}), MOST_DRAWN, self.marks)
         marks = [self.marks.get(place, "") for place in chosen]
-        return DrawnStates(self.read(chosen), self.points.size, self.result.cycles, marks)
+        return DrawnStates(self.held.read(chosen), self.points.size, self.result.cycles, marks)
 
     @cached_property
     def mapped(self) -> DrawnStates:
@@ -258,7 +224,7 @@ class Source:
         if self.life is not None:
             of_profile = self.life[-1].states if len(self.life) else ()
             return DrawnStates(of_profile, len(of_profile))
-        states = self.read(range(self.points.size if self.points.size <= MOST_JOINED else MOST_MAPPED))
+        states = self.held.read(range(self.points.size if self.points.size <= MOST_JOINED else MOST_MAPPED))
         return DrawnStates(states, self.points.size, self.result.cycles)
 
     @cached_property
@@ -272,7 +238,7 @@ class Source:
             if not first:
                 return "no cycle of the history has ended"
         begin, end = (first, self.reached) if found is None else span_of(found)
-        part = replace(self.result, states=self._between(begin, end))
+        part = self.held.part(begin, end)
         try:
             return part.cycle() if found is not None else part.cycle(first=first, last=end)
         except InputError as error:
@@ -309,43 +275,42 @@ class Source:
             return f"There is no fatigue: {error.field} {error.reason}."
 
     @cached_property
-    def assessed(self) -> Assessed | None:
-        """The fatigue as the section [fatigue] of the case asks for it; None without the section."""
-        if self.case.fatigue is None or self.life is not None:
-            return None
-        return assess(self.case, replace(self.result, states=self.read(range(self.points.size))))
+    def answers(self) -> dict[str, Any]:
+        """What is found for the questions of the case, by name: a sentence says why nothing is found."""
+        return {}
+
+    def answer(self, name: str) -> Any:
+        """Return what is found for a question; a sentence says why it is not known. None without its section."""
+        if name not in self.answers:
+            question, long = QUESTIONS[name], name == "crack" and not self.result.cycles
+            if getattr(self.case, name) is None or self.life is not None:
+                self.answers[name] = None
+            elif long and self.points.size > MOST_OF_SPECTRUM:
+                words = f"The history has {self.points.size:,} states. Left to: fastpin crack {self.path or 'FILE'}"
+                self.answers[name] = words
+            else:
+                try:
+                    self.answers[name] = question.find(self.case, self.held)
+                except InputError as error:
+                    failed = f"{question.FAILED[0].upper()}{question.FAILED[1:]}"
+                    self.answers[name] = f"{failed}: {error.field} {error.reason}."
+        return self.answers[name]
+
+    @property
+    def found(self) -> dict[str, Any]:
+        """What is known of the questions of the case, by name."""
+        known = {name: self.answer(name) for name in QUESTIONS}
+        return {name: each for name, each in known.items() if each is not None and not isinstance(each, str)}
 
     @cached_property
     def spectrum(self) -> list[SpectrumDamage]:
         """Damage of plate and bush over a history without repeated blocks, see :func:`spectrum_damages`."""
         is_wanted = self.case.fatigue is None and self.last_cycle is None and self.life is None
-        states = self.read(range(self.points.size)) if is_wanted and self.points.size <= MOST_STOPS else []
+        states = self.held.read(range(self.points.size)) if is_wanted and self.points.size <= MOST_STOPS else []
         try:
             return spectrum_damages(states, len(self.case.history))
         except InputError:
             return []
-
-    @cached_property
-    def crack(self) -> Growth | str:
-        """The growth of the crack of the case over its last cycle or spectrum; or why it is not known."""
-        if self.case.crack is None:
-            return "The case has no crack: its section [crack] gives one."
-        if not self.result.cycles and self.points.size > MOST_OF_SPECTRUM:
-            return f"The history has {self.points.size:,} states. Left to: fastpin crack {self.path or 'FILE'}"
-        try:
-            return CrackStops.of(len(self.case.history), self.result.cycles, self._between).growth(self.case.crack)
-        except InputError as error:
-            return f"No crack is followed: {error.field} {error.reason}."
-
-    @cached_property
-    def strength(self) -> StrengthFound | str:
-        """The strength of the laminate as the section [strength] of the case asks for it; or why it is not known."""
-        if self.case.strength is None:
-            return "The case has no section [strength]."
-        try:
-            return assess_strength(self.case, self.read(range(self.points.size)))
-        except InputError as error:
-            return f"No strength is assessed: {error.field} {error.reason}."
 
     @cached_property
     def worn(self) -> list[WornFatigue]:
@@ -372,10 +337,6 @@ class Source:
     def last_cycle(self) -> Cycle | None:
         """The changes over the last cycle of repeated blocks; None without one."""
         return self.result.cycles[-1] if self.result.cycles else None
-
-    def _between(self, first: int, last: int) -> list[State]:
-        """The states from one corner to another."""
-        return self.read(np.flatnonzero((self.points >= first) & (self.points <= last)).tolist())
 
     def _closing_corner(self) -> int:
         """Return the latest corner with the loads of the last one, before it by two or more; 0 if there is none."""
@@ -414,3 +375,62 @@ def _digest(path: Path) -> str:
 def now() -> str:
     """Return the date and time, UTC, as text."""
     return datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+
+
+@dataclass(frozen=True)
+class PageParts:
+    """What the sections of one page share.
+
+    Attributes
+    ----------
+    source : Source
+    album : Album
+    convergence : Convergence or None
+    """
+
+    source: Source
+    album: Album
+    convergence: Convergence | None = None
+
+    @cached_property
+    def margins(self) -> list[Margin]:
+        """The margins of yield, bush, fatigue, crack and plies, the smallest one first."""
+        source, problem = self.source, self.source.case.problem
+        cycle = [] if source.cycle is None else source.cycle.states
+        found = source.found
+        judged = {edge_body(problem, one.body) for one in found["fatigue"].reserves} if "fatigue" in found else set()
+        last_cycle = walk_margins(cycle) + [
+            row
+            for row in fatigue_margins(problem, source.fatigue, cycle)
+            if not (math.isnan(row.margin) and row.subject.removeprefix("last cycle only: ").split(",")[0] in judged)
+        ]
+        return in_order(all_margins(source.static_margins, last_cycle, found))
+
+
+def sentence(line: str) -> str:
+    """Return a line of a report as a sentence."""
+    return f"{line[0].upper()}{line[1:]}."
+
+
+def margins(page: PageParts) -> PageSection:
+    """Return the margins, each with the state that governs it, and the lines of those who answer for the report."""
+    source, found = page.source, page.margins
+    run = "" if source.result.complete else " of an unfinished run"
+    states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
+    words = f"Margins of safety over {states}{run}: allowable/value - 1"
+    remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
+    remarks += "down to a third of the hole's radius below them; fastpin is elastic."
+    if any(row.part for row in found):
+        remarks += " Of the plate only the edge of its hole is looked at: its other places may fail first."
+    rows, author = margin_rows(source.case.problem, found), source.case.about.author
+    signed = [("prepared", author, "", ""), ("checked", "", "", ""), ("approved", "", "", "")]
+    return PageSection(
+        "margins",
+        "Margins",
+        [
+            Text(sentence(verdict(found, source.result.complete))),
+            Facts(words, rows, HEADS),
+            Text(remarks),
+            Facts("Signatures", signed, ("", "name", "date", "signature"), tall=True),
+        ],
+    )

@@ -7,18 +7,18 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from fastpin.assess.outputs import columns_at, printed_rows
+from fastpin.assess.wear import DEBRIS, cycle_columns, cycle_lines, followed_words, law_rows
 from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import criterion_title
-from fastpin.figures.damage import damage_of
-from fastpin.figures.scar import scar_plot, wear_plot
-from fastpin.figures.subjects import InMemory
+from fastpin.figures.scar import damage_of, scar_plot, wear_plot
+from fastpin.figures.states import InMemory
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import edge_body, owner_of
 from fastpin.model.ties import top, top_angle
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
 from fastpin.pages.content import Facts, Items, PageSection, SectionPart, Table, Text
-from fastpin.pages.margins import PageParts, margins, sentence
 from fastpin.pages.sections import (
     ANGLES,
     case,
@@ -32,11 +32,8 @@ from fastpin.pages.sections import (
     warnings_and_notes,
     zones,
 )
-from fastpin.pages.source import Source
-from fastpin.report.notes import way_on
-from fastpin.report.states import TableRows
-from fastpin.report.table import columns_at, printed_rows
-from fastpin.report.wear import DEBRIS, cycle_columns, cycle_lines, followed_words, law_rows
+from fastpin.pages.source import PageParts, Source, margins, sentence
+from fastpin.report.states import TableRows, way_on
 from fastpin.solver.wear_result import WearResult
 from fastpin.states.margins import over_yield_words
 from fastpin.states.quantities import load_point

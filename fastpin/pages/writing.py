@@ -1,15 +1,70 @@
-"""The file of a page: HTML or PDF, by the ending of its name."""
+"""The file of a page, HTML or PDF by the ending of its name. Only this file imports jinja2 and typst."""
 
 from __future__ import annotations
 
+import importlib.util
+import json
+import re
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
+
+import jinja2
 
 from fastpin.errors import InputError
+from fastpin.figures.style import FONTS
 from fastpin.model.checks import as_toml, file_path
-from fastpin.pages.content import Page
-from fastpin.pages.html import html_of
-from fastpin.pages.pdf import check_typst, pdf_of
+from fastpin.pages.content import Page, SectionPart, Table, shown
 from fastpin.storage.files import check_writable, replacing
+
+
+def check_typst(field: str) -> None:
+    """Raise :class:`InputError` if the package typst is missing."""
+    if importlib.util.find_spec("typst") is None:
+        raise InputError(field, "a PDF needs the package typst: pip install 'fastpin[pdf]'")
+
+
+def pdf_of(page: Page) -> bytes:
+    """Return a page as a PDF for A4 paper. Its fonts are inside it."""
+    import typst
+
+    given = {"page": json.dumps(_plain(_document(page)))}
+    template, folder = str(FOLDER / "page.typ"), str(FOLDER)
+    return bytes(typst.compile(template, root=folder, font_paths=[str(FONTS)], sys_inputs=given))
+
+
+def _document(page: Page) -> dict[str, Any]:
+    """Return a page as the template takes it."""
+    sections = [{"title": each.title, "parts": [_part(part) for part in each.parts]} for each in page.sections]
+    about = [[name.capitalize(), value] for name, value in page.about.given().items()]
+    return {
+        "title": page.title,
+        "lead": page.lead,
+        "head": page.head,
+        "about": about,
+        "author": page.about.author,
+        "made": page.made,
+        "sections": sections,
+    }
+
+
+def _part(part: SectionPart) -> dict[str, Any]:
+    if not isinstance(part, Table):
+        return asdict(part)
+    heads = [(name, unit) for name, unit, _ in part.columns]
+    gaps = {str(place): words for place, words in part.gaps.items()}
+    return {
+        "kind": part.kind, "caption": part.caption, "heads": heads, "sides": part.sides, "rows": part.rows, "gaps": gaps
+    }  # fmt: skip
+
+
+def _plain(value: Any) -> Any:
+    """Return a document with escapes for the characters that can't be printed."""
+    if isinstance(value, dict):
+        return {name: _plain(each) for name, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    return shown(value) if isinstance(value, str) else value
 
 
 def check_page(field: str, path: str | Path) -> Path:
@@ -47,3 +102,25 @@ def write_page(page: Page, path: Path) -> None:
 
 def _is_pdf(path: Path) -> bool:
     return path.suffix.lower() == ".pdf"
+
+
+FOLDER = Path(__file__).parent
+"""The folder of the templates and the style sheet."""
+
+
+def html_of(page: Page) -> str:
+    """Return a page as HTML. All text is escaped; only the markup of pictures is written as it is."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(FOLDER),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        # A text is changed so that it can be printed; markup stays.
+        finalize=lambda value: shown(value) if isinstance(value, str) and not hasattr(value, "__html__") else value,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    style = (FOLDER / "page.css").read_text(encoding="utf-8")
+    # Strings of a style sheet: letters and digits stay; all else is escaped by its number.
+    escaped = [re.sub(r"[^A-Za-z0-9 ]", lambda sign: f"\\{ord(sign[0]):06x}", shown(text)) for text in page.head]
+    head = [f'"{text}"' for text in escaped]
+    return environment.get_template("page.html").render(page=page, style=style, head=head) + "\n"

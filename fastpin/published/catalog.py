@@ -7,6 +7,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve, write_csv
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, whole_number
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
@@ -27,9 +28,7 @@ from fastpin.published import (
     sweep,
     textbooks,
 )
-from fastpin.published.drawing import save_drawing
-from fastpin.published.records import Benchmark, Outcome, PaperFigure, Report, row_curves
-from fastpin.report.curves import Curve, write_csv
+from fastpin.published.records import Benchmark, Outcome, PaperFigure, Report, row_curves, save_drawing
 from fastpin.storage.files import check_writable
 from fastpin.version import __version__
 

@@ -14,16 +14,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.bodies import Disk, Plate, Ring, Tube
 from fastpin.bodies.ring import SUPPORTS, Support
 from fastpin.bodies.tube import TubeLoad
 from fastpin.figures.style import Line, line
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, grey, head, marked, panels
-from fastpin.published.records import PaperFigure, Report, curves_of, steps
+from fastpin.model import Material, MaterialPair, Problem
+from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, marked, panels, steps
 from fastpin.published.tractions import Panel, chosen, traction_curve, traction_figure
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 PAIR = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))

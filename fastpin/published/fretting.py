@@ -28,15 +28,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import line
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
+from fastpin.model import Grid, LoadHistory
 from fastpin.model.problem import Problem, Rotation
 from fastpin.published.records import PaperFigure, Report, steps
 from fastpin.published.sweep import NODES_RATIO, gathered_grid
 from fastpin.published.tractions import NAMES, PAIRS, Panel, chosen, traction_curve, traction_figure, values_of
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 FRICTION = 0.55

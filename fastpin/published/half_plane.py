@@ -33,13 +33,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
+from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
+from fastpin.model import MATERIALS, MaterialPair, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.published.drawing import grey, head, legend_below, marked, panels
-from fastpin.published.records import PaperFigure, Report, steps
-from fastpin.report.curves import Curve
+from fastpin.published.records import PaperFigure, Report, grey, head, legend_below, marked, panels, steps
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import closed_forms

@@ -13,16 +13,14 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.bodies import Plate, Ring
 from fastpin.bodies.body import PinLoad, PlateBody
 from fastpin.figures.style import Line
+from fastpin.model import Material, MaterialPair, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import Method
-from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, head, marked, panels
-from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
-from fastpin.report.curves import Curve
+from fastpin.published.records import Benchmark, Outcome, Report, Row, add_legend, head, marked, panels, steps
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification.rows import NODES, half_width

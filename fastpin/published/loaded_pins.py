@@ -6,8 +6,7 @@ import math
 
 from fastpin.casefile.lug import parse_lug
 from fastpin.elasticity.plates import plate_compliance
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
+from fastpin.model import MATERIALS, Material, MaterialPair, Problem
 from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
 from fastpin.solver.solving import solve
 from fastpin.verification.rows import NODES, half_width

@@ -13,17 +13,13 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
+from fastpin.model import Grid, LoadHistory, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
-from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, grey, head, marked, panels
 from fastpin.published.fretting import FRICTION
-from fastpin.published.records import PaperFigure, Report, curves_of, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, marked, panels, steps
 from fastpin.published.tractions import PAIRS
-from fastpin.report.curves import Curve
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
+from fastpin.solver import Result, solve
 from fastpin.states.state import State
 
 LEAST_NODES = 61

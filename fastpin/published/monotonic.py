@@ -20,11 +20,11 @@ from collections.abc import Callable, Mapping, Sequence
 
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, line
 from fastpin.published.records import PaperFigure, Report, steps
 from fastpin.published.tractions import NAMES, Panel, chosen, pushed, traction_curve, traction_figure, values_of
-from fastpin.report.curves import Curve
 
 
 def body_loads(

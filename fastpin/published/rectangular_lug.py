@@ -13,17 +13,16 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.bodies import Compliance, Plate
 from fastpin.elasticity.plates import plate_compliance
 from fastpin.figures.style import Line, angle_axis, line
 from fastpin.model.angles import BOTTOM
 from fastpin.model.lug import Lug, rectangle
 from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, grey, head, panels
 from fastpin.published.finite_bodies import CASE, INFINITE, LOAD_PARAMETER, PAIR
-from fastpin.published.records import PaperFigure, Report, curves_of, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, panels, steps
 from fastpin.published.tractions import ANGLE, QUANTITIES, traction_curve
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 FRICTION = (0.0, 0.4)

@@ -21,17 +21,14 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from scipy import ndimage
 
+from fastpin.assess.outputs import Curve
 from fastpin.figures.style import line
 from fastpin.kernels.status import OPEN
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
-from fastpin.published.drawing import head, panels
-from fastpin.published.records import PaperFigure, Report, steps
+from fastpin.model import Grid, Problem
+from fastpin.published.records import PaperFigure, Report, head, panels, steps
 from fastpin.published.tractions import NAMES, PAIRS, Panel, pushed, traction_curve, traction_figure
 from fastpin.reading.zones import runs
-from fastpin.report.curves import Curve
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
+from fastpin.solver import Result, solve
 from fastpin.states.state import State
 from fastpin.verification import interference
 

@@ -13,15 +13,13 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, angle_axis
+from fastpin.model import MATERIALS, Material, MaterialPair, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, grey, head, marked, panels
-from fastpin.published.records import PaperFigure, Report, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, marked, panels, steps
 from fastpin.published.tractions import ANGLE, QUANTITIES, traction_curve
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 

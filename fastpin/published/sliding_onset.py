@@ -14,12 +14,11 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.figures.style import Line, line
 from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, grey, head, legend_below, marked, panels
-from fastpin.published.records import PaperFigure, Report, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, legend_below, marked, panels, steps
 from fastpin.published.tractions import PAIRS
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 

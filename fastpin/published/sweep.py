@@ -23,15 +23,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.figures.style import line
 from fastpin.kernels.status import STICK
+from fastpin.model import Grid, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, grey, head, marked, panels
-from fastpin.published.records import PaperFigure, Report, steps
+from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, marked, panels, steps
 from fastpin.published.tractions import NAMES, PAIRS, values_of
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 

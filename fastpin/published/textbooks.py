@@ -7,12 +7,8 @@ import math
 import numpy as np
 
 from fastpin.bodies import Ring
+from fastpin.model import MATERIALS, Laminate, Material, MaterialPair, Ply, Points, Problem
 from fastpin.model.angles import BOTTOM
-from fastpin.model.laminate import Laminate
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.ply import Ply
-from fastpin.model.points import Points
-from fastpin.model.problem import Problem
 from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms

@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, angle_axis
+from fastpin.model import MATERIALS, MaterialPair, Problem
 from fastpin.model.angles import interval_near_bottom
-from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import Problem
-from fastpin.published.drawing import add_legend, head, panels
+from fastpin.published.records import add_legend, head, panels
 from fastpin.reading.zones import ALL_ROUND, Interval, is_all_round
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 

@@ -1,16 +1,10 @@
-from . import checks as checks
 from . import convergence as convergence
-from . import cycle as cycle
-from . import envelope as envelope
-from . import fatigue as fatigue
 from . import identify as identify
 from . import joints as joints
-from . import strength as strength
 from . import stress as stress
 from . import summary as summary
 from . import sweep as sweep
 from . import tolerances as tolerances
-from . import wear as wear
 from .case import describe as describe
 from .schema import json_schema as json_schema
 from .states import state_table as state_table

@@ -7,18 +7,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fastpin.assess.asked import assessment_words, crack_words, strength_words
-from fastpin.assess.outputs import ROUNDING
-from fastpin.model.case import Case
+from fastpin.assess.crack import crack_words
+from fastpin.assess.fatigue import assessment_words
+from fastpin.assess.outputs import ROUNDING, Column, table, visible_rows
+from fastpin.assess.strength import strength_words
+from fastpin.model import Case, LoadHistory, Material, Problem, Wear
 from fastpin.model.checks import instance
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
-from fastpin.model.materials import Material
 from fastpin.model.points import owner_of
-from fastpin.model.problem import Problem
 from fastpin.model.units import PASCAL, acting_loads, units
-from fastpin.model.wear import Wear
-from fastpin.report.table import Column, table, visible_rows
 
 
 def describe(case: Case) -> str:

@@ -15,12 +15,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fastpin.assess.outputs import ROUNDING
+from fastpin.assess.outputs import ROUNDING, Column, csv_cell, json_ready, table, unit_names
 from fastpin.model.problem import Problem
 from fastpin.model.units import DEGREE, named_loads, printed_loads, scaled, units
-from fastpin.report.curves import csv_cell
-from fastpin.report.summary import json_ready, unit_names
-from fastpin.report.table import Column, table
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
 from fastpin.storage.files import replacing
 from fastpin.studies.convergence import Convergence, QuantitySeries, Study

@@ -6,11 +6,9 @@ import math
 from pathlib import Path
 from typing import Any
 
+from fastpin.assess.outputs import Curve, aligned, json_ready, unit_names, write_csv
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.units import units
-from fastpin.report.curves import Curve, write_csv
-from fastpin.report.summary import json_ready, unit_names
-from fastpin.report.table import aligned
 from fastpin.studies.identification import FittedValue, Identified
 from fastpin.version import __version__
 

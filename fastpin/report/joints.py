@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess.outputs import Column, json_ready, table
 from fastpin.joints import JointResult, JointState
 from fastpin.model.angles import from_bottom
 from fastpin.model.ties import top
 from fastpin.model.units import scaled
-from fastpin.report.summary import json_ready
-from fastpin.report.table import Column, table
 from fastpin.states.state import State
 from fastpin.version import __version__
 

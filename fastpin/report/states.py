@@ -8,37 +8,26 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
+from fastpin import storage
+from fastpin.assess import outputs
 from fastpin.assess.outputs import ROUNDING
+from fastpin.model import LOADS, Case, Problem
 from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.checks import instance, instances
-from fastpin.model.loads import LOADS
 from fastpin.model.points import Body, edge_body, elastic_bodies
-from fastpin.model.problem import Problem
 from fastpin.model.ties import top
 from fastpin.model.units import Unit, units
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import load_columns
-from fastpin.report.table import (
-    MAX_ROWS,
-    Column,
-    TableLine,
-    cut_lines,
-    folded_lines,
-    line_words,
-    printed_rows,
-    repeats,
-    row_numbers,
-    table_of_lines,
-    with_rows,
-)
+from fastpin.solver import Interrupted, Result
+from fastpin.states import Regime, State
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.error_bars import known_bar
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, sizes
-from fastpin.states.regimes import Regime
-from fastpin.states.state import State
 from fastpin.states.walking import walk_words
 
 LOAD_POINT = "load point"
@@ -52,6 +41,12 @@ IN_PHASE = 1e-9
 
 _DEGREE = math.degrees(1.0)
 
+COUNTED = {
+    "jumps": "the pin snapped {count} times; work does not balance there",
+    "released": "{count} times a narrow contact with next to no force was let go and lost its memory",
+}
+"""Notes on counts of the statistics that are not zero."""
+
 
 @dataclass(frozen=True)
 class TableRows:
@@ -60,18 +55,18 @@ class TableRows:
     Attributes
     ----------
     lines : list of int, Repeat or LeftOut
-        The lines of the table, see :mod:`fastpin.report.table`. A row has the place of its state as number.
+        The lines of the table, see :mod:`fastpin.assess.outputs`. A row has the place of its state as number.
     points : ndarray, shape (rows,)
         Load points of all rows.
     """
 
-    lines: list[TableLine]
+    lines: list[outputs.TableLine]
     points: np.ndarray
 
     @property
     def printed(self) -> list[int]:
         """The places of the states that have a line of their own."""
-        return printed_rows(self.lines)
+        return outputs.printed_rows(self.lines)
 
     @property
     def names(self) -> list[str]:
@@ -87,7 +82,7 @@ class TableRows:
             if isinstance(line, int):
                 printed += 1
             else:
-                words = line_words(LOAD_POINT, names, line)
+                words = outputs.line_words(LOAD_POINT, names, line)
                 found[printed] = f"{found[printed]}; {words}" if printed in found else words
         return found
 
@@ -115,19 +110,21 @@ def table_rows(
     """
     if points is None:
         points = np.array([load_point(state) for state in states])
-    same = row_numbers(map(_identity, states))
+    same = outputs.row_numbers(map(_identity, states))
     numbers, first = np.unique(same, return_index=True)
     rows = same if rows is None else same[rows]
     if numbers.size > MOST_COMPARED:
-        return TableRows(with_rows(cut_lines(rows.size), wanted), points)
+        return TableRows(outputs.with_rows(outputs.cut_lines(rows.size), wanted), points)
     given = [name for name in LOADS if name not in problem.reactions]
-    if numbers.size < rows.size or repeats(row_numbers(tuple(state.load[name] for name in given) for state in states)):
+    if numbers.size < rows.size or outputs.repeats(
+        outputs.row_numbers(tuple(state.load[name] for name in given) for state in states)
+    ):
         columns = state_columns(problem, [states[place] for place in first.tolist()])
         # A state differs from the same state one cycle before in its number, in a sum, and by rounding.
         own = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
         cells = zip(*(cells for name, _, cells in columns if name not in own), strict=True)
-        rows = row_numbers(cells)[rows]
-    return TableRows(with_rows(folded_lines(rows), wanted), points)
+        rows = outputs.row_numbers(cells)[rows]
+    return TableRows(outputs.with_rows(outputs.folded_lines(rows), wanted), points)
 
 
 def stored_rows(
@@ -154,7 +151,7 @@ def stored_rows(
     alike = _places_alike(points, cycles)
     places, rows = np.unique(alike, return_inverse=True)
     if places.size > MOST_COMPARED:
-        return TableRows(with_rows(cut_lines(points.size), wanted), points)
+        return TableRows(outputs.with_rows(outputs.cut_lines(points.size), wanted), points)
     return table_rows(problem, read(places.tolist()), rows, points, wanted)
 
 
@@ -214,10 +211,10 @@ def state_table(problem: Problem, states: Sequence[State], rows: TableRows | Non
     if rows is None:
         rows = table_rows(problem, states)
         states = [states[place] for place in rows.printed]
-    return table_of_lines(state_columns(problem, states), rows.lines, rows.names)
+    return outputs.table_of_lines(state_columns(problem, states), rows.lines, rows.names)
 
 
-def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
+def state_columns(problem: Problem, states: Sequence[State]) -> list[outputs.Column]:
     """Return the columns of :func:`state_table`, with a cell for each state.
 
     Raises
@@ -227,10 +224,10 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
     """
     states = _checked(problem, states)
 
-    def column(name: str, digits: int = 5, natural: float = 0.0) -> Column:
+    def column(name: str, digits: int = 5, natural: float = 0.0) -> outputs.Column:
         return quantity_column(problem, states, name, digits, natural)
 
-    def angles(name: str) -> Column:
+    def angles(name: str) -> outputs.Column:
         return ("at", *quantity_column(problem, states, name)[1:])
 
     strain = problem.surfaces.beta_star * max((state.peak_pressure for state in states), default=0.0)
@@ -259,7 +256,7 @@ def _checked(problem: Problem, states: Sequence[State]) -> list[State]:
 
 def quantity_column(
     problem: Problem, states: Sequence[State], name: str, digits: int = 5, natural: float = 0.0
-) -> Column:
+) -> outputs.Column:
     """Return the label of a quantity, its unit, and its value in each state with its error bar, if there is one.
 
     Values below :data:`ROUNDING` of the largest, or of the size `natural`, become 0.
@@ -401,8 +398,10 @@ def cycle_lines(problem: Problem, cycles: Sequence[Cycle], states: Sequence[Stat
     found = [sizes(state) for state in states]
     natural = {kind: max((each[kind] for each in found), default=0.0) for kind in ("energy", "rotation")}
     lines = [_block_line(problem, block, natural) for block in consecutive_cycles(cycles)]
-    if len(lines) > MAX_ROWS // 2:
-        lines[MAX_ROWS // 4 : -MAX_ROWS // 4] = [f"... {len(lines) - MAX_ROWS // 2} more blocks of cycles ..."]
+    if len(lines) > outputs.MAX_ROWS // 2:
+        lines[outputs.MAX_ROWS // 4 : -outputs.MAX_ROWS // 4] = [
+            f"... {len(lines) - outputs.MAX_ROWS // 2} more blocks of cycles ..."
+        ]
     return lines
 
 
@@ -467,3 +466,37 @@ def _intervals(state: State, zone: str) -> str:
         parts.append("all round" if is_all_round(stop - start) else f"{first:z.2f} to {last:z.2f}{bar}")
     none = Regime.GROSS_SLIDING.words if zone == "stick" and state.in_contact else "none"
     return ", ".join(parts) or none
+
+
+def note_lines(case: Case, result: Result) -> list[str]:
+    """Return lines of text, one for each thing that a reader of a result must know; none for most results.
+
+    Only statistics and grid of the result are read. Doubts about its values are warnings, see
+    :mod:`fastpin.model.doubts`.
+    """
+    counts = {name: int(result.statistics.get(name, 0)) for name in COUNTED}
+    notes = [COUNTED[name].format(count=count) for name, count in counts.items() if count]
+    if result.grid.size > case.options.nodes and not result.grid.uniform:
+        notes.append(f"{result.grid.size} nodes instead of {case.options.nodes}, dense where the contact is narrow")
+    return notes
+
+
+def way_on(path: Path | None, error: str | None) -> str:
+    """Return words on how an unfinished run of a file goes on; empty if it does not.
+
+    `error` is the error that ended the run. A run goes on after Ctrl-C or a kill. After another error the same loads
+    end at the same place.
+    """
+    if path is None or error not in (None, str(Interrupted())):
+        return ""
+    if storage.is_being_written(path):
+        return "its run goes on"
+    command = f"wear CASE -o {path} --resume" if storage.holds_wear(path) else f"resume {path}"
+    return f"continue with: fastpin {command}"
+
+
+def solver_line(result: Result) -> str:
+    """Return a line of text: the solver, the number of nodes, and the statistics that are not zero."""
+    names = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
+    known = [f"{result.statistics[name]:.4g} {name}" for name in names if result.statistics.get(name)]
+    return f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}"

@@ -7,25 +7,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fastpin.assess.outputs import Curve
 from fastpin.damage.hole_strength import laminate_of
 from fastpin.damage.laminates import first_ply_failure
 from fastpin.errors import InputError
+from fastpin.model import points
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import choice, number
-from fastpin.model.points import (
-    BODIES,
-    ROUNDING,
-    Body,
-    Points,
-    elastic_bodies,
-    far_rim,
-    known_depth,
-    material_of,
-)
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.reading.stress import Stress
-from fastpin.report.curves import Curve
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
@@ -70,7 +61,7 @@ def component_of(stress: Stress, component: str) -> np.ndarray:
     return values
 
 
-def bodies_of(state: State, body: str = "both") -> tuple[Body, ...]:
+def bodies_of(state: State, body: str = "both") -> tuple[points.Body, ...]:
     """The bodies to draw: "plate", "pin", "seat", or "both": all that the problem has, without rigid ones.
 
     Raises
@@ -78,9 +69,9 @@ def bodies_of(state: State, body: str = "both") -> tuple[Body, ...]:
     InputError
         If there is no such body.
     """
-    if choice("body", body, (*BODIES, "both")) != "both":
+    if choice("body", body, (*points.BODIES, "both")) != "both":
         return (body,)  # type: ignore[return-value]
-    return elastic_bodies(state.problem)
+    return points.elastic_bodies(state.problem)
 
 
 def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
@@ -98,14 +89,14 @@ def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
             theta = np.unique(np.r_[around, sharp])
             columns = {"angle [deg]": np.degrees(theta) + 90.0, f"hoop stress [{unit}]": state.hoop_stress(each, theta)}
             if state.problem.is_pressed:
-                before = state.assembly_stress(Points.at_depth(0.0, theta), each).hoop
+                before = state.assembly_stress(points.Points.at_depth(0.0, theta), each).hoop
                 columns[f"hoop stress of the assembly [{unit}]"] = before
             curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
     return curves
 
 
 def depth_curves(
-    states: Sequence[State], body: Body = "plate", angle: float | None = None, depth: float | None = None
+    states: Sequence[State], body: points.Body = "plate", angle: float | None = None, depth: float | None = None
 ) -> list[Curve]:
     """Radial, hoop, shear and von Mises stress below a place of the edge: a curve for each state.
 
@@ -124,8 +115,8 @@ def depth_curves(
     InputError
         If an argument is out of range.
     """
-    material_of(states[0].problem, body)
-    usual = min(0.5 if body == "pin" else 1.0, known_depth(states[0].problem, body))
+    points.material_of(states[0].problem, body)
+    usual = min(0.5 if body == "pin" else 1.0, points.known_depth(states[0].problem, body))
     deepest = usual if depth is None else number("depth", depth)
     _check_depth(deepest, states[0].problem, body)
     unit = units(states[0].problem)
@@ -133,7 +124,7 @@ def depth_curves(
     below = deepest * radius * np.linspace(0.0, 1.0, DEPTHS) ** 3
     for state in states:
         place = state.peak_hoop_stress(body).angle if angle is None else math.radians(number("angle", angle) - 90.0)
-        found = state.stress(Points.at_depth(below, place), body)
+        found = state.stress(points.Points.at_depth(below, place), body)
         columns = {f"depth [{unit['length'].name}]": below}
         for name in ("radial", "hoop", "shear", "von_mises"):
             columns[f"{COMPONENTS[name]} [{unit['traction'].name}]"] = component_of(found, name)
@@ -142,10 +133,12 @@ def depth_curves(
     return curves
 
 
-def _check_depth(depth: float, problem: Problem, body: Body) -> None:
+def _check_depth(depth: float, problem: Problem, body: points.Body) -> None:
     """Check the depth of a profile, in hole radii."""
-    far, wall = far_rim(problem, body), known_depth(problem, body)
-    inside = depth < wall if far == 0.0 else depth <= wall * (1.0 + ROUNDING)  # a force may act at the centre of a pin
+    far, wall = points.far_rim(problem, body), points.known_depth(problem, body)
+    inside = (
+        depth < wall if far == 0.0 else depth <= wall * (1.0 + points.ROUNDING)
+    )  # a force may act at the centre of a pin
     if depth > 0.0 and inside:
         return
     if math.isinf(wall):
@@ -192,13 +185,13 @@ def field_curves(
     drawn = tuple(each for each in bodies_of(state, body) if each != "seat")  # the plate has it
     if component == UTILIZATION:
         drawn = ("plate",)
-    deepest = min(outer - 1.0, known_depth(state.problem, "plate"))
+    deepest = min(outer - 1.0, points.known_depth(state.problem, "plate"))
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
     for each in drawn:
-        part, far = np.linspace(0.0, 1.0, fineness)[:, None], far_rim(state.problem, each)
+        part, far = np.linspace(0.0, 1.0, fineness)[:, None], points.far_rim(state.problem, each)
         in_pin = radius * (1.0 - (far or 0.001)) * (1.0 - part) ** 2  # at a solid pin's centre the force may act
         below = radius * deepest * part**2 if each == "plate" else in_pin
-        found = state.stress(Points.at_depth(below, theta), each)
+        found = state.stress(points.Points.at_depth(below, theta), each)
         if component == UTILIZATION:
             values, name = 1.0 / first_ply_failure(laminate_of(state.problem), found.in_plane).ratio, FIELDS[component]
         else:

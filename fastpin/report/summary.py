@@ -2,47 +2,40 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from fastpin import cracks
-from fastpin.assess import fatigue as fatigue_of
-from fastpin.assess import outputs
-from fastpin.assess.crack import GROWTH
-from fastpin.assess.fatigue import Assessed
-from fastpin.assess.margins import result_margins
+from fastpin.assess import crack
+from fastpin.assess.cycle import document as cycle_document
+from fastpin.assess.margins import document as margins_document
+from fastpin.assess.margins import margins_of
+from fastpin.assess.outputs import json_ready, unit_names
+from fastpin.assess.questions import QUESTIONS
 from fastpin.bodies.body import BodyBase
 from fastpin.cracks.margins import crack_margins
 from fastpin.errors import ReadingError, reading
+from fastpin.model import Case, Problem, Profile
 from fastpin.model.angles import interval_from_bottom
-from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LATER, LOAD_KIND, LOADS
 from fastpin.model.materials import STRENGTHS, Material
-from fastpin.model.problem import Problem
-from fastpin.model.profile import Profile
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
-from fastpin.report import crack_growth
-from fastpin.report import cycle as cycle_report
-from fastpin.report import strength as strength_report
-from fastpin.report.margins import document as margins_document
-from fastpin.report.strength import StrengthFound
 from fastpin.solver.result import Result
-from fastpin.states.extremes import READINGS, Found, KeptStates, marked_extremes
-from fastpin.states.load_cycle import LoadCycle
-from fastpin.states.margins import Margin, over_yield, static_margins
+from fastpin.states import LoadCycle, State
+from fastpin.states.extremes import READINGS
+from fastpin.states.margins import over_yield
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
-from fastpin.states.state import State
 from fastpin.version import __version__
 
 
 def document(
     case: Case, result: Result | None, error: str | None = None, cycle: LoadCycle | None = None,
-    fatigue: Assessed | None = None, crack: cracks.Growth | None = None, strength: StrengthFound | None = None,
+    found: Mapping[str, Any] = MappingProxyType({}),
 ) -> dict[str, Any]:  # fmt: skip
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
@@ -58,12 +51,8 @@ def document(
         The reason why `result` is incomplete.
     cycle : LoadCycle, optional
         The cycle of the entry ``cycle``.
-    fatigue : Assessed, optional
-        The assessment of the entry ``fatigue``.
-    crack : Growth, optional
-        The crack of the entry ``crack``.
-    strength : StrengthFound, optional
-        The strength of the entry ``strength``.
+    found : mapping of str
+        What is found for the questions of the case, by their names: an entry for each.
 
     The entry ``unread`` says which quantities could not be read from the states, and why. They are None.
     """
@@ -71,8 +60,8 @@ def document(
     unread: dict[str, str] = {}
     alpha, beta = problem.surfaces.dundurs()
     unit = units(problem)
-    margins = [] if result is None else _margins(result, fatigue, crack, strength)
-    found = {
+    margins = [] if result is None else margins_of(result, found)
+    whole = {
         "fastpin": __version__,
         "title": case.title,
         "complete": result is not None and result.complete,
@@ -102,12 +91,13 @@ def document(
             row._asdict() | {"dissipation": unit["energy"].factor * row.dissipation}
             for row in (() if result is None else result.cycles)
         ],
-        "cycle": None if cycle is None else cycle_report.document(cycle),
-        "fatigue": None if fatigue is None else fatigue_of.document(fatigue, over_yield(margins)),
-        "crack": None if crack is None else outputs.document(GROWTH, crack, unit),
-        "strength": None if strength is None else strength_report.document(strength),
+        "cycle": None if cycle is None else cycle_document(cycle),
+        **{
+            name: None if found.get(name) is None else question.document(found[name], over_yield(margins))
+            for name, question in QUESTIONS.items()
+        },
     }
-    return json_ready(found)
+    return json_ready(whole)
 
 
 def _history_summary(case: Case) -> dict[str, Any]:
@@ -132,12 +122,6 @@ def _in_its_unit(problem: Problem, name: str) -> Any:
     if FIELDS[name].has_section:
         return {key: profile.toml() for key, profile in value.given.items()}
     return units(problem)[kind].factor * value if kind and value is not None else value
-
-
-def unit_names(problem: Problem) -> dict[str, str]:
-    """Return the name of the unit of every kind of quantity in the JSON of a problem."""
-    angle = {"angle": "deg from the bottom of the hole, counter-clockwise"}
-    return {kind: unit.name for kind, unit in units(problem).items()} | angle
 
 
 def _material_summary(material: Material) -> dict[str, Any]:
@@ -213,39 +197,16 @@ def _extremes_summary(result: Result, unread: dict[str, str]) -> dict[str, Any]:
     }
 
 
-def _margins(
-    result: Result, fatigue: Assessed | None, crack: cracks.Growth | None, strength: StrengthFound | None
-) -> list[Margin]:
-    """Return the margins over all states, and those of fatigue and of a crack where they are known."""
-    kept = KeptStates(result.states)
-    static = static_margins(result.problem, marked_extremes(kept) if len(result) else Found(), kept.read)
-    worst, states = None if strength is None else strength.worst, result.states
-    return result_margins(result.problem, static, states, result.cycles, fatigue=fatigue, crack=crack, strength=worst)
-
-
 def crack_document(case: Case, growth: cracks.Growth) -> dict[str, Any]:
     """Return the growth of a crack with its numbers at all lengths and its margins as a JSON-ready dict."""
-    columns = {name: values.tolist() for name, values in crack_growth.growth_curve(growth).columns.items()}
+    columns = {name: values.tolist() for name, values in crack.growth_curve(growth).columns.items()}
     return json_ready(
         {
             "fastpin": __version__,
             "title": case.title,
             "units": unit_names(growth.problem),
-            "crack": outputs.document(GROWTH, growth, units(growth.problem)),
+            "crack": crack.document(growth, {}),
             "lengths": columns,
             "margins": margins_document(growth.problem, crack_margins(growth)),
         }
     )
-
-
-def json_ready(value: Any) -> Any:
-    """Return `value` JSON-ready: Python numbers for NumPy's, lists for tuples, None for NaN and infinity."""
-    if isinstance(value, Mapping):
-        return {str(key): json_ready(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [json_ready(item) for item in value]
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

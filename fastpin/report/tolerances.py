@@ -9,17 +9,16 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess.outputs import Column, table
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
 from fastpin.model.synonyms import closest
 from fastpin.model.units import scaled
 from fastpin.report.sweep import TableRow, axis_label, printed_rows, unit_name
-from fastpin.report.table import Column, table
-from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.run_end import bar_column
-from fastpin.studies.tolerance_effects import OutcomeEffect, Reached
-from fastpin.studies.tolerances import Tolerances, effects_of, part_words
+from fastpin.studies.tolerances import OutcomeEffect, Reached, Tolerances, effects_of, part_words
+from fastpin.studies.variation import field_kind, field_words
 from fastpin.version import __version__
 
 MOST_OUTCOMES = 4

@@ -215,7 +215,7 @@ class WearResult(ReadOnly, Sequence[WornCycle]):
         """The chosen cycles as a table."""
         import fastpin
 
-        return fastpin.report.wear.table(self)
+        return fastpin.assess.wear.table(self)
 
     def fatigue(self, criterion: Any = "smith-watson-topper", body: Body = "plate", **options: Any) -> Any:
         """Damage of the material over the life: it goes with the material that wears off.

@@ -14,20 +14,8 @@ from fastpin.model.loads import LOADS
 from fastpin.model.units import units_per_thickness
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, load_point
-from fastpin.storage.damage import as_python
-from fastpin.storage.layout import (
-    BORDER_FIELDS,
-    FIELD_KINDS,
-    NODE_FIELDS,
-    RESIDUALS,
-    SEATED,
-    SLIP_FIELDS,
-    check_states,
-    load_units,
-    read_grid,
-    rows_of,
-    state_rows,
-)
+from fastpin.storage import layout
+from fastpin.storage.hdf5 import as_python
 from fastpin.storage.store import open_result
 
 if TYPE_CHECKING:
@@ -78,8 +66,8 @@ def _of_file(path: Path) -> tuple[Variables, dict[str, Any]]:
     variables: Variables = {}
     with open_result(path) as file:
         group = file["states"]
-        check_states(file, read_grid(file).size)
-        for name in (*SCALES, *_own(state_rows(group))):
+        layout.check_states(file, layout.read_grid(file).size)
+        for name in (*SCALES, *_own(layout.state_rows(group))):
             dataset = group[name]
             values = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
             unit = dataset.attrs.get("unit", "")
@@ -94,7 +82,7 @@ def _of_file(path: Path) -> tuple[Variables, dict[str, Any]]:
 
 def _own(names: Iterable[str]) -> list[str]:
     """The arrays of the pin's contact. The seat of a bush has other nodes, and a dataset of its own."""
-    return [name for name in names if not name.startswith(SEATED[1])]
+    return [name for name in names if not name.startswith(layout.SEATED[1])]
 
 
 def _dimensions(name: str) -> list[str]:
@@ -103,7 +91,7 @@ def _dimensions(name: str) -> list[str]:
         return [name]
     second = (
         "theta"
-        if name in (*NODE_FIELDS, *BORDER_FIELDS, *SLIP_FIELDS)
+        if name in (*layout.NODE_FIELDS, *layout.BORDER_FIELDS, *layout.SLIP_FIELDS)
         else {"loads": "load_name", "residuals": "residual_name"}.get(name)
     )
     return ["state"] if second is None else ["state", second]
@@ -115,12 +103,16 @@ def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
         "state": (["state"], list(range(len(result))), {"units": ""}),
         "theta": (["theta"], result.grid.theta, {"units": "rad"}),
         "load_name": (["load_name"], list(LOADS), {"units": ""}),
-        "residual_name": (["residual_name"], list(RESIDUALS), {"units": ""}),
+        "residual_name": (["residual_name"], list(layout.RESIDUALS), {"units": ""}),
     }
-    rows = rows_of(list(result))
+    rows = layout.rows_of(list(result))
     for name, values in ((name, rows[name]) for name in _own(rows)):
         dimensions = _dimensions(name)
-        label = ", ".join(load_units(result.problem)) if name == "loads" else unit.get(FIELD_KINDS.get(name, ""), "")
+        label = (
+            ", ".join(layout.load_units(result.problem))
+            if name == "loads"
+            else unit.get(layout.FIELD_KINDS.get(name, ""), "")
+        )
         if len(dimensions) == 2:
             values = values.reshape(len(result), len(variables[dimensions[1]][1]))
         variables[name] = dimensions, values, {"units": label}
@@ -146,7 +138,7 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
         raise InputError("pandas", "is not installed: pip install 'fastpin[pandas]'") from None
     instance("result", result, Result, "a Result")
     unit = {**units_per_thickness(result.problem), "angle": "rad", "width": "rad", "class": ""}
-    named = dict(zip(LOADS, load_units(result.problem), strict=True))
+    named = dict(zip(LOADS, layout.load_units(result.problem), strict=True))
     rows = [
         {
             "load_point": load_point(state),

@@ -34,30 +34,27 @@ from fastpin.elasticity.interfaces import seat_grid
 from fastpin.errors import InputError
 from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
+from fastpin.model import About, Grid, MaterialPair, Problem
 from fastpin.model.beside import BESIDE, read_text, stored_text
-from fastpin.model.case import About
 from fastpin.model.fields import FIELDS
-from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.materials import MaterialPair
 from fastpin.model.options import OPTIONS, SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.model.units import units_per_thickness
 from fastpin.reading.marks import Marks
 from fastpin.reading.old_borders import BITS
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
-from fastpin.storage.bodies import read_bodies, read_material, write_bodies, write_material
-from fastpin.storage.damage import (
-    as_python,
-    check_between,
-    dataset_of,
-    numbers_of,
-    text_of,
+from fastpin.storage import hdf5
+from fastpin.storage.bodies import (
+    read_bodies,
+    read_material,
+    read_profiles,
+    write_bodies,
+    write_material,
+    write_profiles,
 )
-from fastpin.storage.profiles import read_profiles, write_profiles
 from fastpin.version import __version__
 
 FORMAT = "fastpin result"
@@ -242,7 +239,7 @@ def read_problem(file: h5py.File) -> Problem:
     """Read the problem of a result."""
     group = file["problem"]
     pair = MaterialPair(read_material(group["pin"]), read_material(group["plate"]), group.attrs["plane"])
-    given = {name: as_python(group.attrs[name]) for name in (*FIELDS, "dimensionless") if name in group.attrs}
+    given = {name: hdf5.as_python(group.attrs[name]) for name in (*FIELDS, "dimensionless") if name in group.attrs}
     return Problem(pair, **given, **read_profiles(group), **read_bodies(group))
 
 
@@ -284,7 +281,7 @@ def option_attributes(options: SolveOptions) -> dict[str, Any]:
 
 def read_options(file: h5py.File) -> SolveOptions:
     """Read the options of a result. A file of :func:`fastpin.save` has only the nodes and the method."""
-    stored = {name: as_python(value) for name, value in file["solver"].attrs.items()}
+    stored = {name: hdf5.as_python(value) for name, value in file["solver"].attrs.items()}
     options: dict[str, Any] = {"nodes": stored.get("nodes", len(file["grid/theta"])), "method": stored["method"]}
     if options["method"] == "increment":
         options["increments"] = stored.get("increments")
@@ -302,7 +299,7 @@ def read_options(file: h5py.File) -> SolveOptions:
 def read_about(file: h5py.File) -> About:
     """Read who made the case of a result, and for what."""
     stored = file["solver"].attrs
-    return About(**{each.name: text_of(stored.get(each.name, "")) for each in fields(About)})
+    return About(**{each.name: hdf5.text_of(stored.get(each.name, "")) for each in fields(About)})
 
 
 def beside_attributes(given: Mapping[str, Any]) -> dict[str, str]:
@@ -313,7 +310,7 @@ def beside_attributes(given: Mapping[str, Any]) -> dict[str, str]:
 def read_beside(file: h5py.File) -> dict[str, Any]:
     """Read the sections beside the problem that the case of a result has, by name; none in older files."""
     stored = file["solver"].attrs
-    found = {name: read_text(name, text_of(stored.get(name, ""))) for name in BESIDE}
+    found = {name: read_text(name, hdf5.text_of(stored.get(name, ""))) for name in BESIDE}
     return {name: value for name, value in found.items() if value is not None}
 
 
@@ -324,7 +321,7 @@ def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:
 
 def read_statistics(file: h5py.File) -> dict[str, float]:
     """Read the statistics of the solver, by name."""
-    return numbers_of(file["solver/statistics"])
+    return hdf5.numbers_of(file["solver/statistics"])
 
 
 # -- growing arrays: states, cycles -------------------------------------------------------------------------
@@ -482,7 +479,7 @@ def read_rows(group: h5py.Group, names: Sequence[str], picked: slice | Sequence[
         If the arrays have different numbers of rows.
     """
     size = count(group)
-    arrays = {name: dataset_of(group, name, _dtype(name)) for name in names}
+    arrays = {name: hdf5.dataset_of(group, name, _dtype(name)) for name in names}
     for name, array in arrays.items():
         if len(array) != size:
             raise ValueError(f"{group.name[1:]}/{name} has {len(array)} rows, not {size}")
@@ -502,15 +499,15 @@ def check_states(file: h5py.File, nodes: int) -> None:
     """Raise :class:`ValueError` if an array of states is missing, or its rows don't fit the nodes of the pin."""
     group = file["states"]
     for name in node_fields(group):
-        dataset_of(group, name, _dtype(name), (nodes,))
+        hdf5.dataset_of(group, name, _dtype(name), (nodes,))
     for name in NUMBER_FIELDS:
-        dataset_of(group, name, _dtype(name), ())
+        hdf5.dataset_of(group, name, _dtype(name), ())
     if "seat" in group:
-        around = (len(dataset_of(group["seat"], "theta", float, ())),)
+        around = (len(hdf5.dataset_of(group["seat"], "theta", float, ())),)
         for name in (*node_fields(group), *SEAT_NUMBERS):
-            dataset_of(group, f"{SEATED[1]}{name}", _dtype(name), around if name not in SEAT_NUMBERS else ())
-    dataset_of(group, "residuals", float, (len(RESIDUALS),))
-    if dataset_of(group, "loads", float).ndim != 2 or group["loads"].shape[1] > len(LOADS):
+            hdf5.dataset_of(group, f"{SEATED[1]}{name}", _dtype(name), around if name not in SEAT_NUMBERS else ())
+    hdf5.dataset_of(group, "residuals", float, (len(RESIDUALS),))
+    if hdf5.dataset_of(group, "loads", float).ndim != 2 or group["loads"].shape[1] > len(LOADS):
         raise ValueError(f"states/loads has the shape {group['loads'].shape}")
 
 
@@ -527,7 +524,7 @@ def check_growing(file: h5py.File, nodes: int) -> None:
         group = file[part]
         size = count(group)
         for name in arrays:
-            dataset = dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
+            dataset = hdf5.dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
             check_rows(f"{part}/{name}", dataset, size)
 
 
@@ -541,8 +538,8 @@ def check_rows(label: str, dataset: h5py.Dataset, size: int) -> None:
 
 def check_old_borders(label: str, marks: np.ndarray, places: np.ndarray) -> None:
     """Raise :class:`ValueError` if marks or places of old borders are out of range. Unknown places are NaN."""
-    check_between(f"{label}/old_borders", marks, 0, sum(BITS.values()))
-    check_between(f"{label}/old_places", places[~np.isnan(places)], LEAST_PLACE, MOST_PLACE)
+    hdf5.check_between(f"{label}/old_borders", marks, 0, sum(BITS.values()))
+    hdf5.check_between(f"{label}/old_places", places[~np.isnan(places)], LEAST_PLACE, MOST_PLACE)
 
 
 def read_cycles(file: h5py.File) -> list[Cycle]:

@@ -7,38 +7,30 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
-import numpy as np
-
-from fastpin.errors import InputError, InputWarning
-from fastpin.model.assessment import FatigueAssessment
-from fastpin.model.beside import checked_beside
-from fastpin.model.case import About, Case
-from fastpin.model.checks import (
-    as_toml,
-    check_callable,
-    file_path,
-    instance,
-    items,
-    string,
-    true_or_false,
-    whole_number,
+from fastpin.errors import InputError
+from fastpin.model import (
+    About,
+    Case,
+    CrackGrowth,
+    FatigueAssessment,
+    Grid,
+    LoadHistory,
+    Problem,
+    StrengthAssessment,
+    checks,
 )
-from fastpin.model.crack import CrackGrowth
-from fastpin.model.doubts import doubts, pressure_doubts, warn_of
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
+from fastpin.model.beside import checked_beside
+from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.options import OPTIONS, OptionValues, SolveOptions
-from fastpin.model.problem import Problem
-from fastpin.model.strength import StrengthAssessment
 from fastpin.model.synonyms import unknown_keyword
+from fastpin.solver import ArcError, ConvergenceError, Interrupted, Result, SolveError
 from fastpin.solver.attempts import Unfit
-from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
-from fastpin.solver.result import Result
 from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, as_history, check_options, check_start
-from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
+from fastpin.storage.hdf5 import text_of
+from fastpin.storage.held import HeldInFile, provenance
 from fastpin.storage.journal import check_beside, is_empty
 from fastpin.storage.layout import (
     read_about,
@@ -47,7 +39,6 @@ from fastpin.storage.layout import (
     read_options,
     read_problem,
 )
-from fastpin.storage.origin import largest_pressure, provenance, stored_walk_doubts, stored_yield_doubts
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
 
@@ -111,11 +102,11 @@ def record(
 
     A KeyboardInterrupt ends the file properly, with all earlier states.
     """
-    path = file_path("path", path)
+    path = checks.file_path("path", path)
     check_writable(path, result=True)
-    string("title", title)
-    about = About() if about is None else instance("about", about, About, "an About")
-    true_or_false("overwrite", overwrite)
+    checks.string("title", title)
+    about = About() if about is None else checks.instance("about", about, About, "an About")
+    checks.true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
     history = as_history(history)
@@ -142,7 +133,7 @@ def record(
             task.follow(writer)
     if solve_options.error_bars:
         _record_coarse(path, task)
-    warn_of(_pressure_doubts(path, task), 2)
+    warn_of(HeldInFile(path).doubts(), 2)
 
 
 def _check_bars(options: SolveOptions, start: Result | None) -> None:
@@ -155,11 +146,11 @@ def _check_bars(options: SolveOptions, start: Result | None) -> None:
 
 def _checked_corners(save_after: Sequence[int], count: int) -> frozenset[int]:
     """Check the corners with a restart, of a history of so many corners, counted from 1."""
-    given = items("save_after", save_after, "a list of corners")
-    corners = frozenset(whole_number("save_after", corner, 1) for corner in given)
+    given = checks.items("save_after", save_after, "a list of corners")
+    corners = frozenset(checks.whole_number("save_after", corner, 1) for corner in given)
     most = max(corners, default=0)
     if most > count:
-        raise InputError("save_after", f"must be corners from 1 to {count}, not {as_toml(most)}")
+        raise InputError("save_after", f"must be corners from 1 to {count}, not {checks.as_toml(most)}")
     return corners
 
 
@@ -220,8 +211,8 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
     SolveError, OutputError
         See :func:`record`.
     """
-    path = file_path("path", path)
-    check_callable("progress", progress)
+    path = checks.file_path("path", path)
+    checks.check_callable("progress", progress)
     check_exists(path)
     if not is_empty(path) and lacks_error_bars(path):
         with open_result(path) as file:
@@ -241,7 +232,7 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
             task.follow(writer, unfit=Unfit(task.grid, error))
     if task.options.error_bars:
         _record_coarse(path, task)
-    warn_of(_pressure_doubts(path, task), 2)
+    warn_of(HeldInFile(path).doubts(), 2)
 
 
 def lacks_error_bars(path: str | Path) -> bool:
@@ -254,7 +245,7 @@ def lacks_error_bars(path: str | Path) -> bool:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(file_path("path", path)) as file:
+    with open_result(checks.file_path("path", path)) as file:
         wanted = read_options(file).error_bars and bool(file.attrs["complete"]) and "run" in file.attrs
         return wanted and "coarse" not in file
 
@@ -267,7 +258,7 @@ def stored_error(path: str | Path) -> str | None:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(file_path("path", path)) as file:
+    with open_result(checks.file_path("path", path)) as file:
         error = file.attrs.get("error")
         return None if error is None else text_of(error)
 
@@ -280,13 +271,7 @@ def stored_case(path: str | Path) -> Case:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(file_path("path", path)) as file:
+    with open_result(checks.file_path("path", path)) as file:
         title = text_of(file["solver"].attrs.get("title", ""))
         parts = read_problem(file), read_history(file), read_options(file), title, read_about(file)
         return Case(*parts, **read_beside(file))
-
-
-def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:
-    """The doubts about the largest pressure and the largest stresses of the run that has been written to a file."""
-    found = pressure_doubts(task.problem, task.history, [np.array([largest_pressure(path)])])
-    return found + stored_yield_doubts(path, task.problem, task.history) + stored_walk_doubts(path, task.problem)

@@ -15,7 +15,7 @@ from fastpin.solver.configuration import MARKS, Configuration
 from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
-from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
+from fastpin.storage.hdf5 import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
 from fastpin.storage.layout import BORDER_FIELDS, SEATED, SMALL_NUMBERS, STATUS_LIMITS, all_loads, check_old_borders
 
 LEAST_FORCE = 1e-145

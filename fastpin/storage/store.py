@@ -18,53 +18,21 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.model import checks
 from fastpin.model.beside import checked_beside
-from fastpin.model.checks import (
-    as_toml,
-    file_path,
-    instance,
-    is_whole,
-    items,
-    places_of,
-    string,
-    true_or_false,
-    whole_number,
-)
 from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.model.inputs import note_input
 from fastpin.solver.result import Restart, Result, with_error_bars
 from fastpin.solver.task import Task
 from fastpin.states.extremes import KeptStates
 from fastpin.states.state import State
-from fastpin.storage import hdf5, packed
-from fastpin.storage.damage import reading, text_of
-from fastpin.storage.extremes import write_extremes
+from fastpin.storage import hdf5, layout, packed
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import check_exists, check_writable, replacing
+from fastpin.storage.hdf5 import reading, text_of
 from fastpin.storage.journal import open_h5
-from fastpin.storage.layout import (
-    SLIP_FIELDS,
-    append,
-    beside_attributes,
-    check_format,
-    count,
-    cycle_rows,
-    node_fields_of,
-    options_of,
-    read_beside,
-    read_cycles,
-    read_grid,
-    read_history,
-    read_options,
-    read_problem,
-    read_statistics,
-    rows_of,
-    write_grid,
-    write_head,
-    write_statistics,
-)
 from fastpin.storage.restarts import read_restart, write_restart
-from fastpin.storage.stored_states import all_nodes, read_states
+from fastpin.storage.stored_states import all_nodes, read_states, write_extremes
 
 ALL = slice(None)
 """All states of a file."""
@@ -102,12 +70,12 @@ def save(
     OutputError
         If the file can't be written.
     """
-    instance("result", result, Result, "a Result")
-    true_or_false("restart", restart)
+    checks.instance("result", result, Result, "a Result")
+    checks.true_or_false("restart", restart)
     sections = checked_beside(result.problem, sections)
     if error is not None:
-        string("error", error)
-    path = file_path("path", path)
+        checks.string("error", error)
+    path = checks.file_path("path", path)
     check_writable(path, result=True)
     if is_unfinished(path):
         raise InputError(str(path), "holds an unfinished run; resume it, or remove it")
@@ -132,19 +100,19 @@ def _write(
     file: h5py.File | packed.PackedGroup, result: Result, error: str | None, sections: Mapping[str, Any]
 ) -> None:
     """Write a result into an empty file, all but its restart."""
-    write_head(file, result.problem, result.history, result.grid, options_of(result))
-    file["solver"].attrs.update(beside_attributes(sections))
+    layout.write_head(file, result.problem, result.history, result.grid, layout.options_of(result))
+    file["solver"].attrs.update(layout.beside_attributes(sections))
     file.attrs["complete"] = result.complete
     if error is not None:
         file.attrs["error"] = error
-    write_statistics(file, result.statistics)
-    append(file["states"], rows_of(list(result)))
-    append(file["cycles"], cycle_rows(result.cycles))
+    layout.write_statistics(file, result.statistics)
+    layout.append(file["states"], layout.rows_of(list(result)))
+    layout.append(file["cycles"], layout.cycle_rows(result.cycles))
     if result.coarse is not None:
         coarse, group = result.coarse, file.create_group("coarse")
-        write_grid(group, coarse.problem, coarse.history, coarse.grid, node_fields_of(coarse.states))
-        append(group["states"], rows_of(list(coarse)))
-        append(group["cycles"], cycle_rows(coarse.cycles))
+        layout.write_grid(group, coarse.problem, coarse.history, coarse.grid, layout.node_fields_of(coarse.states))
+        layout.append(group["states"], layout.rows_of(list(coarse)))
+        layout.append(group["cycles"], layout.cycle_rows(coarse.cycles))
 
 
 def pack(
@@ -183,7 +151,7 @@ def unpack_sections(content: bytes, path: Path) -> dict[str, Any]:
         If the bytes are damaged.
     """
     with _opened(content, path) as file:
-        return read_beside(file)
+        return layout.read_beside(file)
 
 
 @contextmanager
@@ -191,7 +159,7 @@ def _opened(content: bytes, path: Path, *arguments: str) -> Iterator[packed.Pack
     """Open a packed result for reading. `path` names it in errors."""
     with reading(path, *arguments):
         file = packed.from_bytes(content)
-        check_format(file, str(path))
+        layout.check_format(file, str(path))
         yield file
 
 
@@ -219,13 +187,13 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
     InputError
         If the file can't be read, was cut short, or is no result of fastpin. Also if it has no such corner or state.
     """
-    path = file_path("path", path)
+    path = checks.file_path("path", path)
     if not isinstance(states, slice):
-        states = items("states", states, "a slice or whole numbers")
-        if not all(map(is_whole, states)):
-            raise InputError("states", f"must be a slice or whole numbers, not {as_toml(states)}")
+        states = checks.items("states", states, "a slice or whole numbers")
+        if not all(map(checks.is_whole, states)):
+            raise InputError("states", f"must be a slice or whole numbers, not {checks.as_toml(states)}")
     else:
-        places_of("states", states, 0)
+        checks.places_of("states", states, 0)
     with open_result(path, "states", "after") as file:
         result, task = _read(file, path, states, after)
     restart = result.restart
@@ -239,10 +207,10 @@ def _read(
     file: hdf5.Group | packed.PackedGroup, path: Path, states: slice | Sequence[int], after: int | None
 ) -> tuple[Result, Task | None]:
     """Read a result, see :func:`load`. The task leads from its restart to the corner `after`; None without one."""
-    problem, grid, history = read_problem(file), read_grid(file), read_history(file)
+    problem, grid, history = layout.read_problem(file), layout.read_grid(file), layout.read_history(file)
     complete, restart, task = bool(file.attrs["complete"]), None, None
     restarts = file.get("restart", {})
-    found = count(file["states"])
+    found = layout.count(file["states"])
     if after is not None:
         task, restart = _way_to(path, file, history, after, all_nodes(file, problem, grid))
         history, complete = history[:after], True
@@ -252,19 +220,19 @@ def _read(
     if isinstance(states, slice):
         states = slice(*states.indices(found))
     elif any(not -found <= state < found for state in states):
-        raise InputError("states", f"must be places from 0 to {found - 1}, not {as_toml(states)}")
+        raise InputError("states", f"must be places from 0 to {found - 1}, not {checks.as_toml(states)}")
     else:
         states = [state % found for state in states]
     found_states = read_states(file, problem, grid, states, len(history))
     places = range(*states.indices(found)) if isinstance(states, slice) else states
-    cycles = [cycle for cycle in read_cycles(file) if after is None or cycle.corner < after]
+    cycles = [cycle for cycle in layout.read_cycles(file) if after is None or cycle.corner < after]
     result = Result(
         states=_without_gaps(found_states, places),
         problem=problem,
         history=history,
         grid=grid,
         method=text_of(file["solver"].attrs["method"]),
-        statistics=read_statistics(file),
+        statistics=layout.read_statistics(file),
         complete=complete,
         restart=restart,
         cycles=tuple(cycles),
@@ -282,22 +250,22 @@ def _read_coarse(
     Up to a corner `after` there is no restart on the coarse grid.
     """
     group = file.get("coarse")
-    if group is None or count(group["states"]) < fine_states:
+    if group is None or layout.count(group["states"]) < fine_states:
         return None
-    grid, restart = read_grid(group), None
+    grid, restart = layout.read_grid(group), None
     if after is None and "restart" in group:
         restart = read_restart(group["restart/latest"], all_nodes(group, fine.problem, grid))
     states = read_states(group, fine.problem, grid, list(places), len(fine.history))
     if any((one.step, one.fraction) != (two.step, two.fraction) for one, two in zip(fine, states, strict=True)):
         raise ValueError("coarse/states has other load points than states")
-    cycles = tuple(cycle for cycle in read_cycles(group) if after is None or cycle.corner < after)
+    cycles = tuple(cycle for cycle in layout.read_cycles(group) if after is None or cycle.corner < after)
     return replace(fine, states=_without_gaps(states, places), grid=grid, restart=restart, cycles=cycles)
 
 
 def _without_gaps(states: list[State], places: Sequence[int]) -> list[State]:
     """The states of some places in a file. States that don't follow on the one before lose their slip fields."""
     follow = [True, *(before + 1 == place for before, place in pairwise(places))]
-    lost: dict[str, Any] = dict.fromkeys(SLIP_FIELDS)
+    lost: dict[str, Any] = dict.fromkeys(layout.SLIP_FIELDS)
     return [state if follows else replace(state, **lost) for state, follows in zip(states, follow, strict=False)]
 
 
@@ -318,7 +286,7 @@ def load_points(path: str | Path) -> np.ndarray:
     InputError
         See :func:`load`.
     """
-    with open_result(file_path("path", path)) as file:
+    with open_result(checks.file_path("path", path)) as file:
         points: np.ndarray = file["states/step"][()] + file["states/fraction"][()]
         return points
 
@@ -331,7 +299,7 @@ def places_between(path: str | Path, first: int, last: int) -> slice:
     InputError
         If a corner is no whole number. Also see :func:`load`.
     """
-    first, last = whole_number("first", first, 0, MAX_CORNERS), whole_number("last", last, 0, MAX_CORNERS)
+    first, last = checks.whole_number("first", first, 0, MAX_CORNERS), checks.whole_number("last", last, 0, MAX_CORNERS)
     return slice(*np.searchsorted(load_points(path), [first, np.nextafter(last, np.inf)]).tolist())
 
 
@@ -356,19 +324,21 @@ def open_result(path: Path, *arguments: str) -> Iterator[Any]:
     note_input(path)
     with open_h5(path) as h5, reading(path, *arguments):
         stored = hdf5.Group(h5)
-        check_format(stored, str(path))
+        layout.check_format(stored, str(path))
         yield stored
 
 
 def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int, nodes: int) -> tuple[Task, Restart]:
     """Return the task up to the corner `after`, and the latest restart at or before that corner."""
-    whole_number("after", after, 1)
+    checks.whole_number("after", after, 1)
     reached = max((int(group.attrs["corner"]) for group in file.get("restart", {}).values()), default=0)
-    if count(file["states"]):
+    if layout.count(file["states"]):
         last = int(file["states/step"][-1]) + (1 if file["states/fraction"][-1] == 1.0 else 0)
         reached = max(reached, last)
     if not 1 <= after <= reached:
-        raise InputError("after", f"must be a corner from 1 to {reached}, not {as_toml(after)}: {path} has no others")
+        raise InputError(
+            "after", f"must be a corner from 1 to {reached}, not {checks.as_toml(after)}: {path} has no others"
+        )
     stored = [group for group in file.get("restart", {}).values() if group.attrs["corner"] <= after]
     if "run" not in file.attrs or not stored:
         raise InputError("after", f"{path} was not written by a run: nothing can continue from it")
@@ -380,4 +350,10 @@ def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int, nodes
 def stored_task(file: h5py.File) -> Task:
     """Read the task of the run of a file, on its grid."""
     stops = frozenset(file["solver"].attrs["save_after"].tolist())
-    return Task(read_problem(file), read_history(file), read_options(file), read_grid(file), stops=stops)
+    return Task(
+        layout.read_problem(file),
+        layout.read_history(file),
+        layout.read_options(file),
+        layout.read_grid(file),
+        stops=stops,
+    )

@@ -7,11 +7,8 @@ on. A checkpoint stands beside the file, as beside that of a run.
 
 from __future__ import annotations
 
-import logging
 import time
-import uuid
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -19,49 +16,25 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.assessment import FatigueAssessment
+from fastpin.model import FatigueAssessment, Grid, LoadHistory, Problem, Wear
 from fastpin.model.beside import checked_beside
 from fastpin.model.checks import check_callable, file_path, string, true_or_false
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
-from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.model.profile import ProfileLike
 from fastpin.model.units import units_per_thickness
-from fastpin.model.wear import Wear
-from fastpin.solver.errors import Interrupted, SolveError
+from fastpin.solver import Interrupted, SolveError, WearResult, WornCycle
 from fastpin.solver.fat_cycles import Worn
 from fastpin.solver.run import RunProgress
-from fastpin.solver.task import as_history, deferred_interrupts
+from fastpin.solver.task import as_history
 from fastpin.solver.wear import CyclesInMemory, FrictionRule, WearTask
-from fastpin.solver.wear_result import WearResult, WornCycle
-from fastpin.storage import hdf5
-from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of, reading, text_of
-from fastpin.storage.file_objects import written_h5
-from fastpin.storage.files import check_exists, check_writable, replacing
-from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
-from fastpin.storage.layout import (
-    append,
-    beside_attributes,
-    check_format,
-    check_growing,
-    check_rows,
-    count,
-    option_attributes,
-    read_grid,
-    read_history,
-    read_problem,
-    rows_of,
-    state_rows,
-    write_head,
-    write_statistics,
-)
+from fastpin.storage import hdf5, layout
+from fastpin.storage.files import check_exists, check_writable
+from fastpin.storage.hdf5 import as_python, check_between, check_finite, dataset_of, numbers_of, text_of
+from fastpin.storage.journal import is_empty
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import load, open_result
-from fastpin.storage.writer import CHECKPOINT_EVERY, check_overwriting, checkpoint_of, clear_checkpoints
-
-log = logging.getLogger(__name__)
+from fastpin.storage.writer import GrowingFile, check_overwriting, clear_checkpoints, closing_file
 
 DEPTHS = ("pin_depth", "plate_depth")
 """Arrays of ``/wear`` with a value for each node, m."""
@@ -166,7 +139,7 @@ def wear(
             return _resumed(WearFile(path, task, title, judged))
     writer = WearFile(path, task, title, judged)
     check_overwriting(path, overwrite)
-    with _closing(writer):
+    with closing_file(writer):
         task.follow(writer)
     return load_wear(path)
 
@@ -186,27 +159,12 @@ def _in_memory(task: WearTask) -> WearResult:
 def _resumed(writer: WearFile) -> WearResult:
     """Continue the life in a file. A life without a stored cycle begins anew, with the title of the writer."""
     place, grid = writer.reopen()
-    with _closing(writer):
+    with closing_file(writer):
         if place is None:
             writer.task.follow(writer)
         else:
             writer.task.go_on(writer, place, grid, writer.stored)
-    return load_wear(writer.path)
-
-
-@contextmanager
-def _closing(writer: WearFile) -> Iterator[None]:
-    """End the file when the block ends. The exception of an early end then holds the result so far."""
-    try:
-        yield
-    except (SolveError, Interrupted) as error:
-        if writer.finish(str(error)):
-            error.result = load_wear(writer.path)  # type: ignore[assignment]
-        raise
-    except BaseException:
-        writer.abort()
-        raise
-    writer.finish(None)
+    return load_wear(writer.file.path)
 
 
 class WearFile:
@@ -222,13 +180,13 @@ class WearFile:
     """
 
     def __init__(self, path: Path, task: WearTask, title: str, beside: Mapping[str, Any]) -> None:
-        self.path, self.task, self._title, self._beside = path, task, title, beside
-        self._file: JournaledFile | None = None
-        self._h5: h5py.File
-        self._name = ""
+        self.file, self.task, self._title, self._beside = GrowingFile(path), task, title, beside
         self._place: Worn | None = None  # the latest one, and whether the file has it
         self._is_stored = True
-        self._noted = 0.0  # when the latest checkpoint was written
+
+    @property
+    def _h5(self) -> h5py.File:
+        return self.file.h5
 
     def reopen(self) -> tuple[Worn | None, Grid]:
         """Open the file of an unfinished life, and return the place from which it goes on, and its grid.
@@ -238,45 +196,16 @@ class WearFile:
         InputError
             If it is no such file, holds another life, or another process is writing to it.
         """
-        check_beside(checkpoint_of(self.path))
-        self._file = JournaledFile(self.path, new=False)
-        try:
-            self._h5 = h5py.File(self._file, "r+")
-        except OSError:
-            self._file.abandon()
-            self._file.release()
-            raise not_readable(self.path) from None
-        try:
-            with reading(self.path, "resume"):
-                stored = hdf5.Group(self._h5)
-                check_format(stored, str(self.path))
-                _check_same(self.path, stored, self.task)
-                grid = read_grid(stored)
-                check_growing(stored, grid.size)
-                for name, rows in _read_rows(stored, grid.size).items():
-                    check_rows(f"wear/{name}", stored["wear"][name], len(rows))
-                self._name = str(self._h5.attrs["run"])
-                self._h5.attrs.pop("error", None)
-                return self._latest(stored, grid.size), grid
-        except BaseException:
-            self.abort()
-            raise
-
-    def _latest(self, stored: hdf5.Group, nodes: int) -> Worn | None:
-        """The latest place, of the checkpoint or of the file itself."""
-        place = _read_place(stored["wear/place"], nodes) if "place" in stored["wear"] else None
-        try:
-            with h5py.File(checkpoint_of(self.path), "r") as file:
-                beside = hdf5.Group(file)
-                if beside.attrs["run"] == stored.attrs["run"]:
-                    noted = _read_place(beside["place"], nodes)
-                    if place is None or noted.cycle > place.cycle:
-                        return noted
-        except FileNotFoundError:
-            pass
-        except (OSError, KeyError, ValueError, TypeError, IndexError):
-            log.warning("%s can't be read: continuing from an earlier cycle", checkpoint_of(self.path))
-        return place
+        with self.file.again("resume") as stored:
+            _check_same(self.file.path, stored, self.task)
+            grid = layout.read_grid(stored)
+            layout.check_growing(stored, grid.size)
+            for name, rows in _read_rows(stored, grid.size).items():
+                layout.check_rows(f"wear/{name}", stored["wear"][name], len(rows))
+            place = _read_place(stored["wear/place"], grid.size) if "place" in stored["wear"] else None
+            noted = self.file.noted(lambda group: _read_place(group["place"], grid.size), "cycle")
+            is_later = noted is not None and (place is None or noted.cycle > place.cycle)
+            return noted if is_later else place, grid
 
     @property
     def stored(self) -> int:
@@ -286,17 +215,13 @@ class WearFile:
 
     def begin(self, grid: Grid, force: float) -> None:
         """Begin a new file."""
-        self.abort()
-        check_beside(checkpoint_of(self.path))
-        task, self._name = self.task, uuid.uuid4().hex
-        self._file = JournaledFile(self.path, new=True)
-        self._h5 = h5py.File(self._file, "w")
-        self._h5.flush()
+        self.file.begin()
+        task = self.task
         nodes = task.options.nodes if task.grid is None else grid.size
-        attributes = {**option_attributes(task.options), "nodes": nodes, "slip_sums": True, "title": self._title}
-        attributes |= beside_attributes(self._beside)
-        write_head(self._h5, task.problem, task.stored_history, grid, attributes)
-        self._h5.attrs["run"] = self._name
+        attributes = {**layout.option_attributes(task.options), "nodes": nodes, "slip_sums": True, "title": self._title}
+        attributes |= layout.beside_attributes(self._beside)
+        layout.write_head(self._h5, task.problem, task.stored_history, grid, attributes)
+        self._h5.attrs["run"] = self.file.run
         group = self._h5.create_group("wear")
         group.attrs.update(law=task.wear.law, tolerance=task.wear.tolerance, chosen=np.array(task.wear.chosen))
         group["coefficients"] = task.coefficients(grid.theta)
@@ -313,19 +238,19 @@ class WearFile:
         }.items():
             group[name].attrs["unit"] = unit[quantity]
         self._place, self._is_stored = None, True
-        self._commit()
+        self.file.commit()
 
     def add(self, cycle: WornCycle, place: Worn, statistics: dict[str, float]) -> None:
         """Write a chosen cycle, and the place from which the life goes on, in one transaction."""
-        group, states = self._h5["wear"], rows_of(cycle.states)
-        append(self._h5["states"], {name: states[name] for name in state_rows(self._h5["states"])})
+        group, states = self._h5["wear"], layout.rows_of(cycle.states)
+        layout.append(self._h5["states"], {name: states[name] for name in layout.state_rows(self._h5["states"])})
         for name in (*DEPTHS, *NUMBERS):
             array = group[name]
             array.resize(len(array) + 1, axis=0)
             array[-1] = getattr(cycle, name)
-        write_statistics(self._h5, statistics)
+        layout.write_statistics(self._h5, statistics)
         self._put_place(place)
-        self._commit()
+        self.file.commit()
 
     def _put_place(self, place: Worn) -> None:
         group = self._h5["wear"]
@@ -337,54 +262,23 @@ class WearFile:
     def reached(self, place: Worn) -> None:
         """Write a checkpoint, if one is due."""
         self._place, self._is_stored = place, False
-        now = time.monotonic()
-        if now - self._noted < CHECKPOINT_EVERY:
-            return
-        if self._noted:
-            with replacing(checkpoint_of(self.path), result=True) as temporary, written_h5(temporary) as file:
-                file.attrs["run"] = self._name
-                _write_place(file.create_group("place"), place)
-        self._noted = time.monotonic()
+        self.file.note(time.monotonic(), lambda group: _write_place(group.create_group("place"), place))
 
-    def finish(self, error: str | None) -> bool:
-        """End the file with the message of an error, if any. Return False if the file has not begun."""
-        if self._file is None:
-            return False
-        try:
-            with deferred_interrupts():
-                self._h5.attrs["complete"] = error is None
-                if error is not None:
-                    self._h5.attrs["error"] = error
-                if self._place is not None and not self._is_stored:
-                    self._put_place(self._place)
-                self._commit()
-                self._close()
-                if error is None:
-                    clear_checkpoints(self.path)
-        except BaseException:
-            self.abort()
-            raise
-        return True
+    def end(self, error: str | None) -> None:
+        """End the file with the message of an error, if any."""
+        self._h5.attrs["complete"] = error is None
+        if error is not None:
+            self._h5.attrs["error"] = error
+        if self._place is not None and not self._is_stored:
+            self._put_place(self._place)
+        self.file.commit()
+        self.file.close()
+        if error is None:
+            clear_checkpoints(self.file.path)
 
-    def abort(self) -> None:
-        """Close the file as the last transaction left it."""
-        if self._file is not None:
-            self._file.abandon()
-            self._close()
-
-    def _commit(self) -> None:
-        assert self._file is not None
-        self._h5.flush()
-        self._file.commit()
-
-    def _close(self) -> None:
-        assert self._file is not None
-        file, self._file = self._file, None
-        try:
-            self._h5.close()
-            file.commit()
-        finally:
-            file.release()
+    def so_far(self) -> WearResult:
+        """Return the life in the file."""
+        return load_wear(self.file.path)
 
 
 def holds_wear(path: str | Path) -> bool:
@@ -412,7 +306,7 @@ def load_wear(path: str | Path) -> WearResult:
     with open_result(path) as file:
         if "wear" not in file:
             raise InputError(str(path), "holds no wear: it is the result of a run; fastpin.load reads it")
-        group, grid, history = file["wear"], read_grid(file), read_history(file)
+        group, grid, history = file["wear"], layout.read_grid(file), layout.read_history(file)
         corners, arrays = len(history.blocks[-1].given) + 1, _read_rows(file, grid.size)
         coefficients = dataset_of(group, "coefficients", float, (grid.size,))[()]
         check_between("wear/coefficients", coefficients, 0.0, np.finfo(float).max)
@@ -424,7 +318,7 @@ def load_wear(path: str | Path) -> WearResult:
             for k in range(len(arrays["cycle"]))
         )
         return WearResult(
-            problem=read_problem(file),
+            problem=layout.read_problem(file),
             history=history,
             law=text_of(group.attrs["law"]),
             tolerance=float(group.attrs["tolerance"]),
@@ -444,10 +338,10 @@ def _check_same(path: Path, file: hdf5.Group, task: WearTask) -> None:
         raise InputError(
             str(path), f"holds a finished life of wear: there is nothing to continue; try fastpin show {path} --json"
         )
-    group, grid = file["wear"], read_grid(file)
-    begun, wanted = read_history(file).blocks, task.stored_history.blocks
+    group, grid = file["wear"], layout.read_grid(file)
+    begun, wanted = layout.read_history(file).blocks, task.stored_history.blocks
     same = {
-        "problem": read_problem(file) == task.problem,
+        "problem": layout.read_problem(file) == task.problem,
         "history": len(begun) == len(wanted)
         and all(
             one.count == other.count and np.array_equal(one.given, other.given, equal_nan=True)
@@ -473,14 +367,14 @@ def _read_rows(file: hdf5.Group, nodes: int) -> dict[str, np.ndarray]:
     ValueError
         If an array is missing, does not fit the others, or has a number out of range. It names the array.
     """
-    group, corners = file["wear"], len(read_history(file).blocks[-1].given) + 1
+    group, corners = file["wear"], len(layout.read_history(file).blocks[-1].given) + 1
     arrays = {name: dataset_of(group, name, float, (nodes,)) for name in DEPTHS}
     arrays |= {name: dataset_of(group, name, kind, ()) for name, kind in NUMBERS.items()}
     size = len(arrays["cycle"])
     for name, array in arrays.items():
         if len(array) != size:
             raise ValueError(f"wear/{name} has {len(array)} rows, not {size}")
-    if count(file["states"]) != size * corners:
+    if layout.count(file["states"]) != size * corners:
         raise ValueError(f"wear/cycle has {size} rows, which don't fit the states")
     rows = {name: array[()] for name, array in arrays.items()}
     for name in (*DEPTHS, "dissipation", "removed"):

@@ -11,54 +11,30 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 import h5py
 import numpy as np
 
 from fastpin.errors import InputError, OutputError
 from fastpin.model.case import About
-from fastpin.solver.errors import Interrupted, SolveError
-from fastpin.solver.result import Restart
+from fastpin.solver import Interrupted, Restart, Result, SolveError
 from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.task import Task, deferred_interrupts
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
-from fastpin.storage import hdf5
-from fastpin.storage.damage import reading
-from fastpin.storage.extremes import write_extremes
+from fastpin.storage import hdf5, layout
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import forget_temporaries, replacing
+from fastpin.storage.hdf5 import reading
 from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
-from fastpin.storage.layout import (
-    Rows,
-    append,
-    beside_attributes,
-    check_format,
-    check_growing,
-    count,
-    cycle_rows,
-    node_fields,
-    option_attributes,
-    read_about,
-    read_beside,
-    read_cycles,
-    read_grid,
-    read_history,
-    read_problem,
-    read_rows,
-    read_statistics,
-    rows_of,
-    state_rows,
-    write_grid,
-    write_head,
-    write_statistics,
-)
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
-from fastpin.storage.stored_states import all_nodes
+from fastpin.storage.stored_states import all_nodes, write_extremes
 
 log = logging.getLogger(__name__)
+
+T = TypeVar("T")
 
 MOST_PENDING = 64
 """Most states that wait for one commit."""
@@ -109,23 +85,169 @@ def check_overwriting(path: Path, overwrite: bool) -> None:
     raise InputError(str(path), f"{reason}; overwrite=True (--overwrite) replaces it")
 
 
+class GrowingFile:
+    """An HDF5 file that changes in transactions, with a checkpoint beside it.
+
+    Attributes
+    ----------
+    path : Path
+    h5 : h5py.File
+        The open file.
+    run : str
+        Name of the run that writes it. A checkpoint has the same one.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path, self.run = path, ""
+        self.h5: h5py.File
+        self._file: JournaledFile | None = None
+        self._next_checkpoint = 0.0
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the file has begun, and has not ended."""
+        return self._file is not None
+
+    def begin(self) -> None:
+        """Begin a new file, in place of one that has begun.
+
+        Raises
+        ------
+        InputError
+            If it can't be written.
+        """
+        self.abort()
+        check_beside(checkpoint_of(self.path))
+        check_beside(coarse_of(self.path))
+        self.run = uuid.uuid4().hex
+        self._file = JournaledFile(self.path, new=True)
+        self.h5 = h5py.File(self._file, "w")
+        self.h5.flush()  # The signature goes first: what a killed process leaves is known as a result.
+
+    @contextmanager
+    def again(self, *arguments: str) -> Iterator[hdf5.Group]:
+        """Open an unfinished file again, and give its content. An error of the block leaves the file as it was.
+
+        `arguments` are names in errors of the block that don't come from the file.
+
+        Raises
+        ------
+        InputError
+            If the file is empty or no result, or another process is writing to it.
+        """
+        check_beside(checkpoint_of(self.path))
+        check_beside(coarse_of(self.path))
+        file = JournaledFile(self.path, new=False)
+        try:
+            if self.path.stat().st_size == 0:
+                raise InputError(str(self.path), "is empty: its run ended before it had begun; start it again")
+            self.h5 = h5py.File(file, "r+")
+        except OSError:
+            file.release()
+            raise not_readable(self.path) from None
+        except BaseException:
+            file.release()
+            raise
+        self._file = file
+        try:
+            with reading(self.path, *arguments):
+                stored = hdf5.Group(self.h5)
+                layout.check_format(stored, str(self.path))
+                yield stored
+                self.run = str(self.h5.attrs["run"])
+                self.h5.attrs.pop("error", None)
+        except BaseException:
+            self.abort()
+            raise
+
+    def note(self, now: float, write: Callable[[h5py.Group], None]) -> None:
+        """Write a checkpoint, if one is due at the time `now`. ``write(group)`` fills it."""
+        if now <= self._next_checkpoint:
+            return
+        if self._next_checkpoint:
+            with replacing(checkpoint_of(self.path), result=True) as temporary, written_h5(temporary) as file:
+                file.attrs["run"] = self.run
+                write(file)
+        duration = time.monotonic() - now
+        self._next_checkpoint = time.monotonic() + max(CHECKPOINT_EVERY, CHECKPOINT_SHARE * duration)
+
+    def noted(self, read: Callable[[hdf5.Group], T], place: str) -> T | None:
+        """Return what ``read(group)`` makes of the checkpoint of this run; None without one. `place` is for the log."""
+        try:
+            with h5py.File(checkpoint_of(self.path), "r") as file:
+                checkpoint = hdf5.Group(file)
+                return read(checkpoint) if checkpoint.attrs["run"] == self.h5.attrs["run"] else None
+        except FileNotFoundError:
+            return None
+        except (OSError, KeyError, ValueError, TypeError, IndexError):
+            log.warning("%s can't be read: continuing from an earlier %s", checkpoint_of(self.path), place)
+            return None
+
+    def commit(self) -> None:
+        """End the transaction."""
+        assert self._file is not None
+        self.h5.flush()
+        self._file.commit()
+
+    def close(self) -> None:
+        """Close the file."""
+        assert self._file is not None
+        file, self._file = self._file, None
+        try:
+            self.h5.close()
+            file.commit()
+        finally:
+            file.release()
+
+    def abort(self) -> None:
+        """Close the file as the last transaction left it."""
+        if self._file is not None:
+            self._file.abandon()
+            self.close()
+
+
+class FileWriter(Protocol):
+    """A recorder that writes to a file."""
+
+    file: GrowingFile
+
+    def end(self, error: str | None) -> None:
+        """Write the end of the file, with the message of an error if there is one."""
+
+    def so_far(self) -> Any:
+        """Return the result of a run that ended early, from its file."""
+
+
 @contextmanager
-def closing_file(writer: FileRecorder) -> Iterator[None]:
+def closing_file(writer: FileWriter) -> Iterator[None]:
     """End the file of a run when the block ends.
 
-    A SolveError or an interrupt ends the file properly, with the message. The exception then holds the last state as
-    ``result``. Any other exception leaves the file as the last transaction left it.
+    A SolveError or an interrupt ends the file properly, with the message. The exception then holds the result so far
+    as ``result``. Any other exception leaves the file as the last transaction left it.
     """
     try:
         yield
     except (SolveError, Interrupted) as error:
-        if writer.finish(str(error)):
-            error.result = load(writer.path, states=slice(-1, None))
+        if _ended(writer, str(error)):
+            error.result = writer.so_far()
         raise
     except BaseException:
-        writer.abort()
+        writer.file.abort()
         raise
-    writer.finish(None)
+    _ended(writer, None)
+
+
+def _ended(writer: FileWriter, error: str | None) -> bool:
+    """End a file with the message of an error, if any. Return False if the file has not begun."""
+    if not writer.file.is_open:
+        return False
+    try:
+        with deferred_interrupts():
+            writer.end(error)
+    except BaseException:
+        writer.file.abort()
+        raise
+    return True
 
 
 class FileRecorder:
@@ -152,40 +274,39 @@ class FileRecorder:
     def __init__(
         self, path: Path, task: Task, title: str, about: About, beside: Mapping[str, Any] = MappingProxyType({})
     ) -> None:
-        self.path = path
+        self.file = GrowingFile(path)
         self.task = task
         self.chosen_arc = task.options.arc is None and task.grid is None
         self.overwrite = True
         self._title, self._about, self._beside = title, about, beside
-        self._file: JournaledFile | None = None
-        self._h5: h5py.File
         self._run: Run
-        self._name = ""
-        self._states: list[Rows] = []  # waiting for the next commit
+        self._states: list[layout.Rows] = []  # waiting for the next commit
         self._cycles: list[Cycle] = []
         self._pending = 0
         # Pairs of numbers: states, cycles.
         self._at = [0, 0]  # received from the run
         self._stored = [0, 0]  # in the file
         self._corner = [0, 0]  # received up to the last corner
-        self._copied: Rows | None = None
+        self._copied: layout.Rows | None = None
         self._next_commit = 0.0
-        self._next_checkpoint = 0.0
         self._seconds = 0.0
         self._began = time.monotonic()
 
-    def reopen(self, file: JournaledFile, h5: h5py.File, restart_group: hdf5.Group) -> None:
+    @property
+    def _h5(self) -> h5py.File:
+        return self.file.h5
+
+    def reopen(self, file: GrowingFile, restart_group: hdf5.Group) -> None:
         """Continue a file from a restart in it. The run gives the later states again."""
-        self._file, self._h5 = file, h5
-        self._name = str(h5.attrs["run"])
-        self._stored = [count(h5["states"]), count(h5["cycles"])]
+        self.file = file
+        self._stored = [layout.count(self._h5["states"]), layout.count(self._h5["cycles"])]
         counts = int(restart_group.attrs["states"]), int(restart_group.attrs["cycles"])
         self._at, self._corner = list(counts), list(counts)
         self._seconds = float(restart_group["statistics"].attrs.get("seconds", 0.0))
 
     def check_overwriting(self) -> None:
         """Raise :class:`InputError` if the file exists and must not be overwritten."""
-        check_overwriting(self.path, self.overwrite)
+        check_overwriting(self.file.path, self.overwrite)
 
     # -- calls of the run ----------------------------------------------------------------------------------------
 
@@ -198,35 +319,29 @@ class FileRecorder:
             If the file must not be overwritten, or can't be written.
         """
         self._run = run
-        if self._file is not None and np.array_equal(self._h5["grid/theta"][()], run.grid.theta):
+        if self.file.is_open and np.array_equal(self._h5["grid/theta"][()], run.grid.theta):
             return  # The file was reopened.
-        if self._file is None:
+        if not self.file.is_open:
             self.check_overwriting()  # Check again: the choice of the arc may have taken long.
-        self.abort()
-        check_beside(checkpoint_of(self.path))
-        check_beside(coarse_of(self.path))
-        self._name = uuid.uuid4().hex
-        self._file = JournaledFile(self.path, new=True)
-        self._h5 = h5py.File(self._file, "w")
-        self._h5.flush()  # The signature goes first: what a killed process leaves is known as a result.
+        self.file.begin()
         self._states, self._cycles, self._pending = [], [], 0
         self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
         task = self.task
         extra = {
             "title": self._title,
             **self._about.given(),
-            **beside_attributes(self._beside),
+            **layout.beside_attributes(self._beside),
             "arc_chosen": self.chosen_arc,
             "save_after": sorted(task.stops),
         }
-        write_head(
+        layout.write_head(
             self._h5,
             task.problem,
             task.history,
             run.grid,
-            {**option_attributes(task.options), "nodes": run.grid.size, **extra},
+            {**layout.option_attributes(task.options), "nodes": run.grid.size, **extra},
         )
-        self._h5.attrs["run"] = self._name
+        self._h5.attrs["run"] = self.file.run
         for name in ("start", "latest"):
             self._write_restart(self._h5.create_group(f"restart/{name}"))
         self._commit()
@@ -234,8 +349,8 @@ class FileRecorder:
     def add(self, state: State) -> None:
         """Take a state. It is in the file after the next commit."""
         self._copied = None
-        rows = rows_of([state])
-        self._put({name: rows[name] for name in state_rows(self._h5["states"])})
+        rows = layout.rows_of([state])
+        self._put({name: rows[name] for name in layout.state_rows(self._h5["states"])})
 
     def add_cycle(self, cycle: Cycle) -> None:
         """Take a cycle, unless the file has it already."""
@@ -252,7 +367,7 @@ class FileRecorder:
             for first in range(0, size, PIECE):
                 last = min(first + PIECE, size)
                 group = self._h5["states"]
-                rows = read_rows(group, state_rows(group), slice(begin + first, begin + last))
+                rows = layout.read_rows(group, layout.state_rows(group), slice(begin + first, begin + last))
                 rows = rows if first else _with_first(rows, slip)
                 self._put_again(rows, steps[first:last], dissipation[first:last], work[first:last])
                 self._copied = rows if size <= PIECE else None
@@ -269,40 +384,24 @@ class FileRecorder:
             self._commit()
         elif now > self._next_commit:
             self._commit()
-        if now > self._next_checkpoint:
-            if self._next_checkpoint:
-                self._commit()
-                with replacing(checkpoint_of(self.path), result=True) as temporary, written_h5(temporary) as file:
-                    file.attrs["run"] = self._name
-                    self._write_restart(file.create_group("restart"))
-                log.debug("checkpoint after corner %d", self._run.corner)
-            duration = time.monotonic() - now
-            self._next_checkpoint = time.monotonic() + max(CHECKPOINT_EVERY, CHECKPOINT_SHARE * duration)
+
+        def write(group: h5py.Group) -> None:
+            self._commit()
+            self._write_restart(group.create_group("restart"))
+            log.debug("checkpoint after corner %d", self._run.corner)
+
+        self.file.note(now, write)
 
     # -- the file ------------------------------------------------------------------------------------------------
 
-    def finish(self, error: str | None) -> bool:
-        """End the file with the statistics of the run and the message of its error, if any.
-
-        Return False if the file has not begun.
-        """
-        if self._file is None:
-            return False
-        try:
-            with deferred_interrupts():
-                self._finish(error)
-        except BaseException:
-            self.abort()
-            raise
-        return True
-
-    def _finish(self, error: str | None) -> None:
+    def end(self, error: str | None) -> None:
+        """End the file with the statistics of the run and the message of its error, if any."""
         run = self._run
         if self._pending:
             self._commit()
         del self._h5["restart/latest"]
         self._write_restart(self._h5.create_group("restart/latest"))
-        write_statistics(self._h5, {**run.statistics, "seconds": self._all_seconds()})
+        layout.write_statistics(self._h5, {**run.statistics, "seconds": self._all_seconds()})
         self._h5.attrs["complete"] = run.complete
         self._h5.attrs.pop("error", None)
         if error is not None:
@@ -310,25 +409,14 @@ class FileRecorder:
         elif run.complete:
             write_extremes(self._h5)
         self._commit()
-        self._close()
-        clear_checkpoints(self.path)
+        self.file.close()
+        clear_checkpoints(self.file.path)
 
-    def abort(self) -> None:
-        """Close the file as the last transaction left it."""
-        if self._file is not None:
-            self._file.abandon()
-            self._close()
+    def so_far(self) -> Result:
+        """Return the result with the last state in the file."""
+        return load(self.file.path, states=slice(-1, None))
 
-    def _close(self) -> None:
-        assert self._file is not None
-        file, self._file = self._file, None
-        try:
-            self._h5.close()
-            file.commit()
-        finally:
-            file.release()
-
-    def _put(self, rows: Rows) -> None:
+    def _put(self, rows: layout.Rows) -> None:
         """Take the next rows. Rows that are in the file already are compared, and not written again."""
         size = len(rows["step"])
         known = min(max(self._stored[0] - self._at[0], 0), size)
@@ -336,7 +424,7 @@ class FileRecorder:
             stored = self._h5["states/pressure"][self._at[0] : self._at[0] + known]
             if not np.array_equal(stored, rows["pressure"][:known]):
                 log.warning(
-                    "%s: states found again differ from those in the file: another machine or version?", self.path
+                    "%s: states found again differ from those in the file: another machine or version?", self.file.path
                 )
             rows = {name: array[known:] for name, array in rows.items()}
         self._at[0] += size
@@ -346,23 +434,21 @@ class FileRecorder:
             if self._pending >= MOST_PENDING or time.monotonic() > self._next_commit:
                 self._commit()
 
-    def _put_again(self, rows: Rows, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
+    def _put_again(self, rows: layout.Rows, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
         self._put({**rows, "step": steps, "dissipation": dissipation, "work": work})
 
     def _commit(self) -> None:
         """Write the waiting states and cycles, and end the transaction."""
-        assert self._file is not None
         began = time.monotonic()
         try:
             if self._states:
                 rows = {name: np.concatenate([part[name] for part in self._states]) for name in self._states[0]}
-                append(self._h5["states"], rows)
+                layout.append(self._h5["states"], rows)
             if self._cycles:
-                append(self._h5["cycles"], cycle_rows(self._cycles))
-            self._h5.flush()
-            self._file.commit()
+                layout.append(self._h5["cycles"], layout.cycle_rows(self._cycles))
+            self.file.commit()
         except OutputError:
-            self.abort()
+            self.file.abort()
             raise
         self._stored = [max(stored, at) for stored, at in zip(self._stored, self._at, strict=True)]
         self._states, self._cycles, self._pending = [], [], 0
@@ -384,33 +470,24 @@ def add_coarse(path: Path, beside: Path) -> None:
 
     Then remove the file of this run.
     """
-    file = JournaledFile(path, new=False)
-    try:
-        h5 = h5py.File(file, "r+")
-        try:
-            with open_result(beside) as stored:
-                group, grid, history = h5.create_group("coarse"), read_grid(stored), read_history(stored)
-                write_grid(group, read_problem(stored), history, grid, node_fields(stored["states"]))
-                states = stored["states"]
-                for first in range(0, count(states), PIECE):
-                    append(group["states"], read_rows(states, state_rows(states), slice(first, first + PIECE)))
-                append(group["cycles"], cycle_rows(read_cycles(stored)))
-                nodes = all_nodes(stored, read_problem(stored), grid)
-                write_restart(group.create_group("restart/latest"), read_restart(stored["restart/latest"], nodes))
-            h5.flush()
-            file.commit()
-        except BaseException:
-            file.abandon()
-            raise
-        finally:
-            h5.close()
+    file = GrowingFile(path)
+    with file.again(), open_result(beside) as stored:
+        group, grid, history = file.h5.create_group("coarse"), layout.read_grid(stored), layout.read_history(stored)
+        layout.write_grid(group, layout.read_problem(stored), history, grid, layout.node_fields(stored["states"]))
+        states = stored["states"]
+        for first in range(0, layout.count(states), PIECE):
+            layout.append(
+                group["states"], layout.read_rows(states, layout.state_rows(states), slice(first, first + PIECE))
+            )
+        layout.append(group["cycles"], layout.cycle_rows(layout.read_cycles(stored)))
+        nodes = all_nodes(stored, layout.read_problem(stored), grid)
+        write_restart(group.create_group("restart/latest"), read_restart(stored["restart/latest"], nodes))
         file.commit()
-    finally:
-        file.release()
+    file.close()
     beside.unlink()
 
 
-def _with_first(rows: Rows, values: SlipFields) -> Rows:
+def _with_first(rows: layout.Rows, values: SlipFields) -> layout.Rows:
     """Rows of states with other node values of the first state, by quantity."""
     return {**rows, **{name: np.concatenate([[first], rows[name][1:]]) for name, first in values.items()}}
 
@@ -423,69 +500,30 @@ def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Rest
     InputError
         If the file is no result of a run, holds a finished run, or another process is writing to it.
     """
-    check_beside(checkpoint_of(path))
-    check_beside(coarse_of(path))
-    file = JournaledFile(path, new=False)
-    try:
-        if path.stat().st_size == 0:
-            raise InputError(str(path), "is empty: its run ended before it had begun; start it again")
-        try:
-            h5 = h5py.File(file, "r+")
-        except OSError:
-            raise not_readable(path) from None
-        try:
-            with reading(path):
-                stored = hdf5.Group(h5)
-                check_format(stored, str(path))
-                if "wear" in stored:
-                    raise InputError(str(path), "belongs to a life of wear: continue it with wear and its case")
-                if "run" not in h5.attrs:
-                    raise InputError(str(path), "was not written by a run: there is nothing to continue")
-                if stored.attrs["complete"]:
-                    raise InputError(str(path), "holds a finished run: there is nothing to continue")
-                task = replace(stored_task(stored), progress=progress)
-                assert task.grid is not None
-                check_growing(stored, task.grid.size)
-                read_statistics(stored)  # they are written again at the end
-                options = stored["solver"].attrs
-                writer = FileRecorder(path, task, str(options["title"]), read_about(stored), read_beside(stored))
-                writer.chosen_arc = bool(options["arc_chosen"])
-                restart = _latest(
-                    path,
-                    stored,
-                    all_nodes(stored, task.problem, task.grid),
-                    lambda group: writer.reopen(file, h5, group),
-                )
-                h5.attrs.pop("error", None)
-                return writer, restart
-        except BaseException:
-            file.abandon()
-            h5.close()
-            raise
-    except BaseException:
-        file.release()
-        raise
+    file = GrowingFile(path)
+    with file.again() as stored:
+        if "wear" in stored:
+            raise InputError(str(path), "belongs to a life of wear: continue it with wear and its case")
+        if "run" not in stored.attrs:
+            raise InputError(str(path), "was not written by a run: there is nothing to continue")
+        if stored.attrs["complete"]:
+            raise InputError(str(path), "holds a finished run: there is nothing to continue")
+        task = replace(stored_task(stored), progress=progress)
+        assert task.grid is not None
+        layout.check_growing(stored, task.grid.size)
+        layout.read_statistics(stored)  # they are written again at the end
+        options, latest = stored["solver"].attrs, stored["restart/latest"]
+        writer = FileRecorder(path, task, str(options["title"]), layout.read_about(stored), layout.read_beside(stored))
+        writer.chosen_arc = bool(options["arc_chosen"])
+        nodes = all_nodes(stored, task.problem, task.grid)
 
+        def read(group: hdf5.Group) -> Restart:
+            restart = read_restart(group, nodes)
+            writer.reopen(file, group)
+            return restart
 
-def _latest(path: Path, stored: hdf5.Group, nodes: int, use: Callable[[hdf5.Group], None]) -> Restart:
-    """Read the latest restart of a run, from its checkpoint or else from the file itself.
-
-    `nodes` is the number of nodes of pin and seat. `use` gets the group of the restart while it is open.
-    """
-    file_restart = stored["restart/latest"]
-    try:
-        with h5py.File(checkpoint_of(path), "r") as file:
-            checkpoint = hdf5.Group(file)
+        def of_checkpoint(checkpoint: hdf5.Group) -> Restart | None:
             group = checkpoint["restart"]
-            same_run = checkpoint.attrs["run"] == stored.attrs["run"]
-            if same_run and group.attrs["corner"] >= file_restart.attrs["corner"]:
-                restart = read_restart(group, nodes)
-                use(group)
-                return restart
-    except FileNotFoundError:
-        pass
-    except (OSError, KeyError, ValueError, TypeError, IndexError):
-        log.warning("%s can't be read: continuing from an earlier corner", checkpoint_of(path))
-    restart = read_restart(file_restart, nodes)
-    use(file_restart)
-    return restart
+            return read(group) if group.attrs["corner"] >= latest.attrs["corner"] else None
+
+        return writer, file.noted(of_checkpoint, "corner") or read(latest)

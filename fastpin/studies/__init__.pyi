@@ -4,8 +4,6 @@ from . import plan as plan
 from . import sweep as sweep
 from . import tolerances as tolerances
 from .convergence import converge as converge
-from .failure import FailureLoad as FailureLoad
-from .failure import failure_load as failure_load
 from .identification import FittedValue as FittedValue
 from .identification import Identified as Identified
 from .identification import identify as identify

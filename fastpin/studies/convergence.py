@@ -12,19 +12,16 @@ import numpy as np
 
 from fastpin.assess.outputs import ROUNDING
 from fastpin.errors import InputError
+from fastpin.model import LoadHistory, Problem
 from fastpin.model.checks import as_toml, check_callable, items, whole_number
 from fastpin.model.doubts import doubts, doubts_given, warn_of
 from fastpin.model.grid import MAX_NODES, Grid
-from fastpin.model.history import LoadHistory
 from fastpin.model.options import Method, SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.synonyms import explains_keywords
+from fastpin.solver import ArcError, Result, SolveError, solve
 from fastpin.solver.arc import first_direction
 from fastpin.solver.attempts import first_wide_enough
-from fastpin.solver.errors import ArcError, SolveError
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
 from fastpin.solver.task import Task, as_history
 from fastpin.states.error_bars import PLACE_FLOOR, spacing
 from fastpin.states.quantities import QUANTITIES, ZONES, matching_values, quantity, size, sizes, values

@@ -15,15 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.assess.kept import kept
-from fastpin.model.case import Case
+from fastpin.assess.outputs import kept
+from fastpin.model import LOADS, Case, LoadHistory, Material, Problem, SolveOptions
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries
-from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS
-from fastpin.model.materials import Material
-from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.version import __version__
 
 FIRST_LOADS = 6

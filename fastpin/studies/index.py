@@ -18,9 +18,8 @@ from typing import Any, get_args
 
 from fastpin.errors import InputError, OutputError, printable
 from fastpin.model.checks import any_text, as_toml, choice, instance, number, whole_number
-from fastpin.storage.database import Mode, error_name, limited, open_database
 from fastpin.storage.files import INDEX
-from fastpin.storage.packed import TABLE
+from fastpin.storage.packed import TABLE, Mode, error_name, limited, open_database
 from fastpin.studies.identity import ID_LENGTH
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, Spacing

@@ -21,11 +21,11 @@ from types import MappingProxyType
 from typing import Any
 
 from fastpin.assess.margins import LEAST, of_margin
+from fastpin.assess.questions import QUESTIONS, of_question
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
-from fastpin.casefile.assessment import read_assessment
-from fastpin.casefile.beside import READERS
+from fastpin.casefile.beside import READERS, read_assessment
 from fastpin.casefile.profiles import read_wear
-from fastpin.casefile.toml_text import CaseText, Section, read_text
+from fastpin.casefile.toml_text import CaseText, Named, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA
@@ -51,7 +51,6 @@ from fastpin.studies.outcomes import (
     taken,
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
-from fastpin.studies.section_outcomes import SECTION_OUTCOMES, of_section, unit_of_life
 
 Outcomes = dict[str, StudyOutcome]
 """Outcomes by the names that the user chose."""
@@ -173,7 +172,7 @@ def outcomes_in_text(source: CaseText, folder: Path, beside: Mapping[str, Any] =
             if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
-                outcome = _of_table(source, _Table(source, name, value), folder, beside)
+                outcome = _of_table(source, Named(source, ("outcomes", name), value, name), folder, beside)
                 found |= {} if outcome is None else {name: outcome}
             elif callable(value):
                 found[name] = _of_callable(value)
@@ -218,19 +217,7 @@ def _name_fault(name: object, others: Outcomes) -> str:
 # -- single outcomes ---------------------------------------------------------------------------------------------
 
 
-class _Table(Section):
-    """The table of one outcome. Its faults begin with its name."""
-
-    def __init__(self, source: CaseText, name: str, table: Mapping[str, Any]) -> None:
-        super().__init__(source, ("outcomes", name), dict(table))
-        self.outcome = name
-
-    def report(self, message: str, *key: str) -> None:
-        """Add a fault of a key, or of the whole table if no key is given."""
-        super().report(f"{self.outcome}: {message}", *key)
-
-
-def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[str, Any]) -> StudyOutcome | None:
+def _of_table(source: CaseText, section: Section, folder: Path, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read the table of one outcome, and report its faults. No outcome if a value is wrong."""
     first = [key for key in KEYS if key in section]
     if len(first) != 1:
@@ -241,7 +228,7 @@ def _of_table(source: CaseText, section: _Table, folder: Path, beside: Mapping[s
     section.check_keys(allowed, "", f"; beside {first[0]} there {others}")
     if first[0] == "wear":
         return _of_wear(section, folder, beside)
-    if first[0] in SECTION_OUTCOMES:
+    if first[0] in QUESTIONS:
         return _of_section(first[0], source, section, beside)
     if first[0] == "margin":
         return _of_margin(section, beside)
@@ -309,7 +296,7 @@ def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> Study
 
 def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of a section beside the problem: as the case says, unless the table does."""
-    quantity = section.choice(name, tuple(SECTION_OUTCOMES[name]))
+    quantity = section.choice(name, tuple(QUESTIONS[name].OUTCOMES))
     read: Callable[..., Any] = READERS.get(name, read_assessment)
     how = read(source, section, _entries(name, beside[name]) if name in beside else {})
     if quantity is None or how is None:
@@ -319,11 +306,12 @@ def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[s
         return None
     how = _alone(name, how)
     definition = json.dumps({name: quantity, "how": _entries(name, how)}, sort_keys=True)
-    output, unit = SECTION_OUTCOMES[name][quantity].output, ""
-    kind = output.kind
-    if kind == "life":
-        kind, unit = unit_of_life(how.passes if name == "fatigue" else beside.get("passes", "cycles or spectra"))
-    return StudyOutcome(kind, unit, definition, partial(of_section, name, quantity, how), dict(output.classes))
+    output, _ = QUESTIONS[name].OUTCOMES[quantity]
+    kind, unit = output.kind, ""
+    if kind == "life":  # spectra are no cycles, and have no kind
+        passes = getattr(how, "passes", beside.get("passes", "cycles or spectra"))
+        kind, unit = ("life", "") if passes == "cycles" else ("", passes)
+    return StudyOutcome(kind, unit, definition, partial(of_question, name, quantity, how), dict(output.classes))
 
 
 def _alone(name: str, how: Any) -> Any:
@@ -346,7 +334,7 @@ def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | No
     if name is None or ("body" in section and owner is None):
         return None
     # Some kinds of margins need a section of the case.
-    needed = {"fatigue": "fatigue", "fracture": "crack", "growth": "crack", "ply": "strength"}.get(name)
+    needed = next((section for section, question in QUESTIONS.items() if name in question.MARGINS), None)
     if needed is not None and needed not in beside:
         section.report(f'margin: "{name}" needs a section [{needed}] of the case', "margin")
         return None

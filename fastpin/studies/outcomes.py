@@ -20,8 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fastpin.assess.kept import kept
-from fastpin.assess.outputs import ROUNDING, Output
+from fastpin.assess.outputs import ROUNDING, Output, kept
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
@@ -30,12 +29,11 @@ from fastpin.model.points import Body, owner_of
 from fastpin.model.ties import top
 from fastpin.model.units import DEGREE, Unit
 from fastpin.model.wear import Wear
+from fastpin.states import NodeBehaviour, State
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.error_bars import known_bar, number_bar, value_bar
-from fastpin.states.load_cycle import NodeBehaviour
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.regimes import REGIMES
-from fastpin.states.state import State
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.damage.hot_spots import HotSpot

@@ -22,22 +22,19 @@ import numpy as np
 
 from fastpin.casefile.profiles import PROFILES, part_fault
 from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
-from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, Section, parse_text, read_text, written
-from fastpin.errors import CaseFileError, InputError, InputWarning
-from fastpin.model.case import Case
-from fastpin.model.checks import (
-    any_text,
-    as_toml,
-    check_callable,
-    choice,
-    file_path,
-    instance,
-    number,
-    string,
-    whole_number,
+from fastpin.casefile.toml_text import (
+    MOST_BYTES_OF_PLAN,
+    CaseText,
+    KeyPath,
+    Named,
+    Section,
+    parse_text,
+    read_text,
+    written,
 )
+from fastpin.errors import CaseFileError, InputError, InputWarning
+from fastpin.model import LOADS, Case, checks
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
-from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
 from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, bar_faults, has_strengths, outcomes_from, outcomes_in_text
@@ -204,7 +201,7 @@ class Plan:
         InputError
             If a file of its loads, plate or materials has changed since the plan was read, or `point` is no point.
         """
-        instance("point", point, Point, "a Point of this plan")
+        checks.instance("point", point, Point, "a Point of this plan")
         if point.id in self._cases:
             return self._cases[point.id]
         return self._varied(point, has_strengths(self.outcomes))
@@ -229,8 +226,8 @@ def read_plan(path: str | Path, progress: SweepProgress | None = None) -> Plan:
     InputError
         If `path` is no path, or `progress` can't be called.
     """
-    path = file_path("path", path)
-    check_callable("progress", progress)
+    path = checks.file_path("path", path)
+    checks.check_callable("progress", progress)
     plan = _parsed(read_text(path, MOST_BYTES_OF_PLAN), str(path), path.parent, progress)
     warn_of(plan.doubts, 2)
     return plan
@@ -263,13 +260,13 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
 
 def _parsed(text: str, name: str, folder: str | Path, progress: SweepProgress | None = None) -> Plan:
     """Read a plan from `text`, see :func:`parse_plan`. No warnings are given."""
-    place = file_path("folder", folder)
+    place = checks.file_path("folder", folder)
     return parse_text(text, name, "plan", lambda source: _plan(source, text, place, progress))
 
 
 def describe_values(values: dict[str, Any]) -> str:
     """Return the values of a point as text."""
-    return ", ".join(f"{name} = {as_toml(value)}" for name, value in values.items())
+    return ", ".join(f"{name} = {checks.as_toml(value)}" for name, value in values.items())
 
 
 # -- text of a plan ------------------------------------------------------------------------------------------
@@ -278,7 +275,7 @@ def describe_values(values: dict[str, Any]) -> str:
 def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | None) -> Plan | None:
     """Read the plan. It has no meaning if the text has faults."""
     check_root(source)
-    title = source.root.checked("title", string) or ""
+    title = source.root.checked("title", checks.string) or ""
     base = base_case(source, folder)
     places: dict[str, KeyPath] = {}
     spacings: dict[str, Spacing] = {}
@@ -297,15 +294,9 @@ def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | N
     labels = labels_in(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
-    cases: dict[str, Case] = {}
-    found: list[InputWarning] = []
-    points = checked_points(source, base, places, rows or [{}], axes, (cases, found), progress, has_strengths(outcomes))
-    wears = dict.fromkeys(each.wear for each in outcomes.values() if each.wear is not None)
-    case = base.vary({})[1] if wears else None
-    if case is not None:
-        found += [doubt for wear in wears for doubt in wear_doubts(case.problem, wear)]
     fields = {name: spacings[name] for name in places}
-    return Plan(title, text, fields, axes, points, outcomes, found, labels, base, cases)
+    plan = Plan(title, text, fields, axes, [], outcomes, [], labels, base, {})
+    return with_points(plan, source, places, rows or [{}], progress)
 
 
 def labels_in(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
@@ -317,7 +308,7 @@ def labels_in(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
             source.report(f'labels: the plan has no "{name}"{hint}', *place)
             continue
         try:
-            labels[name] = string(f"labels: {name}", words)
+            labels[name] = checks.string(f"labels: {name}", words)
             if not 1 <= len(words.strip()) <= LONGEST_LABEL:
                 raise InputError(f"labels: {name}", f"must be text of 1 to {LONGEST_LABEL} letters")
         except InputError as error:
@@ -349,7 +340,7 @@ def check_root(source: CaseText, keys: Mapping[str, str] = ROOT_KEYS, varied_in:
             hint = '; it belongs in the case file, which a plan names: case = "case.toml"'
         elif owners:
             hint = f"; a plan varies it in {varied_in}: {_varied(owners[0], key)} = ..."
-        source.report(f"unknown section {section}{hint}" if section else f'unknown key "{key}"{hint}', key)
+        source.report_unknown(key, hint, where="")
 
 
 def _varied(section: str, key: str) -> str:
@@ -359,7 +350,7 @@ def _varied(section: str, key: str) -> str:
 
 def base_case(source: CaseText, folder: Path) -> BaseCase | None:
     """Read the base case, and report its faults on the line of the plan's ``case``."""
-    name = source.root.checked("case", any_text)
+    name = source.root.checked("case", checks.any_text)
     try:
         if name is None:
             return BaseCase(EXAMPLE, "built-in case", folder)
@@ -405,7 +396,7 @@ def _axes(
         else:
             allowed = "a list of values, or { from = 0.1, to = 1.0, count = 10 }"
             source.report(
-                f"{name}: must be {allowed}, not {'an empty list' if value == [] else as_toml(value)}", *place
+                f"{name}: must be {allowed}, not {'an empty list' if value == [] else checks.as_toml(value)}", *place
             )
     return axes
 
@@ -481,26 +472,21 @@ def range_in(
 
     `usual` is the number of values without ``count``; None if ``count`` must be given.
     """
-    section = Section(source, place, table)
+    section = Named(source, place, table, name)
     before = len(source.placed)
-    for key in table:
-        if key not in _RANGE_KEYS:
-            section.report(f'{name}: unknown key "{key}" in a range; there are {", ".join(_RANGE_KEYS)}', key)
+    section.check_keys(_RANGE_KEYS, " in a range", hint=lambda _: f"; there are {', '.join(_RANGE_KEYS)}")
     needed = _RANGE_KEYS[: 3 if usual is None else 2]
     for key in needed:
         if key not in table:
-            section.report(f"{name}: {key} is missing; a range has {', '.join(needed[:-1])} and {needed[-1]}")
-
-    def checked(key: str, check: Callable[..., Any], *limits: Any) -> Any:
-        return section.checked(key, lambda _, value: check(f"{name}: {key}", value, *limits))
-
-    first, last = checked("from", number), checked("to", number)
-    count = checked("count", whole_number, 2, MAX_RUNS) if usual is None or "count" in table else usual
-    spacing: Any = checked("spacing", choice, ("linear", "log")) or "linear"
+            section.report(f"{key} is missing; a range has {', '.join(needed[:-1])} and {needed[-1]}")
+    first, last, count = section.number("from"), section.number("to"), usual
+    if usual is None or "count" in table:
+        count = section.checked("count", checks.whole_number, 2, MAX_RUNS)
+    spacing: Any = section.checked("spacing", checks.choice, ("linear", "log")) or "linear"
     if first is None or last is None or count is None or len(source.placed) > before:
         return [], spacing
     if spacing == "log" and not first * last > 0.0:
-        section.report(f"{name}: from and to must both be positive, or both negative, where spacing is log")
+        section.report("from and to must both be positive, or both negative, where spacing is log")
         return [], spacing
     values = (np.geomspace if spacing == "log" else np.linspace)(first, last, count)
     # With 12 digits 0.3 in a range equals 0.3 in a list.
@@ -513,22 +499,16 @@ def range_in(
 # -- runs ----------------------------------------------------------------------------------------------------
 
 
-def checked_points(
-    source: CaseText,
-    base: BaseCase,
-    places: dict[str, KeyPath],
-    rows: list[PlanRow],
-    axes: dict[str, list[Any]],
-    kept: tuple[dict[str, Case], list[InputWarning]],
-    progress: SweepProgress | None,
-    strengths: bool = False,
-) -> list[Point]:
-    """Make and check all points. A fault of a run is reported on the line of the field, or of the case.
+def with_points(
+    plan: Plan, source: CaseText, places: dict[str, KeyPath], rows: list[PlanRow], progress: SweepProgress | None
+) -> Plan:
+    """Return a plan with all its points, checked, and its doubts. The rows stand slowest in the order of the points.
 
-    Two things are `kept`: the first cases without files of their own, by id, and one doubt of each field. With
-    `strengths` the ids depend on them.
+    A fault of a run is reported on the line of the field, or of the case. The plan keeps the first cases without files
+    of their own, and one doubt of each field.
     """
-    cases, doubtful = kept
+    base, axes, strengths = plan._base, plan.axes, has_strengths(plan.outcomes)
+    cases: dict[str, Case] = {}
     doubted: dict[str, tuple[InputWarning, list[dict[str, Any]]]] = {}
     points: list[Point] = []
     faults: dict[tuple[KeyPath, str], list[dict[str, Any]]] = {}
@@ -557,8 +537,12 @@ def checked_points(
         source.report(f"{message}{_which(runs, count)}", *place)
     if len(faults) > MAX_FAULTS:
         source.report(f"and {len(faults) - MAX_FAULTS:,} more faults in the runs")
-    doubtful += [InputWarning(name, f"{doubt.reason}{_which(runs, count)}") for name, (doubt, runs) in doubted.items()]
-    return points
+    found = [InputWarning(name, f"{doubt.reason}{_which(runs, count)}") for name, (doubt, runs) in doubted.items()]
+    wears = dict.fromkeys(each.wear for each in plan.outcomes.values() if each.wear is not None)
+    case = base.vary({})[1] if wears else None
+    if case is not None:
+        found += [doubt for wear in wears for doubt in wear_doubts(case.problem, wear)]
+    return replace(plan, points=points, doubts=found, _cases=cases)
 
 
 def _sites(places: dict[str, KeyPath], row: PlanRow) -> dict[str, KeyPath]:

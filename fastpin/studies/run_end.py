@@ -15,23 +15,26 @@ from fastpin.model.angles import interval_from_bottom
 from fastpin.model.ties import top_angle
 from fastpin.reading.zones import Interval
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees
-from fastpin.studies.outcomes import OutcomeValue, bar_of_taken
+from fastpin.studies.outcomes import OutcomeValue, bar_of_taken, taken
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.solver.result import Result
 
 
-def _kind(name: str) -> str:
-    kind = QUANTITIES[name].kind
-    return "angle" if kind == "width" else kind
-
-
 KEY_FIGURES: dict[str, str] = {
     "states": "",
-    **{name: _kind(name) for name in ("peak_pressure", "peak_pressure_angle", "peak_shear", "peak_shear_angle")},
+    "peak_pressure": "traction",
+    "peak_pressure_angle": "angle",
+    "peak_shear": "traction",
+    "peak_shear_angle": "angle",
     "contact_start": "angle",
     "contact_stop": "angle",
-    **{name: _kind(name) for name in ("contact_width", "stick_width", "rotation", "dx", "dy", "dissipation")},
+    "contact_width": "angle",
+    "stick_width": "angle",
+    "rotation": "rotation",
+    "dx": "displacement",
+    "dy": "displacement",
+    "dissipation": "energy",
     "max_pressure": "traction",
     "max_shear": "traction",
     "residual": "",
@@ -49,6 +52,12 @@ A kind is a key of :func:`fastpin.model.units.units`, "angle" (deg) or "" for a 
 * ``max_pressure``, ``max_shear``: largest peak pressure, and largest magnitude of the peak shear, of all states.
 * ``residual``: the largest residual of all states.
 """
+
+TAKEN = {name: (name, "last") for name in KEY_FIGURES if name in QUANTITIES} | {
+    "max_pressure": ("peak_pressure", "largest"),
+    "max_shear": ("peak_shear", "largest magnitude"),
+}
+"""The key figures that are read as outcomes are: the quantity of each, and how its number is taken from all states."""
 
 RUN_COLUMNS: dict[str, str] = {
     "id": "TEXT PRIMARY KEY",
@@ -78,11 +87,9 @@ def key_figures(result: Result) -> dict[str, Any]:
     last = result[-1]
     start, stop = interval_from_bottom(*last.contact[_widest(last.contact)]) if last.contact else (None, None)
     figures |= {
-        **{name: in_degrees(name, QUANTITIES[name].of(last)) for name in KEY_FIGURES if name in QUANTITIES},
+        **{name: in_degrees(of, taken(of, take, "history", "pin", result)) for name, (of, take) in TAKEN.items()},
         "contact_start": start,
         "contact_stop": stop,
-        "max_pressure": max(state.peak_pressure for state in result),
-        "max_shear": max(abs(state.peak_shear) for state in result),
         "residual": max(max(state.residuals.values(), default=0.0) for state in result),
     }
     return {name: _number(value) for name, value in figures.items()}
@@ -104,11 +111,11 @@ def key_bars(result: Result) -> dict[str, float]:
     bars = result[-1].error_bars
     assert bars is not None
     widest = _widest(ends) if (ends := result[-1].contact) else 0
-    found = {name: bar_in_degrees(name, bars[name]) for name in KEY_FIGURES if name in QUANTITIES}
+    found = {
+        name: bar_in_degrees(of, bar_of_taken(of, take, "history", "pin", result)) for name, (of, take) in TAKEN.items()
+    }
     for end in ("start", "stop"):  # A contact all round has no ends.
         found[f"contact_{end}"] = math.degrees(bars.get(f"contact_{widest + 1}_{end}", math.nan))
-    found["max_pressure"] = bar_of_taken("peak_pressure", "largest", "history", "pin", result)
-    found["max_shear"] = bar_of_taken("peak_shear", "largest magnitude", "history", "pin", result)
     return {name: bar for name, bar in found.items() if not math.isnan(bar)}
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 import fastpin
-from fastpin.casefile.assessment import read_assessment
+from fastpin.casefile.beside import read_assessment
 from fastpin.casefile.reader import parse_case
 from fastpin.casefile.toml_text import CaseText
 from fastpin.casefile.writer import case_text

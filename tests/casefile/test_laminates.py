@@ -12,7 +12,7 @@ from fastpin import cracks, damage
 from fastpin.casefile.reader import EXAMPLE, parse_case
 from fastpin.casefile.writer import case_text
 from fastpin.errors import CaseFileError, InputError
-from fastpin.figures.words import caption
+from fastpin.figures.style import caption
 from fastpin.model import CrackGrowth, FatigueAssessment, FatigueConstants, Laminate, Ply
 from fastpin.model.angles import angle_at
 from fastpin.model.crack import check_crack

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fastpin.charts import ChartFormula, chart_formulas, lookup
-from fastpin.charts.formulas import HEAD, MOST_FRICTION, MOST_LOAD_PARAMETER
+from fastpin.charts.lookups import HEAD, MOST_FRICTION, MOST_LOAD_PARAMETER
 from fastpin.errors import InputError
 
 

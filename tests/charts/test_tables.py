@@ -5,8 +5,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.charts.groups import GROUPS, load_parameter_at, width_coordinate
-from fastpin.charts.tables import DATA, STORED, VERSION, ChartTable, read_tables, write_tables
+from fastpin.charts.groups import (
+    DATA,
+    GROUPS,
+    STORED,
+    VERSION,
+    ChartTable,
+    load_parameter_at,
+    read_tables,
+    width_coordinate,
+    write_tables,
+)
 from fastpin.errors import InputError
 from scripts.charts_data import cell_bounds
 

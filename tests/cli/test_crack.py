@@ -10,9 +10,9 @@ import pytest
 
 import fastpin
 from fastpin import cracks, damage
+from fastpin.assess.crack import growth_line
 from fastpin.casefile import case_text
 from fastpin.report import json_schema
-from fastpin.report.crack_growth import growth_line
 from tests.support.commands import printed, refused, said
 
 jsonschema = pytest.importorskip("jsonschema")

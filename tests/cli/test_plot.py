@@ -12,6 +12,7 @@ import pytest
 
 from fastpin import MATERIALS, InputError, LoadHistory, MaterialPair, Problem, figures, load, load_wear, record, storage
 from fastpin.figures.kinds import KIND_OPTIONS, KINDS
+from fastpin.storage import held
 from tests.support.commands import printed, refused, said
 from tests.support.lives import sample_life
 from tests.support.samples import JOINT
@@ -49,7 +50,7 @@ EXTREMES = functools.cache(storage.marked_extremes)
 @pytest.fixture(autouse=True)
 def _extremes_are_found_once(monkeypatch):
     """Many tables and figures of one file name its extremes. No file of these tests changes."""
-    for module in (figures.states, storage):
+    for module in (held, storage):
         monkeypatch.setattr(module, "marked_extremes", EXTREMES)
 
 

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.pages.album import Album
-from fastpin.pages.content import Picture
+from fastpin.pages.content import Album, Picture
 from tests.support.commands import printed, refusal, refused, said
 from tests.support.html import Page
 from tests.support.samples import JOINT

@@ -18,7 +18,7 @@ from fastpin import storage
 from fastpin.bodies.compliance import Compliance
 from fastpin.casefile import parse_case
 from fastpin.errors import printable
-from fastpin.figures.words import caption
+from fastpin.figures.style import caption
 from fastpin.solver.result import Result
 from fastpin.storage import packed, store
 from fastpin.storage.files import INDEX

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import fastpin
-from fastpin import damage, studies
+from fastpin import assess, damage
 from fastpin.report import json_schema
 from tests.support.case_texts import STEEL_IN_LAMINATE
 from tests.support.commands import printed, said
@@ -43,7 +43,7 @@ def test_a_case_with_a_strength_is_told_by_every_command():
     assert lines[0].startswith(HEAD.format(found.least_ratio))
     assert f"ply of {found.ply_angle:g} deg by {found.ply_mode}, {found.joint_mode}" in lines[0]
     options = {"over": "history", "nodes": 61}
-    failure = studies.failure_load(case.problem, case.history, "tsai-wu", distance=0.5e-3, **options)
+    failure = assess.failure_load(case.problem, case.history, "tsai-wu", distance=0.5e-3, **options)
     assert lines[1].startswith(f"load at failure: {failure.factor:.4g} times all loads; load point 1; at ")
     assert lines[0] in printed("run", "case.toml", "-o", "case.h5", "--json", "case.json")
     assert lines[0] in printed("show", "case.h5", "--json", "shown.json")

@@ -20,12 +20,12 @@ import pytest
 from matplotlib.text import Text
 
 from fastpin import casefile, figures
+from fastpin.assess.outputs import json_ready
 from fastpin.cli import options
 from fastpin.cli.main import main
 from fastpin.figures.kinds import KINDS
 from fastpin.live.contact import LiveContact
 from fastpin.live.protocol import Message
-from fastpin.report.summary import json_ready
 from fastpin.studies import workers
 from tests.support.plans import run_here
 from tests.support.tiers import some_survey

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.assess import crack as words_of
 from fastpin.assess import outputs
 from fastpin.assess.crack import GROWTH
 from fastpin.cracks import (
@@ -21,7 +22,6 @@ from fastpin.cracks import (
 from fastpin.errors import InputError
 from fastpin.model import CrackGrowth
 from fastpin.model.units import units
-from fastpin.report import crack_growth as words_of
 from tests.support.cracks import LIKE, NASGRO, M, problem_of
 
 LAW = Walker(1e-10, 3.0, 0.5, 1.0 * M, intrinsic_length=50e-6)

@@ -13,7 +13,7 @@ from fastpin.cli.main import main
 from fastpin.errors import InputError
 from fastpin.figures import plot_gap, plot_sketch
 from fastpin.figures.sketch import GAP, LARGEST_GAP
-from fastpin.figures.words import caption
+from fastpin.figures.style import caption
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, Profile
 from tests.support.case_texts import PRESSED

@@ -3,7 +3,7 @@
 import pytest
 
 from fastpin.errors import InputError
-from fastpin.figures.lug import ARROWS, HOLD_WORDS, plot_lug
+from fastpin.figures.sketch import ARROWS, HOLD_WORDS, plot_lug
 from fastpin.model.lug import Hole, PartLoad
 from tests.support.drawing import legend_words
 from tests.support.lugs import plate

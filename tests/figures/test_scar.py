@@ -9,11 +9,10 @@ from matplotlib.figure import Figure
 
 import fastpin
 from fastpin.errors import InputError
-from fastpin.figures.damage import NEAR, damage_of
-from fastpin.figures.scar import life_caption, scar_plot, wear_plot
+from fastpin.figures.scar import NEAR, damage_of, life_caption, scar_plot, wear_plot
 from fastpin.figures.sheet import Look
+from fastpin.figures.states import InMemory
 from fastpin.figures.style import MAX_NAMED
-from fastpin.figures.subjects import InMemory
 from fastpin.model.grid import Grid
 from fastpin.model.profile import Profile
 from fastpin.solver.wear_result import WearResult

@@ -11,14 +11,12 @@ from PIL import Image
 from fastpin.bodies.bushing import STUCK
 from fastpin.errors import InputError
 from fastpin.figures.cycles import plot_cycles
-from fastpin.figures.polar import plot_polar
 from fastpin.figures.sketch import plot_sketch
 from fastpin.figures.states import drawn_states
 from fastpin.figures.stick_slip import plot_stick_slip
 from fastpin.figures.stress import plot_hoop_stress
-from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, Drawing, spread
-from fastpin.figures.tractions import plot_tractions, traction_curves
-from fastpin.figures.words import caption
+from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, Drawing, caption, spread
+from fastpin.figures.tractions import plot_polar, plot_tractions, traction_curves
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve

@@ -5,7 +5,7 @@ import pytest
 
 from fastpin import MATERIALS, LoadHistory, Material, MaterialPair, Problem, figures
 from fastpin.bodies import Bushing, Plate, Ring, Tube
-from fastpin.figures.words import (
+from fastpin.figures.style import (
     caption,
     load_text,
     loads_by_change,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fastpin import Material, MaterialPair
-from fastpin.joints import Joint, JointState, Pin, Plate, solve_joint
+from fastpin.joints import Joint, JointPin, JointPlate, JointState, solve_joint
 from fastpin.model.lug import rectangle
 from fastpin.solver import SolveError
 from tests.support.tiers import seeds
@@ -15,8 +15,8 @@ MATERIALS = (Material(72e9, 0.33), Material(210e9, 0.30), Material(110e9, 0.31))
 FORCE = 1e6
 
 
-SHEET = Plate("sheet", MATERIALS[0], 1.0)
-COVER = Plate("cover", MATERIALS[0], 0.7, rectangle((-4.0, 15.0), (-4.0, 5.0)), moves="free")
+SHEET = JointPlate("sheet", MATERIALS[0], 1.0)
+COVER = JointPlate("cover", MATERIALS[0], 0.7, rectangle((-4.0, 15.0), (-4.0, 5.0)), moves="free")
 
 
 def random_joint(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]]]:
@@ -29,7 +29,7 @@ def random_joint(rng: np.random.Generator) -> tuple[Joint, list[dict[str, float]
         fits = {name: float(rng.choice([-0.1, 0.0, 0.02, 0.1, 0.3])) * unit for name in through}
         friction = float(rng.choice([0.0, 0.2, 0.6]))
         soft = float(rng.choice([0.0, 0.2])) * unit / FORCE
-        pins.append(Pin(f"p{k}", at, material, 1.0, through, fits, friction, soft))
+        pins.append(JointPin(f"p{k}", at, material, 1.0, through, fits, friction, soft))
     joint = Joint((SHEET, COVER) if covered else (SHEET,), tuple(pins))
     names = [name for name in joint.load_names if rng.random() < 0.6]
     sizes = {name: FORCE * (0.2 if joint.is_stress(name) else 1.0) for name in names}

@@ -43,7 +43,7 @@ def test_other_attributes_have_the_usual_error_and_copies_work() -> None:
 
 
 def test_the_package_says_which_folder_has_a_name() -> None:
-    for name, home in {"Bushing": "bodies", "Laminate": "model", "failure_load": "studies"}.items():
+    for name, home in {"Bushing": "bodies", "Laminate": "model", "failure_load": "assess"}.items():
         with pytest.raises(AttributeError, match=f"there is fastpin.{home}.{name}$"):
             getattr(fastpin, name)
     with pytest.raises(AttributeError, match=r"there is fastpin\.studies\.sweep or fastpin\.figures\.sweep or "):

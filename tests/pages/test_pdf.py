@@ -17,8 +17,8 @@ from fastpin.errors import InputError
 from fastpin.model import About
 from fastpin.pages import write_report
 from fastpin.pages.content import Facts, Items, Listing, Page, PageSection, Table, Text
-from fastpin.pages.pdf import pdf_of
 from fastpin.pages.sections import SECTIONS
+from fastpin.pages.writing import pdf_of
 from tests.support.drawing import outline_figures
 from tests.support.samples import sample_result
 from tests.support.tiers import for_gate

@@ -11,18 +11,17 @@ from pathlib import Path
 import pytest
 
 import fastpin
+from fastpin.assess.outputs import MAX_ROWS
 from fastpin.bodies import Bushing
 from fastpin.errors import InputError, OutputError
+from fastpin.figures.states import InMemory
 from fastpin.figures.stick_slip import stick_slip_plot
-from fastpin.figures.subjects import InMemory
 from fastpin.model import Laminate, Material, MaterialPair
 from fastpin.model.loads import LOAD, LOADS
 from fastpin.model.options import OPTIONS, SolveOptions
-from fastpin.pages import album, sections, write_report
-from fastpin.pages.album import Album
-from fastpin.pages.content import Facts, Text
+from fastpin.pages import content, sections, write_report
+from fastpin.pages.content import Album, Facts, Text
 from fastpin.pages.source import MOST_DRAWN, Source
-from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.states.quantities import QUANTITIES
 from fastpin.storage.layout import RESIDUALS
@@ -295,7 +294,7 @@ def test_a_figure_has_the_same_markup_each_time_and_refers_to_its_own_elements()
 
 
 def test_a_large_figure_becomes_a_bitmap(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(album, "MOST_SVG", 10)
+    monkeypatch.setattr(content, "MOST_SVG", 10)
     bitmap = b"\x89PNG\r\n\x1a\n" + bytes([0, 0, 0, 13]) + b"IHDR" + bytes([0, 0, 0, 200, 0, 0, 0, 100])
     drawn = {".svg": b"a figure that is too long", ".png": bitmap}
     found = Album().picture(lambda path: path.write_bytes(drawn[path.suffix]), 'say "so"', "caption")

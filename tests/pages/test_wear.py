@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.assess.outputs import MAX_ROWS
 from fastpin.errors import InputError
 from fastpin.model.case import About
 from fastpin.model.wear import cycles_text
 from fastpin.pages import source, write_report
 from fastpin.pages.wear import WEAR_SECTIONS, damage, numbers, overview, provenance
-from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.solver.wear_result import WearResult, WornCycle
 from tests.support.html import Page, words_of

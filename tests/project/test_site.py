@@ -15,7 +15,7 @@ import pytest
 import fastpin
 from fastpin.casefile.reader import KEYS
 from fastpin.cli.options import parser
-from fastpin.storage import extremes, layout, wear_files
+from fastpin.storage import layout, stored_states, wear_files
 from tests.support.tiers import some_survey
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -109,7 +109,7 @@ def assert_explained(text: str, *names: str) -> None:
 @pytest.mark.gate
 def test_the_file_format_of_the_reference_has_every_array(extension, monkeypatch):
     """The sample has few states: the extremes of many are stored."""
-    for module in (__import__("file_layout"), extremes):
+    for module in (__import__("file_layout"), stored_states):
         monkeypatch.setattr(module, "LEAST_STORED", 6)
     text = extension.PARTS["file_layout"]()
     assert "\n## /extremes\n" in text

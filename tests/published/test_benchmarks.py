@@ -7,8 +7,7 @@ import pytest
 
 from fastpin.errors import InputError
 from fastpin.published import Outcome, catalog, handbook_formulas, klang
-from fastpin.published.drawing import save_drawing
-from fastpin.published.records import AGREES
+from fastpin.published.records import AGREES, save_drawing
 from tests.support.tiers import for_gate
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md").read_text(encoding="utf-8")

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from fastpin.assess.outputs import Curve
 from fastpin.model.problem import Problem
 from fastpin.published import catalog, memory, sliding_onset, tractions
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification.sliding import solve_sliding
 from tests.support.tiers import for_gate

@@ -13,7 +13,7 @@ from fastpin.errors import InputError
 from fastpin.model.materials import MATERIALS, Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
 from fastpin.published import half_angle, load_term, peak_pressure
-from fastpin.published.formulas import SPREAD
+from fastpin.published.handbook_formulas import SPREAD
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import closed_forms

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from fastpin.assess.outputs import Curve
 from fastpin.model.grid import Grid
 from fastpin.published import catalog, interference, remote_stress
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification.interference import release_stress
 from tests.support.tiers import for_gate

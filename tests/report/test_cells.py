@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.report.curves import Curve, csv_cell, write_csv
+from fastpin.assess.outputs import Curve, csv_cell, write_csv
 
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-2+3", "@SUM(1)", "\tx", "\rx"])

@@ -11,8 +11,8 @@ from fastpin.figures.sweep import plot_sweep
 from fastpin.report.sweep import chart, check_axes, restricted, text, where_words, write_csv
 from fastpin.solver.result import Result
 from fastpin.studies import sweep
-from fastpin.studies.field_words import field_words
 from fastpin.studies.plan import Plan, parse_plan
+from fastpin.studies.variation import field_words
 from tests.support.plans import FRICTION, MAP, made_up_rows
 
 

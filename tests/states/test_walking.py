@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.assess.margins import document
 from fastpin.errors import InputWarning
-from fastpin.report.margins import document
 from fastpin.states.margins import smallest_margin
 from fastpin.states.walking import LEAST_WALK, Walk, walk_doubts, walk_margins, walk_words
 from tests.support.outcomes import value

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from fastpin.errors import InputError
-from fastpin.storage import database as databases
-from fastpin.storage.database import open_database
+from fastpin.storage import packed as databases
 from fastpin.storage.files import INDEX
+from fastpin.storage.packed import open_database
 from fastpin.studies import sweep
 from fastpin.studies.index import Index
 from fastpin.studies.plan import Plan, parse_plan

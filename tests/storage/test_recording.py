@@ -23,7 +23,7 @@ from fastpin.model.inputs import HDF5_SIGNATURE
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, NoEquilibriumError
 from fastpin.solver.solving import solve
-from fastpin.storage import journal, store, writer
+from fastpin.storage import journal, layout, store, writer
 from fastpin.storage.journal import journal_of
 from fastpin.storage.recording import record as follow
 from fastpin.storage.recording import resume, stored_case
@@ -274,7 +274,7 @@ def test_what_happens_at_the_very_end_locks_nobody_out(problem, path, monkeypatc
         raise error
 
     with monkeypatch.context() as patch:
-        patch.setattr(writer, "write_statistics", fail)
+        patch.setattr(layout, "write_statistics", fail)
         with pytest.raises((KeyboardInterrupt, OSError)):
             follow(problem, RANDOM[:6], path, nodes=61, arc=(-3.0, -0.1))
     assert store.load_points(path).size <= 6
@@ -313,7 +313,7 @@ def died(problem, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(writer, "CHECKPOINT_EVERY", 0.0)
         patch.setattr(writer, "CHECKPOINT_SHARE", 0.0)
-        patch.setattr(writer.FileRecorder, "finish", lambda writer, _: writer.abort())
+        patch.setattr(writer.FileRecorder, "end", lambda recorder, _: recorder.file.abort())
         with pytest.raises(Interrupted):
             follow(problem, RANDOM, folder / "a.h5", nodes=61, progress=StopAt(12.0), arc=(-3.0, -0.1))
     return folder

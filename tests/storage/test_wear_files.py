@@ -15,7 +15,7 @@ from fastpin.errors import InputError
 from fastpin.solver.errors import Interrupted, ResolutionError
 from fastpin.solver.fat_cycles import FatCycles, Worn
 from fastpin.solver.wear_result import WearResult
-from fastpin.storage import wear_files
+from fastpin.storage import wear_files, writer
 from fastpin.storage.journal import JournaledFile
 from fastpin.storage.recording import stored_case
 from tests.support.interrupts import StopAt
@@ -80,7 +80,8 @@ def test_an_interrupted_life_goes_on_to_the_same_bits(tmp_path):
 
 @pytest.mark.gate
 def test_a_life_goes_on_from_its_checkpoint(path, monkeypatch):
-    monkeypatch.setattr(wear_files, "CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr(writer, "CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr(writer, "CHECKPOINT_SHARE", 0.0)
 
     def stop(done: float, total: int) -> None:
         if done >= 46.0:
@@ -222,9 +223,9 @@ def test_a_life_without_a_stored_cycle_keeps_its_title(path, monkeypatch):
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from fastpin.storage import wear_files
+from fastpin.storage import wear_files, writer
 from tests.support.wear_cases import life
-wear_files.CHECKPOINT_EVERY = 0.0
+writer.CHECKPOINT_EVERY = writer.CHECKPOINT_SHARE = 0.0
 path, left, before = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3] == "True"
 write = wear_files._write_place
 def counted(*arguments):

@@ -8,10 +8,10 @@ from fastpin.casefile.reader import parse_case
 from fastpin.errors import CaseFileError
 from fastpin.model import Laminate
 from fastpin.model.angles import angle_at
-from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.identity import canonical, canonical_json, run_id
 from fastpin.studies.plan import parse_plan
 from fastpin.studies.tolerances import parse_tolerances
+from fastpin.studies.variation import field_kind, field_words
 
 HEAD = '[pin]\nmaterial = "steel"\n[plate]\n'
 TAIL = '\n[contact]\nplane = "stress"\nhole_radius = 3e-3\nclearance = 2e-5\nfriction = 0.2\n[[load]]\nP = 1e6\n'

@@ -6,10 +6,11 @@ import pytest
 
 import fastpin
 from fastpin import cracks, damage
-from fastpin.assess.fatigue import assess
+from fastpin.assess.fatigue import find
 from fastpin.errors import CaseFileError
 from fastpin.report import summary
 from fastpin.storage import stored_case
+from fastpin.storage.held import Held
 from fastpin.studies import read_plan, read_tolerances, sweep
 from fastpin.studies.outcomes import value_of
 from fastpin.studies.plan import parse_plan
@@ -82,9 +83,9 @@ def test_outcomes_are_the_margins_of_the_table(folder):
     case = plan.case(plan.points[0])
     result = fastpin.solve(case.problem, case.history, **case.options.keywords())
     values = {name: value_of(outcome, result).value for name, outcome in plan.outcomes.items()}
-    fatigue = assess(case, result)
+    fatigue = find(case, Held(result))
     crack = cracks.planned_growth(damage.cycle_states(result, result.cycles[-1]), case.crack)
-    rows = summary.document(case, result, fatigue=fatigue, crack=crack)["margins"]
+    rows = summary.document(case, result, found={"fatigue": fatigue, "crack": crack})["margins"]
     least = {}
     for row in rows:
         if row["margin"] is not None:

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.plan import Plan, parse_plan
+from fastpin.studies.variation import field_kind, field_words
 from tests.support.case_texts import PRESSED
 from tests.support.faults import fault_of
 

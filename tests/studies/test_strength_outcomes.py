@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import damage, studies
-from fastpin.report.envelope import BEARING, BYPASS, envelopes
+from fastpin import assess, damage
+from fastpin.report.sweep import BEARING, BYPASS, envelopes
 from fastpin.studies import read_plan, sweep
 from tests.support.case_texts import LAMINATED
 from tests.support.commands import printed, refused, said
@@ -57,7 +57,7 @@ def test_a_sweep_tells_the_strength_and_draws_the_envelope(folder: Path) -> None
         assert row["ratio"] == pytest.approx(found.least_ratio)
         assert row["ply"] == pytest.approx(found.least_ratio - 1.0)
         assert row["angle"] == pytest.approx(math.degrees(found.angle) + 90.0)
-        failing = studies.failure_load(problem, loads, "yamada-sun", distance=0.5e-3, nodes=61)
+        failing = assess.failure_load(problem, loads, "yamada-sun", distance=0.5e-3, nodes=61)
         assert row["factor"] == pytest.approx(failing.factor)
     assert rows[0]["curve"] is None
     assert rows[3]["curve"] == pytest.approx(

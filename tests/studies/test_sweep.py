@@ -19,7 +19,7 @@ from fastpin.model.angles import interval_from_bottom
 from fastpin.runtime.threads import works_alone
 from fastpin.storage import store
 from fastpin.storage.packed import INDEX
-from fastpin.studies import run_end, sweep, work, workers
+from fastpin.studies import run_end, sweep, workers
 from fastpin.studies.identity import id_of_json
 from fastpin.studies.index import lock_directory
 from fastpin.studies.plan import Plan, parse_plan
@@ -141,12 +141,12 @@ def test_runs_that_share_matrices_follow_one_another() -> None:
     "contact.clearance" = [1e-5, 2e-5]
     """
     plan = parse_plan(text)
-    values = [plan.runs[run].values for run in work.neighbours(plan, plan.runs)]
+    values = [plan.runs[run].values for run in workers.neighbours(plan, plan.runs)]
     assert [(each["contact.clearance"], each["contact.friction"]) for each in values] == [
         (gap, friction) for gap in (1e-5, 2e-5) for friction in (0.1, 0.2, 0.3)
     ]
     last = list(plan.runs)[2:]
-    assert sorted(work.neighbours(plan, last)) == sorted(last)
+    assert sorted(workers.neighbours(plan, last)) == sorted(last)
 
 
 def test_what_is_finished_is_skipped(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -260,7 +260,7 @@ def test_a_sweep_of_files_without_results_in_its_index_goes_on(plan: Plan, tmp_p
 
 @pytest.mark.gate
 def test_a_large_result_has_a_file(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(work, "MOST_PACKED", 8000)
+    monkeypatch.setattr(workers, "MOST_PACKED", 8000)
     sweep.run(plan, tmp_path, Inline())
     small = {run for run in plan.runs if len(store.load(tmp_path / "results" / f"{run}.h5")) == 1}
     assert 0 < len(small) < 6
@@ -288,16 +288,16 @@ def test_a_full_disk_ends_a_sweep_and_keeps_what_is_finished(plan: Plan, tmp_pat
 
 
 def test_batches_take_as_long_as_a_message_is_worth() -> None:
-    pace = work.Pace(2)
+    pace = workers.Pace(2)
     assert pace.size(1000) == 1  # nothing is known
     pace.learn([run_end.RunEnd("a", None, seconds=0.01), run_end.RunEnd("b", "lost", seconds=0.03)])
     assert pace.size(1000) == 12  # 0.25 s of 20 ms each
     assert (pace.size(40), pace.size(3)) == (5, 1)  # fewer towards the end
     pace.learn([run_end.RunEnd("c", None, seconds=9.0)])
     assert pace.size(1000) == 1
-    quick = work.Pace(1)
+    quick = workers.Pace(1)
     quick.learn([run_end.RunEnd("d", "it could not begin")])
-    assert quick.size(1000) == work.MOST_IN_BATCH
+    assert quick.size(1000) == workers.MOST_IN_BATCH
 
 
 # -- executors -------------------------------------------------------------------------------------------------
@@ -349,9 +349,10 @@ def test_a_full_disk_is_a_failure_without_figures(plan: Plan, tmp_path: Path, mo
 
 
 def test_a_worker_of_another_version_is_refused(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers, "__version__", "0.0")
+    of_sweep = workers.Setting
+    monkeypatch.setattr(workers, "Setting", lambda process, _, most: of_sweep(process, "0.0", most))
     summary = sweep.run(plan, tmp_path, Inline())
-    assert summary.failed[0][1] == f"the worker has fastpin 0.0, the sweep {fastpin.__version__}"
+    assert summary.failed[0][1] == f"the worker has fastpin {fastpin.__version__}, the sweep 0.0"
 
 
 def test_a_result_that_does_not_arrive_is_a_failure(plan, tmp_path, monkeypatch):

@@ -157,9 +157,10 @@ def test_outcomes_are_read_from_files_too(tmp_path: Path) -> None:
 
 
 def test_a_worker_of_another_version_reads_nothing(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers, "__version__", "0.0")
+    of_sweep = workers.Setting
+    monkeypatch.setattr(workers, "Setting", lambda process, _, most: of_sweep(process, "0.0", most))
     summary = sweep.run(parse_plan(CYCLES + TABLE), copy, Inline())
-    assert {reason for _, _, reason in summary.unread} == {f"the worker has fastpin 0.0, the sweep {__version__}"}
+    assert {reason for _, _, reason in summary.unread} == {f"the worker has fastpin {__version__}, the sweep 0.0"}
 
 
 def test_parts_bring_their_outcomes(tmp_path: Path) -> None:

@@ -21,8 +21,7 @@ from fastpin.cli.main import main
 from fastpin.model.case import Case
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, Point, parse_plan, read_plan
-from fastpin.studies.work import Pace
-from fastpin.studies.workers import Pool
+from fastpin.studies.workers import Pace, Pool
 from scripts.inline import Inline
 from tests.support.outcomes import FILE
 from tests.support.plans import FRICTION, assert_same_as_serial

@@ -10,13 +10,14 @@ from scipy.stats import spearmanr
 from fastpin import report
 from fastpin.errors import CaseFileError, InputError
 from fastpin.studies import parse_plan, sweep
-from fastpin.studies.tolerance_effects import effect_of, rank_correlation
 from fastpin.studies.tolerances import (
     MOST_FIELDS,
     Tolerances,
+    effect_of,
     effects_of,
     parse_tolerances,
     part_words,
+    rank_correlation,
     read_tolerances,
 )
 from scripts.inline import Inline

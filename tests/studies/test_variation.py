@@ -6,9 +6,8 @@ import pytest
 import fastpin
 from fastpin.casefile import builtin_case
 from fastpin.errors import CaseFileError
-from fastpin.studies.field_words import field_words
 from fastpin.studies.plan import parse_plan
-from fastpin.studies.variation import with_values
+from fastpin.studies.variation import field_words, with_values
 from tests.support.faults import fault_of
 
 

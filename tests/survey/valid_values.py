@@ -13,6 +13,7 @@ import numpy as np
 
 import fastpin
 from fastpin import (
+    assess,
     bodies,
     casefile,
     charts,
@@ -25,8 +26,8 @@ from fastpin import (
     studies,
     verification,
 )
+from fastpin.assess.outputs import Curve
 from fastpin.errors import FastpinError
-from fastpin.report.curves import Curve
 from scripts.inline import Inline
 
 LEFT_OUT = object()
@@ -181,7 +182,7 @@ class Valid:
             damage.first_ply_failure(LAMINATE, [1e8, 1e7, 1e7]), model.StrengthAssessment(distance=1e-3),
             damage.joint_strength(stressed[-1], distance=1e-3), charts.CHARTS["kt_bearing"],
             charts.lookup("kt_bearing", load_parameter=0.1, friction=0.4), charts.chart_formulas()[0],
-            studies.failure_load(laminated, [{"P": 1e5}], distance=1e-3, nodes=NODES),
+            assess.failure_load(laminated, [{"P": 1e5}], distance=1e-3, nodes=NODES),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from fastpin.cli.main import main
+from fastpin.cli.verify import check_table as table
 from fastpin.elasticity import stress as formulas
 from fastpin.kernels import cauchy, conjugate, influence
 from fastpin.reading import stress
-from fastpin.report.checks import table
 from fastpin.solver import solving
 from fastpin.solver.errors import ConvergenceError
 from fastpin.verification import checks as installation

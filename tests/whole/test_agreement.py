@@ -10,15 +10,15 @@ from typing import Any, NamedTuple
 import pytest
 
 import fastpin
-from fastpin import report
+from fastpin import assess
+from fastpin.assess.wear import cycle_columns, cycles_curve, scar_curves
 from fastpin.model import FatigueAssessment
 from fastpin.model.beside import beside_of
 from fastpin.model.materials import MaterialPair
 from fastpin.model.units import units
-from fastpin.pages.margins import margins
 from fastpin.pages.sections import crack, fatigue, strength
+from fastpin.pages.source import margins
 from fastpin.pages.wear import damage, numbers, overview
-from fastpin.report.wear import cycle_columns, cycles_curve, scar_curves
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import value_of
 from fastpin.studies.plan import parse_plan
@@ -281,7 +281,7 @@ def test_the_page_of_a_life_has_the_table_and_the_criterion_of_the_case(
 
 def test_outcomes_of_a_life_have_the_numbers_of_json() -> None:
     result = fastpin.solve(WORN, HISTORY, nodes=41, arc=(-3.0, -0.1))
-    last = report.wear.document(result.wear(**HOW))["cycles"][-1]
+    last = assess.wear.document(result.wear(**HOW))["cycles"][-1]
     names = ("depth", "volume", "energy_per_cycle", "largest_pressure")
     tables = {name: {"wear": name, **HOW} for name in names}
     found = outcomes_from(tables | {"old": {"wear": "dissipation", **HOW}}, {"fatigue": FATIGUE})

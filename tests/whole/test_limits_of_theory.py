@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 
+from fastpin.assess.outputs import Curve
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.published import catalog, half_plane, rigid_pin
-from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from tests.support.programs import assert_same_bits

@@ -6,9 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin.casefile.reader import EXAMPLE, parse_case
-from fastpin.report.states import state_table, stored_rows
-from fastpin.report.table import (
+from fastpin.assess.outputs import (
     MAX_ROWS,
     LeftOut,
     Repeat,
@@ -19,6 +17,8 @@ from fastpin.report.table import (
     table_of_lines,
     with_rows,
 )
+from fastpin.casefile.reader import EXAMPLE, parse_case
+from fastpin.report.states import state_table, stored_rows
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.quantities import load_point

@@ -5,23 +5,16 @@ from dataclasses import replace
 
 import pytest
 
+from fastpin.assess.cycle import cycle_line, document, write_csv
+from fastpin.assess.fatigue import MOST_STOPS, fatigue_lines, spectrum_damages, spectrum_line
+from fastpin.assess.outputs import json_ready
 from fastpin.bodies import Bushing
 from fastpin.model.angles import from_bottom
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.report.cycle import (
-    MOST_STOPS,
-    cycle_line,
-    document,
-    fatigue_lines,
-    spectrum_damages,
-    spectrum_line,
-    write_csv,
-)
 from fastpin.report.states import cycle_lines
-from fastpin.report.summary import json_ready
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.load_cycle import LoadCycle

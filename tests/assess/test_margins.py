@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fastpin import LoadHistory, Material, MaterialPair, Problem, Result, solve
+from fastpin.assess.margins import in_order, margin_lines, margin_rows, verdict
 from fastpin.bodies import Bushing, Ring
 from fastpin.damage import fatigue
 from fastpin.damage.margins import fatigue_margins, last_cycle_margins
@@ -14,7 +15,6 @@ from fastpin.model import FatigueConstants
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.report import summary
-from fastpin.report.margins import in_order, margin_lines, margin_rows, verdict
 from fastpin.states.extremes import Found, KeptStates, marked_extremes
 from fastpin.states.margins import Margin, smallest_margin, static_margins
 from fastpin.states.yielding import von_mises_peak

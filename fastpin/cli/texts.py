@@ -1,17 +1,42 @@
-"""``fastpin completion``: a script that completes commands, options and files in a shell."""
+"""``fastpin example``, ``check``, ``schema`` and ``completion``: commands that print a text."""
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
 
+from fastpin import casefile, report
 from fastpin.cli.options import parser
-from fastpin.cli.terminal import EXIT_OK
+from fastpin.cli.terminal import EXIT_OK, say
 from fastpin.errors import InputError
+from fastpin.model.doubts import doubts, warn_of, wear_doubts
+from fastpin.report.schema import json_schema
 
 
-def run(options: argparse.Namespace) -> int:
+def example(_: argparse.Namespace) -> int:
+    """Print a commented case file."""
+    sys.stdout.write(casefile.EXAMPLE)
+    return EXIT_OK
+
+
+def check(options: argparse.Namespace) -> int:
+    """Read a case file, and print how it is understood, with warnings of doubtful values."""
+    case = casefile.read_case(options.case)
+    say(*report.describe(case).split("\n"))
+    of_wear = [] if case.wear is None else wear_doubts(case.problem, case.wear)
+    warn_of([*doubts(case.problem, case.history, case.options), *of_wear], 2)
+    return EXIT_OK
+
+
+def schema(options: argparse.Namespace) -> int:
+    """Print the schema."""
+    sys.stdout.write(json.dumps(json_schema(options.written_by), indent=2) + "\n")
+    return EXIT_OK
+
+
+def completion(options: argparse.Namespace) -> int:
     """Print the script of a shell. Nothing of fastpin runs when a word is completed."""
     try:
         import shtab

@@ -1,14 +1,15 @@
-"""``fastpin benchmarks``: published problems beside fastpin's numbers."""
+"""``fastpin benchmarks`` and ``paper``: published problems and figures beside our numbers."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+import time
 from typing import Any
 
-from fastpin import report
+from fastpin.assess.outputs import json_ready
 from fastpin.cli.progress import Bar
-from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_outputs
+from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, as_options, check_outputs, fail, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.published import catalog, records
 from fastpin.version import __version__
@@ -23,10 +24,8 @@ def run(options: argparse.Namespace) -> int:
     names = list(dict.fromkeys(catalog.benchmark_name(name) for name in options.names or catalog.BENCHMARKS))
     formats = list(dict.fromkeys(options.format or ("png",)))
     if options.output is not None:
-        try:
+        with as_options():
             catalog.check_benchmarks(names, options.output, formats)
-        except InputError as error:
-            raise InputError(f"--{error.field}", error.reason) from None
     elif options.format:
         raise InputError("--format", "has a meaning with -o only")
     check_outputs({"--json": options.json})
@@ -53,4 +52,32 @@ def run(options: argparse.Namespace) -> int:
         finished = f"benchmarks that are finished: {', '.join(documents)}" if documents else "no benchmark was finished"
         return fail(f"interrupted; {finished}", EXIT_INTERRUPTED)
     document = {"fastpin": __version__, "benchmarks": documents}
-    return write_outputs([], options.json, lambda: report.summary.json_ready(document))
+    return write_outputs([], options.json, lambda: json_ready(document))
+
+
+def paper(options: argparse.Namespace) -> int:
+    """Compute, draw and write figures. Print the files of each figure and its seconds."""
+    nodes = catalog.NODES if options.nodes is None else options.nodes
+    with as_options(vars(options)):
+        names = list(dict.fromkeys(catalog.figure_name(name) for name in options.figure or catalog.PAPER))
+        formats = list(dict.fromkeys(options.format or catalog.FORMATS[:1]))
+        catalog.check(names, options.output, nodes, formats)
+    finished: list[str] = []
+    try:
+        with Bar(len(names), "figure {desc}") as progress_bar:
+            for name in names:
+                began = time.perf_counter()
+                progress_bar.describe(name)
+
+                def progress(part: float) -> None:
+                    progress_bar.update(len(finished) + part - progress_bar.n)
+
+                files = catalog.make(name, options.output, nodes, progress, formats)
+                finished.append(name)
+                seconds = time.perf_counter() - began
+                named = ", ".join(map(str, files))
+                progress_bar.write(f"figure {name}: {named}, {seconds:.1f} s", file=sys.stdout)
+    except KeyboardInterrupt:
+        written = f"figures that are finished: {', '.join(finished)}" if finished else "no figure was finished"
+        return fail(f"interrupted; {written}", EXIT_INTERRUPTED)
+    return EXIT_OK

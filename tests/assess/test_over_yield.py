@@ -3,6 +3,9 @@
 import pytest
 
 from fastpin.assess import fatigue as assessment
+from fastpin.assess.crack import growth_line
+from fastpin.assess.fatigue import fatigue_lines, spectrum_damages, spectrum_line
+from fastpin.assess.margins import document, margin_rows
 from fastpin.cracks import planned_growth
 from fastpin.damage import cycle_states
 from fastpin.damage.margins import reserve_margins
@@ -16,13 +19,11 @@ from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.pages.source import Source
-from fastpin.report.crack_growth import growth_line
-from fastpin.report.cycle import fatigue_lines, spectrum_damages, spectrum_line
-from fastpin.report.margins import document, margin_rows
 from fastpin.report.summary import document as summary
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.margins import Margin, over_yield, over_yield_words
+from fastpin.storage.held import Held
 
 HISTORY = LoadHistory([{"P": 0.0}]) + LoadHistory([{"P": 1e6, "syy": 66e6}, {"P": 1e5, "syy": 6.6e6}]).repeated(2)
 MARK = "above yield: stresses reach 3.16 times the yield strength"
@@ -44,7 +45,7 @@ def case(result: Result) -> Case:
 
 @pytest.fixture(scope="module")
 def assessed(case: Case, result: Result) -> assessment.Assessed:
-    found = assessment.assess(case, result)
+    found = assessment.find(case, Held(result))
     assert found is not None
     assert found.reason == ""
     return found
@@ -75,11 +76,11 @@ def test_a_body_below_yield_has_no_mark() -> None:
 def test_lines_of_lives_are_marked(result: Result, assessed: assessment.Assessed) -> None:
     over = Source.of_result(result).over_yield
     assert over["plate"] == pytest.approx(3.16, abs=0.01)
-    lines = [assessment.assessment_lines(assessed, over)[1], *fatigue_lines(result.states, result.cycles[-1], over)]
+    lines = [assessment.lines(assessed, over)[1], *fatigue_lines(result.states, result.cycles[-1], over)]
     lines += [spectrum_line(one, over) for one in spectrum_damages(result.states, len(HISTORY))]
     assert len(lines) == 3
     assert all("life" in line and line.endswith(f"; {MARK}") for line in lines)
-    assert MARK not in assessment.assessment_lines(assessed, {})[1]
+    assert MARK not in assessment.lines(assessed, {})[1]
 
 
 @pytest.mark.gate
@@ -92,7 +93,7 @@ def test_the_line_of_a_crack_is_marked(result: Result) -> None:
 
 
 def test_json_has_the_mark(case: Case, result: Result, assessed: assessment.Assessed) -> None:
-    found = summary(case, result, fatigue=assessed)
+    found = summary(case, result, found={"fatigue": assessed})
     assert found["fatigue"]["bodies"][0]["over_yield"] == pytest.approx(3.16, abs=0.01)
     marked = {row["name"]: row["over_yield"] for row in found["margins"] if row["body"] == "plate"}
     assert marked["yield"] is None
