@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fastpin import cracks, damage
-from fastpin.assess.outputs import Curve, Output, Progress, Schema, chosen, kept, object_of, properties, table
+from fastpin.assess.outputs import Curve, Follow, Output, Schema, chosen, kept, object_of, properties, table
 from fastpin.assess.outputs import document as document_of
 from fastpin.cracks.fates import CRACK_FATES, CrackFate
 from fastpin.cracks.margins import crack_margins
@@ -123,7 +123,7 @@ class CrackStops(NamedTuple):
             raise InputError("states", 'not all corners of the history are kept; keep = "all" keeps them')
         return cls(states, True)
 
-    def growth(self, how: CrackGrowth, progress: Progress | None = None) -> cracks.Growth:
+    def growth(self, how: CrackGrowth, progress: Follow | None = None) -> cracks.Growth:
         """Follow a crack under this pass, again and again. See :func:`fastpin.cracks.planned_growth`."""
         return cracks.planned_growth(self.states, how, self.is_spectrum, progress)
 
@@ -160,7 +160,7 @@ OUTCOMES = {
 judged = grown
 
 
-def find(case: Case, held: Held | None, progress: Progress | None = None) -> cracks.Growth | None:
+def find(case: Case, held: Held | None, progress: Follow | None = None) -> cracks.Growth | None:
     """Follow the crack of a case under its last cycle or its spectrum; None without a state.
 
     Raises

@@ -126,7 +126,7 @@ class Assessed(NamedTuple):
         return self.how.method == "edge" and self.how.angles is None
 
 
-def find(case: Case, held: Held | None, progress: outputs.Progress | None = None) -> Assessed | None:
+def find(case: Case, held: Held | None, progress: outputs.Follow | None = None) -> Assessed | None:
     """Assess the fatigue of a whole result as its case asks for it; None if the case does not."""
     if case.fatigue is None:
         return None
@@ -134,7 +134,7 @@ def find(case: Case, held: Held | None, progress: outputs.Progress | None = None
         return Assessed(case.fatigue, [], [], "the history has not come to its end")
     result = held.whole()
 
-    def half(begin: float) -> outputs.Progress | None:
+    def half(begin: float) -> outputs.Follow | None:
         return None if progress is None else lambda done, total: progress(begin + 0.5 * done / total, 1.0)
 
     try:

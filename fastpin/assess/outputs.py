@@ -22,7 +22,7 @@ from fastpin.storage.files import replacing
 Schema = dict[str, Any]
 """A JSON schema of draft 2020-12."""
 
-Progress = Callable[[float, float], None]
+Follow = Callable[[float, float], None]
 """Receives the work that is done, and all the work."""
 
 ROUNDING = 1e-9

@@ -148,7 +148,7 @@ def strength_words(problem: Problem, how: StrengthAssessment) -> str:
     return f"{how.criterion} on the characteristic curve of {' and '.join(lengths)}"
 
 
-def find(case: Case, held: Held | None, progress: outputs.Progress | None = None) -> StrengthFound | None:
+def find(case: Case, held: Held | None, progress: outputs.Follow | None = None) -> StrengthFound | None:
     """Return the strength in the worst state as [strength] asks for it, and its load at failure if the run is complete.
 
     None without a state.

@@ -523,7 +523,7 @@ def _block_hint(name: str) -> str:
     return "; several loads are [[load]] blocks, with double brackets" if name == "load" else ""
 
 
-class Named(Section):
+class NamedTable(Section):
     """A table whose faults begin with a name."""
 
     def __init__(self, source: CaseText, place: KeyPath, table: Mapping[str, Any], name: str) -> None:

@@ -25,7 +25,7 @@ from fastpin.assess.questions import QUESTIONS, of_question
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
 from fastpin.casefile.beside import READERS, read_assessment
 from fastpin.casefile.profiles import read_wear
-from fastpin.casefile.toml_text import CaseText, Named, Section, read_text
+from fastpin.casefile.toml_text import CaseText, NamedTable, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA
@@ -172,7 +172,7 @@ def outcomes_in_text(source: CaseText, folder: Path, beside: Mapping[str, Any] =
             if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
-                outcome = _of_table(source, Named(source, ("outcomes", name), value, name), folder, beside)
+                outcome = _of_table(source, NamedTable(source, ("outcomes", name), value, name), folder, beside)
                 found |= {} if outcome is None else {name: outcome}
             elif callable(value):
                 found[name] = _of_callable(value)

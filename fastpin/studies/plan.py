@@ -26,7 +26,7 @@ from fastpin.casefile.toml_text import (
     MOST_BYTES_OF_PLAN,
     CaseText,
     KeyPath,
-    Named,
+    NamedTable,
     Section,
     parse_text,
     read_text,
@@ -472,7 +472,7 @@ def range_in(
 
     `usual` is the number of values without ``count``; None if ``count`` must be given.
     """
-    section = Named(source, place, table, name)
+    section = NamedTable(source, place, table, name)
     before = len(source.placed)
     section.check_keys(_RANGE_KEYS, " in a range", hint=lambda _: f"; there are {', '.join(_RANGE_KEYS)}")
     needed = _RANGE_KEYS[: 3 if usual is None else 2]

@@ -79,7 +79,7 @@ def test_a_run_killed_before_its_coarse_states_are_in_the_file(problem, expected
         with pytest.raises(KeyboardInterrupt):
             record(problem, HISTORY, path, error_bars=True, **OPTIONS)
     with monkeypatch.context() as patch:
-        patch.setattr(writer, "read_cycles", fail)  # the coarse states are in the file, but not for good
+        patch.setattr(writer.layout, "read_cycles", fail)  # the coarse states are in the file, but not for good
         with pytest.raises(KeyboardInterrupt):
             resume(path)
     assert lacks_error_bars(path)
