@@ -60,7 +60,7 @@ def document(
     unread: dict[str, str] = {}
     alpha, beta = problem.surfaces.dundurs()
     unit = units(problem)
-    margins = [] if result is None else margins_of(result, found)
+    margins = margins_of(result, found) if result is not None and result.states else []
     whole = {
         "fastpin": __version__,
         "title": case.title,

@@ -169,6 +169,13 @@ def test_fatigue_is_of_the_last_cycle_and_says_so(result: Result) -> None:
 
 
 @pytest.mark.gate
+def test_a_result_without_states_has_a_summary_without_margins(result: Result) -> None:
+    none = replace(result, states=[], complete=False)
+    found = summary.document(Case(result.problem, result.history), none)
+    assert (found["margins"], found["states"], found["extremes"]) == ([], [], {})
+
+
+@pytest.mark.gate
 def test_the_summary_has_the_margins(result: Result) -> None:
     found = summary.document(Case(result.problem, result.history), result)["margins"]
     rows = of(result)

@@ -9,7 +9,7 @@ import pytest
 
 import fastpin
 from fastpin import damage
-from fastpin.assess.fatigue import Assessed, assessment_lines, document
+from fastpin.assess.fatigue import Assessed, document, lines
 from fastpin.casefile.reader import parse_case
 from fastpin.damage.counted import CountedMaterial, Spectrum
 from fastpin.damage.counting import rainflow
@@ -274,7 +274,7 @@ def test_text_json_and_outcomes_say_the_same(result: fastpin.Result, sure: Fatig
     spot, assessed = found[0].hot_spot, Assessed(sure, found, [])
     (body,) = document(assessed, {})["bodies"]
     failing = found[0].failure_probability(1e5)
-    head, line = assessment_lines(assessed, {})
+    head, line = lines(assessed, {})
     assert head.endswith(
         "for a life of 100000 cycles, lives that 99 % of the specimens reach with a confidence of 95 %"
     )
