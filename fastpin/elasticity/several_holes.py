@@ -9,7 +9,7 @@ logarithm ln(r/R) of each force.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -56,10 +56,13 @@ class HolesCompliance:
         return self.columns[name][each * hole : each * hole + each]
 
 
-def holes_in_outline(lug: Lug, pinned: Sequence[str], order: int) -> HolesCompliance:
-    """The compliance of a finite plate: its first hole and the further holes with these names carry a pin."""
+def holes_in_outline(lug: Lug, pinned: Sequence[str], order: int, progress: Callable[[float], None]) -> HolesCompliance:
+    """The compliance of a finite plate: its first hole and the further holes with these names carry a pin.
+
+    ``progress(done)`` is called from time to time, with the part that is done.
+    """
     each, count = 2 + 4 * order, 1 + len(pinned)
-    response = respond(lug, order, FINE, lambda done: None, pinned)
+    response = respond(lug, order, FINE, progress, pinned)
     whole = response.projected()
     square = whole[:, : each * count]
     matrix = 0.5 * (square + square.T) - np.kron(np.eye(count), hole_compliance(order, lug.kolosov))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +22,6 @@ from fastpin.model.angles import BOTTOM
 from fastpin.model.checks import as_toml, check_callable, instance, items, known_name, number, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
-from fastpin.model.materials import Plane
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.run import RunProgress
 from fastpin.solver.slip_tally import SlipTally
@@ -40,6 +39,12 @@ FIRST_TRIED = 16
 
 DECAYED = 1e-7
 """Size of the last harmonic at which no more are taken, in parts of the largest one."""
+
+
+MOST_KEPT = 16
+"""Compliances of plates with an outline that are kept."""
+
+_KEPT: dict[Any, HolesCompliance] = {}
 
 
 def solve_joint(
@@ -155,27 +160,26 @@ def load_values(joint: Joint, corners: Sequence[Mapping[str, float]]) -> np.ndar
 def _plate_compliance(
     joint: Joint, plate: JointPlate, harmonics: int | None, report: Callable[[float], None]
 ) -> HolesCompliance:
-    """The compliance of the pinned holes of a plate; that of equal plates is computed once."""
+    """The compliance of the pinned holes of a plate. That of an outline takes seconds, and is kept for equal plates."""
+    centres, radius = [pin.at for pin, of in joint.sections if of is plate], joint.radius
     report(0.0)
-    centres = tuple(pin.at for pin, of in joint.sections if of is plate)
-    return _compliance(replace(plate, name="plate", thickness=1.0), centres, joint.radius, joint.plane, harmonics)
-
-
-@functools.lru_cache(maxsize=16)
-def _compliance(
-    plate: JointPlate, centres: tuple[complex, ...], radius: float, plane: Plane, harmonics: int | None
-) -> HolesCompliance:
     if plate.is_infinite:
-        places = np.array(centres) / radius
-        return holes_in_infinite_plate(plate.material.kolosov(plane), places, harmonics or harmonics_needed(places))
-    lug, pinned = plate.lug(centres, radius, plane)
-    order = harmonics or FIRST_TRIED
-    while True:
-        found = holes_in_outline(lug, pinned, order)
+        places, kolosov = np.array(centres) / radius, plate.material.kolosov(joint.plane)
+        return holes_in_infinite_plate(kolosov, places, harmonics or harmonics_needed(places))
+    key = replace(plate, name="plate", thickness=1.0), tuple(centres), radius, joint.plane, harmonics
+    if key in _KEPT:
+        return _KEPT[key]
+    lug, pinned = plate.lug(centres, radius, joint.plane)
+    order, found = harmonics or FIRST_TRIED, None
+    while found is None:
+        found = holes_in_outline(lug, pinned, order, lambda done: report(0.0))
         last = max(float(harmonic_sizes(found.block(hole, hole))[-1]) for hole in range(found.holes))
-        if harmonics or order == MOST_HARMONICS or last <= DECAYED:
-            return found
-        order = min(2 * order, MOST_HARMONICS)
+        if not harmonics and order < MOST_HARMONICS and last > DECAYED:
+            order, found = min(2 * order, MOST_HARMONICS), None
+    if len(_KEPT) == MOST_KEPT:
+        _KEPT.clear()
+    _KEPT[key] = found
+    return found
 
 
 def harmonics_needed(centres: np.ndarray) -> int:

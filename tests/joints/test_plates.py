@@ -49,11 +49,11 @@ def test_a_hole_alone_adds_nothing_and_has_kirschs_stress() -> None:
 def test_the_matrix_is_symmetric_before_it_is_made_so() -> None:
     """Betti: a displacement at one hole under a force at another. The order of the holes does not matter either."""
     centres = np.array([0.0, 4.0 + 1.0j, 1.0 - 5.0j])
-    found = holes_in_infinite_plate(KOLOSOV, centres, 14)
-    turned = holes_in_infinite_plate(KOLOSOV, centres[[2, 0, 1]], 14)
+    found = holes_in_infinite_plate(KOLOSOV, centres, 10)
+    turned = holes_in_infinite_plate(KOLOSOV, centres[[2, 0, 1]], 10)
     for to, by in ((0, 1), (1, 2), (2, 2)):
         places = [1, 2, 0]
-        np.testing.assert_allclose(turned.block(places[to], places[by]), found.block(to, by), atol=1e-9)
+        np.testing.assert_allclose(turned.block(places[to], places[by]), found.block(to, by), atol=1e-7)
 
 
 @pytest.mark.gate
@@ -63,7 +63,10 @@ def test_a_wide_plate_is_nearly_infinite() -> None:
         0.33, "stress", 1.0, rectangle((-60.0, 66.0), (-60.0, 60.0)),
         dict.fromkeys(("left", "right", "bottom", "top"), "both"), holes=(Hole("second", 6.0 + 0j, 1.0),),
     )  # fmt: skip
-    finite, infinite = holes_in_outline(lug, ["second"], 6), holes_in_infinite_plate(KOLOSOV, np.array([0j, 6.0]), 6)
+    finite, infinite = (
+        holes_in_outline(lug, ["second"], 6, lambda done: None),
+        holes_in_infinite_plate(KOLOSOV, np.array([0j, 6.0]), 6),
+    )
     inner = np.r_[0, 6:26]  # without rotation and translation, which the supports hold
     for by in (0, 1):
         less = finite.block(0, by)[np.ix_(inner, inner)] - infinite.block(0, by)[np.ix_(inner, inner)]
