@@ -12,7 +12,6 @@ from typing import Any
 
 from fastpin.assess.outputs import NUMBER, TEXT, TRUTH, UNKNOWN, Schema, aligned, kept, list_of, map_of, object_of
 from fastpin.assess.questions import QUESTIONS
-from fastpin.damage.margins import last_cycle_margins
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, printed_loads, units
 from fastpin.states.cycles import Cycle
@@ -39,8 +38,8 @@ HEADS = ("subject", "value", "allowable", "margin", "load point", "loads", "rema
 def all_margins(static: Sequence[Margin], last_cycle: Sequence[Margin], found: Mapping[str, Any]) -> list[Margin]:
     """Return the margins of a result: of all states, of the last cycle, and of what is `found` for the questions."""
     rows = [*static, *last_cycle]
-    for name, question in QUESTIONS.items():
-        rows += [] if found.get(name) is None else question.margins(found[name])
+    for name in QUESTIONS:
+        rows += [] if found.get(name) is None else QUESTIONS[name].margins(found[name])
     return rows
 
 
@@ -48,7 +47,7 @@ def result_margins(
     problem: Problem, static: Sequence[Margin], last: Sequence[State], cycles: Sequence[Cycle], found: Mapping[str, Any]
 ) -> list[Margin]:
     """Return the known margins of a result: `last` holds the states of its last cycle. See :func:`all_margins`."""
-    return all_margins(static, last_cycle_margins(problem, last, cycles), found)
+    return all_margins(static, QUESTIONS["fatigue"].last_cycle_margins(problem, last, cycles), found)
 
 
 def of_margin(name: str, owner: str | None, sections: tuple[tuple[str, Any], ...], result: Any) -> float:

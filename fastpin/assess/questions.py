@@ -17,15 +17,33 @@ The file of a question has these names. What is found is an object of its own cl
 
 from __future__ import annotations
 
+import importlib
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
-
-from fastpin.assess import crack, fatigue, strength
 
 if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
     from fastpin.solver.result import Result
 
-QUESTIONS: dict[str, Any] = {"fatigue": fatigue, "crack": crack, "strength": strength}
-"""The questions by the names of their sections, in the order of all texts."""
+
+class Questions(Mapping[str, Any]):
+    """The files that answer, by the names of their sections. Each is imported when its question is asked first."""
+
+    names = ("fatigue", "crack", "strength")
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self.names:
+            raise KeyError(name)
+        return importlib.import_module(f"fastpin.assess.{name}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+
+QUESTIONS = Questions()
+"""The questions in the order of all texts."""
 
 
 def of_question(name: str, quantity: str, how: Any, result: Result) -> float:

@@ -32,7 +32,8 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import marked_places
 from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.walking import walk_margins
-from fastpin.storage.held import Held, HeldInFile
+from fastpin.storage.held import Held
+from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
 from fastpin.studies.convergence import Convergence
