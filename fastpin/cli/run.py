@@ -15,14 +15,13 @@ import numpy as np
 
 from fastpin import assess, casefile, figures, live, report, solver, storage
 from fastpin.assess.margins import margin_lines
-from fastpin.assess.questions import QUESTIONS
 from fastpin.cli import terminal, wear
 from fastpin.cli.options import literal
 from fastpin.cli.plot import load_seat, seat_title
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.errors import InputError, ReadingError
 from fastpin.kernels import first
-from fastpin.model.beside import beside_of
+from fastpin.model.beside import BESIDE, beside_of
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import warn_of
 from fastpin.model.options import OPTIONS
@@ -285,7 +284,7 @@ class RunReport:
         """What is found for a question of the case. A note says why nothing is found."""
         if name == "crack" and self.ended is not None:  # a run that was stopped is not to go on for long
             return None
-        question = QUESTIONS[name]
+        question = assess.questions.QUESTIONS[name]
         try:
             with Bar(1, question.BAR) as bar:
                 return question.find(self.case, self.held, progress_to(bar))
@@ -372,12 +371,12 @@ class RunReport:
         def margins() -> list[Margin]:
             rows = static_margins(problem, held.extremes, lambda places: [at[place] for place in places])
             if cycles or any(each is not None for each in found.values()):
-                rows = assess.margins.result_margins(problem, rows, states, cycles, found)
+                rows = assess.questions.result_margins(problem, rows, states, cycles, found)
             return rows
 
         def of_question(name: str) -> list[str]:
             known = found.get(name)
-            return [] if known is None else [*QUESTIONS[name].lines(known, over_yield(margins()))]
+            return [] if known is None else [*assess.questions.QUESTIONS[name].lines(known, over_yield(margins()))]
 
         def lives() -> list[str]:
             if found.get("fatigue") is not None:
@@ -394,7 +393,7 @@ class RunReport:
             "cycles": lambda: cycle_lines(problem, cycles, peaks),
             "last cycle": lambda: [] if cycle is None else [assess.cycle.cycle_line(cycle)],
             "margins": lambda: margin_lines(problem, margins()),
-            **{name: partial(of_question, name) for name in QUESTIONS},
+            **{name: partial(of_question, name) for name in BESIDE},
             "fatigue": lives,
         }
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from fastpin import storage
 from fastpin.assess.fatigue import SWT, fatigue_bodies, spectrum_damages
-from fastpin.assess.margins import HEADS, all_margins, in_order, margin_rows, verdict
-from fastpin.assess.questions import QUESTIONS
+from fastpin.assess.margins import HEADS, in_order, margin_rows, verdict
+from fastpin.assess.questions import QUESTIONS, all_margins
 from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
 from fastpin.damage.margins import MOST_STOPS, fatigue_margins
 from fastpin.errors import InputError
