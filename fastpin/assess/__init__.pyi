@@ -3,6 +3,7 @@ from . import cycle as cycle
 from . import fatigue as fatigue
 from . import margins as margins
 from . import outputs as outputs
+from . import questions as questions
 from . import strength as strength
 from . import wear as wear
 from .strength import FailureLoad as FailureLoad

@@ -11,7 +11,8 @@ import numpy as np
 from fastpin import damage
 from fastpin.assess import outputs
 from fastpin.damage.criteria import Criterion, criterion_title
-from fastpin.damage.margins import MOST_STOPS, reserve_margins
+from fastpin.damage.margins import MOST_STOPS as MOST_STOPS
+from fastpin.damage.margins import reserve_margins
 from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.model import Case, Problem

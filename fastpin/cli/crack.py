@@ -14,12 +14,11 @@ from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
 from fastpin.model.growth import LAWS
-from fastpin.storage.held import HeldInFile
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the growth of a crack, at one place or where a crack grows fastest, and draw it."""
-    case, held = storage.stored_case(options.result), HeldInFile(options.result)
+    case, held = storage.stored_case(options.result), storage.HeldInFile(options.result)
     stops = CrackStops.of(len(case.history), held.result.cycles, held.between, options.spectrum)
     outputs = {"--output": options.output, "--csv": options.csv, "--json": options.json}
     check_outputs(outputs, figures=("--output",))

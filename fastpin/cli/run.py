@@ -15,15 +15,13 @@ import numpy as np
 
 from fastpin import assess, casefile, figures, live, report, solver, storage
 from fastpin.assess.margins import margin_lines
-from fastpin.assess.questions import QUESTIONS
 from fastpin.cli import terminal, wear
 from fastpin.cli.options import literal
 from fastpin.cli.plot import load_seat, seat_title
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
-from fastpin.damage.margins import MOST_STOPS
 from fastpin.errors import InputError, ReadingError
 from fastpin.kernels import first
-from fastpin.model.beside import beside_of
+from fastpin.model.beside import BESIDE, beside_of
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import warn_of
 from fastpin.model.options import OPTIONS
@@ -43,7 +41,7 @@ from fastpin.runtime import beside
 from fastpin.states.choice import check_choice, last_cycle_states, span_of
 from fastpin.states.extremes import marked_places
 from fastpin.states.margins import Margin, over_yield, static_margins
-from fastpin.storage.held import Held, HeldInFile
+from fastpin.storage.held import Held
 
 if TYPE_CHECKING:  # they import compiled code
     from fastpin.states.load_cycle import LoadCycle
@@ -222,7 +220,7 @@ def _check_outputs(options: argparse.Namespace) -> None:
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
     """Write the states of a stored run. Without a state, a file with this name belongs to another run."""
-    held = None if ended is not None and ended.result is None else HeldInFile(options.output)
+    held = None if ended is not None and ended.result is None else storage.HeldInFile(options.output)
     return RunReport(case, held, ended).write(options)
 
 
@@ -263,10 +261,10 @@ class RunReport:
         writers: list[tuple[Any, Callable[[Path], object]]] = []
         if held is not None and held.points.size:
             writers.append((options.plot, lambda path: self._plot(held, options, path)))
-            recorded = live.recorded_places(held.points.size)
 
             def record(path: Path) -> None:
-                terminal.write_text(path, live.record_page(case, held.read(recorded), error or ""))
+                states = held.read(live.recorded_places(held.points.size))
+                terminal.write_text(path, live.record_page(case, states, error or ""))
 
             writers.append((options.record, record))
         if held is not None and held.result.cycles:
@@ -286,7 +284,7 @@ class RunReport:
         """What is found for a question of the case. A note says why nothing is found."""
         if name == "crack" and self.ended is not None:  # a run that was stopped is not to go on for long
             return None
-        question = QUESTIONS[name]
+        question = assess.questions.QUESTIONS[name]
         try:
             with Bar(1, question.BAR) as bar:
                 return question.find(self.case, self.held, progress_to(bar))
@@ -354,8 +352,8 @@ class RunReport:
             begin, end = span_of(cycles[-1])
             within = np.flatnonzero((held.points >= begin) & (held.points <= end)).tolist()
             # The fatigue over the last cycle is told, and whether a bush walks.
-            return within + last if len(within) <= MOST_STOPS or last else []
-        return range(size) if _is_spectrum(self.case) and size <= MOST_STOPS else last
+            return within + last if len(within) <= assess.fatigue.MOST_STOPS or last else []
+        return range(size) if _is_spectrum(self.case) and size <= assess.fatigue.MOST_STOPS else last
 
     def _paragraphs(
         self, held: Held, at: Mapping[int, State], cycle: LoadCycle | None, found: Mapping[str, Any]
@@ -373,12 +371,12 @@ class RunReport:
         def margins() -> list[Margin]:
             rows = static_margins(problem, held.extremes, lambda places: [at[place] for place in places])
             if cycles or any(each is not None for each in found.values()):
-                rows = assess.margins.result_margins(problem, rows, states, cycles, found)
+                rows = assess.questions.result_margins(problem, rows, states, cycles, found)
             return rows
 
         def of_question(name: str) -> list[str]:
             known = found.get(name)
-            return [] if known is None else [*QUESTIONS[name].lines(known, over_yield(margins()))]
+            return [] if known is None else [*assess.questions.QUESTIONS[name].lines(known, over_yield(margins()))]
 
         def lives() -> list[str]:
             if found.get("fatigue") is not None:
@@ -395,7 +393,7 @@ class RunReport:
             "cycles": lambda: cycle_lines(problem, cycles, peaks),
             "last cycle": lambda: [] if cycle is None else [assess.cycle.cycle_line(cycle)],
             "margins": lambda: margin_lines(problem, margins()),
-            **{name: partial(of_question, name) for name in QUESTIONS},
+            **{name: partial(of_question, name) for name in BESIDE},
             "fatigue": lives,
         }
 

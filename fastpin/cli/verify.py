@@ -7,14 +7,16 @@ import dataclasses
 import time
 from collections.abc import Sequence
 from itertools import groupby
+from typing import TYPE_CHECKING
 
-from fastpin import storage, verification
-from fastpin.assess.outputs import aligned, json_ready
+from fastpin import assess, storage, verification
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, write_outputs
 from fastpin.runtime.threads import cores
-from fastpin.verification.rows import Check
 from fastpin.version import __version__
+
+if TYPE_CHECKING:  # it imports NumPy
+    from fastpin.verification.rows import Check
 
 
 def run(options: argparse.Namespace) -> int:
@@ -37,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
         "checks": [{**dataclasses.asdict(check), "passed": check.passed} for check in checks],
     }
     lines = [*check_table(checks).split("\n"), "", end]
-    return write_outputs([], options.json, lambda: json_ready(document), lambda: lines) or code
+    return write_outputs([], options.json, lambda: assess.outputs.json_ready(document), lambda: lines) or code
 
 
 def check_table(checks: Sequence[Check]) -> str:
@@ -49,7 +51,7 @@ def check_table(checks: Sequence[Check]) -> str:
         same = (check.topic, check.case) == above
         rows.append(("" if same else check.case, *_cells(check)))
         above = check.topic, check.case
-    first, *lines = aligned(rows, "llrrrrll")
+    first, *lines = assess.outputs.aligned(rows, "llrrrrll")
     units = "Dimensionless (R = F = beta* = 1): N and T in F/R, angles in rad, moments in F R, energies in F^2 beta*."
     text = [units, "", first]
     for topic, group in groupby(zip(checks, lines, strict=True), lambda pair: pair[0].topic):

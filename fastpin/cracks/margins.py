@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fastpin.cracks.fates import CrackFate
-from fastpin.cracks.growing import Growth
 from fastpin.model.angles import from_bottom
 from fastpin.model.points import edge_body, owner_of
 from fastpin.model.units import units
 from fastpin.states.margins import Margin
+
+if TYPE_CHECKING:  # a run without a crack does not follow one
+    from fastpin.cracks.growing import Growth
 
 
 def crack_margins(growth: Growth) -> list[Margin]:

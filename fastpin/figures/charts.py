@@ -14,10 +14,10 @@ from matplotlib.lines import Line2D
 
 from fastpin.charts.groups import WIDTHS, load_parameter_at
 from fastpin.charts.lookups import CHARTS, ChartQuantity, lookup
-from fastpin.cli.charts import chart_list
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import house_style, line, new_figure
 from fastpin.model.checks import check_callable, file_path
+from fastpin.report.charts import chart_list
 from fastpin.storage.files import replacing
 
 FRICTIONS = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)

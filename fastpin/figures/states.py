@@ -29,7 +29,8 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import KeptStates, Side, find_extremes, marked_places
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
-from fastpin.storage.held import Held, HeldInFile
+from fastpin.storage.held import Held
+from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.recording import stored_case
 from fastpin.storage.wear_files import holds_wear, load_wear
 

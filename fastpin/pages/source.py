@@ -15,8 +15,8 @@ import numpy as np
 
 from fastpin import storage
 from fastpin.assess.fatigue import SWT, fatigue_bodies, spectrum_damages
-from fastpin.assess.margins import HEADS, all_margins, in_order, margin_rows, verdict
-from fastpin.assess.questions import QUESTIONS
+from fastpin.assess.margins import HEADS, in_order, margin_rows, verdict
+from fastpin.assess.questions import QUESTIONS, all_margins
 from fastpin.damage import Fatigue, SpectrumDamage, WornFatigue, fatigue, worn_fatigue
 from fastpin.damage.margins import MOST_STOPS, fatigue_margins
 from fastpin.errors import InputError
@@ -32,7 +32,8 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import marked_places
 from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.states.walking import walk_margins
-from fastpin.storage.held import Held, HeldInFile
+from fastpin.storage.held import Held
+from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
 from fastpin.studies.convergence import Convergence

@@ -7,10 +7,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fastpin.assess.crack import crack_words
-from fastpin.assess.fatigue import assessment_words
+from fastpin import assess
 from fastpin.assess.outputs import ROUNDING, Column, table, visible_rows
-from fastpin.assess.strength import strength_words
 from fastpin.model import Case, LoadHistory, Material, Problem, Wear
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
@@ -74,12 +72,13 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
     if case.wear is not None:
         rows.append(("wear", _wear_words(case.wear)))
     if case.fatigue is not None:
-        rows.append(("fatigue", f"{', '.join(case.fatigue.criteria).title()}, over {assessment_words(case.fatigue)}"))
+        over = assess.fatigue.assessment_words(case.fatigue)
+        rows.append(("fatigue", f"{', '.join(case.fatigue.criteria).title()}, over {over}"))
     if case.crack is not None:
-        rows.append(("crack", crack_words(problem, case.crack)))
+        rows.append(("crack", assess.crack.crack_words(problem, case.crack)))
     if case.strength is not None:
         asked = ", with the load at failure" if case.strength.failure else ""
-        rows.append(("strength", f"{strength_words(problem, case.strength)}{asked}"))
+        rows.append(("strength", f"{assess.strength.strength_words(problem, case.strength)}{asked}"))
     return rows
 
 

@@ -13,9 +13,8 @@ from fastpin import cracks
 from fastpin.assess import crack
 from fastpin.assess.cycle import document as cycle_document
 from fastpin.assess.margins import document as margins_document
-from fastpin.assess.margins import margins_of
 from fastpin.assess.outputs import json_ready, unit_names
-from fastpin.assess.questions import QUESTIONS
+from fastpin.assess.questions import QUESTIONS, margins_of
 from fastpin.bodies.body import BodyBase
 from fastpin.cracks.margins import crack_margins
 from fastpin.errors import ReadingError, reading

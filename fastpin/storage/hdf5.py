@@ -19,7 +19,7 @@ import numpy as np
 
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.checks import number
-from fastpin.storage import hdf5, packed
+from fastpin.storage import packed
 
 AT_ONCE = 1 << 24
 """Most bytes that are read at once, so that Ctrl-C is heard. A smaller array needs no proof of its size."""
@@ -262,7 +262,7 @@ def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...]
     """
     dataset = group.get(name)
     label = f"{group.name}/{name}".strip("/")
-    if not isinstance(dataset, (h5py.Dataset, hdf5.Array, packed.PackedArray)):
+    if not isinstance(dataset, (h5py.Dataset, Array, packed.PackedArray)):
         raise ValueError(f"there is no array {label}")
     if dataset.dtype != np.dtype(dtype):
         raise ValueError(f"{label} has numbers of the type {dataset.dtype}, not {np.dtype(dtype)}")

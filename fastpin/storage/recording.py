@@ -30,7 +30,7 @@ from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.hdf5 import text_of
-from fastpin.storage.held import HeldInFile, provenance
+from fastpin.storage.held_in_file import HeldInFile, provenance
 from fastpin.storage.journal import check_beside, is_empty
 from fastpin.storage.layout import (
     read_about,

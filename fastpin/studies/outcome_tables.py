@@ -20,8 +20,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from fastpin.assess.margins import LEAST, of_margin
-from fastpin.assess.questions import QUESTIONS, of_question
+from fastpin.assess.questions import LEAST, QUESTIONS, of_margin, of_question
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
 from fastpin.casefile.beside import READERS, read_assessment
 from fastpin.casefile.profiles import read_wear

@@ -12,7 +12,7 @@ import pytest
 
 from fastpin import MATERIALS, InputError, LoadHistory, MaterialPair, Problem, figures, load, load_wear, record, storage
 from fastpin.figures.kinds import KIND_OPTIONS, KINDS
-from fastpin.storage import held
+from fastpin.storage import held_in_file as held
 from tests.support.commands import printed, refused, said
 from tests.support.lives import sample_life
 from tests.support.samples import JOINT

@@ -13,7 +13,7 @@ import fastpin
 from fastpin import figures, storage
 from fastpin.cli.main import main
 from fastpin.states.extremes import READINGS, Extreme, marked_places
-from fastpin.storage.held import HeldInFile
+from fastpin.storage.held_in_file import HeldInFile
 from tests.support.tiers import gate, some_survey
 
 pytestmark = pytest.mark.gate

@@ -1,0 +1,168 @@
+"""What is read of a stored result on demand: its origin, states, extremes and residuals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from fastpin.errors import InputWarning
+from fastpin.model import LoadHistory, Problem
+from fastpin.model.checks import file_path, instance
+from fastpin.model.doubts import pressure_doubts
+from fastpin.solver.result import Result
+from fastpin.states.choice import span_of
+from fastpin.states.extremes import Found, yield_doubts, yield_extremes
+from fastpin.states.state import State
+from fastpin.states.walking import walk_doubts
+from fastpin.storage.hdf5 import text_of
+from fastpin.storage.held import Held
+from fastpin.storage.layout import RESIDUALS
+from fastpin.storage.store import load, load_points, open_result, places_between
+from fastpin.storage.stored_states import read_extremes
+
+STATES_AT_ONCE = 1_000
+"""States whose pressures are in memory at once."""
+
+
+def provenance(path: str | Path) -> dict[str, str]:
+    """Return the versions, the date, the machine and the platform of a stored result, by name.
+
+    The date "created" is that of the file's first writing, UTC, ISO 8601. The entry "run" is there only if a run has
+    written the file, which then holds all options of the solver. What a file does not hold is left out.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        attributes = {text_of(name): text_of(value) for name, value in file.attrs.items()}
+    versions = {name: value for name, value in attributes.items() if name.startswith("version_")}
+    found = {name.removeprefix("version_"): value for name, value in versions.items()}
+    return found | {name: attributes[name] for name in ("created", "host", "platform", "run") if name in attributes}
+
+
+def largest_residuals(path: str | Path) -> dict[str, float]:
+    """Return the largest residual of each kind over all states of a file, see :class:`fastpin.State`.
+
+    A file without states has none.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        rows: np.ndarray = file["states/residuals"][()]
+    return dict(zip(RESIDUALS, rows.max(axis=0).tolist(), strict=True)) if len(rows) else {}
+
+
+def largest_pressure(path: str | Path) -> float:
+    """Return the largest pressure at a node over all states of a file, Pa; 0 without states.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        rows = file["states/pressure"]
+        parts = (rows[begin : begin + STATES_AT_ONCE] for begin in range(0, len(rows), STATES_AT_ONCE))
+        return max((float(part.max(initial=0.0)) for part in parts), default=0.0)
+
+
+def marked_extremes(path: str | Path) -> Found:
+    """Return the extremes of all states of a file that texts and figures show, see fastpin/states/extremes.py.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        return read_extremes(file)
+
+
+def stored_walk_doubts(path: str | Path, problem: Problem) -> list[InputWarning]:
+    """Return the warnings of :func:`fastpin.states.walking.walk_doubts` for the last cycle of the file of a run.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`, and for objects of another kind.
+    """
+    if instance("problem", problem, Problem, "a Problem").seat is None or not (cycles := load(path, states=[]).cycles):
+        return []
+    states = load(path, states=places_between(path, *span_of(cycles[-1]))).states
+    return walk_doubts(states, cycles)
+
+
+def stored_yield_doubts(path: str | Path, problem: Problem, history: LoadHistory) -> list[InputWarning]:
+    """Return the warnings of :func:`fastpin.states.extremes.yield_doubts` for all states of the file of a run.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`, and for objects of another kind.
+    """
+    path = file_path("path", path)
+    instance("problem", problem, Problem, "a Problem")
+    instance("history", history, LoadHistory, "a LoadHistory")
+
+    def extremes() -> Found:
+        with open_result(path) as file:
+            return read_extremes(file, yield_extremes)
+
+    return yield_doubts(problem, history, extremes, lambda places: load(path, list(places)).states)
+
+
+class HeldInFile(Held):
+    """A stored result, of which few states are read. Its run may still be going on.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`. The methods raise it too.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(load(path, states=[]), path)
+        self._path = path
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Load points of all states, shape (states,)."""
+        return load_points(self._path)
+
+    @cached_property
+    def extremes(self) -> Found:
+        """The extremes of all states that texts and figures show."""
+        return marked_extremes(self._path)
+
+    @cached_property
+    def residuals(self) -> dict[str, float]:
+        """The largest residual of each kind over all states."""
+        return largest_residuals(self._path)
+
+    @cached_property
+    def pressure(self) -> float:
+        """The largest pressure at a node over all states, Pa."""
+        return largest_pressure(self._path)
+
+    def read(self, places: Sequence[int]) -> list[State]:
+        """Return the states at these places, in increasing order."""
+        return load(self._path, states=list(places)).states
+
+    def whole(self) -> Result:
+        """Return the result with all its states."""
+        return load(self._path)
+
+    def doubts(self) -> Iterator[InputWarning]:
+        """Yield warnings of doubtful pressures and von Mises stresses in all states, and of a bush that walks."""
+        problem, history = self.result.problem, self.result.history
+        yield from pressure_doubts(problem, history, [np.array([self.pressure])])
+        yield from stored_yield_doubts(self._path, problem, history)
+        yield from stored_walk_doubts(self._path, problem)
