@@ -31,7 +31,7 @@ SHELLS = ("bash", "zsh", "fish", "tcsh")
 
 SCHEMAS = (
     "run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack", "charts", "identify"
-)  # fmt: skip
+, "joint")  # fmt: skip
 """Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
 
 

@@ -53,8 +53,10 @@ def turning_points(values: np.ndarray, width: float) -> np.ndarray:
 
 
 def is_back(values: np.ndarray) -> bool:
-    """Whether a record (n,) ends where it began: within its least reversal, or within its longest step of many."""
-    longest = float(np.abs(np.diff(values)).max()) if values.size > FEWEST_OF_CYCLE else 0.0
+    """Whether a record (n,) ends where it began: within its least reversal or longest step. Few must be equal."""
+    if values.size <= FEWEST_OF_CYCLE:
+        return bool(values[-1] == values[0])
+    longest = float(np.abs(np.diff(values)).max())
     return bool(abs(values[-1] - values[0]) <= max(least_reversal(values), longest))
 
 

@@ -1,3 +1,4 @@
+from . import charts as charts
 from . import convergence as convergence
 from . import identify as identify
 from . import joints as joints

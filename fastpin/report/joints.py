@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess import outputs
 from fastpin.assess.outputs import Column, json_ready, table
 from fastpin.joints import JointResult, JointState
 from fastpin.model.angles import from_bottom
@@ -155,3 +156,37 @@ def _state_document(state: JointState) -> dict[str, Any]:
     moved = {plate.name: by.tolist() for plate, by in zip(joint.plates, state.moved, strict=True)}
     found = {"load_point": state.step + 1, "loads": state.load, "moved": moved, "contacts": contacts}
     return found | {"residuals": state.residuals}
+
+
+def schema() -> outputs.Schema:
+    """Return the JSON schema of :func:`document`."""
+    peak = outputs.object_of({"value": outputs.NUMBER, "angle": outputs.NUMBER, "resolved": outputs.TRUTH})
+    where = {"pin": outputs.TEXT, "plate": outputs.TEXT}
+    numbers = dict.fromkeys(("moment", "peak_pressure", "dissipation", "slip"), outputs.NUMBER)
+    contact = where | numbers | {"force": outputs.list_of(outputs.NUMBER, 2), "share": outputs.UNKNOWN}
+    largest = dict.fromkeys(("force", "pressure", "hoop", "hoop_angle", "slip", "dissipation"), outputs.NUMBER)
+    largest |= where | {
+        "touched": outputs.or_null(outputs.WHOLE),
+        "hoop_step": outputs.WHOLE,
+        "resolved": outputs.TRUTH,
+    }
+    state = {
+        "load_point": outputs.WHOLE,
+        "loads": outputs.map_of(outputs.NUMBER, "forces, N, and stresses, Pa"),
+        "moved": outputs.map_of(outputs.list_of(outputs.NUMBER, 3), "displacement along x, y, m, and rotation, rad"),
+        "contacts": outputs.list_of(outputs.object_of(contact | {"peak_hoop_stress": peak})),
+        "residuals": outputs.map_of(outputs.NUMBER, "violations of the conditions of contact and equilibrium"),
+    }
+    return outputs.object_of(
+        {
+            "fastpin": outputs.TEXT,
+            "title": outputs.TEXT,
+            "units": outputs.map_of(outputs.TEXT, "unit of each kind of quantity"),
+            "nodes": outputs.WHOLE,
+            "harmonics": outputs.map_of(outputs.WHOLE, "highest harmonic of the holes of each plate"),
+            "snaps": outputs.WHOLE,
+            "seconds": outputs.NUMBER,
+            "largest": outputs.list_of(outputs.object_of(largest)),
+            "states": outputs.list_of(outputs.object_of(state)),
+        }
+    )

@@ -34,6 +34,7 @@ from fastpin.model.laminate import MODULI, ORDER
 from fastpin.model.loads import ACTING, LOADS
 from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import METHODS, SolveOptions
+from fastpin.report import joints
 from fastpin.report.identify import ENERGIES
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import READINGS
@@ -50,7 +51,8 @@ def json_schema(command: str) -> Schema:
     Parameters
     ----------
     command : str
-        "run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack", "charts" or "identify".
+        "run", "converge", "verify", "benchmarks", "compliance", "wear", "tolerances", "crack", "charts", "identify" or
+        "joint".
         ``fastpin resume`` and ``show`` write the document of "run".
 
     Raises
@@ -379,6 +381,7 @@ _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "crack": _crack_growth,
     "charts": _charts,
     "identify": _identified,
+    "joint": joints.schema,
 }
 
 COMMANDS = tuple(_DOCUMENTS)

@@ -130,12 +130,13 @@ class LoadCycle:
 
     @property
     def differing_loads(self) -> list[str]:
-        """Names of the loads that differ between the two ends, by more than a record can tell.
+        """Names of the loads that differ between the two ends; in a record of samples, by more than it can tell.
 
-        See :func:`fastpin.model.turning.is_back`.
+        See :func:`fastpin.model.turning.is_back`. States inside steps are no samples.
         """
         given = [name for name in LOADS if name not in self.states[0].problem.reactions]
-        values = {name: np.array([state.load[name] for state in self.states]) for name in given}
+        corners = [state for state in self.states if state.fraction == 1.0]
+        values = {name: np.array([state.load[name] for state in corners]) for name in given}
         return [name for name, each in values.items() if each[0] != each[-1] and not is_back(each)]
 
     @cached_property

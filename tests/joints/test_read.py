@@ -6,11 +6,13 @@ import json
 from pathlib import Path
 
 import pytest
+from jsonschema import Draft202012Validator
 
 from fastpin import CaseFileError, casefile, figures
 from fastpin.cli.main import main
 from fastpin.joints import JOINT_EXAMPLE, JointResult, parse_joint, solve_joint
 from fastpin.report import joints as report
+from fastpin.report import json_schema
 
 SHEETS = """
 title = "two bolts"
@@ -115,6 +117,7 @@ def test_text_and_json_tell_the_same_numbers() -> None:
     text, document = report.describe(result), report.document(result, "two bolts")
     assert "2 pins, 1 plates, 24 nodes a contact" in text
     assert json.loads(json.dumps(document, allow_nan=False)) == document
+    Draft202012Validator(json_schema("joint")).validate(document)
     first = document["states"][0]["contacts"][0]
     assert first["force"] == pytest.approx([4e3, 0.0], abs=0.1)
     assert first["share"] == pytest.approx(2.0 / 3.0, abs=1e-4)
