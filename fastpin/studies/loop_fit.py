@@ -246,13 +246,6 @@ class LoopFit:
                 raise
             return np.full(self.model.loop.time.size, LOST)
 
-    def _sum(self, at: np.ndarray) -> float:
-        """The sum of squares at unknowns, which may lie beyond their bounds."""
-        return float(np.sum(self.residuals(self._inside(at)) ** 2))
-
-    def _inside(self, at: np.ndarray) -> np.ndarray:
-        return np.clip(at, np.nextafter(self.bounds[0], np.inf), self.bounds[1])
-
     def _jacobian(self, at: np.ndarray, kept: int | None = None) -> np.ndarray:
         """Differences of the distances, shape (samples, unknowns); 0 for the unknown with the number `kept`."""
         here, found = self.residuals(at), np.zeros((self.model.loop.time.size, at.size))
@@ -267,7 +260,7 @@ class LoopFit:
 
         The Jacobian is one by differences unless given. The unknown with the number `kept` stays.
         """
-        at = self._inside(first)
+        at = np.clip(first, np.nextafter(self.bounds[0], np.inf), self.bounds[1])
         matrix = self._jacobian(at, kept) if jacobian is None else jacobian.copy()
         free = np.flatnonzero(np.arange(at.size) != kept)
         last: list[np.ndarray] = []
@@ -314,15 +307,14 @@ class LoopFit:
         less of the contact slips, the less the loop tells.
         """
         low, high = self.bounds[:, unknown]
-        way = self.covariance[unknown] / self.covariance[unknown, unknown]
         ends = []
         for side in (-1.0, 1.0):
-            along, step = way, SIGMA * self.deviations[unknown]
+            step, inside, outside = SIGMA * self.deviations[unknown], (0.0, 0.0), (math.inf, math.inf)
             for _ in range(TRIES):
                 place = float(np.clip(best.at[unknown] + side * step, low, high))
-                starts = best.at.copy(), best.at + along * (place - best.at[unknown])
-                starts[0][unknown] = place
-                point = self._minimum(min(starts, key=self._sum), None, unknown)
+                start = best.at.copy()
+                start[unknown] = place
+                point = self._minimum(start, best.jacobian, unknown)
                 if point.cost - best.cost > (SIGMA - CLOSE) ** 2:  # it may be less with a Jacobian from there
                     point = self._minimum(point.at, None, unknown)
                 if point.cost < best.cost - CONVERGED:
@@ -331,9 +323,11 @@ class LoopFit:
                 size = math.sqrt(max(point.cost - best.cost, 1e-4)) / max(self.scatter, 1.0)
                 if abs(size - SIGMA) < CLOSE or (size < SIGMA and place in (low, high)):
                     break
-                if size < SIGMA:
-                    along = (point.at - best.at) / (side * step)
-                step *= float(np.clip(SIGMA / size, 0.3, 3.0))
+                inside, outside = ((step, size), outside) if size < SIGMA else (inside, (step, size))
+                step *= float(np.clip(SIGMA / size, 1.2, 3.0))
+                if math.isfinite(outside[0]):
+                    part = float(np.clip((SIGMA - inside[1]) / (outside[1] - inside[1]), 0.2, 0.8))
+                    step = inside[0] + part * (outside[0] - inside[0])
             way_on = min(SIGMA / size, 1.0 + CLOSE)
             ends.append(point._replace(at=np.clip(best.at + way_on * (point.at - best.at), *self.bounds)))
         return ends
