@@ -78,7 +78,7 @@ def test_a_loop_is_read_fitted_and_written() -> None:
     rows = list(csv.DictReader(Path("out.csv").read_text().splitlines()))
     assert len(rows) == 78
     assert float(rows[5]["Q computed [N]"]) == pytest.approx(float(rows[5]["Q [N]"]), abs=400.0)
-    assert Path("out.png").exists()
+    assert Path("out.png").stat().st_size > 0
 
 
 @pytest.mark.gate

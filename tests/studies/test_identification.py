@@ -63,7 +63,7 @@ def test_scale_is_fitted_with_a_known_rig() -> None:
     ("measured", "options"),
     [
         (replace(WIDE, begins=1.1, cycles=1.5), {"start": "cycle"}),
-        (Measured(6e-3, 60, 0.005, rig=30e3 / THICKNESS, names=("rotation", "M")), {}),
+        (Measured(6e-3, 60, 0.005, rig=30e3 / THICKNESS, names=("rotation", "M")), {"nodes": 31}),
         (replace(WIDE, samples=100, cycles=0.7), {}),
     ],
     ids=["in a cycle", "rotation", "one turning point"],
@@ -74,7 +74,7 @@ def test_other_loops(measured: Measured, options: dict[str, Any]) -> None:
 
 @pytest.mark.gate
 def test_each_cycle_has_its_friction() -> None:
-    found = fitted(replace(WIDE, cycles=2.25, changes=(0.0, 0.15)), by_cycle=True)
+    found = fitted(replace(WIDE, cycles=2.25, changes=(0.0, 0.15)), by_cycle=True, nodes=41)
     assert [name for name in found.estimates if name.startswith("friction")] == ["friction 1", "friction 2"]
     for each, true in zip(found.frictions, (0.68, 0.782), strict=True):
         assert each.low * 0.97 < true < each.high * 1.03
