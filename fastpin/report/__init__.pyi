@@ -1,3 +1,4 @@
+from . import charts as charts
 from . import convergence as convergence
 from . import stress as stress
 from . import summary as summary
