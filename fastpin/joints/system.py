@@ -249,72 +249,84 @@ def build(
     )  # fmt: skip
 
 
+class _Conditions:
+    """The conditions of equilibrium and coherence while they are filled, row by row.
+
+    Attributes
+    ----------
+    equilibrium : ndarray, shape (m, 2n)
+    rows, springs : ndarray, shape (m, m)
+        The part of the motion, without that of the springs of loose pins; and that of the springs.
+    """
+
+    def __init__(
+        self, sections: Sequence[PinSection], alone: Sequence[System], nodes: Nodes, given: JointLoads, beta: float
+    ) -> None:
+        self._sections, self._alone, self._nodes, self._given, self._beta = sections, alone, nodes, given, beta
+        total = 3 * len(sections) + len(given.moving)
+        self.equilibrium = np.zeros((total, 2 * nodes.size))
+        self.rows, self.springs = np.zeros((total, total)), np.zeros((total, total))
+
+    def add_force(self, row: int, place: int, axis: int, factor: float) -> None:
+        """Add the force of a pin on a plate, with the spring that holds it while it is loose."""
+        self.equilibrium[row, self._nodes.rows(place)] += factor * self._alone[place].equilibrium[axis]
+        self.springs[row, 3 * place + axis] += factor * CENTRING
+
+    def add_moment(self, row: int, place: int, factor: float) -> None:
+        """Add the moment of a pin on a plate, with the spring."""
+        shear = self._nodes.rows(place)[self._nodes.grids[place].size :]
+        self.equilibrium[row, shear] -= factor * self._alone[place].weights
+        self.springs[row, 3 * place + TURN] += factor * CENTRING
+
+    def add_displacement(self, row: int, place: int, axis: int, sign: float) -> None:
+        """Add the displacement of a section, (T29), or its rotation."""
+        self.rows[row, 3 * place + axis] += sign
+        for number, motion in enumerate(self._given.moving, start=3 * len(self._sections)):
+            if motion.plate == self._sections[place].plate:
+                self.rows[row, number] += sign * motion.at(self._sections[place].at)[axis]
+        if axis != TURN:
+            modulus = self._sections[place].problem.pair.pin.shear_modulus
+            g = k = 1.0 / (8.0 * math.pi * modulus * self._beta)
+            cos, sin = self._nodes.grids[place].trig_moments()
+            along = self._alone[place].equilibrium[axis]
+            integral = (np.r_[cos, -sin], np.r_[sin, cos])[axis]
+            self.equilibrium[row, self._nodes.rows(place)] += sign * (g * along - k * integral)
+
+
 def _conditions(
     sections: Sequence[PinSection], alone: Sequence[System], nodes: Nodes, given: JointLoads, beta: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The conditions of equilibrium and coherence: of the tractions, the motion, the springs in it, and the loads."""
-    count, size = 3 * len(sections), 2 * nodes.size
-    total = count + len(given.moving)
-    equilibrium, rows, springs = np.zeros((total, size)), np.zeros((total, total)), np.zeros((total, total))
+    found, count = _Conditions(sections, alone, nodes, given, beta), 3 * len(sections)
     user = slice(len(LOADS), len(LOADS) + given.pins.shape[2])
-    forces = np.zeros((total, user.stop + 2))
-
-    def add_force(row: int, place: int, axis: int, factor: float) -> None:
-        """Add the force of a pin on a plate, with the spring that centres it."""
-        equilibrium[row, nodes.rows(place)] += factor * alone[place].equilibrium[axis]
-        springs[row, 3 * place + axis] += factor * CENTRING
-
-    def add_displacement(row: int, place: int, axis: int, sign: float) -> None:
-        """Add the displacement of a section, (T29)."""
-        g = k = 1.0 / (8.0 * math.pi * sections[place].problem.pair.pin.shear_modulus * beta)
-        cos, sin = nodes.grids[place].trig_moments()
-        integral = (np.r_[cos, -sin], np.r_[sin, cos])[axis]
-        equilibrium[row, nodes.rows(place)] += sign * (g * alone[place].equilibrium[axis] - k * integral)
-        rows[row, 3 * place + axis] += sign
-        for number, motion in enumerate(given.moving):
-            if motion.plate == sections[place].plate:
-                rows[row, count + number] += sign * motion.at(sections[place].at)[axis]
-
-    def add_moment(row: int, place: int, factor: float) -> None:
-        """Add the moment of a pin on a plate, with the spring."""
-        shear = nodes.rows(place)[nodes.grids[place].size :]
-        equilibrium[row, shear] -= factor * alone[place].weights
-        springs[row, 3 * place + TURN] += factor * CENTRING
-
-    for pin in range(len(given.pins)):
+    forces = np.zeros((len(found.rows), user.stop + 2))
+    for pin, on_pin in enumerate(given.pins):
         members = [place for place, each in enumerate(sections) if each.pin == pin]
         head = 3 * members[0]
-        forces[head : head + 2, user] = given.pins[pin]
+        forces[head : head + 2, user] = on_pin
+        for place in members:
+            for axis in (0, 1):
+                found.add_force(head + axis, place, axis, sections[place].thickness)
         if all(sections[place].problem.frictionless for place in members):
-            rows[head + TURN, head + TURN] = 1.0  # nothing turns it
+            found.rows[head + TURN, head + TURN] = 1.0  # nothing turns it
         else:
             for place in members:
-                add_moment(head + TURN, place, sections[place].thickness)
-        for axis in (0, 1):
-            for place in members:
-                add_force(head + axis, place, axis, sections[place].thickness)
-            for step, (before, place) in enumerate(itertools.pairwise(members), start=1):
-                add_displacement(3 * place + axis, before, axis, 1.0)
-                add_displacement(3 * place + axis, place, axis, -1.0)
+                found.add_moment(head + TURN, place, sections[place].thickness)
+        for step, (before, place) in enumerate(itertools.pairwise(members), start=1):
+            soft = sections[place].flexibility
+            for axis in (0, 1, TURN):
+                found.add_displacement(3 * place + axis, before, axis, 1.0)
+                found.add_displacement(3 * place + axis, place, axis, -1.0)
+            for axis in (0, 1):
                 for earlier in members[:step]:
-                    add_force(
-                        3 * place + axis, earlier, axis, sections[place].flexibility * sections[earlier].thickness
-                    )
-                outside = given.pins[pin, axis] * sections[place].flexibility  # acts on the first section
-                forces[3 * place + axis, user] += outside
-        for before, place in itertools.pairwise(members):
-            for sign, of in ((1.0, before), (-1.0, place)):
-                rows[3 * place + TURN, 3 * of + TURN] += sign
-                for number, motion in enumerate(given.moving):
-                    if motion.plate == sections[of].plate:
-                        rows[3 * place + TURN, count + number] += sign * motion.at(0j)[TURN]
-    for number, motion in enumerate(given.moving):
+                    found.add_force(3 * place + axis, earlier, axis, soft * sections[earlier].thickness)
+                forces[3 * place + axis, user] += soft * on_pin[axis]  # it acts on the first section
+    for row, motion in enumerate(given.moving, start=count):
         for place, each in enumerate(sections):
             if each.plate == motion.plate:
                 x, y, turned = motion.at(each.at)
-                add_force(count + number, place, 0, each.thickness * x)
-                add_force(count + number, place, 1, each.thickness * y)
-                if turned:
-                    add_moment(count + number, place, each.thickness)
-        forces[count + number, user] = -given.plates[number]
-    return equilibrium, rows + springs, springs, forces
+                found.add_force(row, place, 0, each.thickness * x)
+                found.add_force(row, place, 1, each.thickness * y)
+                found.add_moment(row, place, each.thickness * turned)
+        forces[row, user] = -given.plates[row - count]
+    return found.equilibrium, found.rows + found.springs, found.springs, forces

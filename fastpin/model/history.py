@@ -333,10 +333,8 @@ class LoadHistory:
         """
         path = file_path("path", path)
         choices = None if columns is None else column_choices("columns", columns)
-        skip = whole_number("skip", skip, 0)
-        if thickness is None:
-            return read_csv(path, choices, skip=skip)
-        return read_csv(path, choices, "with thickness", skip).per_thickness(thickness)
+        found = read_csv(path, choices, "with thickness" if thickness else "per metre", whole_number("skip", skip, 0))
+        return found if thickness is None else found.per_thickness(thickness)
 
     def repeated(self, count: int) -> LoadHistory:
         """This history `count` times in a row. Each time is a cycle.
@@ -471,11 +469,10 @@ def read_csv(
     path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre", skip: int = 0
 ) -> LoadHistory:
     """Read a history as :meth:`LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
-    parts = read_corners(path, choices, basis, skip)
-    if len(parts) == 1 and not parts[0][1]:  # a record of samples may hold cycles
-        rows, _ = parts[0]
-        return LoadHistory.of_blocks([Block(rows, *recorded_cycles(rows))])
-    return LoadHistory.of_blocks(replace(_plain(rows), count=max(n, 1), cycle=n > 0) for rows, n in parts)
+    return LoadHistory.of_blocks(
+        replace(_plain(rows), count=n, cycle=True) if n else Block(rows, *recorded_cycles(rows))
+        for rows, n in read_corners(path, choices, basis, skip)
+    )
 
 
 def cycle_length(history: LoadHistory, cycle: CycleKey) -> int:

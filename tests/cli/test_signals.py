@@ -101,7 +101,7 @@ def test_a_signal_stops_a_command(folder: Path, command: str, background: bool) 
 
 LOST = """
 import signal, sys, time, weakref
-from fastpin.cli import case, main
+from fastpin.cli import main, texts
 def stopped(_):
     signal.raise_signal(signal.SIGTERM)
 def work(options):
@@ -112,7 +112,7 @@ def work(options):
     del part
     time.sleep(600)
     return 0
-case.check = work
+texts.check = work
 sys.exit(main.main(["check", "a.toml"]))
 """
 """A command that hears its signal in the callback of a weak reference, where Python drops exceptions."""

@@ -175,7 +175,7 @@ def test_few_states_of_a_long_history_are_read_and_drawn(monkeypatch: pytest.Mon
     result = sample_result([{"P": 1e6 + 100.0 * k, "Q": 1e5 * (-1) ** k} for k in range(200)], nodes=21)
     source = Source.of_result(result)
     read: list[int] = []
-    object.__setattr__(source, "read", lambda places: read.extend(places) or [result[k] for k in places])
+    monkeypatch.setattr(source.held, "read", lambda places: read.extend(places) or [result[k] for k in places])
     states, gaps = source.rows
     assert (len(states), gaps) == (MAX_ROWS, {MAX_ROWS // 2: "160 more"})
     assert len(source.drawn) == MOST_DRAWN

@@ -13,6 +13,7 @@ import fastpin
 from fastpin import figures, storage
 from fastpin.cli.main import main
 from fastpin.states.extremes import READINGS, Extreme, marked_places
+from fastpin.storage import stored_states
 from fastpin.storage.held_in_file import HeldInFile
 from tests.support.tiers import gate, some_survey
 
@@ -151,7 +152,7 @@ LEAST = 60
 
 @pytest.fixture
 def least(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(storage.extremes, "LEAST_STORED", LEAST)
+    monkeypatch.setattr(stored_states, "LEAST_STORED", LEAST)
 
 
 @pytest.fixture(scope="module")
@@ -161,7 +162,7 @@ def long(tmp_path_factory: pytest.TempPathFactory) -> Path:
     case = fastpin.LoadHistory([{"P": 1e6}, {"P": 2e6}]).repeated(LEAST // 2)
     pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["aluminium"])
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(storage.extremes, "LEAST_STORED", LEAST)
+        patched.setattr(stored_states, "LEAST_STORED", LEAST)
         fastpin.record(fastpin.Problem(pair, 0.01, 2e-5, 0.3), case, path, nodes=61)
     return path
 
@@ -176,7 +177,7 @@ def test_a_file_has_extremes_from_so_many_states_on(long: Path, least: None, tmp
 
 def test_a_long_result_has_its_extremes_in_the_file(long: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     known = storage.marked_extremes(long)
-    monkeypatch.setattr(storage.extremes.StoredStates, "blocks", lambda self: pytest.fail("all states were read"))
+    monkeypatch.setattr(stored_states.StoredStates, "blocks", lambda self: pytest.fail("all states were read"))
     assert storage.marked_extremes(long) == known
     assert marked_places(known)
 
@@ -202,7 +203,7 @@ def test_extremes_in_a_file_are_checked(long: Path, tmp_path: Path, damage: str)
             group["place"] = np.zeros((3, 2)) if damage == "shape" else "x"
     found = {("peak_pressure", "largest"): Extreme(1.0, 2, 3.0)}
     with h5py.File(path, "r+") as file:
-        assert storage.extremes.read_extremes(file, lambda _: found) is found
+        assert stored_states.read_extremes(file, lambda _: found) is found
     if damage == "value":
         assert storage.marked_extremes(path) == storage.marked_extremes(long)
 
