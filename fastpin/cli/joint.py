@@ -7,7 +7,16 @@ import sys
 
 from fastpin import figures, joints, report
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_outputs
+from fastpin.cli.terminal import (
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    as_options,
+    check_outputs,
+    fail,
+    say,
+    write_outputs,
+)
 from fastpin.errors import InputError
 from fastpin.solver import Interrupted, SolveError
 
@@ -24,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
     nodes = case.nodes if options.nodes is None else options.nodes
     code = EXIT_OK
     try:
-        with Bar(len(case.corners), LOAD_POINTS) as bar:
+        with Bar(len(case.corners), LOAD_POINTS) as bar, as_options(() if options.nodes is None else ("nodes",)):
             result = joints.solve_joint(
                 case.joint, case.corners, nodes=nodes, harmonics=case.harmonics, progress=progress_to(bar)
             )
