@@ -112,7 +112,8 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     order[stack] = np.arange(size)
     table = HeldTable(np.empty((size, size), order="F"), stack, order)
     is_sound, in_laminate = False, system.bodies is not None and bool(system.bodies.anisotropy)
-    if have_toeplitz_matrix(system, nodes, LEAST_NEIGHBOURS if in_laminate else 1):
+    suits = in_laminate or system.motions == 3  # the kernel has the motions of one pin
+    if suits and have_toeplitz_matrix(system, nodes, LEAST_NEIGHBOURS if in_laminate else 1):
         if in_laminate:
             is_sound = _fill_in_laminate(system, closed, table)
         else:
