@@ -151,13 +151,13 @@ def _outline(source: CaseText) -> tuple[Part, ...] | None:
             block.report("[[part]]: has no meaning for a rectangle, whose parts are bottom, right, top and left")
         for key in ("x", "y"):
             section.require(key)
-        x, y = section.checked("x", _limits), section.checked("y", _limits)
+        x, y = section.checked("x", limits_of), section.checked("y", limits_of)
         return None if x is None or y is None else rectangle(x, y)
     for key in ("x", "y"):
         if key in section:
             section.report(f'{key}: is for shape = "rectangle" only', key)
     section.require("start")
-    point = section.checked("start", _point)
+    point = section.checked("start", point_of)
     parts: list[Part] = []
     blocks = source.blocks("part")
     if not blocks:
@@ -165,15 +165,15 @@ def _outline(source: CaseText) -> tuple[Part, ...] | None:
     for block in blocks:
         block.require("name")
         block.require("to")
-        name, end = block.checked("name", string), block.checked("to", _point)
-        through = block.checked("through", _point)
+        name, end = block.checked("name", string), block.checked("to", point_of)
+        through = block.checked("through", point_of)
         if name is not None and end is not None and point is not None:
             parts.append(Part(name, point, end, through))
         point = end
     return tuple(parts) if len(parts) == len(blocks) and parts else None
 
 
-def _limits(field: str, value: object) -> tuple[float, float]:
+def limits_of(field: str, value: object) -> tuple[float, float]:
     """Check a lower and an upper limit."""
     low, high = _two_numbers(field, value, "two numbers [lower, upper]")
     if low >= high:
@@ -181,7 +181,7 @@ def _limits(field: str, value: object) -> tuple[float, float]:
     return low, high
 
 
-def _point(field: str, value: object) -> complex:
+def point_of(field: str, value: object) -> complex:
     """Check a point [x, y], m."""
     return complex(*_two_numbers(field, value, "a point [x, y]"))
 
@@ -205,7 +205,7 @@ def _names(field: str, value: object, known: Sequence[str] | None) -> tuple[str,
 def _hole(section: Section) -> Hole | None:
     for key in LUG_KEYS["hole"]:
         section.require(key)
-    name, centre = section.checked("name", string), section.checked("centre", _point)
+    name, centre = section.checked("name", string), section.checked("centre", point_of)
     radius = section.checked("radius", positive)
     return None if name is None or centre is None or radius is None else Hole(name, centre, radius)
 

@@ -10,10 +10,11 @@ import itertools
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from fastpin.casefile.lug import limits_of, point_of
 from fastpin.casefile.materials import read_material
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
-from fastpin.joints.parts import MOST_PINS, Joint, JointPin, JointPlate, tate_rosenfeld
+from fastpin.joints.parts import Joint, JointPin, JointPlate, tate_rosenfeld
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
 from fastpin.model.lug import Part, rectangle
@@ -164,7 +165,7 @@ def _made(block: Section, make: Any, **values: Any) -> Any:
 def _outline(block: Section) -> tuple[Part, ...] | None:
     """The outline of a plate; empty for an infinite one, None if it is wrong (reported)."""
     if "start" in block or "parts" in block:
-        start, parts = block.checked("start", _point), block.value("parts")
+        start, parts = block.checked("start", point_of), block.value("parts")
         if start is None or not isinstance(parts, list) or not all(isinstance(part, dict) for part in parts):
             block.report("parts: start and a list of parts { name, to, through } make an outline", "parts")
             return None
@@ -174,8 +175,8 @@ def _outline(block: Section) -> tuple[Part, ...] | None:
                 known = [key for key in part if key not in ("name", "to", "through")]
                 if known or "to" not in part:
                     raise InputError("parts", "a part has a name, its end to, and through if it is a circular arc")
-                end = _point("to", part["to"])
-                through = _point("through", part["through"]) if "through" in part else None
+                end = point_of("to", part["to"])
+                through = point_of("through", part["through"]) if "through" in part else None
                 found.append(Part(string("name", part.get("name", "edge")), start, end, through))
                 start = end
         except InputError as error:
@@ -186,7 +187,7 @@ def _outline(block: Section) -> tuple[Part, ...] | None:
         return ()
     for key in ("x", "y"):
         block.require(key)
-    x, y = block.checked("x", _limits), block.checked("y", _limits)
+    x, y = block.checked("x", limits_of), block.checked("y", limits_of)
     return None if x is None or y is None else rectangle(x, y)
 
 
@@ -236,23 +237,11 @@ def _flexibility(
 
 def _names(field: str, value: object) -> list[str]:
     names = value if isinstance(value, list) else [value]
-    return [any_text(field, name) for name in names][:MOST_PINS]
+    return [any_text(field, name) for name in names]
 
 
 def _points(field: str, value: object) -> list[complex]:
     """One point [x, y] or a list of points, m."""
     if isinstance(value, list) and value and all(isinstance(each, list) for each in value):
-        return [_point(field, each) for each in value]
-    return [_point(field, value)]
-
-
-def _point(field: str, value: object) -> complex:
-    if not isinstance(value, list) or len(value) != 2:
-        raise InputError(field, f"must be a point [x, y], not {as_toml(value)}")
-    return complex(number(field, value[0]), number(field, value[1]))
-
-
-def _limits(field: str, value: object) -> tuple[float, float]:
-    if not isinstance(value, list) or len(value) != 2 or not number(field, value[0]) < number(field, value[1]):
-        raise InputError(field, f"must be two numbers [lower, upper], not {as_toml(value)}")
-    return float(value[0]), float(value[1])
+        return [point_of(field, each) for each in value]
+    return [point_of(field, value)]
