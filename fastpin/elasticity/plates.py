@@ -350,7 +350,7 @@ def _tractions(lug: Lug, edges: Edges, order: int, pinned: Collection[str]) -> t
     each = 2 + 4 * order
     found = np.zeros((edges.z.size, each * len(contacts) + len(loads)), dtype=complex)
     for place, (on_hole, centre) in enumerate(contacts):
-        found[on_hole, each * place : each * place + each] = _harmonics(edges.z[on_hole] - centre, order)
+        found[on_hole, each * place : each * place + each] = edge_basis(edges.z[on_hole] - centre, order)
     for load in lug.loads:
         for name in load.parts:
             on = _on_parts(lug, edges, name)
@@ -359,7 +359,7 @@ def _tractions(lug: Lug, edges: Edges, order: int, pinned: Collection[str]) -> t
     return found, loads
 
 
-def _harmonics(z: np.ndarray, order: int) -> np.ndarray:
+def edge_basis(z: np.ndarray, order: int) -> np.ndarray:
     """The basis of a compliance at points (k,) on the edge of a hole round 0, complex, shape (k, 2 + 4 K)."""
     radial = z / np.abs(z)
     waves = radial[:, None] ** np.arange(order + 1)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fastpin.elasticity.plates import FINE, hole_compliance, respond
+from fastpin.elasticity.plates import FINE, edge_basis, hole_compliance, respond
 from fastpin.model.loads import LOADS, SXX, SXY, SYY
 from fastpin.model.lug import Lug
 
@@ -81,6 +81,12 @@ def holes_in_infinite_plate(kolosov: float, centres: np.ndarray, order: int) -> 
     points = 4 * order + 16
     theta = 2.0 * math.pi / points * np.arange(points)
     radial = np.exp(1j * theta)
+    basis = 2.0 / points * np.conj(edge_basis(radial, order)).T * radial  # of r and theta components
+
+    def projected(field: np.ndarray) -> np.ndarray:
+        """The coefficients (2 + 4 K, ...) of a field of r + i theta components (points, ...)."""
+        return (basis @ field).real
+
     tractions, moved = np.empty((2, count * each, count * each))
     potentials = _potentials(order, kolosov)
     for i in range(count):
@@ -89,10 +95,7 @@ def holes_in_infinite_plate(kolosov: float, centres: np.ndarray, order: int) -> 
             w = radial + (centres[j] - centres[i])
             on_edge, displaced = _fields(potentials, w, radial, kolosov)
             rows = slice(each * j, each * j + each)
-            tractions[rows, own], moved[rows, own] = (
-                _projected(on_edge, theta, order),
-                _projected(displaced, theta, order),
-            )
+            tractions[rows, own], moved[rows, own] = projected(on_edge), projected(displaced)
     compliance = np.linalg.solve(tractions.T, moved.T).T
     columns = {}
     for place, (mean, deviator) in {SXX: (0.25, -0.5), SYY: (0.25, 0.5), SXY: (0.0, 1j)}.items():
@@ -101,8 +104,8 @@ def holes_in_infinite_plate(kolosov: float, centres: np.ndarray, order: int) -> 
             rows, z = slice(each * j, each * j + each), radial + centres[j]
             spread = 2.0 * mean - radial**2 * deviator  # s_rr - i s_rtheta of the uniform stress
             turned = 0.5 * (kolosov * mean * z - mean * z - np.conj(deviator * z)) * np.conj(radial)
-            remote_traction[rows] = _projected(-np.conj(spread)[:, None], theta, order)[:, 0]
-            remote_moved[rows] = _projected(turned[:, None], theta, order)[:, 0]
+            remote_traction[rows] = projected(-np.conj(spread))
+            remote_moved[rows] = projected(turned)
         columns[LOADS[place]] = remote_moved - compliance @ remote_traction
     matrix = 0.5 * (compliance + compliance.T) - np.kron(np.eye(count), hole_compliance(order, kolosov))
     return HolesCompliance(matrix, columns, count)
@@ -145,16 +148,3 @@ def _fields(potentials: np.ndarray, w: np.ndarray, radial: np.ndarray, kolosov: 
     log = np.log(np.abs(w))[:, None]
     moved = kolosov * (integral[0] + A[1] * log) - w[:, None] * np.conj(phi) - np.conj(integral[1] + B[1] * log)
     return -np.conj(spread), 0.5 * moved * np.conj(radial)[:, None]
-
-
-def _projected(field: np.ndarray, theta: np.ndarray, order: int) -> np.ndarray:
-    """Coefficients (2 + 4 K, columns) in the basis of r + i theta components at equally spaced angles."""
-    found = np.empty((2 + 4 * order, field.shape[1]))
-    unit = 2.0 / theta.size
-    found[0], found[1] = field.real.mean(axis=0) * math.sqrt(2.0), field.imag.mean(axis=0) * math.sqrt(2.0)
-    angles = np.multiply.outer(np.arange(1, order + 1), theta)
-    for place, (wave, part) in enumerate(
-        ((np.cos, field.real), (np.sin, field.real), (np.cos, field.imag), (np.sin, field.imag))
-    ):
-        found[2 + place :: 4] = unit * (wave(angles) @ part)
-    return found
