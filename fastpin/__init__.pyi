@@ -25,12 +25,12 @@ from .model.materials import MaterialPair as MaterialPair
 from .model.options import SolveOptions as SolveOptions
 from .model.points import Points as Points
 from .model.problem import Problem as Problem
+from .sessions.session import Session as Session
 from .solver.errors import ConvergenceError as ConvergenceError
 from .solver.errors import Interrupted as Interrupted
 from .solver.errors import NoEquilibriumError as NoEquilibriumError
 from .solver.errors import SolveError as SolveError
 from .solver.result import Result as Result
-from .solver.session import Session as Session
 from .solver.solving import solve as solve
 from .states.state import State as State
 from .storage.recording import record as record

@@ -13,6 +13,7 @@ import h5py
 from file_keys import table, words_of_docstring
 
 import fastpin
+import fastpin.wear_lives
 from fastpin.model import About
 from fastpin.states.cycles import Cycle
 from fastpin.storage import layout
@@ -84,7 +85,7 @@ def wear_layout() -> str:
         problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=20e-6, friction=0.4)
         history = fastpin.LoadHistory([{"P": 2e6}]) + fastpin.LoadHistory([{"P": 1e6}, {"P": 2e6}]).repeated(2)
         fastpin.wear(problem, history, coefficient=1e-14, output=path, nodes=31)
-        words = words_of_docstring(fastpin.solver.WornCycle)
+        words = words_of_docstring(fastpin.wear_lives.WornCycle)
         with h5py.File(path) as file:
             for name in ("/wear", "/wear/place"):
                 rows = list(_members(file[name], name, WEAR_WORDS | words if name == "/wear" else words | WEAR_WORDS))

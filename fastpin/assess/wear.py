@@ -18,14 +18,14 @@ from fastpin.version import __version__
 
 if TYPE_CHECKING:  # they import compiled code, and a plan is read without it
     from fastpin.damage import WornFatigue
-    from fastpin.solver.wear_result import WearResult
+    from fastpin.wear_lives.wear_result import WearResult
 
 COUNTS = (
     outputs.Output("cycle", "whole", lambda one: one.cycle),
     outputs.Output("next_jump", "whole", lambda one: one.next_jump),
     outputs.Output("solved", "whole", lambda one: one.solved),
 )
-"""Counts of a :class:`fastpin.solver.WornCycle`."""
+"""Counts of a :class:`fastpin.wear_lives.WornCycle`."""
 
 
 WORN = (
@@ -38,7 +38,7 @@ WORN = (
     outputs.Output("removed", "energy", lambda one: one.removed),
     outputs.Output("largest_pressure", "traction", lambda one: one.largest_pressure, short="largest p"),
 )
-"""Outputs of a :class:`fastpin.solver.WornCycle`. Dissipation and removed energy are those of all cycles so far."""
+"""Outputs of a :class:`fastpin.wear_lives.WornCycle`. Dissipation and removed energy are those of all cycles so far."""
 
 
 PROFILES = (

@@ -14,6 +14,7 @@ from fastpin.cli.options import literal
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.errors import InputError
 from fastpin.report.states import way_on
+from fastpin.wear_lives import WearResult
 
 
 def run(options: argparse.Namespace) -> int:
@@ -39,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
     settings: dict[str, Any] = {"nodes": options.nodes or case.options.nodes, "arc": case.options.arc}
     settings |= {"overwrite": options.overwrite, "resume": options.resume, "output": options.output}
     settings |= {"fatigue": case.fatigue}
-    result: solver.WearResult | None = None
+    result: WearResult | None = None
     code, trouble = terminal.EXIT_OK, None
     with Bar(1, "{whole} of {total:,} cycles") as progress_bar:
         settings |= {"progress": progress_to(progress_bar), "title": case.title}
@@ -72,7 +73,7 @@ def show(options: argparse.Namespace) -> int:
     return code
 
 
-def _write(result: solver.WearResult | None, options: argparse.Namespace, title: str, trouble: str | None) -> int:
+def _write(result: WearResult | None, options: argparse.Namespace, title: str, trouble: str | None) -> int:
     """Write the files, then print the table."""
     writers: list[tuple[Any, Callable[[Path], object]]] = []
     lines: list[str] = []

@@ -39,7 +39,7 @@ from fastpin.states.state import State
 
 @runtime_checkable
 class StoredCycle(Protocol):
-    """A chosen cycle of a life of wear, see :class:`fastpin.solver.WornCycle`."""
+    """A chosen cycle of a life of wear, see :class:`fastpin.wear_lives.WornCycle`."""
 
     @property
     def cycle(self) -> int:

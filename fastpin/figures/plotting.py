@@ -24,8 +24,9 @@ from fastpin.model.case import Case
 from fastpin.model.checks import choice, instance
 from fastpin.model.wear import cycles_text
 from fastpin.report.states import state_table
-from fastpin.solver import Result, WearResult
+from fastpin.solver import Result
 from fastpin.states.state import State
+from fastpin.wear_lives import WearResult
 
 
 def plot_of(kind: str, subject: Subject, after: float | None = None, **options: Any) -> Plot:

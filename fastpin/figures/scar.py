@@ -39,7 +39,7 @@ from fastpin.model.angles import from_bottom
 from fastpin.model.points import Body, edge_body
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
-from fastpin.solver.wear_result import WearResult, WornCycle
+from fastpin.wear_lives.wear_result import WearResult, WornCycle
 
 MARGIN = 0.15
 """Angles beside the contact that are shown, in parts of its width."""

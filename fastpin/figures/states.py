@@ -22,7 +22,7 @@ from fastpin.model.angles import AT_TOP, turns_from_bottom
 from fastpin.model.beside import beside_of
 from fastpin.model.checks import as_toml, instance
 from fastpin.reading.zones import ALL_ROUND
-from fastpin.solver import Result, WearResult
+from fastpin.solver import Result
 from fastpin.states.choice import NO_CYCLE, StateChoice, chosen_places, even_choice
 from fastpin.states.curves import traction_patches
 from fastpin.states.cycles import Cycle
@@ -33,6 +33,7 @@ from fastpin.storage.held import Held
 from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.recording import stored_case
 from fastpin.storage.wear_files import holds_wear, load_wear
+from fastpin.wear_lives import WearResult
 
 NEARLY_ROUND = 340.0
 """Length of an axis, degrees, from which on it goes all round: with further whole steps it would be more than that."""

@@ -28,7 +28,8 @@ from fastpin.model.options import ALL_ROUND, SolveOptions
 from fastpin.model.profile import CALLED
 from fastpin.model.units import FIXED_PREFIXES, units
 from fastpin.report.case import profile_words
-from fastpin.solver import ConvergenceError, Session, SolveError
+from fastpin.sessions import Session
+from fastpin.solver import ConvergenceError, SolveError
 from fastpin.states.state import State
 from fastpin.version import __version__
 

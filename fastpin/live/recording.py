@@ -23,9 +23,9 @@ from fastpin.model.case import Case
 from fastpin.model.checks import instance, instances, string, whole_number
 from fastpin.model.history import MAX_CORNERS
 from fastpin.model.points import edge_body
-from fastpin.solver.wear_result import WearResult, WornCycle
 from fastpin.states.state import State
 from fastpin.version import __version__
+from fastpin.wear_lives.wear_result import WearResult, WornCycle
 
 
 def recorded_places(count: int, most: int = MOST_PICTURES) -> list[int]:
@@ -86,7 +86,7 @@ def record_life(result: WearResult, title: str = "", sentence: str = "") -> str:
     InputError
         If there is no stored cycle, or an argument is of another class.
     """
-    instance("result", result, WearResult, "a fastpin.solver.WearResult")
+    instance("result", result, WearResult, "a fastpin.wear_lives.WearResult")
     string("title", title)
     string("sentence", sentence)
     if not len(result):

@@ -17,10 +17,11 @@ from fastpin.pages.sections import SECTIONS, crack, seat, strength
 from fastpin.pages.source import PageParts, Source, now, with_count
 from fastpin.pages.wear import WEAR_SECTIONS
 from fastpin.pages.writing import check_page, write_page
-from fastpin.solver import Result, WearResult
+from fastpin.solver import Result
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical
 from fastpin.version import __version__
+from fastpin.wear_lives import WearResult
 
 PageProgress = Callable[[float, float], None]
 """Receives the number of finished sections and the number of all sections."""

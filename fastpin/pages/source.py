@@ -25,7 +25,7 @@ from fastpin.model import LOADS, Case, LoadHistory, SolveOptions
 from fastpin.model.points import edge_body, elastic_bodies
 from fastpin.pages.content import Album, Facts, PageSection, Text
 from fastpin.report.states import stored_rows
-from fastpin.solver import Result, WearResult
+from fastpin.solver import Result
 from fastpin.states import LoadCycle, State
 from fastpin.states.choice import even_choice, span_of
 from fastpin.states.cycles import Cycle
@@ -37,6 +37,7 @@ from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
 from fastpin.studies.convergence import Convergence
+from fastpin.wear_lives import WearResult
 
 MOST_DRAWN = 6
 """Most states that a figure or a table of all quantities shows: as many have a legend of their own."""

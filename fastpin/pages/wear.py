@@ -34,9 +34,9 @@ from fastpin.pages.sections import (
 )
 from fastpin.pages.source import PageParts, Source, margins, sentence
 from fastpin.report.states import TableRows, way_on
-from fastpin.solver.wear_result import WearResult
 from fastpin.states.margins import over_yield_words
 from fastpin.states.quantities import load_point
+from fastpin.wear_lives.wear_result import WearResult
 
 NO_PROFILE = "There is no stored profile: the life ended before its first cycle."
 """In place of a section that needs profiles."""

@@ -3,6 +3,26 @@
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+from fastpin.moved import with_moved
+
+
+def _sessions() -> Any:
+    import fastpin.sessions
+
+    return fastpin.sessions
+
+
+def _wear_lives() -> Any:
+    import fastpin.wear_lives
+
+    return fastpin.wear_lives
+
+
+_face, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__ = with_moved(with_moved(_face, _sessions, ("Session",)), _wear_lives, ("WearResult", "WornCycle"))

@@ -6,7 +6,4 @@ from .errors import NoEquilibriumError as NoEquilibriumError
 from .errors import SolveError as SolveError
 from .result import Restart as Restart
 from .result import Result as Result
-from .session import Session as Session
 from .solving import solve as solve
-from .wear_result import WearResult as WearResult
-from .wear_result import WornCycle as WornCycle

@@ -24,7 +24,6 @@ from fastpin.model.synonyms import explains_attributes
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
-from fastpin.solver.wear_result import WearResult
 from fastpin.states.choice import StateChoice, loaded_span_of, missing_corners, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
@@ -127,7 +126,7 @@ class Result(Sequence[State]):
     coarse: Result | None = None
 
     @classmethod
-    def of_life(cls, life: WearResult, after: float | None = None) -> Result:
+    def of_life(cls, life: Any, after: float | None = None) -> Result:
         """The states of a life of wear, over one cycle on each stored profile, or on that `after` so many cycles.
 
         The cycles of the result are these cycles.
@@ -137,7 +136,9 @@ class Result(Sequence[State]):
         InputError
             If `life` is no WearResult, or no profile is stored there.
         """
-        instance("life", life, WearResult, "a WearResult")
+        import fastpin.wear_lives
+
+        instance("life", life, fastpin.wear_lives.WearResult, "a WearResult")
         chosen = life.cycles if after is None else (life.after(after),)
         return cls(
             [state for each in chosen for state in each.states], life.problem, life.history, life.grid, "path",
@@ -368,13 +369,17 @@ class Result(Sequence[State]):
         if missing:
             raise InputError("states", f"must hold all corners of the history; {len(missing):,} were not kept")
 
-    def wear(self, **how: Any) -> WearResult:
+    def wear(self, **how: Any) -> Any:
         """Follow the last cycle of the history many times on a profile that wears.
 
         Parameters
         ----------
         **how
             See :func:`fastpin.wear`, such as ``coefficient=1e-15, cycles=1e5``. The nodes are as many as here.
+
+        Returns
+        -------
+        WearResult
 
         Raises
         ------
@@ -383,8 +388,7 @@ class Result(Sequence[State]):
         """
         import fastpin
 
-        life: WearResult = fastpin.wear(self.problem, self.history, **({"nodes": self.grid.size} | how))
-        return life
+        return fastpin.wear(self.problem, self.history, **({"nodes": self.grid.size} | how))
 
     def report(self, path: str | Path, **options: Any) -> None:
         """Write a report of the result, an HTML page or a PDF: case, loads, margins, key figures, figures, checks.

@@ -5,20 +5,17 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Collection
 from dataclasses import replace
-from typing import Any, ClassVar, Protocol, Self
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
 from fastpin.elasticity.interfaces import JointSystem
-from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
-from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import FRICTION_CHANGE, LOADS, M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnlyDict
 from fastpin.model.units import named_loads
 from fastpin.solver.assembly import unloaded_configuration
@@ -34,12 +31,9 @@ from fastpin.solver.configuration import (
     slip_tally_with,
     unbalanced,
 )
-from fastpin.solver.drift import DriftingSystem
 from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, SolveError
 from fastpin.solver.first_contact import first_contact
-from fastpin.solver.growth import OutsideGap
-from fastpin.solver.path_stepper import PathStepper
-from fastpin.solver.place import system_with_friction
+from fastpin.solver.outside import OutsideGap
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import follow_floating, release
 from fastpin.solver.result import Restart
@@ -290,42 +284,6 @@ class Run:
             self.slip_tally.to_corner, self.seat_dissipation,
         )  # fmt: skip
 
-    def with_friction_followed(self, problem: Problem) -> Self:
-        """The run of another friction that goes on after the change to it, under the load of the last corner.
-
-        This run stays at its corner.
-
-        Raises
-        ------
-        InputError
-            If the system of this run is a :class:`LargeSystem`.
-        SolveError
-            See :meth:`follow`. The fraction is that of the change.
-        """
-        if isinstance(self.system, LargeSystem):
-            raise InputError("friction", "a change can't be followed on a circle of so many unequal node distances")
-        before, load = self.last_corner, self.last_corner.load
-        system = system_with_friction(self.system, problem)
-        begin, end = np.r_[load, 0.0], np.r_[load, 1.0]
-        drifting = DriftingSystem.between(self.system.under(load), system.under(load).friction)
-        stepper = PathStepper(drifting, self.statistics, self.strict)
-        position, piece = Position(replace(before, load=begin), before.closed.copy()), Piece(0.0, 1.0, begin, end)
-        try:
-            while position.now.closed.any() and not np.array_equal(position.now.load, end):
-                stepper.advance(position, piece, 1.0, lambda reached: self._report(self.corner, reached))
-        except SolveError as error:
-            error.step, error.fraction, error.load = self.corner, position.reached, named_load(self.load)
-            error.args = (f"at {100.0 * error.fraction:.4g} % of the change of the friction: {error}",)
-            raise
-        stepper.leave(position)
-        now = replace(position.now, load=load)
-        start = replace(
-            self.bookmark(), configuration=now, dissipation=self.dissipation + now.dissipation,
-            work=self.work + now.work, repeats=Repeats(), slip_tally=self.slip_tally.to_corner.joined(now.slip_tally),
-        )  # fmt: skip
-        kind = type(self)
-        return kind(self.history, system, self.options, self.recorder, self.progress, start, self.stops, self.strict)
-
     def _step(self, load: np.ndarray, ends_cycle: bool, kept: bool, inside: bool = False) -> KnownConfiguration | None:
         """Follow the step to the corner with the load `load` (SI), and keep its states, at the corner if `kept`.
 
@@ -376,7 +334,7 @@ class Run:
             aim = piece.load_at(until)
             while not np.array_equal(self.now.load, aim):
                 if self._pin_closed.any():
-                    self.stepper.advance(position, piece, until, lambda reached: self._report(step, reached))
+                    self.stepper.advance(position, piece, until, lambda reached: self.report(step, reached))
                 else:
                     self._touch_down(aim, until)
                 check_bond(self.system, self.now)
@@ -386,7 +344,7 @@ class Run:
             self._release_if_unloaded(piece, load)
             if stop in kept and stop < 1.0 and self.recorder is not None:
                 self._keep(step, stop)
-            self._report(step, stop)
+            self.report(step, stop)
         self.stepper.leave(position)
 
     def _touch_down(self, load: np.ndarray, stop: float) -> None:
@@ -458,7 +416,7 @@ class Run:
         if self.progress is not None:
             self.progress(float(self.corner), len(self.history))
 
-    def _report(self, step: int, reached: float) -> None:
+    def report(self, step: int, reached: float) -> None:
         """Report the fraction `reached` of a step as progress of the history."""
         if self.progress is not None:
             self.progress(step + reached, len(self.history))

@@ -23,11 +23,9 @@ from fastpin.model.doubts import doubts, warn_of, wear_doubts
 from fastpin.model.options import OptionValues, SolveOptions
 from fastpin.model.profile import ProfileLike
 from fastpin.model.units import units_per_thickness
-from fastpin.solver import Interrupted, SolveError, WearResult, WornCycle
-from fastpin.solver.fat_cycles import Worn
+from fastpin.solver import Interrupted, SolveError
 from fastpin.solver.run import RunProgress
 from fastpin.solver.task import as_history
-from fastpin.solver.wear import CyclesInMemory, FrictionRule, WearTask
 from fastpin.storage import hdf5, layout
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.hdf5 import as_python, check_between, check_finite, dataset_of, numbers_of, text_of
@@ -35,6 +33,9 @@ from fastpin.storage.journal import is_empty
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import load, open_result
 from fastpin.storage.writer import GrowingFile, check_overwriting, clear_checkpoints, closing_file
+from fastpin.wear_lives import WearResult, WornCycle
+from fastpin.wear_lives.fat_cycles import Worn
+from fastpin.wear_lives.life import CyclesInMemory, FrictionRule, WearTask
 
 DEPTHS = ("pin_depth", "plate_depth")
 """Arrays of ``/wear`` with a value for each node, m."""
@@ -79,9 +80,10 @@ def wear(
     coefficient, pin, plate, law, at, tolerance
         See :class:`fastpin.model.Wear`.
     friction : callable, optional
-        Called with each chosen cycle but the last, a :class:`fastpin.solver.WornCycle`. It returns the friction from
-        there on: values at the nodes, shape (n,), or whatever a problem takes as its friction. None leaves the friction
-        as it is. The contact follows the change under the loads at the end of the cycle. For lives in memory only.
+        Called with each chosen cycle but the last, a :class:`fastpin.wear_lives.WornCycle`. It returns the friction
+        from there on: values at the nodes, shape (n,), or whatever a problem takes as its friction. None leaves the
+        friction as it is. The contact follows the change under the loads at the end of the cycle. For lives in memory
+        only.
     output : path, optional
         An HDF5 file for the result. It survives a kill, and `resume` continues it.
     overwrite : bool
@@ -168,7 +170,7 @@ def _resumed(writer: WearFile) -> WearResult:
 
 
 class WearFile:
-    """The recorder of a life of wear that writes to a file; see :class:`fastpin.solver.wear.WearRecorder`.
+    """The recorder of a life of wear that writes to a file; see :class:`fastpin.wear_lives.life.WearRecorder`.
 
     Parameters
     ----------

@@ -28,12 +28,12 @@ from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.solver.result import Result
 from fastpin.solver.solving import MemoryRecorder
-from fastpin.solver.wear import KEPT_ON_DEMAND
-from fastpin.solver.wear_path import WearRun
 from fastpin.verification import closed_forms, interference
 from fastpin.verification.comparisons import all_round_difference, event_load
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.rows import NODES, Checks, Solving, difference_check, relative_check
+from fastpin.wear_lives.life import KEPT_ON_DEMAND
+from fastpin.wear_lives.wear_path import WearRun
 
 BRONZE = Material(110e9, 0.34)
 """The material of bushes."""

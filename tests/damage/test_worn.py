@@ -10,7 +10,7 @@ from fastpin.damage import Race, fatigue, worn_fatigue
 from fastpin.damage.hot_spots import edge_angles
 from fastpin.model import FatigueConstants
 from fastpin.model.angles import from_bottom
-from fastpin.solver import WornCycle
+from fastpin.wear_lives import WornCycle
 from tests.support.refusals import refused
 
 ALUMINIUM = FatigueConstants(

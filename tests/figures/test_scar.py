@@ -15,7 +15,7 @@ from fastpin.figures.states import InMemory
 from fastpin.figures.style import MAX_NAMED
 from fastpin.model.grid import Grid
 from fastpin.model.profile import Profile
-from fastpin.solver.wear_result import WearResult
+from fastpin.wear_lives.wear_result import WearResult
 from tests.support.drawing import legend_words, plain
 from tests.support.lives import CONSTANTS, JOINT, sample_life
 from tests.support.wear_cases import WEAR_CASES

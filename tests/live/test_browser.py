@@ -32,8 +32,8 @@ from fastpin.live.protocol import CLASS
 from fastpin.live.recording import record_life, record_page
 from fastpin.live.server import Server
 from fastpin.model.units import units
-from fastpin.solver import WearResult
 from fastpin.states.curves import traction_patches
+from fastpin.wear_lives import WearResult
 from tests.support import seats
 from tests.support.live_pages import FREE, LIMIT, contact, served, solved
 from tests.support.lives import fretting

@@ -10,7 +10,7 @@ import pytest
 import fastpin
 from fastpin.live import recording as life_module
 from fastpin.live.recording import record_life
-from fastpin.solver import WearResult
+from fastpin.wear_lives import WearResult
 from tests.support.live_pages import floats, recorded
 from tests.support.lives import fretting
 from tests.support.wear_cases import WEAR_CASES

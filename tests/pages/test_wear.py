@@ -16,7 +16,7 @@ from fastpin.model.wear import cycles_text
 from fastpin.pages import source, write_report
 from fastpin.pages.wear import WEAR_SECTIONS, damage, numbers, overview, provenance
 from fastpin.solver.errors import Interrupted
-from fastpin.solver.wear_result import WearResult, WornCycle
+from fastpin.wear_lives.wear_result import WearResult, WornCycle
 from tests.support.html import Page, words_of
 from tests.support.lives import JOINT, sample_life
 from tests.support.tiers import gate

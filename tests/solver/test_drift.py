@@ -20,6 +20,7 @@ from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.report.summary import printed_loads
+from fastpin.sessions.session import Session
 from fastpin.solver.configuration import Configuration, worst_residual
 from fastpin.solver.drift import DriftPath, Moment, _dip
 from fastpin.solver.errors import NoEquilibriumError
@@ -27,7 +28,6 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Run
-from fastpin.solver.session import Session
 from fastpin.solver.settling import settle
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

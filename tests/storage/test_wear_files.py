@@ -13,11 +13,11 @@ import pytest
 import fastpin
 from fastpin.errors import InputError
 from fastpin.solver.errors import Interrupted, ResolutionError
-from fastpin.solver.fat_cycles import FatCycles, Worn
-from fastpin.solver.wear_result import WearResult
 from fastpin.storage import wear_files, writer
 from fastpin.storage.journal import JournaledFile
 from fastpin.storage.recording import stored_case
+from fastpin.wear_lives.fat_cycles import FatCycles, Worn
+from fastpin.wear_lives.wear_result import WearResult
 from tests.support.interrupts import StopAt
 from tests.support.processes import finished, python
 from tests.support.tiers import gate

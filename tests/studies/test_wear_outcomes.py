@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import fastpin
+import fastpin.wear_lives
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
 from fastpin.damage import Race
 from fastpin.errors import CaseFileError
@@ -105,7 +106,7 @@ def test_a_crack_has_a_life_and_wins(result: Result) -> None:
 @pytest.mark.gate
 def test_outcomes_share_a_life_and_its_damage(result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     counts = {"wear": 0, "fatigue": 0}
-    follow, damage = Result.wear, fastpin.solver.WearResult.fatigue
+    follow, damage = Result.wear, fastpin.wear_lives.WearResult.fatigue
 
     def wear(self: Result, **how: Any) -> Any:
         counts["wear"] += 1
@@ -116,7 +117,7 @@ def test_outcomes_share_a_life_and_its_damage(result: Result, monkeypatch: pytes
         return damage(self, *given)
 
     monkeypatch.setattr(Result, "wear", wear)
-    monkeypatch.setattr(fastpin.solver.WearResult, "fatigue", fatigue)
+    monkeypatch.setattr(fastpin.wear_lives.WearResult, "fatigue", fatigue)
     how = HOW | {"cycles": 2000}
     for quantity in (*WEAR_OUTCOMES, *RACE_OUTCOMES):
         value({"wear": quantity, **how}, result)

@@ -6,7 +6,7 @@ from typing import Any
 
 from fastpin.pages import write_report
 from fastpin.solver.result import Result
-from fastpin.solver.wear_result import WearResult
+from fastpin.wear_lives.wear_result import WearResult
 
 VOID = ("meta", "link", "br", "img", "hr", "input")
 """Elements of HTML without an end tag."""

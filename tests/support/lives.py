@@ -11,7 +11,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, Profile
-from fastpin.solver.wear_result import WearResult
+from fastpin.wear_lives.wear_result import WearResult
 
 CONSTANTS = FatigueConstants(
     fatigue_strength=714e6, strength_exponent=-0.078, fatigue_ductility=0.166, ductility_exponent=-0.538

@@ -11,9 +11,9 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.model.profile import NO_GAP, InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
-from fastpin.solver.wear_path import Removal, WearRun
-from fastpin.solver.wear_result import WearResult
 from fastpin.verification.joint_rows import step, wearing
+from fastpin.wear_lives.wear_path import Removal, WearRun
+from fastpin.wear_lives.wear_result import WearResult
 from tests.support.slip_cases import LIKE, UNLIKE
 
 Loads = dict[str, float]

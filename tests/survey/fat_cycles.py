@@ -17,7 +17,7 @@ import numpy as np
 import fastpin
 from fastpin.model.profile import Profile
 from fastpin.model.profile_terms import Harmonic, Zone
-from fastpin.solver.wear_result import WearResult
+from fastpin.wear_lives.wear_result import WearResult
 from tests.survey.histories import RandomCase
 
 DEPTHS = (0.01, 0.3)

@@ -17,8 +17,8 @@ from typing import Any
 from fastpin.errors import FastpinError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
-from fastpin.solver.wear_result import WearResult
 from fastpin.storage.wear_files import wear
+from fastpin.wear_lives.wear_result import WearResult
 from tests.survey.conditions import TOLERANCE, check_direction, check_dissipation, check_states, floats
 from tests.survey.histories import RandomCase, generate
 from tests.survey.joint_conditions import check_joint

@@ -15,13 +15,13 @@ from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.model.wear import Wear
 from fastpin.solver.configuration import elastic_energy
-from fastpin.solver.wear import CyclesInMemory, WearTask
-from fastpin.solver.wear_path import WearRun
-from fastpin.solver.wear_result import WornCycle
 from fastpin.verification import interference
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.joint_rows import fretted, step, wearing
 from fastpin.verification.rows import Checks, Solving, difference_check, relative_check
+from fastpin.wear_lives.life import CyclesInMemory, WearTask
+from fastpin.wear_lives.wear_path import WearRun
+from fastpin.wear_lives.wear_result import WornCycle
 from tests.support.checks import wear_limits
 from tests.support.checks.gap_rows import WAVES
 

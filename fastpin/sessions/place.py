@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
@@ -115,29 +114,6 @@ def changed_problem(problem: Problem, changes: dict[str, Any]) -> Problem:
     values = {name: getattr(problem, name) for name in names} | changes
     del values["hole_radius"]
     return Problem.from_load_parameter(load_parameter=values.pop("clearance"), **values)
-
-
-def followed_problem(problem: Problem, changes: dict[str, Any]) -> Problem:
-    """The problem with a friction to which a contact can be followed.
-
-    Raises
-    ------
-    InputError
-        If something else changes, the friction can't be used, or it is 0 all round before or after.
-    """
-    if changes.keys() != {"friction"}:
-        raise InputError("replay", '"follow" is for a change of the friction alone')
-    changed = changed_problem(problem, changes)
-    if problem.seat is not None:
-        raise InputError("replay", '"follow" needs a bush that is bonded: in one that slips, no friction is followed')
-    if problem.frictionless or changed.frictionless:
-        raise InputError("friction", "can't be followed to or from 0: friction must stay on both sides")
-    return changed
-
-
-def system_with_friction(system: System, problem: Problem) -> System:
-    """The system of another problem that differs in its friction."""
-    return replace(system, problem=problem, friction=problem.friction_at(system.grid.theta))
 
 
 def check_nodes(problem: Problem, options: SolveOptions, grid: Grid | None) -> None:

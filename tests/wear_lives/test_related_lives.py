@@ -9,7 +9,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.wear import Wear
 from fastpin.solver.errors import ArcError
-from fastpin.solver.wear_result import WearResult
+from fastpin.wear_lives.wear_result import WearResult
 from tests.support.slip_cases import LIKE, UNLIKE
 from tests.support.tiers import some_gate
 from tests.support.wear_cases import BUMPED, BUMPED_TURNS, WEAR_CASES

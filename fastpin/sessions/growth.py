@@ -1,6 +1,6 @@
 """Wider arcs of nodes: the present nodes stay where they are, and new nodes continue their spacing.
 
-A contact that was followed on an arc goes on there. :class:`OutsideGap` notices a pin that touches beyond the arc.
+A contact that was followed on an arc goes on there. :class:`LatestState` notices a pin that touches beyond the arc.
 """
 
 from __future__ import annotations
@@ -10,18 +10,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.model.angles import angle_between
-from fastpin.model.grid import LEAST_NODES, Grid
-from fastpin.model.loads import REMOTE
-from fastpin.model.problem import Problem
+from fastpin.model.grid import Grid
+from fastpin.model.loads import named_load
 from fastpin.solver.configuration import Configuration, embedded
-from fastpin.solver.interfaces import part_of
+from fastpin.solver.errors import ArcError
+from fastpin.solver.outside import OutsideGap, node_spacing, rest_gap_at
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart
+from fastpin.solver.run import Run
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
-from fastpin.solver.window import PENETRATION
+from fastpin.solver.solving import MemoryRecorder
+from fastpin.states.state import State
 
 MOST_TIMES = 4
 """Times the first nodes that a grown grid may have. A step then takes ten to sixty times as long."""
@@ -38,9 +39,6 @@ LEAST_GROWTH = 8
 NEAR_END = 0.125
 """Part of the nodes of an arc. A contact nearer to an end than this has reached the end."""
 
-MOST_OUTSIDE = 180
-"""Angles beyond an arc at which the gap is watched, at most: every two degrees for a short arc."""
-
 
 def dividing_the_circle(grid: Grid, node_at: float | None) -> Grid:
     """An arc whose spacing divides the circle, so that it can grow to the whole circle. Other grids stay.
@@ -50,14 +48,10 @@ def dividing_the_circle(grid: Grid, node_at: float | None) -> Grid:
     """
     if grid.closed or not grid.uniform:
         return grid
-    n, spacing = grid.size, _spacing(grid)
+    n, spacing = grid.size, node_spacing(grid)
     whole = max(math.floor(2.0 * math.pi / spacing), n)
     fixed = 0 if node_at is None else int(np.argmin(np.abs(angle_between(grid.theta, node_at))))
     return Grid(grid.theta[fixed] + (2.0 * math.pi / whole) * (np.arange(n) - fixed))
-
-
-def _spacing(grid: Grid) -> float:
-    return float(grid.theta[-1] - grid.theta[0]) / (grid.size - 1)
 
 
 def most_nodes(first: int) -> int:
@@ -87,7 +81,7 @@ def wider_grid(grid: Grid, closed: np.ndarray, most: int, all_round: bool = Fals
     n, theta = grid.size, grid.theta
     if not grid.uniform:
         return None
-    spacing, inside = _spacing(grid), np.flatnonzero(closed)
+    spacing, inside = node_spacing(grid), np.flatnonzero(closed)
     rooms = np.array([inside[0], n - 1 - inside[-1]]) if inside.size else np.zeros(2)
     reached = rooms <= NEAR_END * n
     more = np.where(reached | ~reached.any(), max(int(GROWTH * n), LEAST_GROWTH), 0)
@@ -117,23 +111,6 @@ def carried(old: System, new: System, restart: Restart) -> Restart:
     return replace(restart, configuration=wider, repeats=Repeats(), marks={}, slip_tally=NOT_COUNTED)
 
 
-def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.ndarray:
-    """The gap of the resting pin, shape (k,), at angles `theta` (k,) beyond the nodes of an arc.
-
-    It differs from the gap at the end of the arc by the first harmonic of the resting position, and by the initial gap.
-    The sines keep the digits of small gaps in a large clearance.
-    """
-    ends = system.grid.theta[[0, -1]]
-    nearest = np.argmin(np.abs(theta[:, None] - ends), axis=1)
-    end = ends[nearest]
-    x, y = np.where(system.drive.axes, 0.0, now.rest)
-    middle, half = 0.5 * (theta + end), 0.5 * (theta - end)
-    change: np.ndarray = 2.0 * np.sin(half) * (x * np.sin(middle) - y * np.cos(middle))
-    if system.problem.gap:
-        change += (system.problem.gap_at(theta)[0] - system.problem.gap_at(end)[0]) / system.scales.displacement
-    return now.rest_gap[[0, -1]][nearest] + change
-
-
 def _rest_slip_at(system: System, now: Configuration, columns: np.ndarray) -> np.ndarray:
     """The slip when the pin came to rest, shape (k,), at new nodes.
 
@@ -149,56 +126,35 @@ def _rest_slip_at(system: System, now: Configuration, columns: np.ndarray) -> np
     return found
 
 
-class OutsideGap:
-    """The gap beyond an arc of nodes, at up to :data:`MOST_OUTSIDE` angles: a pin may touch there too.
+class LatestState(MemoryRecorder):
+    """A recorder that keeps the latest state only, and notes whether the pin has touched the hole beyond the arc."""
 
-    Where a bush slips, the tractions in its seat bend its bore.
+    def __init__(self) -> None:
+        super().__init__()
+        self.outside: OutsideGap | None = None
+        self.touched_outside = False
 
-    Parameters
-    ----------
-    system : System
-        On an arc.
+    def begin(self, run: Run) -> None:
+        """Forget the state. From here on all states come from `run`."""
+        super().begin(run)
+        self.touched_outside = False
+        if run.grid.closed:
+            self.outside = None
+        elif self.outside is None or self.outside.of is not run.system.operator:
+            self.outside = OutsideGap(run.system)
 
-    Attributes
-    ----------
-    of : object
-        The operator of `system`. Systems with this operator have the same gap beyond the arc.
-    """
+    def add(self, state: State) -> None:
+        """Keep a state in place of the one before."""
+        self.states = [state]
 
-    def __init__(self, system: System) -> None:
-        self.of: object = system.operator
-        self._joint = system if isinstance(system, JointSystem) else None
-        system = self._own(system)
-        grid = system.grid
-        n, ends = grid.size, (grid.theta[-1], grid.theta[0] + 2.0 * math.pi)
-        count = min(math.ceil((ends[1] - ends[0]) / _spacing(grid)) - 1, MOST_OUTSIDE)
-        self._theta = np.linspace(*ends, max(count, LEAST_NODES) + 2)[1:-1]
-        around = System.build(system.problem, Grid(np.r_[grid.theta, self._theta], closed=True), system.scales.force)
-        rows, nodes = np.arange(n, around.grid.size), np.arange(n)
-        self._operator = around.operator.entries(rows, np.r_[nodes, around.grid.size + nodes])
-        self._moved, self._loads = around.motion[rows], around.loads[rows].copy()
-        self._rest: tuple[np.ndarray, Problem, np.ndarray] | None = None  # the latest gap at rest
-        if self._joint is not None:  # the remote stress acts on the lug alone
-            self._loads[:, REMOTE] = 0.0
-            self._bore = self._joint.bore_at(self._theta)
+    def corner_reached(self) -> None:
+        """Look beyond the arc."""
+        if self.outside is not None and not self.touched_outside:
+            assert self.run is not None
+            self.touched_outside = self.outside.is_closed(self.run.system, self.run.now)
 
-    @staticmethod
-    def _own(system: System) -> System:
-        """The system of the pin."""
-        return system.alone[PIN] if isinstance(system, JointSystem) else system
 
-    def is_closed(self, system: System, now: Configuration) -> bool:
-        """Whether the pin, in contact on the arc, penetrates the hole beyond it by more than rounding."""
-        bent: float | np.ndarray = 0.0
-        if self._joint is not None:
-            bent = self._bore @ now.tractions[self._joint.nodes.rows(SEAT)]
-            system, now = self._own(system), part_of(self._joint, now, PIN)
-        if not now.closed.any():  # a floating pin is looked after by the first contact
-            return False
-        elastic = self._operator @ now.tractions + bent
-        moved = self._moved @ now.motion + self._loads @ now.load[: self._loads.shape[1]]
-        known = self._rest
-        if known is None or known[0] is not now.rest_gap or known[1] is not system.problem:
-            known = self._rest = now.rest_gap, system.problem, rest_gap_at(system, now, self._theta)
-        gap = elastic + moved + known[2]
-        return bool(gap.min() < -PENETRATION * max(float(np.abs(elastic).max()), float(np.abs(moved).max())))
+def touches_outside(run: Run) -> ArcError:
+    """The error of a run whose pin touches the hole beyond the arc."""
+    message = f"step {run.corner}: the pin touches the hole beyond the arc"
+    return ArcError(message, run.corner - 1, 1.0, named_load(run.load))

@@ -24,12 +24,12 @@ from fastpin.model.recorded import with_last_cycle
 from fastpin.model.wear import Wear
 from fastpin.solver.attempts import Unfit, arcs_after, first_wide_enough
 from fastpin.solver.errors import ArcError, Interrupted, ResolutionError
-from fastpin.solver.fat_cycles import FatCycles, Worn
 from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import MemoryRecorder
 from fastpin.solver.task import Task, deferred_interrupts, one_blas_thread
-from fastpin.solver.wear_path import WearRun
-from fastpin.solver.wear_result import WearResult, WornCycle, slip_doubts
+from fastpin.wear_lives.fat_cycles import FatCycles, Worn
+from fastpin.wear_lives.wear_path import WearRun
+from fastpin.wear_lives.wear_result import WearResult, WornCycle, slip_doubts
 
 log = logging.getLogger(__name__)
 

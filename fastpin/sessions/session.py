@@ -1,7 +1,7 @@
 """A session follows a load history load by load, for programs that choose the next load from the present state.
 
 :class:`Session` keeps the matrices and the present contact. Its nodes grow with the contact, see
-:mod:`fastpin.solver.growth`.
+:mod:`fastpin.sessions.growth`.
 """
 
 from __future__ import annotations
@@ -25,11 +25,18 @@ from fastpin.model.loads import ACTING, LOAD_KIND, LOADS, Corner, complete_load
 from fastpin.model.options import ALL_ROUND, KeepRule, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads
+from fastpin.sessions.growth import (
+    LatestState,
+    carried,
+    dividing_the_circle,
+    most_nodes,
+    touches_outside,
+    wider_grid,
+)
+from fastpin.sessions.place import Loads, Place, changed_problem, check_nodes
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
-from fastpin.solver.growth import carried, dividing_the_circle, most_nodes, wider_grid
-from fastpin.solver.latest import LatestState, touches_outside
-from fastpin.solver.place import Loads, Place, changed_problem, check_nodes, followed_problem
+from fastpin.solver.followed import follow_friction, followed_problem
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Run
@@ -244,7 +251,9 @@ class Session:
         true_or_false("new_arc", new_arc)
         here = self._here
         if replay == "follow" and here.restart is not None:
-            return self._follow_friction(followed_problem(here.problem, changes))
+            if changes.keys() != {"friction"}:
+                raise InputError("replay", '"follow" is for a change of the friction alone')
+            return self._follow_friction(followed_problem(here.problem, changes["friction"]))
         problem = changed_problem(here.problem, changes)
         loads = here.loads if replay == "history" else Loads()
         if replay == "load" and here.restart is not None:
@@ -507,7 +516,7 @@ class Session:
             run = self._run or self._start(self._system_at(here), here.restart)
             while True:
                 try:
-                    run = run.with_friction_followed(problem)
+                    run = follow_friction(run, problem)
                     break
                 except ArcError:
                     if (wider := self._wider_system(run)) is None:

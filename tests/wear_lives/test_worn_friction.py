@@ -11,9 +11,9 @@ import fastpin
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid
 from fastpin.model.profile import profile_of_nodes
-from fastpin.solver import WearResult, WornCycle
 from fastpin.solver.errors import NoEquilibriumError
-from fastpin.solver.place import followed_problem
+from fastpin.solver.followed import followed_problem
+from fastpin.wear_lives import WearResult, WornCycle
 from tests.support.tiers import gate
 from tests.support.wear_cases import WEAR_CASES, step, wearing
 
@@ -46,7 +46,7 @@ def test_a_life_with_other_friction_is_that_of_its_pieces_one_by_one() -> None:
         if cycle in (0, *CHOSEN):
             theta = run.system.grid.theta
             friction = lessened(replace(found[0], cycle=cycle))
-            problem = followed_problem(problem, {"friction": profile_of_nodes(CASE.grid(NODES), friction)})
+            problem = followed_problem(problem, profile_of_nodes(CASE.grid(NODES), friction))
             run = run.with_friction_followed(problem)
             assert run.system.friction == pytest.approx(friction, rel=1e-14)
             assert theta.size == NODES

@@ -11,8 +11,8 @@ import pytest
 
 import fastpin
 from fastpin.bodies import Bushing, Ring
+from fastpin.sessions.place import ROWS, Loads
 from fastpin.solver.errors import ArcError
-from fastpin.solver.place import ROWS, Loads
 from fastpin.solver.run import Run
 from fastpin.states.state import State
 from fastpin.verification.joint_rows import BRONZE
@@ -65,7 +65,7 @@ def test_numpys_numbers_are_as_quick_as_pythons(problem, monkeypatch):
     sessions = [fastpin.Session(problem, 41) for _ in range(2)]
     for session in sessions:
         session.advance({"P": 1.0, "Q": 0.1})
-    monkeypatch.setattr("fastpin.solver.session.check_loads", None)
+    monkeypatch.setattr("fastpin.sessions.session.check_loads", None)
     for session, kind in zip(sessions, (float, np.float64), strict=True):
         session.advance({"P": kind(1.01), "Q": kind(0.11)})
     assert_same_state(sessions[0].state, sessions[1].state)
@@ -326,7 +326,7 @@ def test_a_change_follows_the_same_loads_again(problem, change):
 def test_friction_and_clearance_need_no_new_matrices(problem, monkeypatch):
     session = fastpin.Session(problem, 41, arc=(-1.5 * np.pi, 0.5 * np.pi))
     walked(session, WALK[:3])
-    monkeypatch.setattr("fastpin.solver.session.build_system", None)
+    monkeypatch.setattr("fastpin.sessions.session.build_system", None)
     session.change(friction=0.1)
     session.change(clearance=0.02, friction=0.3)
     with pytest.raises(TypeError):
@@ -469,7 +469,7 @@ def test_an_interference_fit_needs_the_circle(problem):
 def test_an_interrupt_leaves_a_whole_state(problem, monkeypatch, when):
     session = fastpin.Session(problem, grid=fastpin.Grid.circle(61))
     state = walked(session, WALK[:2])[-1]
-    name = "_report" if when == "in the step" else "_arrive"
+    name = "report" if when == "in the step" else "_arrive"
     owner = Run if when == "in the step" else fastpin.Session
     original = getattr(owner, name)
 

@@ -1,10 +1,10 @@
 """Fat cycles: load cycles whose wear counts many times, under control of their error.
 
 A cycle is followed piece by piece, from corner to corner. The wear of a piece is applied at its end, where its contact
-is (:meth:`fastpin.solver.wear_path.WearRun.wear`). In a fat cycle it is multiplied by the jump J, the number of cycles
-for which it stands. A fat cycle of J is compared with two of about J/2 from the same start. The finer result goes on.
-A single cycle comes before: a contact remembers the jump of the wear, and slips otherwise in the next cycle. This is
-multiplied by J, too. Without the single cycle it would be alike in both results, and not seen.
+is, by ``WearRun.wear``. In a fat cycle it is multiplied by the jump J, the number of cycles for which it stands. A fat
+cycle of J is compared with two of about J/2 from the same start. The finer result goes on. A single cycle comes before:
+a contact remembers the jump of the wear, and slips otherwise in the next cycle. This is multiplied by J, too. Without
+the single cycle it would be alike in both results, and not seen.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from fastpin.model.profile import Profile
 from fastpin.model.wear import Wear
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import SolveError
-from fastpin.solver.place import followed_problem, system_with_friction
+from fastpin.solver.followed import follow_friction, followed_problem, system_with_friction
 from fastpin.solver.result import Restart
 from fastpin.solver.slip_tally import NOT_COUNTED
-from fastpin.solver.wear_path import WearRun
 from fastpin.states.state import State
+from fastpin.wear_lives.wear_path import WearRun
 
 Found = TypeVar("Found")
 
@@ -162,10 +162,10 @@ class FatCycles:
         SolveError
             If the contact is lost on the way. It names the cycle.
         """
-        problem = followed_problem(self._first.problem, {"friction": friction})
+        problem = followed_problem(self._first.problem, friction)
         self._stand_at(place)
         try:
-            run = self.run.with_friction_followed(problem)
+            run = follow_friction(self.run, problem)
         except SolveError as error:
             _name_cycle(error, place.cycle)
             raise

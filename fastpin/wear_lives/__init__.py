@@ -1,0 +1,8 @@
+"""Lives of wear: a load cycle again and again, on profiles of pin and hole that wear.
+
+The public names stand in ``__init__.pyi``. They are loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
