@@ -15,7 +15,6 @@ from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     NODAL,
     Configuration,
-    Solution,
     accept_solution,
     elastic_energy,
     resting_status,
@@ -135,8 +134,8 @@ def _corrected(system: System, start: Configuration, found: Configuration) -> Co
     more = solve_statuses(system, found.status, start.slip - left[n:], np.zeros_like(found.load), left[:n])
     if more is None:
         return found
-    whole = Solution(
-        found.pressure + more.pressure, found.shear + more.shear, more.gap, left[n:] + more.slip,
-        found.motion + more.motion,
+    whole = more._replace(
+        pressure=found.pressure + more.pressure, shear=found.shear + more.shear, slip=left[n:] + more.slip,
+        motion=found.motion + more.motion,
     )  # fmt: skip
-    return accept_solution(start, whole, found.status, found.load)
+    return accept_solution(start, whole, found.load)

@@ -162,25 +162,6 @@ def embedded(
     return replace(part, **fields, slip_tally=tally, marks=part.marks.at(nodes)), true
 
 
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """The outcome of one solve: tractions, gap and slip (n,) and motion (m,), or the rates of all these."""
-
-    pressure: np.ndarray
-    shear: np.ndarray
-    gap: np.ndarray
-    slip: np.ndarray
-    motion: np.ndarray
-
-    def under(self, status: np.ndarray) -> ContactValues:
-        """The arrays for kernels, with the statuses (n,) under which the solution was found."""
-        return ContactValues(self.pressure, self.shear, self.gap, self.slip, status, self.motion)
-
-    def part(self, nodes: slice) -> Solution:
-        """The solution at some nodes. The motion is that of all."""
-        return Solution(self.pressure[nodes], self.shear[nodes], self.gap[nodes], self.slip[nodes], self.motion)
-
-
 class Correction(NamedTuple):
     """The corrected values of a configuration whose statuses hold.
 
@@ -200,21 +181,23 @@ class Correction(NamedTuple):
     beyond: tuple[float, float]
 
     @classmethod
-    def of(cls, system: System, before: Configuration, solution: Solution, error: float, drift: float) -> Correction:
+    def of(
+        cls, system: System, before: Configuration, solution: ContactValues, error: float, drift: float
+    ) -> Correction:
         """The correction of the configuration `before` by the solution of its statuses."""
         settled = snap_to_bounds(system, before, solution)
-        beyond = conditions.beyond_bounds(solution.under(settled.status), settled.values)
+        beyond = conditions.beyond_bounds(solution, settled.values)
         return cls(settled, error, drift, beyond)
 
 
-def snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:
+def snap_to_bounds(system: System, configuration: Configuration, solution: ContactValues) -> Configuration:
     """The configuration with the solution of its statuses, each value kept within the bounds of its status.
 
     A pressure, shear or gap beyond its bound, or almost at it, is put exactly on the bound.
     """
     new = configuration.copy()
     new.motion = solution.motion
-    conditions.put_on_bounds(system.friction, solution.under(new.status), new.values)
+    conditions.put_on_bounds(system.friction, solution, new.values)
     return new
 
 
@@ -230,7 +213,7 @@ def resting_status(system: System) -> np.ndarray:
 
 def solve_statuses(
     system: System, status: np.ndarray, stuck_slip: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
-) -> Solution | None:
+) -> ContactValues | None:
     """Solve for tractions and motion under given statuses.
 
     With ``rest_gap = 0``, zero `stuck_slip` and a load rate the solution holds rates.
@@ -247,7 +230,7 @@ def solve_statuses(
 
     Returns
     -------
-    Solution or None
+    ContactValues or None
         None if the closed nodes can't hold the pin: a mechanism.
     """
     matrix, unknowns = system.operator.matrix, np.count_nonzero(status != OPEN) + np.count_nonzero(status == STICK)
@@ -256,18 +239,18 @@ def solve_statuses(
         return None if active.singular else solve_unknowns(system, active, stuck_slip, load, rest_gap)
     n = system.grid.size
     pressure, shear, gap, slip = np.empty((4, n))
-    found = Solution(pressure, shear, gap, slip, np.empty(system.motions))
+    found = ContactValues(pressure, shear, gap, slip, status, np.empty(system.motions))
     held = rest_gap if isinstance(rest_gap, np.ndarray) else np.full(n, rest_gap)
     condition = equations.solve_few(
         matrix, system.equations, system.load_displacement(load), system.load_forces(load), held, stuck_slip,
-        system.width, found.under(status),
+        system.width, found,
     )  # fmt: skip
     return found if condition > SINGULAR else None
 
 
 def solve_unknowns(
     system: System, active: DenseUnknowns, stuck_slip: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
-) -> Solution:
+) -> ContactValues:
     """Solve for tractions and motion with the unknowns `active`, as :func:`solve_statuses` does."""
     n = system.grid.size
     known = system.load_displacement(load, active.rows)
@@ -277,21 +260,20 @@ def solve_unknowns(
     tractions = active.expand(unknowns)
     motion = unknowns[active.count :]
     displacement = system.displacement(tractions, motion, load, rest_gap)
-    return Solution(tractions[:n], tractions[n:], displacement[:n], displacement[n:], motion)
+    return ContactValues(tractions[:n], tractions[n:], displacement[:n], displacement[n:], active.status, motion)
 
 
-def accept_solution(start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray) -> Configuration:
+def accept_solution(start: Configuration, solution: ContactValues, load: np.ndarray) -> Configuration:
     """The configuration at `load` that the solution of its statuses gives, with the energies of `start`.
 
-    Sticking nodes keep the slip of `start`. ContactValues beyond their bounds by rounding are put on them.
+    Sticking nodes keep the slip of `start`. Values beyond their bounds by rounding are put on them.
     """
     new = start.copy()
-    closed = status != OPEN
-    new.status = status
-    new.pressure = np.where(closed, np.maximum(solution.pressure, 0.0), 0.0)
-    new.shear = np.where(closed, solution.shear, 0.0)
-    new.gap = np.where(closed, 0.0, np.maximum(solution.gap, 0.0))
-    new.slip = np.where(status == STICK, start.slip, solution.slip)
+    new.status = solution.status.copy()
+    new.pressure = np.where(new.closed, np.maximum(solution.pressure, 0.0), 0.0)
+    new.shear = np.where(new.closed, solution.shear, 0.0)
+    new.gap = np.where(new.closed, 0.0, np.maximum(solution.gap, 0.0))
+    new.slip = np.where(new.status == STICK, start.slip, solution.slip)
     new.motion = solution.motion
     new.load = load.copy()
     return new

@@ -25,10 +25,10 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
+from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.solver.configuration import (
     Configuration,
-    Solution,
     dissipation_between,
     seat_dissipation_between,
     slip_tally_between,
@@ -102,7 +102,7 @@ class Moment:
     ----------
     system : System
         With the friction at this time.
-    solution, rates, bends : Solution
+    solution, rates, bends : ContactValues
         Values, first and second derivatives.
     """
 
@@ -396,7 +396,7 @@ class DriftPath:
         return moment
 
 
-def _rates(system: System, unknowns: DenseUnknowns, load_rate: np.ndarray, dragged: np.ndarray) -> Solution:
+def _rates(system: System, unknowns: DenseUnknowns, load_rate: np.ndarray, dragged: np.ndarray) -> ContactValues:
     """The rates of a solution while the load changes. At slipping nodes T changes by `dragged` (n,) beside mu N'."""
     n = system.grid.size
     shears = np.r_[np.zeros(n), dragged]
@@ -404,7 +404,8 @@ def _rates(system: System, unknowns: DenseUnknowns, load_rate: np.ndarray, dragg
     forces = system.load_forces(load_rate) - system.equilibrium @ shears
     found = unknowns.solve(np.r_[-known[unknowns.rows], forces])
     tractions, displaced = unknowns.expand(found) + shears, unknowns.displacement(found) + known
-    return Solution(tractions[:n], tractions[n:], displaced[:n], displaced[n:], found[unknowns.count :])
+    motion = found[unknowns.count :]
+    return ContactValues(tractions[:n], tractions[n:], displaced[:n], displaced[n:], unknowns.status, motion)
 
 
 def _bend(here: Moment, middle: Moment, end: Moment) -> float:

@@ -477,7 +477,7 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
     solution = solve_statuses(system, status, held, patch.load, patch.rest_gap)
     if solution is None:
         return None
-    found = accept_solution(replace(patch, slip=held), solution, status, patch.load)
+    found = accept_solution(replace(patch, slip=held), solution, patch.load)
     return found if worst_residual(system, found) <= MAX_RESIDUAL else None
 
 

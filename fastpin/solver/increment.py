@@ -15,10 +15,10 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import conditions
+from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.configuration import (
     Configuration,
-    Solution,
     accept_solution,
     resting_status,
     solve_statuses,
@@ -77,10 +77,10 @@ def _iterate(
         solution = solve_statuses(system, status, start.slip, load, start.rest_gap)
         if solution is None:
             return None
-        wanted = _wanted_status(system, start, solution, status)
+        wanted = _wanted_status(system, start, solution)
         changes = np.flatnonzero(wanted != status)
         if changes.size == 0:
-            return accept_solution(start, solution, status, load)
+            return accept_solution(start, solution, load)
         if one_at_a_time:
             status[changes[0]] = wanted[changes[0]]
         else:
@@ -88,34 +88,33 @@ def _iterate(
     return None
 
 
-def _wanted_status(system: System, start: Configuration, solution: Solution, status: np.ndarray) -> np.ndarray:
+def _wanted_status(system: System, start: Configuration, solution: ContactValues) -> np.ndarray:
     """The statuses for the next iteration: the present statuses, changed where the solution breaks a condition."""
-    wanted = np.empty_like(status)
-    conditions.wanted_status(
-        system.friction, solution.under(status), start.slip, start.rest_gap, TOLERANCE, wanted
-    )  # fmt: skip
+    wanted = np.empty_like(solution.status)
+    conditions.wanted_status(system.friction, solution, start.slip, start.rest_gap, TOLERANCE, wanted)
     for nodes in system.turning:
         if not np.any(wanted[nodes] == STICK):
             slid = solution.slip[nodes] - start.slip[nodes]
-            _hold_one(wanted[nodes], status[nodes], solution.part(nodes), system.friction[nodes], slid)
+            part = solution._replace(
+                pressure=solution.pressure[nodes], shear=solution.shear[nodes], status=solution.status[nodes]
+            )
+            _hold_one(wanted[nodes], part, system.friction[nodes], slid)
     return wanted
 
 
-def _hold_one(
-    wanted: np.ndarray, status: np.ndarray, solution: Solution, friction: np.ndarray, slid: np.ndarray
-) -> None:
+def _hold_one(wanted: np.ndarray, solution: ContactValues, friction: np.ndarray, slid: np.ndarray) -> None:
     """Let one closed node stick in `wanted`. All closed nodes slip there, and nothing else would hold the pin.
 
     If several nodes let go, the node nearest to sticking holds. If the last sticking node lets go, the pin turns until
     the first of the nodes that slip the other way sticks.
     """
     rough = (wanted != OPEN) & (friction > 0.0)
-    letting_go = np.flatnonzero(rough & (status == STICK))
+    letting_go = np.flatnonzero(rough & (solution.status == STICK))
     if letting_go.size > 1:
         excess = np.abs(solution.shear) - friction * solution.pressure
         wanted[letting_go[np.argmin(excess[letting_go])]] = STICK
         return
-    others = np.flatnonzero(rough & (status != STICK))
+    others = np.flatnonzero(rough & (solution.status != STICK))
     if letting_go.size == 1:
         others = others[wanted[others] == np.sign(solution.shear[letting_go[0]])]
     if others.size:

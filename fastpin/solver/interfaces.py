@@ -168,7 +168,7 @@ class PinView:
         seat, own = self._joint.alone[SEAT], part_of(self._joint, start, SEAT)
         unloaded = without_force(start.load)
         solution = solve_statuses(seat, own.status, own.slip, unloaded, own.rest_gap)
-        found = None if solution is None else accept_solution(own, solution, own.status, unloaded)
+        found = None if solution is None else accept_solution(own, solution, unloaded)
         if found is None or worst_residual(seat, found) > MAX_RESIDUAL:
             found = implicit_step(seat, own, unloaded)
             if found is None or worst_residual(seat, found) > MAX_RESIDUAL:
@@ -279,7 +279,7 @@ def _of_statuses(joint: JointSystem, start: Configuration) -> Configuration | No
     solution = solve_statuses(joint, start.status, start.slip, start.load, start.rest_gap)
     if solution is None:
         return None
-    found = accept_solution(start, solution, start.status, start.load)
+    found = accept_solution(start, solution, start.load)
     return found if worst_residual(joint, found) <= MAX_RESIDUAL else None
 
 

@@ -16,10 +16,10 @@ import numpy as np
 from fastpin.elasticity.operator import Operator
 from fastpin.elasticity.system import System
 from fastpin.kernels import conditions, exchange
-from fastpin.kernels.arrays import Contact, LoadTerms, Queue
+from fastpin.kernels.arrays import Contact, ContactValues, LoadTerms, Queue
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import P, Q
-from fastpin.solver.configuration import Configuration, Correction, Solution, snap_to_bounds, solve_unknowns
+from fastpin.solver.configuration import Configuration, Correction, snap_to_bounds, solve_unknowns
 from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts, begins_held
 from fastpin.solver.settling import settle
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
@@ -405,7 +405,7 @@ class PathStep:
                 return Correction.of(self.system, self.now, exact, correction.error, correction.drift)
         return correction
 
-    def _exact_solution(self) -> Solution | None:
+    def _exact_solution(self) -> ContactValues | None:
         """The solution of the present statuses, by a factorisation; None if the closed nodes can't hold the pin."""
         now, unknowns = self.now, self._memory.unknowns.dense(self.system, self.now.status)
         return None if unknowns is None else solve_unknowns(self.system, unknowns, now.slip, now.load, now.rest_gap)

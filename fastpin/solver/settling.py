@@ -13,10 +13,10 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import complementarity
+from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.solver.configuration import (
     Configuration,
-    Solution,
     accept_solution,
     resting_status,
     solve_statuses,
@@ -184,7 +184,7 @@ class FiniteStep:
             return None
         status = self._status(z)
         solution = solve_statuses(system, status, now.slip, load, now.rest_gap)
-        return None if solution is None else accept_solution(now, solution, status, load)
+        return None if solution is None else accept_solution(now, solution, load)
 
     def _complementarity_matrix(self) -> np.ndarray:
         """Matrix (k, k) of the problem."""
@@ -212,7 +212,7 @@ class FiniteStep:
         rubbing = np.flatnonzero(mu)
         return mu[rubbing], rubbing
 
-    def _complementarity_vector(self, resting: Solution) -> np.ndarray:
+    def _complementarity_vector(self, resting: ContactValues) -> np.ndarray:
         """Vector (k,) of the problem. `resting` is the solution with all closed nodes stuck."""
         closed, away = self._closed, self._away
         (mu, rubbing), (_, rubbing_away) = self._friction(closed), self._friction(away)

@@ -14,7 +14,7 @@ from fastpin.kernels.exchange import CHUNK, WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.runtime.extensions import blas
 from fastpin.runtime.products import add_product
-from fastpin.solver.configuration import Configuration, Correction, Solution
+from fastpin.solver.configuration import Configuration, Correction
 from fastpin.solver.shortcut import TractionRows
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
 
@@ -196,8 +196,7 @@ class Columns:
             last = error
             change = self.response(missing, self._updates)
             conditions.correct(system.friction, self._contact.tie, change, found)
-        solution = Solution(found.pressure, found.shear, true[:n], true[n:], found.motion)
-        return Correction.of(system, now, solution, error, drift)
+        return Correction.of(system, now, found._replace(gap=true[:n], slip=true[n:]), error, drift)
 
     def refine_rates(self, load_rate: np.ndarray) -> None:
         """Correct the rates by their residual from the matrices, times the tableau with all updates."""

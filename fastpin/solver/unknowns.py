@@ -38,6 +38,8 @@ class Unknowns:
 
     Attributes
     ----------
+    status : ndarray of int8, shape (n,)
+        The statuses.
     rows : ndarray of int, shape (count,)
         Rows of the unknowns among (N, T). The same rows among (h, s) are their equations.
     normal, tangential : ndarray of int
@@ -50,7 +52,7 @@ class Unknowns:
 
     def __init__(self, system: System, status: np.ndarray) -> None:
         n = system.grid.size
-        self._system = system
+        self._system, self.status = system, status.copy()
         self.normal = np.flatnonzero(status != OPEN)
         self.tangential = np.flatnonzero(status == STICK)
         self.rows = np.concatenate([self.normal, n + self.tangential])

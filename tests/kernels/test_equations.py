@@ -6,13 +6,14 @@ import pytest
 from fastpin.elasticity.interfaces import JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels import equations
+from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.equations import MOST_UNKNOWNS
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver import configuration
-from fastpin.solver.configuration import Solution, solve_statuses, solve_unknowns
+from fastpin.solver.configuration import solve_statuses, solve_unknowns
 from fastpin.solver.unknowns import DenseUnknowns
 from tests.support.bodies import HOLDS
 from tests.support.joints import joint
@@ -76,7 +77,7 @@ def test_the_condition_number_is_that_of_the_definition(titanium_in_aluminium, s
     unknowns = DenseUnknowns(system, status)
     inverse = unknowns.solve(np.eye(unknowns.size))
     inverse[: unknowns.count] *= system.width  # unknowns are forces
-    solution = Solution(*np.empty((4, 31)), np.empty(3)).under(status)
+    solution = ContactValues(*np.empty((4, 31)), status, np.empty(3))
     condition = solve(
         system.operator.matrix, system.equations, system.load_displacement(load), system.load_forces(load), gap, slip,
         system.width, solution,

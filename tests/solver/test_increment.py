@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from fastpin.elasticity.system import System
+from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, P, Q
 from fastpin.model.problem import Problem
 from fastpin.solver.assembly import unloaded_configuration
-from fastpin.solver.configuration import Solution, worst_residual
+from fastpin.solver.configuration import worst_residual
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import _hold_one, implicit_step
 from fastpin.solver.path import PathStep
@@ -100,5 +101,5 @@ def test_of_the_nodes_that_let_go_the_nearest_to_sticking_holds(count):
     shear = np.array([1.3, -1.1, 1.2, -0.5])
     status, wanted = np.full(4, STICK), np.array([-1, 1, -1, 1])
     status[count:] = wanted[count:]
-    _hold_one(wanted, status, Solution(pressure, shear, nothing, nothing, nothing), friction, nothing)
+    _hold_one(wanted, ContactValues(pressure, shear, nothing, nothing, status, nothing), friction, nothing)
     assert wanted.tolist() == [-1, STICK, -1, 1]
