@@ -47,6 +47,7 @@ from fastpin.solver.task import (
     as_history,
     check_options,
     deferred_interrupts,
+    first_followed,
     one_blas_thread,
     reference_force,
 )
@@ -498,15 +499,15 @@ class Session:
     def _on_first_nodes(self, problem: Problem, history: LoadHistory, work: Callable[[System, bool], Run]) -> Run:
         """Do some work on the nodes for a history. Only one arc is tried: it grows with the contact."""
         options = self._options if problem.seat is None else self._options.changed(arc=ALL_ROUND)
-        attempts = Task(problem, history, options, self._grid).attempts(self._check_request)
-        arc = next(attempts.arcs())
+        task = Task(problem, history, options, self._grid)
+        arc, force = next(task.arcs(self._check_request)), task.force
         if self._grid is None:
-            arc = dividing_the_circle(arc, first_direction(problem, attempts.values))
+            arc = dividing_the_circle(arc, first_direction(problem, history.distinct()))
 
         def follow(grid: Grid, strict: bool) -> Run:
-            return work(build_system(problem, grid, attempts.force), strict)
+            return work(build_system(problem, grid, force), strict)
 
-        return attempts.first_followed(follow, [arc])
+        return first_followed(task.tries(self._check_request, arcs=lambda: [arc]), follow)
 
     def _follow_friction(self, problem: Problem) -> State | None:
         """Follow the change to the friction of another problem at the present load, and return the state."""

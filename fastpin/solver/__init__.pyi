@@ -1,4 +1,3 @@
-from . import assembled as assembled
 from .errors import ArcError as ArcError
 from .errors import ConvergenceError as ConvergenceError
 from .errors import Interrupted as Interrupted
@@ -6,4 +5,5 @@ from .errors import NoEquilibriumError as NoEquilibriumError
 from .errors import SolveError as SolveError
 from .result import Restart as Restart
 from .result import Result as Result
+from .solving import assembled_tractions as assembled_tractions
 from .solving import solve as solve

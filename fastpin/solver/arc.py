@@ -20,10 +20,10 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE, M, P, Q
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.solver import whole_step
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.errors import ArcError, SolveError
 from fastpin.solver.first_contact import first_contact
+from fastpin.solver.path import follow_whole
 from fastpin.solver.rest import climb_angle
 from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.step import pieces, pushes
@@ -248,7 +248,7 @@ def _touched_in_whole_steps(system: System, loads: np.ndarray, progress: RunProg
     for corner, load in enumerate(loads):
         if part < 1.0 or corner > 0:
             is_straight = len(pieces(now.load, load, nearly_neat=False)) == 1
-            found = whole_step.follow(system, now, load, memory) if is_straight else None
+            found = follow_whole(system, now, load, memory) if is_straight else None
             if found is None:
                 return None
             now, touched = found.now, touched | found.touched

@@ -16,7 +16,6 @@ from fastpin.model.angles import angle_between
 from fastpin.model.loads import FRICTION_CHANGE, REMOTE, UX, UY, M, P, Q
 from fastpin.reading.zones import runs
 from fastpin.runtime.extensions import optimize
-from fastpin.solver import whole_step
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -35,7 +34,7 @@ from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import CUT_OFF, NARROW, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.finite_step import one_step, shearless_step
 from fastpin.solver.interfaces import PinView, part_of, with_part
-from fastpin.solver.path import PathStep, StepLostError
+from fastpin.solver.path import PathStep, StepLostError, follow_whole
 from fastpin.solver.rest import bend, hole_gap, place_between, put_at_rest, release, rest_position
 from fastpin.solver.step import is_pushed, presses
 from fastpin.solver.tableau import TableauMemory
@@ -503,7 +502,7 @@ def _grown_slip(system: System, patch: Configuration, begin: np.ndarray) -> np.n
         return None
     after, memory = begin + growth * (patch.load - begin), TableauMemory(system)
     try:
-        found = whole_step.follow(system, patch, after, memory)
+        found = follow_whole(system, patch, after, memory)
         grown = PathStep(system, patch, after, memory).follow(1.0) if found is None else found.now
     except StepLostError:
         return None

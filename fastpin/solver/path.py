@@ -10,6 +10,7 @@ digits. So rounding does not grow along a history, and a step depends only on th
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from fastpin.model.loads import P, Q
 from fastpin.solver.configuration import Configuration, Correction, snap_to_bounds, solve_unknowns
 from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts, begins_held
 from fastpin.solver.settling import settle
+from fastpin.solver.slip_tally import SlipTally
 from fastpin.solver.tableau import Columns, TableauMemory, has_turned
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 
@@ -409,6 +411,58 @@ class PathStep:
         """The solution of the present statuses, by a factorisation; None if the closed nodes can't hold the pin."""
         now, unknowns = self.now, self._memory.unknowns.dense(self.system, self.now.status)
         return None if unknowns is None else solve_unknowns(self.system, unknowns, now.slip, now.load, now.rest_gap)
+
+
+class WholeStep(NamedTuple):
+    """A step that was followed to its end.
+
+    Attributes
+    ----------
+    now : Configuration
+        The configuration at the end.
+    touched : ndarray of bool, shape (n,)
+        Whether each node was ever closed during the step.
+    events, exchanges : int
+        Changes of status that the load has reached, and exchanges that the tableau has made.
+    """
+
+    now: Configuration
+    touched: np.ndarray
+    events: int
+    exchanges: int
+
+
+def follow_whole(system: System, start: Configuration, after: np.ndarray, memory: TableauMemory) -> WholeStep | None:
+    """Follow the load from a configuration in contact, which is not changed, to `after` (loads,), dimensionless.
+
+    One call of the kernel goes from the held contact to the corrected end. Most steps of a history with few nodes need
+    nothing else. None if the step needs more; a :class:`PathStep` then follows it from its start. It begins with the
+    same calls, so a step has the same bits either way. The `memory` is overwritten.
+    """
+    n = start.status.size
+    table = HeldContacts.of(system).table(system, start.closed) if begins_held(system) else None
+    if table is None:
+        return None
+    contact = Contact(
+        start.pressure.copy(), start.shear.copy(), start.gap.copy(), start.slip.copy(), start.status.copy(),
+        start.status.copy(), np.zeros(n, dtype=bool), start.motion.copy(), start.rest_slip,
+        start.slip_tally.sums.copy(),
+    )  # fmt: skip
+    sums = np.array([0.0, start.dissipation, start.work, start.seat_dissipation])
+    counts = np.zeros(exchange.COUNTS, dtype=np.int64)
+    queue = Queue(np.zeros(2 * n, dtype=np.int64), np.zeros(2 * n, dtype=np.int8), counts, sums)
+    rate = after - start.load
+    columns = HeldColumns(system, table, contact, start.load, rate, start.rest_gap, memory)
+    code = columns.follow(load_terms(system, start.load, rate), queue, 1.0, MOST_EVENTS * n, n)
+    if code != exchange.REACHED:
+        return None
+    correction = columns.correct(start)
+    if correction.drift > SEVERE_DRIFT or not correction.error <= MOST_ERROR or exceeds_bounds(correction):
+        return None
+    now = correction.settled
+    now.load, now.slip_tally = after.copy(), SlipTally(contact.slip_tally)
+    _, now.dissipation, now.work, now.seat_dissipation = sums.tolist()
+    return WholeStep(now, contact.touched, int(counts[exchange.EVENTS]), int(counts[exchange.EXCHANGES]))
 
 
 def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:

@@ -10,7 +10,6 @@ import numpy as np
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.model.loads import FRICTION_CHANGE, M
-from fastpin.solver import whole_step
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.drift import DriftPath
 from fastpin.solver.driven import can_float
@@ -24,7 +23,7 @@ from fastpin.solver.errors import (
     ResolutionError,
     SolveError,
 )
-from fastpin.solver.path import PathStep, StepLostError
+from fastpin.solver.path import PathStep, StepLostError, follow_whole
 from fastpin.solver.rest import release
 from fastpin.solver.snap import find_state_beyond
 from fastpin.solver.step import Piece, Position, StepReport, force_of, force_on_pin
@@ -139,7 +138,7 @@ class PathStepper:
 
     def _follow_whole(self, system: System, position: Position, after: np.ndarray) -> bool:
         """Follow the rest of a piece to the load `after` in one call. Returns whether that was enough."""
-        found = whole_step.follow(system, position.now, after, self._memory)
+        found = follow_whole(system, position.now, after, self._memory)
         if found is None:
             return False
         position.now = found.now

@@ -1,20 +1,26 @@
 """A task is one history to follow: from no load, from a corner, or from the end of another history.
 
-It is followed with Ctrl-C held back, and with one thread of BLAS: :func:`deferred_interrupts`, :func:`one_blas_thread`.
+From no load the nodes are chosen by trial, see :meth:`Task.tries`. A run that begins at a corner keeps its nodes. It is
+tried strictly, and then not. A strict run ends where the contact is too narrow for the nodes. Otherwise a contact that
+carries next to nothing is let go, and a new one begins without memory.
+
+A history is followed with Ctrl-C held back, and with one thread of BLAS: :func:`deferred_interrupts`,
+:func:`one_blas_thread`.
 """
 
 from __future__ import annotations
 
 import functools
+import itertools
 import logging
 import math
 import signal
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, fields, replace
 from types import FrameType
-from typing import Any
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -31,16 +37,28 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.runtime.stopping import STOPPING
-from fastpin.solver.attempts import Attempts, Unfit
-from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted
+from fastpin.solver.arc import candidate_grids, narrow_grids
+from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Recorder, Run, RunProgress
 from fastpin.solver.step import pushes
 
 log = logging.getLogger(__name__)
 
+Followed = TypeVar("Followed")
+
+Tries = Generator[tuple[Grid, bool], SolveError, None]
+"""Grids on which a history is tried, and whether strictly. The answer to each is the error with which it ended."""
+
 LEAST_LOAD = 1e-50
 """Least force, or remote stress times R, that is the largest of a history, in parts of R/beta*."""
+
+
+class Unfit(NamedTuple):
+    """A grid on which an earlier run has ended, and its error."""
+
+    grid: Grid
+    error: SolveError
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +105,7 @@ class Task:
     def follow(self, recorder: Recorder, unfit: Unfit | None = None) -> None:
         """Follow the history from no load, on the first grid that is wide enough and fine enough.
 
-        With `unfit` the grid is chosen anew, and only the attempts after this one are made.
+        With `unfit` the grid is chosen anew, from those that are tried after this one.
 
         Raises
         ------
@@ -98,8 +116,10 @@ class Task:
         """
         with deferred_interrupts() as request, one_blas_thread():
             progress = self._stoppable_progress(request)
-            attempts = self.attempts(progress) if unfit is None else replace(self.attempts(progress), grid=None)
-            run = attempts.first_followed(functools.partial(self._follow_on, recorder, progress, None), unfit=unfit)
+            chooser = self if unfit is None else replace(self, grid=None)
+            run = first_followed(
+                chooser.tries(progress, unfit), functools.partial(self._follow_on, recorder, progress, None)
+            )
             if run.statistics["released"]:
                 log.warning(
                     "%d times a narrow contact that carried less than 0.1 %% of the force was let go and lost its "
@@ -107,9 +127,72 @@ class Task:
                     run.statistics["released"],
                 )
 
-    def attempts(self, progress: RunProgress | None = None) -> Attempts:
-        """The attempts at this history. Coarse runs report their `progress`."""
-        return Attempts(self.problem, self.history.distinct(), self.force, self.options, self.grid, progress)
+    def tries(
+        self,
+        progress: RunProgress | None = None,
+        unfit: Unfit | None = None,
+        arcs: Callable[[], Iterable[Grid]] | None = None,
+    ) -> Tries:
+        """Yield the grids on which the history is tried, until it is followed from no load to its end.
+
+        1. Equally spaced nodes: those of the user, or nodes on the arc that a coarse run chooses. Wider arcs follow, up
+           to the whole circle, if the contact reaches an end.
+        2. Graded grids, if the contact gets too narrow for these nodes. They are dense where a survey of the history
+           finds narrow contacts. Nodes that the user has chosen have no graded grids.
+        3. The arcs once more, not strictly, if graded grids do not help.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called during coarse runs.
+        unfit : Unfit, optional
+            The tries begin after this one.
+        arcs : callable, optional
+            Gives equally spaced nodes in place of :meth:`arcs`.
+
+        Raises
+        ------
+        SolveError
+            The error of the last try.
+        """
+        arcs = functools.partial(self.arcs, progress) if arcs is None else arcs
+        try:
+            if unfit is None:
+                yield from wider_arcs(arcs())
+            elif isinstance(unfit.error, ArcError):
+                yield from wider_arcs(after_grid(unfit.grid, arcs()))
+            else:
+                raise unfit.error
+        except ConvergenceError as error:
+            if self.options.method != "path":
+                raise
+            lost: SolveError = error
+        for grid in self._graded(progress, unfit):
+            log.info("%s: once more with %d nodes that are dense where the contact is narrow", lost, grid.size)
+            lost = yield grid, True
+            if not isinstance(lost, ConvergenceError):
+                raise lost
+        log.info("%s", lost)
+        yield from wider_arcs(arcs(), strict=False)
+
+    def arcs(self, progress: RunProgress | None = None) -> Iterator[Grid]:
+        """Equally spaced nodes: those of the user, or candidates that grow to the whole circle."""
+        nodes, arc = self.options.nodes, self.options.arc
+        if self.grid is not None:
+            return iter([self.grid])
+        if arc is None:
+            return candidate_grids(self.problem, self.history.distinct(), self.force, nodes, progress)
+        return iter([Grid.circle(nodes, arc[0]) if self.options.is_full_turn else Grid.arc(arc[0], arc[1], nodes)])
+
+    def _graded(self, progress: RunProgress | None, unfit: Unfit | None) -> Iterable[Grid]:
+        """Graded grids for narrow contacts. If an earlier run has ended on one of them, the grids after it."""
+        if self.grid is not None or self.options.arc is not None or self.problem.seat is not None:
+            return ()
+        grids = narrow_grids(self.problem, self.history.distinct(), self.force, self.options, progress)
+        if unfit is None:
+            return grids
+        listed = list(grids)
+        return after_grid(unfit.grid, listed) if any(_is_same(grid, unfit.grid) for grid in listed) else listed
 
     @property
     def force(self) -> float:
@@ -174,6 +257,52 @@ class Task:
                 self.progress(done, total)
 
         return progress
+
+
+def first_followed(tries: Tries, follow: Callable[[Grid, bool], Followed]) -> Followed:
+    """Follow a history on one grid after the other, until it is followed to its end. Return what `follow` returns.
+
+    Raises
+    ------
+    SolveError
+        The error of the last try.
+    """
+    attempt = next(tries)
+    while True:
+        try:
+            return follow(*attempt)
+        except SolveError as error:
+            lost = error
+        attempt = tries.send(lost)
+
+
+def wider_arcs(arcs: Iterable[Grid], strict: bool = True) -> Tries:
+    """Yield one arc after the other, until the contact keeps clear of its ends.
+
+    Raises
+    ------
+    SolveError
+        The error of the last try.
+    """
+    lost: SolveError = ArcError(CUT_OFF)
+    for number, grid in enumerate(arcs):
+        if number:
+            log.info("the contact reaches an end of the arc: once more on a wider one")
+        log.info("%d nodes from %.5g to %.5g rad", grid.size, grid.theta[0], grid.theta[-1])
+        lost = yield grid, strict
+        if not isinstance(lost, ArcError):
+            break
+    raise lost
+
+
+def after_grid(grid: Grid, grids: Iterable[Grid]) -> Iterator[Grid]:
+    """The grids that come after `grid` among `grids`."""
+    return itertools.islice(itertools.dropwhile(lambda other: not _is_same(other, grid), grids), 1, None)
+
+
+def _is_same(one: Grid, two: Grid) -> bool:
+    """Whether two grids have the same nodes, up to rounding."""
+    return one.size == two.size and bool(np.allclose(one.theta, two.theta, rtol=0.0, atol=1e-9))
 
 
 def as_history(history: LoadHistory | Sequence[Corner], field: str = "history") -> LoadHistory:

@@ -425,7 +425,7 @@ class State(ReadOnly):
         """The tractions before any load of all interfaces, that of the pin first; none if nothing is pressed."""
         import fastpin
 
-        return fastpin.solver.assembled.assembled_tractions(*self._joint)[-len(self.problem.interfaces) :]
+        return fastpin.solver.assembled_tractions(*self._joint)[-len(self.problem.interfaces) :]
 
     @cached_property
     def _joint(self) -> tuple[Problem, Grid]:

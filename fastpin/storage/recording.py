@@ -24,10 +24,9 @@ from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.options import OPTIONS, OptionValues, SolveOptions
 from fastpin.model.synonyms import unknown_keyword
 from fastpin.solver import ArcError, ConvergenceError, Interrupted, Result, SolveError
-from fastpin.solver.attempts import Unfit
 from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
-from fastpin.solver.task import Task, as_history, check_options, check_start
+from fastpin.solver.task import Task, Unfit, as_history, check_options, check_start
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.hdf5 import text_of
 from fastpin.storage.held_in_file import HeldInFile, provenance

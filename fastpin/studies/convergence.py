@@ -21,8 +21,7 @@ from fastpin.model.read_only import ReadOnly
 from fastpin.model.synonyms import explains_keywords
 from fastpin.solver import ArcError, Result, SolveError, solve
 from fastpin.solver.arc import first_direction
-from fastpin.solver.attempts import first_wide_enough
-from fastpin.solver.task import Task, as_history
+from fastpin.solver.task import Task, as_history, first_followed, wider_arcs
 from fastpin.states.error_bars import PLACE_FLOOR, spacing
 from fastpin.states.quantities import QUANTITIES, ZONES, matching_values, quantity, size, sizes, values
 from fastpin.states.state import State
@@ -315,11 +314,11 @@ class _Work:
         common = math.gcd(*(count - 1 for count in self.counts))
         coarsest = common + 1 if common >= LEAST_NODES - 1 else self.counts[0]
         coarse = replace(self.task, options=self.task.options.changed(nodes=coarsest))
-        arc = first_wide_enough(coarse.attempts().arcs(), self._follow_grids)
+        arc = first_followed(wider_arcs(coarse.arcs()), self._follow_grids)
         for count in self.increments:
             self.increment_results.append(self._solve_grid(arc, self.single, "increment", count))
 
-    def _follow_grids(self, arc: Grid) -> Grid:
+    def _follow_grids(self, arc: Grid, strict: bool) -> Grid:
         """Solve all grids of the path solver on one arc, and return the arc."""
         self.results, self.read, self.done = {}, {}, 0.0
         for count in (*self.counts, *self._path_apart()):

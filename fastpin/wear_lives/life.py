@@ -22,11 +22,18 @@ from fastpin.model.problem import LOOKED_AT, Problem
 from fastpin.model.profile import Profile, ProfileLike, profile_of_nodes
 from fastpin.model.recorded import with_last_cycle
 from fastpin.model.wear import Wear
-from fastpin.solver.attempts import Unfit, arcs_after, first_wide_enough
 from fastpin.solver.errors import ArcError, Interrupted, ResolutionError
 from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import MemoryRecorder
-from fastpin.solver.task import Task, deferred_interrupts, one_blas_thread
+from fastpin.solver.task import (
+    Task,
+    Unfit,
+    after_grid,
+    deferred_interrupts,
+    first_followed,
+    one_blas_thread,
+    wider_arcs,
+)
 from fastpin.wear_lives.fat_cycles import FatCycles, Worn
 from fastpin.wear_lives.wear_path import WearRun
 from fastpin.wear_lives.wear_result import WearResult, WornCycle, slip_doubts
@@ -195,20 +202,19 @@ class WearTask:
                 if request.stop:
                     raise Interrupted
 
-            def on_grid(grid: Grid) -> None:
-                log.info("%d nodes from %.5g to %.5g rad", grid.size, grid.theta[0], grid.theta[-1])
-                recorder.begin(grid, attempts.force)
-                life = self._life(grid, attempts.force, watch)
+            def on_grid(grid: Grid, strict: bool) -> None:
+                recorder.begin(grid, task.force)
+                life = self._life(grid, task.force, watch)
                 self._live(life, life.begin(self.approach), recorder)
 
             error = None if unfit is None else unfit.error
             for nodes in self._sizes(unfit):
-                attempts = self._task(nodes).attempts(watch)
-                arcs = attempts.arcs()
+                task = self._task(nodes)
+                arcs = task.arcs(watch)
                 if unfit is not None and nodes == unfit.grid.size:
-                    arcs = arcs_after(unfit.grid, arcs)
+                    arcs = after_grid(unfit.grid, arcs)
                 try:
-                    return first_wide_enough(arcs, on_grid)
+                    return first_followed(wider_arcs(arcs), on_grid)
                 except ResolutionError as narrow:
                     error = narrow
                     log.info("%s", narrow)

@@ -2,12 +2,13 @@
 
 import pytest
 
-from fastpin.solver import held, path, whole_step
+from fastpin.solver import arc, first_contact, held, path, path_stepper
 
 
 def step_by_step(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let no step be followed by one call of the kernel: a PathStep follows each."""
-    monkeypatch.setattr(whole_step, "follow", lambda *_: None)
+    for module in (arc, first_contact, path_stepper):
+        monkeypatch.setattr(module, "follow_whole", lambda *_: None)
 
 
 def as_with_many_nodes(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,14 +1,13 @@
-"""Attempts at a history: the order in which grids are tried."""
+"""The tries of a history: the order of their grids."""
 
-import numpy as np
 import pytest
 
 import fastpin
 from fastpin.model.grid import Grid
 from fastpin.model.options import SolveOptions
-from fastpin.solver import attempts
-from fastpin.solver.attempts import Attempts, Unfit, first_wide_enough
+from fastpin.solver import task
 from fastpin.solver.errors import ArcError, ConvergenceError, SolveError
+from fastpin.solver.task import Task, Unfit, first_followed, wider_arcs
 
 STEEL = fastpin.MATERIALS["steel"]
 PROBLEM = fastpin.Problem.from_load_parameter(fastpin.MaterialPair(STEEL, STEEL), 0.1, 0.4)
@@ -20,12 +19,12 @@ NAMES = {id(grid): name for grid, name in zip([*ARCS, *GRADED], ["arc", "wide", 
 
 @pytest.fixture(autouse=True)
 def _known_grids(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(attempts, "candidate_grids", lambda *_: iter(ARCS))
-    monkeypatch.setattr(attempts, "narrow_grids", lambda *_: iter(GRADED))
+    monkeypatch.setattr(task, "candidate_grids", lambda *_: iter(ARCS))
+    monkeypatch.setattr(task, "narrow_grids", lambda *_: iter(GRADED))
 
 
 def order(errors: dict[str, type[SolveError]], grid: Grid | None = None, unfit: Unfit | None = None, **options) -> str:
-    """The attempts that are made where each attempt of `errors` ends in its error; in brackets if it is not strict."""
+    """The tries where each one of `errors` ends in its error; in brackets if it is not strict."""
     tried = []
 
     def follow(grid: Grid, strict: bool) -> None:
@@ -34,9 +33,7 @@ def order(errors: dict[str, type[SolveError]], grid: Grid | None = None, unfit: 
             raise errors[tried[-1]](tried[-1])
 
     try:
-        Attempts(PROBLEM, np.zeros((1, 9)), 1.0, SolveOptions(**options), grid, None).first_followed(
-            follow, unfit=unfit
-        )
+        first_followed(Task(PROBLEM, [{"P": 1.0}], SolveOptions(**options), grid).tries(unfit=unfit), follow)
     except SolveError as error:
         tried.append(f"error of {error}")
     return ", ".join(tried)
@@ -68,7 +65,7 @@ def test_the_increment_solver_is_not_tried_on_other_grids() -> None:
     assert order({"arc": LOST}, method="increment") == "arc, error of arc"
 
 
-def test_attempts_go_on_after_a_grid_that_was_unfit() -> None:
+def test_tries_go_on_after_a_grid_that_was_unfit() -> None:
     assert order({}, unfit=Unfit(ARCS[0], ArcError("cut off"))) == "wide"
     assert order({}, unfit=Unfit(ARCS[0], LOST("narrow"))) == "graded"
     assert order({}, unfit=Unfit(GRADED[0], LOST("narrow"))) == "fine"
@@ -78,4 +75,4 @@ def test_attempts_go_on_after_a_grid_that_was_unfit() -> None:
 
 def test_without_an_arc_the_contact_is_cut_off() -> None:
     with pytest.raises(ArcError, match="give a wider one"):
-        first_wide_enough([], lambda grid: grid)
+        first_followed(wider_arcs([]), lambda grid, strict: grid)
