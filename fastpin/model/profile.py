@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -29,7 +29,6 @@ from fastpin.model.checks import (
     whole_number,
 )
 from fastpin.model.grid import Grid
-from fastpin.model.profile_csv import ProfileKind, read_samples
 from fastpin.model.profile_terms import (
     MOST_ANGLE,
     MOST_ORDER,
@@ -43,6 +42,9 @@ from fastpin.model.profile_terms import (
     Zone,
 )
 from fastpin.model.synonyms import explains_keywords
+
+ProfileKind = Literal["gap", "friction", "wear"]
+"""What the values of a profile in a file are."""
 
 MOST_TERMS = 512
 """Most terms of a profile."""
@@ -176,6 +178,8 @@ class Profile:
         InputError
             If the samples do not go round the hole, see :meth:`samples`, or an argument can't be used.
         """
+        from fastpin.tables import read_samples
+
         kind = choice("quantity", quantity, get_args(ProfileKind))
         return cls.samples(*read_samples(path, kind, columns=columns, skip=skip), harmonics)  # type: ignore[arg-type]
 

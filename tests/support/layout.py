@@ -20,7 +20,6 @@ ABOVE_BODIES = tuple(
         "crack",
         "doubts",
         "history",
-        "history_csv",
         "lug",
         "points",
         "problem",
@@ -37,6 +36,7 @@ LEVELS = (
     ("model",),
     ("bodies",),
     ABOVE_BODIES,
+    ("tables",),
     ("elasticity", "casefile"),
     ("reading",),
     ("states",),
@@ -94,6 +94,8 @@ MOST_PARAMETERS = 8
 MOST_PUBLIC_NAMES = 44
 
 UPWARD = {
+    "model/history.py": "LoadHistory is read from a CSV file, which few histories are",
+    "model/profile.py": "Profile is read from a CSV file, which few profiles are",
     "states/state.py": "State shows itself in notebooks",
     "solver/wear_result.py": "WearResult words itself as a table",
     "solver/result.py": "Result plots, reports, saves and shows itself, and has its fatigue computed",
