@@ -7,10 +7,6 @@ from .grid import Grid as Grid
 from .history import LoadHistory as LoadHistory
 from .laminate import Laminate as Laminate
 from .loads import LOADS as LOADS
-from .lug import Hole as Hole
-from .lug import Lug as Lug
-from .lug import Part as Part
-from .lug import PartLoad as PartLoad
 from .materials import MATERIALS as MATERIALS
 from .materials import Material as Material
 from .materials import MaterialPair as MaterialPair

@@ -20,7 +20,6 @@ ABOVE_BODIES = tuple(
         "crack",
         "doubts",
         "history",
-        "lug",
         "points",
         "problem",
         "recorded",
@@ -36,7 +35,7 @@ LEVELS = (
     ("model",),
     ("bodies",),
     ABOVE_BODIES,
-    ("tables",),
+    ("lugs", "tables"),
     ("elasticity", "casefile"),
     ("reading",),
     ("states",),
@@ -291,6 +290,8 @@ def one_direction(tree: Tree) -> Iterator[str]:
         target = tree.target(one)
         if target is None or one.file in ("__init__.py", "__main__.py") or _calls_a_face(tree, one):
             continue
+        if one.file.endswith("/__init__.py") and target.endswith("/__init__.py"):
+            continue  # where names have moved to: a face is loaded without its files
         if target == "":
             yield f"{one.file}:{one.line} imports the public face"
         elif rank(target) > rank(one.file) or (_folder(target) != _folder(one.file) and rank(target) == rank(one.file)):
