@@ -30,7 +30,7 @@ from fastpin.model.loads import REMOTE, Corner, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.runtime.stopping import STOPPING
+from fastpin.runtime.threads import STOPPING
 from fastpin.solver.attempts import Attempts, Unfit
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted
 from fastpin.solver.result import Restart, Result
