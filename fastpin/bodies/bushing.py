@@ -25,9 +25,9 @@ from fastpin.bodies.body import (
     check_outer,
 )
 from fastpin.bodies.compliance import Compliance
+from fastpin.bodies.pins import SeatedBush
 from fastpin.bodies.plate import Plate
 from fastpin.bodies.ring import Ring
-from fastpin.bodies.tube import SeatedBush
 from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, first_change, force_on, pairs_of, spectrum
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics

@@ -32,9 +32,8 @@ from fastpin.model.checks import (
 )
 from fastpin.model.fields import FIELDS
 from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
-from fastpin.model.profile import NO_GAP, InitialGap, Profile, ProfileLike, is_pair
+from fastpin.model.profile import NO_GAP, InitialGap, Profile, ProfileLike, is_pair, widest_place
 from fastpin.model.profile_terms import Term
-from fastpin.model.room import widest_place
 from fastpin.model.synonyms import explains_attributes, explains_keywords
 
 Rotation = Literal["free", "fixed", "spring"]

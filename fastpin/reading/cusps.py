@@ -18,11 +18,10 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.model.grid import Grid
-from fastpin.reading.ends import CUSP_TERMS, end_place
 from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import End, Fit, HalfLine, Tries, Try, half_line
 from fastpin.reading.old_borders import OldBorder, old_borders
-from fastpin.reading.zones import runs, unrolled
+from fastpin.reading.zones import CUSP_TERMS, end_place, runs, unrolled
 
 DEGREES = (3, 4, 5)
 """Degrees of the polynomial to try where no end of the zone is in the window."""

@@ -190,7 +190,7 @@ class State(ReadOnly):
     def contact(self) -> list[Interval]:
         """Contact intervals (start, stop), rad, read between the nodes.
 
-        The pressure is extrapolated to zero, see :mod:`fastpin.reading.ends`. A contact round the whole circle is one
+        The pressure is extrapolated to zero, see :mod:`fastpin.reading.zones`. A contact round the whole circle is one
         interval of length 2 pi.
         """
         return zones.in_order(self.contact_in_runs)
@@ -204,7 +204,7 @@ class State(ReadOnly):
     def stick(self) -> list[Interval]:
         """Stick intervals (start, stop), rad, read between the nodes.
 
-        mu N - |T| is extrapolated to zero, see :mod:`fastpin.reading.ends`. Sticking nodes that reach |T| = mu N
+        mu N - |T| is extrapolated to zero, see :mod:`fastpin.reading.zones`. Sticking nodes that reach |T| = mu N
         exactly at this load count as slipping.
         """
         return zones.in_order(self._stick)
@@ -567,7 +567,7 @@ class ErrorBars(Mapping[str, float]):
     @property
     @abstractmethod
     def pressure(self) -> np.ndarray:
-        """Error bars >= 0 of the pressure at the nodes, Pa, shape (n,); see :mod:`fastpin.states.traction_bars`."""
+        """Error bars >= 0 of the pressure at the nodes, Pa, shape (n,); see :mod:`fastpin.states.error_bars`."""
 
     @property
     @abstractmethod

@@ -7,9 +7,9 @@ import pytest
 from scipy.special import zeta
 
 from fastpin.kernels.half_line import MOST_NODES, TERMS
-from fastpin.reading.ends import end_place
 from fastpin.reading.half_line import SHEAR_TERMS, End, Fit, half_line, shear_columns, zeta_3
 from fastpin.reading.old_borders import OldBorder
+from fastpin.reading.zones import end_place
 from tests.support.half_line import columns, powers
 
 

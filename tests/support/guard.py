@@ -22,6 +22,7 @@ from typing import Any
 import pytest
 from matplotlib.figure import Figure
 
+from fastpin.runtime import machine
 from tests.support.processes import ROOT
 from tests.support.tiers import TIERS, tier_of
 

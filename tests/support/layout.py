@@ -15,7 +15,6 @@ ABOVE_BODIES = tuple(
     for name in (
         "__init__",
         "assessment",
-        "beside",
         "case",
         "crack",
         "doubts",

@@ -18,8 +18,8 @@ import numpy as np
 from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.bodies.body import PinBody, PlateBody
 from fastpin.bodies.compliance import Compliance
+from fastpin.bodies.pins import TUBE_LOADS
 from fastpin.bodies.ring import SUPPORTS
-from fastpin.bodies.tube import TUBE_LOADS
 from fastpin.lugs.outline import Lug, Part, PartLoad
 from fastpin.lugs.plates import plate_compliance
 from fastpin.model.history import LoadHistory

@@ -1,4 +1,4 @@
-"""A hollow pin."""
+"""Pins: a solid one, a hollow one, and a bush as the pin of its seat."""
 
 from __future__ import annotations
 
@@ -19,6 +19,14 @@ TubeLoad = Literal["uniform", "normal", "shear", "held", "body"]
 """Kinds of load in the bore of a hollow pin."""
 
 TUBE_LOADS: tuple[TubeLoad, ...] = ("uniform", "normal", "shear", "held", "body")
+
+
+@dataclass(frozen=True)
+class Disk(PinBody):
+    """A solid pin. Its load enters as the problem's ``pin_load`` says."""
+
+    kind = "disk"
+    bore_radius = 0.0
 
 
 @explains_keywords
