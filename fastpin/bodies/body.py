@@ -15,10 +15,10 @@ from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 
+from fastpin.bodies import harmonics
+from fastpin.bodies.harmonics import FREE, HELD, First
 from fastpin.bodies.walls import Amplitudes, Displacements, Other, PlateWalls, Wall, first_amplitudes
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
-from fastpin.kernels.harmonics import FREE, HELD, First
 from fastpin.model.checks import given_fields, is_between
 from fastpin.model.laminate import Laminate
 from fastpin.model.materials import Material, MaterialPair, Plane
@@ -298,7 +298,7 @@ class PlateBody(BodyBase):
     outer_radius : float
         Radius of the outer rim, m; infinite without one. With a bush it is that of the bush: ask the ``lug``.
     support : str
-        The distribution of the force on the outer rim, see :func:`fastpin.kernels.harmonics.first`.
+        The distribution of the force on the outer rim, see :func:`fastpin.bodies.harmonics.first`.
     edge_only : bool
         Whether displacements are known at the edge of the hole only, and stresses up to :attr:`reach`.
     """

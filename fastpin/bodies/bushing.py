@@ -10,6 +10,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.bodies.body import (
     MOST_DRY,
     THINNEST,
@@ -25,13 +26,12 @@ from fastpin.bodies.body import (
     check_outer,
 )
 from fastpin.bodies.compliance import Compliance
+from fastpin.bodies.harmonics import First, Layer
 from fastpin.bodies.pins import SeatedBush
 from fastpin.bodies.plate import Plate
 from fastpin.bodies.ring import Ring
 from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, first_change, force_on, pairs_of, spectrum
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
-from fastpin.kernels.harmonics import First, Layer
 from fastpin.model.checks import (
     MOST_FRICTION,
     MOST_PARAMETER,
@@ -420,7 +420,7 @@ def _matrices(bush: Bushing, rim: Rim, highest: int) -> tuple[np.ndarray, ...]:
     """Matrices of a bush for the harmonics from 2 to `highest`, shape (m, 2, 2) each.
 
     They are the growing amplitudes per traction on the contact rim, the misfit, and the traction at the outer rim per
-    growing amplitude and per traction on the contact rim; see :class:`fastpin.kernels.harmonics.Layer`.
+    growing amplitude and per traction on the contact rim; see :class:`fastpin.bodies.harmonics.Layer`.
     """
     order = np.arange(2.0, highest + 1.0)
     layer, far = bush.layer(rim, order), bush.inside.whole(bush.around(rim)[1], order)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from fastpin.bodies.body import PinBody, PinLoad, PlateBody, Rim, Uniform
+from fastpin.bodies.harmonics import First
 from fastpin.bodies.kinds import INFINITE_PLATE, PINS, PLATES
 from fastpin.errors import InputError
-from fastpin.kernels.harmonics import First
 from fastpin.model.materials import Material, MaterialPair
 
 

@@ -8,10 +8,10 @@ from typing import Literal
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.bodies.body import THINNEST, Control, Harmonics, InWords, PinBody, PinLoad, Rim, Shape, Table
 from fastpin.bodies.walls import Amplitudes, Wall, first_change, free_at_contact
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
 from fastpin.model.checks import check_fields, choice, is_above, positive
 from fastpin.model.synonyms import explains_keywords
 

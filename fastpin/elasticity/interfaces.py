@@ -20,10 +20,11 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.operator import DenseOperator
 from fastpin.elasticity.system import Interface, System
-from fastpin.kernels import fourier, harmonics
+from fastpin.kernels import fourier
 from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.grid import Grid
 from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION

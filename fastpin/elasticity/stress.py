@@ -12,9 +12,10 @@ from functools import lru_cache, partial
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.bodies.walls import PlateWalls, Wall
 from fastpin.elasticity.tractions import CHUNK, Tractions, cauchy_integrals
-from fastpin.kernels import fourier, harmonics, laurent
+from fastpin.kernels import fourier, laurent
 from fastpin.model.laminate import Laminate
 from fastpin.model.points import is_beyond_bush
 from fastpin.model.problem import Problem

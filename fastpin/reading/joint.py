@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.bodies.compliance import basis
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
 from fastpin.model.angles import near_bottom
 from fastpin.model.checks import number
 from fastpin.model.grid import Grid

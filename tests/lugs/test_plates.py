@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from fastpin.bodies import harmonics
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
 from fastpin.lugs import panels, plates
 from fastpin.lugs.outline import Hole, Lug, Part, PartLoad, rectangle
 from fastpin.lugs.panels import Edges, Fineness
