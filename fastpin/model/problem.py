@@ -318,7 +318,7 @@ class Problem:
         """Pin and plate with their materials."""
         return BodyPair(self.pair, self.hole_radius, self.pin_body, self.plate_body, self.pin_load)
 
-    @property
+    @cached_property
     def surfaces(self) -> MaterialPair:
         """The materials of the two surfaces in contact: those of ``pair``, or pin and bush."""
         return self.joint.surfaces

@@ -371,7 +371,7 @@ class InitialGap:
         return {name: profile for name in ("hole", "pin") if (profile := getattr(self, name)).terms}
 
     def __bool__(self) -> bool:
-        return bool(self.given)
+        return bool(self.hole.terms or self.pin.terms)
 
     def angles(self, count: int, radius: float) -> np.ndarray:
         """Angles at which the gap shows itself, rad, in order; see :meth:`Profile.angles`."""

@@ -27,7 +27,7 @@ from fastpin.reading.marks import Marks
 from fastpin.states.quantities import QUANTITIES, Quantity, load_point, of_bush, only_where, point_name
 from fastpin.states.reading_bounds import NUMBERS, Bounds, StateBlock
 from fastpin.states.state import State
-from fastpin.states.yielding import OWNERS, PREFIX, place_words, strength_of, von_mises_peak, yielding_owners
+from fastpin.states.yielding import OWNERS, PREFIX, place_words, von_mises_peak, yielding_owners
 
 Side = Literal["smallest", "largest", "largest magnitude"]
 """Which extreme of a quantity, as the ``take`` of an outcome."""
@@ -231,7 +231,7 @@ def _is_near_yield(state: State, owner: str) -> bool:
     """
     with reading(PREFIX + owner):
         peak = von_mises_peak(state, owner, edges_only=True)
-    strength = strength_of(state.problem, peak.circle)
+    strength = state.problem.joint.materials[owner].known_yield_strength
     rims = (state,) if state.seat is None else (state, state.seat)
     largest = max(peak.value, *(float(rim.pressure.max()) for rim in rims))
     return strength is not None and 2.0 * largest > strength
