@@ -40,7 +40,7 @@ LIFE_CONSTANTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "stress-life": (("curve_m",), ("curve_a", "curve_b", "curve_c", "curve_kt")),
 }
-"""The criteria with lives: the constants of the parameter, and those of the life."""
+"""The criteria with lives: the constants of the parameter, and the constants of the life."""
 
 LEAST_SAMPLES = 6
 """Least number of specimens: more than the constants of a curve."""

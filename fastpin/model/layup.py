@@ -246,7 +246,7 @@ def _ply_turns(angles: Sequence[float]) -> np.ndarray:
 def whole_compliance(stack: Stack) -> tuple[float, ...]:
     """The compliances a11, a12, a22, a16, a26 and a66 of a stack in its own axes, 1/Pa.
 
-    They are those of the mean stress: the inverse of sum(Q t) / sum(t), where Q are the stiffnesses of the plies.
+    They relate the mean strain to the mean stress: the inverse of sum(Q t) / sum(t) with the stiffnesses Q of plies.
 
     Raises
     ------

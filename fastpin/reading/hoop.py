@@ -124,7 +124,7 @@ def _is_resolved(
 ) -> bool:
     """Whether power laws describe the peak, and no place without a law may have a higher one.
 
-    `distances` are those of the nodes in contact, and `wall` the distance from the contact to the edge of the body.
+    `distances` are the node distances in contact, and `wall` the distance from the contact to the edge of the body.
     """
     if 0 < distances.size < LEAST_NODES:
         return False

@@ -111,7 +111,7 @@ class Marks:
         tractions: tuple[np.ndarray, np.ndarray],
         status: np.ndarray,
     ) -> Marks:
-        """These marks and those of the present borders between stick and slip, and of the edges of the contact.
+        """Add marks at the present borders between stick and slip, and at the edges of the contact.
 
         `friction` (n,) is that of the nodes, `tractions` are the pressure and the shear (n,), `status` (n,) tells the
         zones.

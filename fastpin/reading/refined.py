@@ -263,7 +263,7 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
 
 
 def _apart(angles: np.ndarray) -> np.ndarray:
-    """Sorted angles without those that equal another one up to rounding. The first and the last one stay.
+    """Sorted angles, each once up to rounding. The first and the last one stay.
 
     A piece between equal angles has no stress.
     """

@@ -40,7 +40,7 @@ Sides = Callable[[np.ndarray], tuple[bool, bool]]
 
 
 def square_root(run: np.ndarray) -> tuple[HalfLine, HalfLine]:
-    """The half lines at both ends of a zone for like bodies: those of the exponent 1/2 for any nodes `run`."""
+    """The half lines at both ends of a zone of like bodies: the exponent is 1/2 for any nodes `run`."""
     return half_line(0.5), half_line(0.5)
 
 

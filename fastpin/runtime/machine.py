@@ -254,7 +254,7 @@ def unknown_symbols(names: Iterable[str]) -> list[str]:
 
 @functools.cache
 def _process() -> ctypes.CDLL:
-    """The symbols of this process. It keeps those that were found: kernels ask for the same ones."""
+    """The symbols of this process. Found symbols are kept: kernels ask for the same ones."""
     return ctypes.CDLL(None)
 
 

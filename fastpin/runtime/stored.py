@@ -147,7 +147,7 @@ def _levels() -> list[str]:
 
 
 def _settings() -> list[str]:
-    """Settings of Numba by variables, of those that may change the code."""
+    """Environment variables of Numba that may change the code, with their values."""
     settings = sorted(f"{name}={value}" for name, value in os.environ.items() if name.startswith("NUMBA_"))
     unrelated = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
     return [text for text in settings if text.partition("=")[0] not in unrelated]

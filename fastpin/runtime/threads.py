@@ -107,7 +107,7 @@ class _Undisturbed(threading.Thread):
 
 
 def undisturbed(work: Callable[[], Found]) -> Found:
-    """Return ``work()``, computed whole in a thread of its own. What is raised in the caller meanwhile, comes after it.
+    """Return ``work()``, computed whole in a thread of its own. Exceptions in the caller meanwhile are raised after it.
 
     Handlers of signals run in the main thread, and other threads may raise exceptions in the caller's. Both would be
     lost in a call from a library in C to Python, and the library would go on without a result.

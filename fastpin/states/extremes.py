@@ -157,7 +157,7 @@ class KeptStates:
 
 
 def _block_of(states: Sequence[State]) -> StateBlock:
-    """The nodal values of some states on one grid, and those of their seats."""
+    """The nodal values of some states on one grid, and of their seats."""
     marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
     seats = [state.seat for state in states if state.seat is not None]
     numbers = {name: np.array([getattr(state, name) for state in states]) for name in NUMBERS}

@@ -35,7 +35,7 @@ MARGINS = {
 
 
 class Margin(NamedTuple):
-    """A margin, in SI units. What is not known is NaN, and the remark says why.
+    """A margin, in SI units. An unknown number is NaN, and the remark says why.
 
     Attributes
     ----------

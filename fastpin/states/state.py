@@ -67,7 +67,7 @@ class State(ReadOnly):
     fraction : float
         Part of the step from the previous corner to this one, 0 to 1; 1 at the corner itself.
     load : dict of str to float
-        Loads by name, see :data:`fastpin.model.loads.LOADS`. They hold the reactions of what is prescribed, see
+        Loads by name, see :data:`fastpin.model.loads.LOADS`. They hold the reactions to prescribed motion, see
         :attr:`fastpin.Problem.reactions`.
     theta : ndarray, shape (n,)
         Node angles, rad; -pi/2 is the bottom of the hole.
