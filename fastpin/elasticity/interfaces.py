@@ -6,8 +6,8 @@ same force and moment. Each has its own relative motion (c_x, c_y, omega) and it
 the bush couples gap and slip of one interface to the tractions on the other.
 
 Nodes, motions and conditions of the pin come first, then nodes, motions and conditions of the seat. All is
-dimensionless with R, F and beta* of the pin in the bush. With the radius c of the seat over R, a unit of traction of the
-seat's own system is 1/c of it, and a unit of displacement beta_2/beta_1.
+dimensionless with R, F and beta* of the pin in the bush. With the radius c of the seat over R, a unit of traction of
+the seat's own system is 1/c of it, and a unit of displacement beta_2/beta_1.
 """
 
 from __future__ import annotations
