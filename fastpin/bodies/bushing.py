@@ -69,7 +69,7 @@ class Bushing(PlateBody):
         the pin smaller. A bush that slips may be loose: a negative interference is its clearance in the plate. In a
         dimensionless problem the unit is F beta*, as of the clearance.
     inside : Plate, Ring or Compliance
-        The body round the bush. A compliance is that of a hole of the outer radius.
+        The body round the bush. A compliance belongs to a hole of the outer radius.
     friction : float, optional
         Coefficient of friction between bush and plate, of a bush that is not bonded.
     bonded : bool
@@ -334,7 +334,7 @@ class Bushing(PlateBody):
         return max(harmonics.harmonics_needed(math.sqrt(1.0 / seat.ratio)), self.inside.highest_inside(seat))
 
     def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
-        """The field of the bush beyond that of the hole in the infinite plate, and that of the lug round it.
+        """The field of the bush beyond a hole in the infinite plate, and the whole field of the lug round it.
 
         `passed` are the harmonics that the bush passes on to the lug.
         """

@@ -178,7 +178,7 @@ KSI = 6.894757293168361e6
 def stress_life_curves() -> dict[str, dict[str, Any]]:
     """Return fields of :class:`fastpin.model.FatigueConstants` by the names of curves, such as "2024-T3 sheet, Kt 1".
 
-    They are those of figures of MIL-HDBK-5J, read from a public transcription: compare a curve with the print before
+    They come from figures of MIL-HDBK-5J, read from a public transcription: compare a curve with the print before
     relying on a life. Curves of specimens whose number is not printed have no ``curve_samples``.
     """
     with Path(__file__).with_name("stress_life.csv").open(encoding="utf-8") as file:

@@ -320,7 +320,7 @@ class Problem:
 
     @cached_property
     def surfaces(self) -> MaterialPair:
-        """The materials of the two surfaces in contact: those of ``pair``, or pin and bush."""
+        """The materials of the two surfaces in contact: ``pair``, or pin and bush."""
         return self.joint.surfaces
 
     @property

@@ -90,7 +90,7 @@ class Profile:
     def ellipse(cls, size: float, axis: float = 0.0) -> Profile:
         """An oval: `size` cos 2(theta - axis). Its half axes are larger and smaller by `size`.
 
-        The half axis of a hole is the larger one at `axis`, that of a pin the smaller one: the gap opens there.
+        At `axis` a hole has its larger half axis, and a pin its smaller one: the gap opens there.
         """
         return cls.lobes(2, size, axis)
 

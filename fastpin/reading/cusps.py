@@ -403,7 +403,7 @@ class ShearNodes:
     ) -> np.ndarray:
         """The integral of the shear up to a border, from the node beyond it, where the shear is smooth.
 
-        It is that of the nodes first : last of a contact.
+        The integral begins among the nodes first : last of a contact.
         """
         turned, outer, before = patch.turned(first, last), at - inwards, at - 2 * inwards
         if last - first == patch.nodes.size or not first <= outer < last:

@@ -14,7 +14,7 @@ A slip zone at a contact edge has the symbol g + i t h, where t = tan(pi (a - 1/
 The reserve mu N - |T| in a stick zone has (g^2 - beta_D^2 h^2)/(g - i t h), with the exponent (T26).
 
 Unlike bodies have a cusp in N too, so that T has one on both sides of a border. From the equation of the pressure the
-transform of |T| is -g/(g - i t h) times that of the reserve, and that of mu N is -i t h/(g - i t h) times it.
+transform of |T| is -g/(g - i t h) times the transform of the reserve. For mu N the factor is -i t h/(g - i t h).
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ def hoop_peak(
 ) -> HoopPeak:  # fmt: skip
     """The largest hoop stress on the edge of a body that is not rigid, of a state with these `closed` nodes.
 
-    The `hoop` stress is taken for that of the loads alone.
+    The `hoop` stress is taken for the stress of the loads alone.
     """
     around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
     nodes = grid.theta[closed]

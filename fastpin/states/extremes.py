@@ -253,7 +253,7 @@ def yield_doubts(
     history : LoadHistory
         If its loads are in doubt, the stresses are not.
     extremes : callable
-        ``extremes()`` gives extremes of all states, among them those of :func:`yield_extremes`.
+        ``extremes()`` gives extremes of all states, with all of :func:`yield_extremes`.
         It is called only if a strength is known.
     read : callable
         ``read(places)`` gives the states at these places.

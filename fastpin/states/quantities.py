@@ -78,7 +78,7 @@ def only_where(exists: Callable[[Problem], bool], quantity: Quantity) -> Quantit
 
 
 def _hoop(label: str, kind: str, name: str, words: str, edge: Body = "plate", is_part: bool = False) -> Quantity:
-    """A number of the largest hoop stress on an edge, by its name there, where the edge is that of an elastic body.
+    """A number of the largest hoop stress on an edge of an elastic body, by its name there.
 
     The parts of assembly and loads exist where something is pressed.
     """

@@ -422,7 +422,7 @@ class State(ReadOnly):
 
     @property
     def _assembled(self) -> Sequence[Tractions]:
-        """The tractions before any load of all interfaces, that of the pin first; none if nothing is pressed."""
+        """The tractions before any load of all interfaces, the pin first; none if nothing is pressed."""
         import fastpin
 
         return fastpin.solver.assembled.assembled_tractions(*self._joint)[-len(self.problem.interfaces) :]
