@@ -25,5 +25,18 @@ from fastpin.moved import with_homes, with_moved
 _face, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 __getattr__ = with_homes(
     with_moved(_face, lambda: _face("figures"), ("plot_convergence",)),
-    ("bodies", "model", "solver", "states", "damage", "cracks", "storage", "assess", "studies", "figures", "report"),
+    (
+        "bodies",
+        "lugs",
+        "model",
+        "solver",
+        "states",
+        "damage",
+        "cracks",
+        "storage",
+        "assess",
+        "studies",
+        "figures",
+        "report",
+    ),
 )

@@ -8,8 +8,8 @@ It is computed once, and serves every pin and every load.
 
 import fastpin
 from fastpin.casefile import parse_lug
-from fastpin.elasticity import plate_compliance
 from fastpin.figures import plot_lug
+from fastpin.lugs import plate_compliance
 
 lug = parse_lug("""
 [plate]

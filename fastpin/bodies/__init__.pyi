@@ -1,6 +1,6 @@
 from .bushing import Bushing as Bushing
 from .compliance import Compliance as Compliance
-from .disk import Disk as Disk
+from .pins import Disk as Disk
+from .pins import Tube as Tube
 from .plate import Plate as Plate
 from .ring import Ring as Ring
-from .tube import Tube as Tube

@@ -15,10 +15,10 @@ from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 
+from fastpin.bodies import harmonics
+from fastpin.bodies.harmonics import FREE, HELD, First
 from fastpin.bodies.walls import Amplitudes, Displacements, Other, PlateWalls, Wall, first_amplitudes
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
-from fastpin.kernels.harmonics import FREE, HELD, First
 from fastpin.model.checks import given_fields, is_between
 from fastpin.model.laminate import Laminate
 from fastpin.model.materials import Material, MaterialPair, Plane
@@ -195,7 +195,7 @@ class BodyBase:
         return found
 
     def summary(self) -> dict[str, Any]:
-        """More entries of its summary, beside those of :meth:`as_json`."""
+        """Entries of its summary that :meth:`as_json` lacks."""
         return {}
 
     def rows(self, length: InWords, material: InWords) -> list[tuple[str, str]]:
@@ -203,7 +203,7 @@ class BodyBase:
         return []
 
     def drawing(self, rim: Rim) -> list[Shape]:
-        """The shapes that show it, the largest first; those of a pin without its outline."""
+        """The shapes that show it, the largest first. A pin has no shape for its outline."""
         return []
 
 
@@ -256,7 +256,7 @@ class PinBody(BodyBase):
         return harmonics.first(self.inner(rim), rim.kolosov, self.load or pin_load)
 
     def change(self, rim: Rim, order: np.ndarray) -> np.ndarray:
-        """a, b, d less those of a disk, in 1/Pa, shape (3, m), for the harmonics `order` >= 2; (T38)."""
+        """a, b, d minus the values of a disk, in 1/Pa, shape (3, m), for the harmonics `order` >= 2; (T38)."""
         return np.zeros((3, order.size))
 
     def wall(self, rim: Rim, tractions: Harmonics) -> Wall | None:
@@ -296,9 +296,9 @@ class PlateBody(BodyBase):
     is_infinite : bool
         Whether a remote stress has Kirsch's field in it.
     outer_radius : float
-        Radius of the outer rim, m; infinite without one. With a bush it is that of the bush: ask the ``lug``.
+        Radius of the outer rim, m; infinite without one. A bush has its own: ask the ``lug`` for the plate's.
     support : str
-        The distribution of the force on the outer rim, see :func:`fastpin.kernels.harmonics.first`.
+        The distribution of the force on the outer rim, see :func:`fastpin.bodies.harmonics.first`.
     edge_only : bool
         Whether displacements are known at the edge of the hole only, and stresses up to :attr:`reach`.
     """
@@ -410,7 +410,7 @@ class PlateBody(BodyBase):
         return -0.5 * rim.compliance * (1.0 - self.far(rim) ** -2.0)
 
     def change(self, rim: Rim, order: np.ndarray) -> np.ndarray:
-        """a, b, d less those of an infinite plate of the surface's material, in 1/Pa, (3, m), `order` >= 2; (T38)."""
+        """a, b, d minus those of an infinite plate of the surface's material, in 1/Pa, (3, m), `order` >= 2; (T38)."""
         return np.zeros((3, order.size))
 
     def whole(self, rim: Rim, order: np.ndarray) -> np.ndarray:

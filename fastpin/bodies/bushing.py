@@ -10,6 +10,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.bodies.body import (
     MOST_DRY,
     THINNEST,
@@ -25,13 +26,12 @@ from fastpin.bodies.body import (
     check_outer,
 )
 from fastpin.bodies.compliance import Compliance
+from fastpin.bodies.harmonics import First, Layer
+from fastpin.bodies.pins import SeatedBush
 from fastpin.bodies.plate import Plate
 from fastpin.bodies.ring import Ring
-from fastpin.bodies.tube import SeatedBush
 from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, first_change, force_on, pairs_of, spectrum
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
-from fastpin.kernels.harmonics import First, Layer
 from fastpin.model.checks import (
     MOST_FRICTION,
     MOST_PARAMETER,
@@ -69,7 +69,7 @@ class Bushing(PlateBody):
         the pin smaller. A bush that slips may be loose: a negative interference is its clearance in the plate. In a
         dimensionless problem the unit is F beta*, as of the clearance.
     inside : Plate, Ring or Compliance
-        The body round the bush. A compliance is that of a hole of the outer radius.
+        The body round the bush. A compliance belongs to a hole of the outer radius.
     friction : float, optional
         Coefficient of friction between bush and plate, of a bush that is not bonded.
     bonded : bool
@@ -334,7 +334,7 @@ class Bushing(PlateBody):
         return max(harmonics.harmonics_needed(math.sqrt(1.0 / seat.ratio)), self.inside.highest_inside(seat))
 
     def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
-        """The field of the bush beyond that of the hole in the infinite plate, and that of the lug round it.
+        """The field of the bush beyond a hole in the infinite plate, and the whole field of the lug round it.
 
         `passed` are the harmonics that the bush passes on to the lug.
         """
@@ -420,7 +420,7 @@ def _matrices(bush: Bushing, rim: Rim, highest: int) -> tuple[np.ndarray, ...]:
     """Matrices of a bush for the harmonics from 2 to `highest`, shape (m, 2, 2) each.
 
     They are the growing amplitudes per traction on the contact rim, the misfit, and the traction at the outer rim per
-    growing amplitude and per traction on the contact rim; see :class:`fastpin.kernels.harmonics.Layer`.
+    growing amplitude and per traction on the contact rim; see :class:`fastpin.bodies.harmonics.Layer`.
     """
     order = np.arange(2.0, highest + 1.0)
     layer, far = bush.layer(rim, order), bush.inside.whole(bush.around(rim)[1], order)

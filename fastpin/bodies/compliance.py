@@ -69,12 +69,6 @@ MOST_BYTES = 10_000_000
 FARTHEST = 100.0
 """Radius of the nearest other edge that is looked for, at most, in radii of the hole."""
 
-DECAYED = 1e-6
-"""Part of the second harmonic below which an entry tells how fast the harmonics fall."""
-
-NOISE = 1e-10
-"""Part of the largest harmonic below which others are left out inside the plate: their noise grows like r^n."""
-
 NEAREST_PART = 0.25
 """Part of the way from the hole to the nearest other edge on which the harmonics give the stress to six digits."""
 
@@ -365,7 +359,7 @@ class Compliance(PlateBody):
         size = np.maximum.accumulate(size[::-1])[::-1]  # in a symmetric plate some harmonics vanish
         if size[0] == 0.0:
             return 1.0 + NEAREST_PART * (FARTHEST - 1.0)
-        small = np.flatnonzero(size < DECAYED * size[0])
+        small = np.flatnonzero(size < 1e-6 * size[0])  # far enough below the second one to tell how fast they fall
         last = int(small[0]) if small.size else size.size - 1  # later ones may be noise
         nearest = float(size[last] / size[0]) ** (-0.5 / max(last, 1)) if size[last] > 0.0 else FARTHEST
         return 1.0 + NEAREST_PART * (min(nearest, FARTHEST) - 1.0)
@@ -373,7 +367,7 @@ class Compliance(PlateBody):
     def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
         """The smooth field near the hole, which leaves the hole free of traction; (T48)."""
         moved = self._edge_displacement(tractions, remote)
-        moved[np.abs(moved) < NOISE * np.abs(moved).max()] = 0.0
+        moved[np.abs(moved) < 1e-10 * np.abs(moved).max()] = 0.0  # their noise grows like r^n
         order = np.arange(self.order + 1.0)
         amplitudes = 2.0 / (rim.kolosov + 1.0) * (np.arange(-self.order, self.order + 1.0) + 1.0) * moved
         a, b = amplitudes[self.order :], amplitudes[self.order :: -1]  # those of z^n and z^-n

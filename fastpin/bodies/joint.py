@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from fastpin.bodies.body import PinBody, PinLoad, PlateBody, Rim, Uniform
+from fastpin.bodies.harmonics import First
 from fastpin.bodies.kinds import INFINITE_PLATE, PINS, PLATES
 from fastpin.errors import InputError
-from fastpin.kernels.harmonics import First
 from fastpin.model.materials import Material, MaterialPair
 
 
 @dataclass(frozen=True)
 class BodyPair:
-    """Pin and plate in the hole radius `radius`, m. The fields are those of :class:`fastpin.Problem`."""
+    """Pin and plate in the hole radius `radius`, m. :class:`fastpin.Problem` has the same fields."""
 
     pair: MaterialPair
     radius: float
@@ -26,7 +26,7 @@ class BodyPair:
 
     @cached_property
     def surfaces(self) -> MaterialPair:
-        """The materials of the two surfaces in contact: those of ``pair``, or pin and bush."""
+        """The materials of the two surfaces in contact: ``pair``, or pin and bush."""
         return self.plate_body.surface(self.pair)
 
     @cached_property

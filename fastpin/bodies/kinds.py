@@ -8,10 +8,9 @@ from typing import Any
 from fastpin.bodies.body import BodyBase, PinBody, PlateBody
 from fastpin.bodies.bushing import Bushing
 from fastpin.bodies.compliance import Compliance
-from fastpin.bodies.disk import Disk
+from fastpin.bodies.pins import Disk, Tube
 from fastpin.bodies.plate import Plate
 from fastpin.bodies.ring import Ring
-from fastpin.bodies.tube import Tube
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, number
 from fastpin.model.materials import Material

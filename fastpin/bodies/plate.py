@@ -10,10 +10,10 @@ from typing import Any, Self
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.bodies.body import WIDEST, InWords, PlateBody, Remote, Rim, Table
 from fastpin.bodies.walls import UNIT_STRESS, Amplitudes, Displacements, Other, force_on
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
 from fastpin.model.checks import is_between, number, set_fields
 from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.synonyms import explains_keywords

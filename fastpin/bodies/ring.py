@@ -8,11 +8,11 @@ from typing import Literal, NamedTuple, Self
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.bodies.body import THINNEST, Control, InWords, PlateBody, Remote, Rim, Shape, Table, check_outer
+from fastpin.bodies.harmonics import Layer
 from fastpin.bodies.walls import UNIT_STRESS, Amplitudes, Displacements, Other, force_on, free_at_contact, spectrum
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
-from fastpin.kernels.harmonics import Layer
 from fastpin.model.checks import check_fields, choice, is_above, positive
 from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.materials import Material

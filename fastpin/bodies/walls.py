@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fastpin.kernels.harmonics import First
+from fastpin.bodies.harmonics import First
 from fastpin.model.loads import SXX, SXY, SYY
 
 UNIT_STRESS = {SXX: (1.0, 1.0 + 0.0j), SYY: (1.0, -1.0 + 0.0j), SXY: (0.0, 2.0j)}
@@ -61,7 +61,7 @@ class Amplitudes(NamedTuple):
 
     Omega = A z^(n+1) + B z^(1-n), omega = C z^(n-1) + D z^(-n-1). They are scaled by the radii of the wall:
     A b^n, C b^(n-2), B a^-n and D a^(-n-2), with a the smallest and b the largest. Index 0 is the uniform pressure.
-    `first` holds the amplitudes A, D, L and b of :class:`fastpin.kernels.harmonics.First`, shape (4,), without scale.
+    `first` holds the amplitudes A, D, L and b of :class:`fastpin.bodies.harmonics.First`, shape (4,), without scale.
     """
 
     A: np.ndarray

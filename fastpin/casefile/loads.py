@@ -10,7 +10,6 @@ from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model import LOADS, Problem
 from fastpin.model.checks import any_text, as_toml, number, true_or_false, whole_number
-from fastpin.model.csv_columns import COLUMN_KEYS, COUNT, ColumnChoice, column_choice
 from fastpin.model.history import (
     MAX_CORNERS,
     MOST_POINTS,
@@ -18,11 +17,11 @@ from fastpin.model.history import (
     check_friction_changes,
     check_largest,
     check_loads,
-    read_csv,
 )
-from fastpin.model.history_csv import MAX_ROWS
-from fastpin.model.load_units import Basis
 from fastpin.model.recorded import turning_corners
+from fastpin.tables.columns import COLUMN_KEYS, COUNT, ColumnChoice, column_choice
+from fastpin.tables.files import MAX_ROWS, history_from_csv
+from fastpin.tables.load_units import Basis
 
 MOST_BLOCKS = 10_000
 """Most [[load]] blocks. A block can hold any number of corners."""
@@ -232,7 +231,7 @@ def _from_csv(section: Section, folder: Path, basis: Basis) -> LoadHistory | Non
     if name is None or skip is None or len(known) < len(choices):
         return None
     try:
-        history = read_csv(folder / name, known or None, basis, skip)
+        history = history_from_csv(folder / name, known or None, basis, skip)
         return turning_corners(history) if section.checked("turning_points", true_or_false) else history
     except CaseFileError as error:
         for line, sentence in error.problems:

@@ -13,8 +13,8 @@ from typing import NamedTuple
 from fastpin.bodies.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
+from fastpin.lugs.outline import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
 from fastpin.model.checks import as_toml, choice, file_path, number, positive, string, whole_number
-from fastpin.model.lug import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
 from fastpin.model.materials import MATERIALS, PLANES
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
 from fastpin.model.synonyms import closest

@@ -16,13 +16,13 @@ from fastpin.casefile.toml_text import Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.angles import DEGREE, angle_at, meant_degrees
 from fastpin.model.checks import any_text, as_toml, number, whole_number
-from fastpin.model.load_units import Basis
 from fastpin.model.problem import checked_gap
-from fastpin.model.profile import MOST_TERMS, NO_GAP, InitialGap, Profile
-from fastpin.model.profile_csv import COLUMNS, ProfileKind, read_samples
+from fastpin.model.profile import MOST_TERMS, NO_GAP, InitialGap, Profile, ProfileKind
 from fastpin.model.profile_terms import MOST_ORDER, Crown, Flat, Harmonic, Zone
 from fastpin.model.synonyms import closest
 from fastpin.model.wear import COEFFICIENTS, MOST_CYCLES, WEAR_KEYS, Wear
+from fastpin.tables.files import COLUMNS, read_samples
+from fastpin.tables.load_units import Basis
 
 GAP_KEYS = ("hole", "pin")
 """Keys of the section [gap]."""

@@ -25,8 +25,7 @@ from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, rea
 from fastpin.errors import InputError
 from fastpin.model import LOADS, LoadHistory, SolveOptions
 from fastpin.model.assessment import FatigueAssessment, check_assessment
-from fastpin.model.beside import BESIDE
-from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
+from fastpin.model.case import BESIDE, About, Case, check_arc, check_keep, check_wear
 from fastpin.model.checks import file_path, string
 from fastpin.model.fields import FIELDS
 from fastpin.model.laminate import LAMINATE_KEYS

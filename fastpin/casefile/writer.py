@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.model import Case, LoadHistory, Material, Problem, Profile, SolveOptions
-from fastpin.model.beside import BESIDE, beside_of
+from fastpin.model.case import BESIDE, beside_of
 from fastpin.model.checks import instance
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOAD_KIND, LOADS

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from fastpin import casefile, elasticity, figures
+from fastpin import casefile, figures, lugs
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_OK, check_outputs, say, write_files, write_text
 from fastpin.errors import CaseFileError, InputError, printable
@@ -30,7 +30,7 @@ def run(options: argparse.Namespace) -> int:
     made_by = f"fastpin {__version__}, {found.title or printable(options.lug.name)}"
     with Bar(1, "compliance") as progress_bar:
         try:
-            result = elasticity.plate_compliance(found.lug, found.harmonics, progress_to(progress_bar), made_by)
+            result = lugs.plate_compliance(found.lug, found.harmonics, progress_to(progress_bar), made_by)
         except InputError as error:
             raise CaseFileError(str(options.lug), [(0, str(error))]) from None
     code = write_files([(output, lambda path: write_text(path, result.compliance.to_text()))])
@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
     return code or drawn
 
 
-def _print_report(result: elasticity.PlateResult, output: Path, drawing: Path | None) -> None:
+def _print_report(result: lugs.PlateResult, output: Path, drawing: Path | None) -> None:
     compliance = result.compliance
     say(f"harmonics        {compliance.order}")
     say(f"last harmonic    {result.last:.1e} of the largest")

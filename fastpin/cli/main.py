@@ -25,7 +25,7 @@ from fastpin.cli.options import read_options
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, EXIT_READING, fail, say
 from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning, ReadingError, printable
 from fastpin.model.inputs import remembered_inputs
-from fastpin.runtime.stopping import STOPPING
+from fastpin.runtime.threads import STOPPING
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

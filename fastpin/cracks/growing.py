@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from fastpin.cracks.fates import CrackFate
 from fastpin.cracks.intensity import Crack, CrackedBody, CrackedEdge, Residual, histories, sliding_doubt
 from fastpin.cracks.lengths import drawn, refined, spline_of, step_cycles
+from fastpin.cracks.reversals import closed_cycles
 from fastpin.errors import InputError, InputWarning
-from fastpin.kernels.reversals import closed_cycles
 from fastpin.model.angles import from_bottom, near_bottom
 from fastpin.model.checks import check_callable, instance, numbers, positive, true_or_false
 from fastpin.model.crack import CrackGrowth, edge_of, law_of

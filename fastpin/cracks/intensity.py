@@ -13,10 +13,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fastpin.bodies.harmonics import FREE
 from fastpin.cracks.dislocations import CrackLine, needed_points, places, rule, weights
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import FastpinError, InputError, InputWarning
-from fastpin.kernels.harmonics import FREE
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import check_callable, choice, instances, number, numbers, true_or_false
 from fastpin.model.crack import MOST_INCLINATION, NO_INSIDE, check_length, depth_of, wall_of

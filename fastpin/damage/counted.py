@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fastpin.damage import plane_damage
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, PlaneCount
 from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve, scattered
 from fastpin.damage.reliability import life_shift
 from fastpin.errors import InputError
-from fastpin.kernels import rainflow
 from fastpin.model.assessment import USUAL, FatigueAssessment
 from fastpin.model.checks import alternatives, choice
 from fastpin.model.fatigue import FatigueConstants
@@ -154,7 +154,7 @@ class CountedMaterial(NamedTuple):
         needs = len(criterion.needs)
         shift = life_shift(how, given, body)
         curve = scattered(criterion.counting.curve(material, *known[needs:]), shift)
-        power = known[0] if criterion.counting.form == rainflow.POWERS else 0.0
+        power = known[0] if criterion.counting.form == plane_damage.POWERS else 0.0
         life = curve_with_knee(curve, criterion.counting.degree, how.small_cycles, how.knee, power)
         scatter = given.curve_scatter if name == "stress-life" and given.curve_scatter else math.nan
         return cls(name, criterion.counting, material, known[:needs], life, shift, scatter)
@@ -177,7 +177,7 @@ class CountedMaterial(NamedTuple):
         return out[:, 0], out[:, 1]
 
     def _count(self, spectrum: Spectrum, least: float, paths: np.ndarray, rows: np.ndarray, part: slice) -> None:
-        rainflow.worst_sums(paths[part], *spectrum, self.counting.form, least, self.life, rows[part])
+        plane_damage.worst_sums(paths[part], *spectrum, self.counting.form, least, self.life, rows[part])
 
     def cycles(self, history: np.ndarray, spectrum: Spectrum, plane: float) -> tuple[np.ndarray, np.ndarray]:
         """Count the cycles of one point on one plane, from its stresses (states, 1, 4), Pa.
@@ -192,7 +192,7 @@ class CountedMaterial(NamedTuple):
         most = 3 * spectrum.order.size + 2
         places, values = np.empty((most, 3), dtype=np.int64), np.empty((most, 3))
         given = self.counting.form, self._least(history), self.life
-        count = rainflow.cycles_on_plane(self._paths(history)[0], plane, *spectrum, *given, places, values)
+        count = plane_damage.cycles_on_plane(self._paths(history)[0], plane, *spectrum, *given, places, values)
         return places[:count], values[:count]
 
     def largest(self, history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -18,9 +18,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.damage import lives
+from fastpin.damage import lives, plane_damage, plane_search, spheres
 from fastpin.errors import InputError
-from fastpin.kernels import planes, rainflow, spheres
 from fastpin.model.checks import number, numbers, positive
 from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.materials import Material
@@ -76,7 +75,9 @@ def smith_watson_topper(history: ArrayLike, E: float, nu: float) -> Planes:
         If the history has another shape or a number that is not finite, or a constant is out of range.
     """
     stresses = _checked(history)
-    return _worst(*_normal_strain(stresses, positive("E", E), number("nu", nu, 0.0, 0.5)), planes.SWING_TIMES_PUSH)
+    return _worst(
+        *_normal_strain(stresses, positive("E", E), number("nu", nu, 0.0, 0.5)), plane_search.SWING_TIMES_PUSH
+    )
 
 
 def fatemi_socie(history: ArrayLike, shear_modulus: float, k: float, yield_strength: float) -> Planes:
@@ -101,7 +102,9 @@ def fatemi_socie(history: ArrayLike, shear_modulus: float, k: float, yield_stren
     """
     stresses = _checked(history)
     weight = number("k", k, 0.0) / positive("yield_strength", yield_strength)
-    return _worst(*_shear_strain(stresses, positive("shear_modulus", shear_modulus), weight), planes.SWING_TIMES_MORE)
+    return _worst(
+        *_shear_strain(stresses, positive("shear_modulus", shear_modulus), weight), plane_search.SWING_TIMES_MORE
+    )
 
 
 def equivalent_stress(history: ArrayLike, m: float) -> Planes:
@@ -130,7 +133,7 @@ def equivalent_stress(history: ArrayLike, m: float) -> Planes:
     places = np.linspace(-np.pi, np.pi, SCANNED + 1)[1:]
     step, turned = places[1] - places[0], np.array([value(np.full(normal.shape[1], x)) for x in places])
     # Of planes that mirror each other the one with the larger angle is told.
-    best = turned >= (1.0 - planes.TIE) * turned.max(axis=0)
+    best = turned >= (1.0 - plane_search.TIE) * turned.max(axis=0)
     middle = places[SCANNED - 1 - np.argmax(best[::-1], axis=0)]
     for _ in range(NARROWED):
         tried = middle + step * np.linspace(-1.0, 1.0, 5)[:, None]
@@ -159,7 +162,7 @@ def findley(history: ArrayLike, k: float) -> Planes:
         As :func:`smith_watson_topper`.
     """
     normal = _on_planes(_checked(history))
-    return _worst(_shear(normal), number("k", k, 0.0) * normal, planes.SWING_AND_PUSH)
+    return _worst(_shear(normal), number("k", k, 0.0) * normal, plane_search.SWING_AND_PUSH)
 
 
 def crossland(history: ArrayLike, alpha: float) -> np.ndarray:
@@ -318,7 +321,7 @@ def _worst(swung: np.ndarray, push: np.ndarray, form: int) -> Planes:
     """The worst planes, from the coefficients of both components, each of shape (stops, points, 3)."""
     paths = np.ascontiguousarray(np.concatenate([swung, push], axis=-1).transpose(1, 0, 2))
     out = np.empty((paths.shape[0], 2))
-    in_chunks(paths.shape[0], CHUNK, lambda part: planes.worst_planes(paths[part], form, out[part]))
+    in_chunks(paths.shape[0], CHUNK, lambda part: plane_search.worst_planes(paths[part], form, out[part]))
     return Planes(out[:, 0], out[:, 1])
 
 
@@ -348,8 +351,8 @@ class PlaneCount(NamedTuple):
     Attributes
     ----------
     form : int
-        SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.kernels.planes`, or POWERS of
-        :mod:`fastpin.kernels.rainflow`. The first constant of the parameter is then the power.
+        SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.damage.plane_search`, or POWERS of
+        :mod:`fastpin.damage.plane_damage`. The first constant of the parameter is then the power.
     degree : int
         Power of the stresses with which the parameter grows: 2 for a product of stress and strain. The factor of the
         normal stress in SWING_TIMES_MORE does not count.
@@ -424,7 +427,7 @@ def _by_limits(
 
 
 SWT_COUNT = PlaneCount(
-    planes.SWING_TIMES_PUSH,
+    plane_search.SWING_TIMES_PUSH,
     2,
     lambda history, material: _normal_strain(history, material.E, material.nu),
     lambda stress, material: stress**2 / material.E,
@@ -432,7 +435,7 @@ SWT_COUNT = PlaneCount(
 )
 
 FS_COUNT = PlaneCount(
-    planes.SWING_TIMES_MORE,
+    plane_search.SWING_TIMES_MORE,
     1,
     lambda history, material, k, strength: _shear_strain(history, material.shear_modulus, k / strength),
     lambda stress, material: stress / material.shear_modulus,
@@ -440,7 +443,7 @@ FS_COUNT = PlaneCount(
 )
 
 STRESS_COUNT = PlaneCount(
-    rainflow.POWERS,
+    plane_damage.POWERS,
     1,
     lambda history, material, m: (_on_planes(history),) * 2,
     lambda stress, material: stress,

@@ -165,7 +165,7 @@ def miner(counts: ArrayLike, lives: ArrayLike) -> np.ndarray:
 def curve_with_knee(
     curve: LifeCurve, degree: int, rule: str = "elementary", knee: float | None = None, power: float = 0.0
 ) -> np.ndarray:
-    """Return the numbers of a curve of lives, and of its part beyond the knee, for :mod:`fastpin.kernels.rainflow`.
+    """Return the numbers of a curve of lives, and of its part beyond the knee, for :mod:`fastpin.damage.plane_damage`.
 
     Let P be the parameter, P_D that of the curve at the knee N_D, and P proportional to the power `degree` of the
     amplitude: 2 for Smith, Watson and Topper, 1 for Fatemi and Socie. The slope at the knee is k in

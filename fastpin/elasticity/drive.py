@@ -112,7 +112,7 @@ class DisplacementDrive(Drive):
     Attributes
     ----------
     compliance : float
-        The compliance g, with that of the rig.
+        The compliance g, with the compliance of the rig.
     coupling : ndarray, shape (2, 2n)
         Maps (N, T) to k J, along x and y. It is 0 for an axis that is not driven.
     offsets : ndarray, shape (2n, 2)

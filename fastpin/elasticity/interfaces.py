@@ -5,9 +5,9 @@ rim, and the ring in the lug. The pin, the bush and the lug lie within one anoth
 same force and moment. Each has its own relative motion (c_x, c_y, omega) and its own conditions of equilibrium. Only
 the bush couples gap and slip of one interface to the tractions on the other.
 
-Nodes, motions and conditions of the pin come first, then those of the seat. All is dimensionless with R, F and beta* of
-the pin in the bush. With the radius c of the seat over R, a unit of traction of the seat's own system is 1/c of that, a
-unit of displacement beta_2/beta_1.
+Nodes, motions and conditions of the pin come first, then nodes, motions and conditions of the seat. All is
+dimensionless with R, F and beta* of the pin in the bush. With the radius c of the seat over R, a unit of traction of
+the seat's own system is 1/c of it, and a unit of displacement beta_2/beta_1.
 """
 
 from __future__ import annotations
@@ -20,10 +20,11 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.operator import DenseOperator
 from fastpin.elasticity.system import Interface, System
-from fastpin.kernels import fourier, harmonics
+from fastpin.kernels import fourier
 from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.grid import Grid
 from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION

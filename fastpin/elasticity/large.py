@@ -6,10 +6,9 @@ import threading
 
 import numpy as np
 
-from fastpin.elasticity.anisotropy import AnisotropicTerm
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.interfaces import JointSystem, seat_grid
-from fastpin.elasticity.operator import Operator, uniform_part
+from fastpin.elasticity.operator import AnisotropicTerm, Operator, uniform_part
 from fastpin.elasticity.system import System
 from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels import fourier, influence

@@ -7,13 +7,12 @@ of an arc. So a product is a convolution, by fast Fourier transforms, and an ent
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from fastpin.elasticity.anisotropy import AnisotropicTerm
-from fastpin.elasticity.convolution import spectra
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels import influence, toeplitz
@@ -151,6 +150,146 @@ class SoftOperator(Operator):
         return None if self._base.matrix is None else self.entries()
 
 
+def spectra(kernels: np.ndarray, signs: tuple[float, ...], closed: bool) -> tuple[int, np.ndarray]:
+    """The period of convolutions with kernels of the distance of two nodes, and the transforms of the kernels.
+
+    On a circle a convolution is periodic. On an arc its period has room for all distances of either sign.
+
+    Parameters
+    ----------
+    kernels : ndarray, shape (k, n)
+        Their values at the distances of 0 to n - 1 nodes.
+    signs : tuple of float
+        1 for an even kernel, whose transform is real; -1 for an odd one, whose transform is imaginary.
+    closed : bool
+        Whether the nodes go round the whole circle.
+
+    Returns
+    -------
+    int, ndarray of shape (k, m)
+    """
+    n = kernels.shape[1]
+    period = n if closed else fft.next_fast_len(2 * n - 1, real=True)
+    whole = np.zeros((len(kernels), period))
+    whole[:, :n] = kernels
+    if not closed:
+        whole[:, period - n + 1 :] = np.array(signs)[:, None] * kernels[:, :0:-1]
+    return period, fft.rfft(whole, workers=1)
+
+
+class AnisotropicTerm:
+    """The term by which the hole in a laminate differs from the hole in an isotropic plate, on a grid; (T51).
+
+    With p = N + iT the term adds D p to h - i s of the nodes:
+
+        D_ij = f exp(-2i theta_i) K_ij,   f = -2 delta/beta*,   4 pi K_ij = int (C + iS) L(theta_i - xi) hat_j(xi) dxi.
+
+    On equally spaced nodes the symmetric form f exp(-i (theta_i + theta_j)) k_ij takes its place, with the even k = Re
+    exp(-i (theta_i - theta_j)) K of the distance of two nodes. The error stays of the second order in their spacing,
+    and the operator stays symmetric.
+
+    Parameters
+    ----------
+    grid : Grid
+        n nodes.
+    factor : complex
+        The number f = -2 delta/beta*.
+    """
+
+    def __init__(self, grid: Grid, factor: complex) -> None:
+        self.grid, self._factor = grid, complex(factor)
+        self._turn = np.exp(-1j * grid.theta)
+
+    @cached_property
+    def by_distance(self) -> np.ndarray:
+        """The numbers k of whole hats by the distance of two nodes, for equally spaced nodes; shape (n,)."""
+        grid = self.grid
+        n = grid.size
+        spacing = 2.0 * math.pi / n if grid.closed else float(grid.theta[-1] - grid.theta[0]) / (n - 1)
+        away, width = spacing * np.arange(n), np.array([spacing])
+        return np.ascontiguousarray((np.exp(-1j * away) * _hats(away, np.zeros(1), width, width)[:, 0]).real)
+
+    @cached_property
+    def _half_hats(self) -> np.ndarray:
+        """The columns D of the first and the last node of an arc, complex, shape (n, 2)."""
+        return self._plain(np.array([0, self.grid.size - 1]))
+
+    @cached_property
+    def _spectrum(self) -> tuple[int, np.ndarray]:
+        """The period of a convolution with the even k, and the transform of k, real."""
+        period, found = spectra(self.by_distance[None], (1.0,), self.grid.closed)
+        return period, np.ascontiguousarray(found[0].real)
+
+    def columns(self, nodes: np.ndarray) -> np.ndarray:
+        """The columns D of the `nodes` (k,), complex, shape (n, k)."""
+        if not self.grid.uniform:
+            return self._plain(nodes)
+        n = self.grid.size
+        found: np.ndarray = self._factor * np.outer(self._turn, self._turn[nodes])
+        found *= self.by_distance[np.abs(np.arange(n)[:, None] - nodes)]
+        if not self.grid.closed:
+            for end, node in enumerate((0, n - 1)):
+                found[:, nodes == node] = self._half_hats[:, [end]]
+        return found
+
+    def diagonal(self) -> np.ndarray:
+        """The entries D_ii, complex, shape (n,), on equally spaced nodes."""
+        found: np.ndarray = self._factor * self._turn**2 * self.by_distance[0]
+        if not self.grid.closed:
+            found[[0, -1]] = self._half_hats[[0, -1], [0, 1]]
+        return found
+
+    def _plain(self, nodes: np.ndarray) -> np.ndarray:
+        """The columns D of the `nodes` (k,) in the form that takes any spacing, complex, shape (n, k)."""
+        theta, (left, right) = self.grid.theta, self.grid.knots()
+        hats = _hats(theta, theta[nodes], theta[nodes] - left[nodes], right[nodes] - theta[nodes])
+        return self._factor * (self._turn**2)[:, None] * hats
+
+    def product(self, tractions: np.ndarray) -> np.ndarray:
+        """Gap and slip, shape (2n,) or (2n, k), of tractions (N, T) of the same shape, on equally spaced nodes."""
+        n = self.grid.size
+        both = (tractions[:n] + 1j * tractions[n:]).T
+        whole = both * self._turn
+        if not self.grid.closed:
+            whole[..., [0, -1]] = 0.0
+        period, spectrum = self._spectrum  # of a convolution with k
+        parts = fft.rfft(np.stack([whole.real, whole.imag]), period, workers=1) * spectrum
+        real, imag = fft.irfft(parts, period, workers=1)[..., :n]
+        moved = self._factor * self._turn * (real + 1j * imag)
+        if not self.grid.closed and both[..., [0, -1]].any():
+            moved = moved + both[..., [0, -1]] @ self._half_hats.T
+        return np.concatenate([moved.real, -moved.imag], axis=-1).T
+
+    def add_entries(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        """Add the entries in `rows` (r,) among (h, s) and `columns` (k,) among (N, T) to `out` (r, k).
+
+        The nodes are equally spaced. `out` is stored column by column.
+        """
+        n = self.grid.size
+        for place, column in enumerate(columns.tolist()):
+            if not self.grid.closed and column % n in (0, n - 1):
+                moved = self._half_hats[rows % n, int(column % n > 0)] * (1j if column >= n else 1.0)
+                out[:, place] += np.where(rows >= n, -moved.imag, moved.real)
+            else:
+                toeplitz.add_turned_column(self.by_distance, self._turn, self._factor, rows, column, out[:, place])
+
+    def add_to(self, matrix: np.ndarray) -> None:
+        """Add the term to a matrix of all entries, shape (2n, 2n)."""
+        n = self.grid.size
+        found = self.columns(np.arange(n))
+        matrix[:n, :n] += found.real
+        matrix[:n, n:] -= found.imag
+        matrix[n:, :n] -= found.imag
+        matrix[n:, n:] -= found.real
+
+
+def _hats(seen: np.ndarray, nodes: np.ndarray, h_left: np.ndarray, h_right: np.ndarray) -> np.ndarray:
+    """The integrals K of hats, complex, one column for each hat; see :func:`fastpin.kernels.influence.log_columns`."""
+    direct, cross = (np.empty((seen.size, nodes.size), order="F") for _ in range(2))
+    influence.log_columns(seen, nodes, h_left, h_right, 0.0, 1.0 / (4.0 * math.pi), direct, cross)
+    return np.asarray(1j * cross - direct)
+
+
 class ToeplitzOperator(Operator):
     """The operator of equally spaced nodes.
 
@@ -163,12 +302,16 @@ class ToeplitzOperator(Operator):
     left : ndarray, shape (2n, r)
     right : ndarray, shape (r, 2n)
         Factors of a matrix that is added. It may have the rank r = 0.
+    term : AnisotropicTerm or None
+        The term of a laminate, which is added too.
     """
 
-    def __init__(self, blocks: np.ndarray, closed: bool, left: np.ndarray, right: np.ndarray) -> None:
+    def __init__(
+        self, blocks: np.ndarray, closed: bool, left: np.ndarray, right: np.ndarray, term: AnisotropicTerm | None
+    ) -> None:
         n = blocks.shape[2]
         super().__init__(2 * n)
-        self._closed, self._left, self._right = closed, left, right
+        self._closed, self._left, self._right, self._term = closed, left, right, term
         self._by_distance = np.array(influence.by_distance(blocks, closed))
         self._half_hat = np.zeros((4, 0)) if closed else np.ascontiguousarray(blocks[..., 0].reshape(4, n))
         self._period, found = spectra(self._by_distance, (1.0, 1.0, -1.0), closed)
@@ -191,12 +334,16 @@ class ToeplitzOperator(Operator):
             hats = np.empty((2 * n, 4), order="F")
             self._fill_hats(np.arange(2 * n), ends, hats)
             found = found + hats @ tractions[ends]
-        return found + self._left @ (self._right @ tractions) if self._right.size else found
+        if self._right.size:
+            found = found + self._left @ (self._right @ tractions)
+        return found if self._term is None else found + self._term.product(tractions)
 
     def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
         self._fill_hats(rows, columns, out)
         if self._right.size:
             out += self._left[rows] @ self._right[:, columns]
+        if self._term is not None:
+            self._term.add_entries(rows, columns, out)
 
     def _fill_hats(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
         """Fill `out` (r, k), column by column, with the entries without the added matrix."""
@@ -208,33 +355,12 @@ class ToeplitzOperator(Operator):
         found = np.repeat(self._by_distance[:2, 0], n)
         if not self._closed:
             found[[0, n - 1]], found[[n, -1]] = self._half_hat[0, 0], self._half_hat[3, 0]
-        return found + np.einsum("ij,ji->i", self._left, self._right) if self._right.size else found
-
-
-class AnisotropicOperator(Operator):
-    """An operator of equally spaced nodes whose entries are not stored, and the term of a laminate.
-
-    Parameters
-    ----------
-    base : Operator
-    term : AnisotropicTerm
-    """
-
-    def __init__(self, base: Operator, term: AnisotropicTerm) -> None:
-        super().__init__(base.size)
-        self._base, self._term = base, term
-
-    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
-        product: np.ndarray = self._base @ tractions + self._term.product(tractions)
-        return product
-
-    def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
-        self._base.fill(rows, columns, out)
-        self._term.add_entries(rows, columns, out)
-
-    def diagonal(self) -> np.ndarray:
-        own = self._term.diagonal().real
-        return self._base.diagonal() + np.r_[own, -own]
+        if self._right.size:
+            found = found + np.einsum("ij,ji->i", self._left, self._right)
+        if self._term is not None:
+            own = self._term.diagonal().real
+            found = found + np.r_[own, -own]
+        return found
 
 
 def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive) -> Operator:
@@ -253,8 +379,7 @@ def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive:
             factors.insert(0, bodies.factors(grid))
         parts = zip(*factors, strict=True)
         blocks = influence.uniform_columns(*hats, smooth)
-        base = ToeplitzOperator(blocks, grid.closed, np.hstack(next(parts)), np.vstack(next(parts)))
-        return base if term is None else AnisotropicOperator(base, term)
+        return ToeplitzOperator(blocks, grid.closed, np.hstack(next(parts)), np.vstack(next(parts)), term)
     matrix = np.empty((2 * n, 2 * n), order="F")
     influence.fill_operator(*hats, matrix, smooth)
     if bodies is not None and bodies.matrix.size:

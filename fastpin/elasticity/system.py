@@ -262,12 +262,12 @@ class System:
 
     @cached_property
     def bonded(self) -> slice:
-        """The nodes that must stick: those of a bonded bush whose seat is an interface of its own."""
+        """The nodes that must stick: the seat of a bonded bush whose seat is an interface of its own."""
         return slice(0)
 
     @cached_property
     def fixed(self) -> np.ndarray:
-        """Whether a node must keep its status, bool, shape (n,): those of :attr:`ends` and :attr:`bonded`."""
+        """Whether a node must keep its status, bool, shape (n,): :attr:`ends` and :attr:`bonded`."""
         found = self.ends.copy()
         found[self.bonded] = True
         return found

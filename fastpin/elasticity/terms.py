@@ -39,7 +39,7 @@ class BodyTerms:
         Fourier coefficients of v_r + i v_theta per unit of a load, n = -K to K, by the place of the load: of P and Q
         beyond ``force_factor``, and of the remote stresses.
     anisotropy : complex or None
-        The factor of :class:`fastpin.elasticity.anisotropy.AnisotropicTerm`; None in a plate that is no laminate.
+        The factor of :class:`fastpin.elasticity.operator.AnisotropicTerm`; None in a plate that is no laminate.
     """
 
     coefficients: np.ndarray

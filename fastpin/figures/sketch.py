@@ -20,7 +20,8 @@ from fastpin.figures.states import Subject
 from fastpin.figures.stick_slip import zone_look, zone_patch
 from fastpin.figures.style import COLOURS, caption, line, point_text, quantity, range_text
 from fastpin.kernels.status import STICK
-from fastpin.model import Case, LoadHistory, Lug, Part, PartLoad, Problem
+from fastpin.lugs import Lug, Part, PartLoad
+from fastpin.model import Case, LoadHistory, Problem
 from fastpin.model.checks import as_toml, instance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.points import edge_body
@@ -327,7 +328,7 @@ def _draw_remote(panel: Axes, name: str, span: LoadRange, words: str, scale: Sca
 
 def lug_of(lug: Lug) -> Plot:
     """Draw the outline with names of its parts, all holes, supports and loads. Lengths are in millimetres."""
-    instance("lug", lug, Lug, "fastpin.model.Lug")
+    instance("lug", lug, Lug, "fastpin.lugs.Lug")
     return Plot(lambda look: _draw(look, lug), width=5.0)
 
 

@@ -19,7 +19,7 @@ from fastpin.figures.sheet import Sheet
 from fastpin.kernels.status import OPEN
 from fastpin.model import Case, Problem
 from fastpin.model.angles import AT_TOP, turns_from_bottom
-from fastpin.model.beside import beside_of
+from fastpin.model.case import beside_of
 from fastpin.model.checks import as_toml, instance
 from fastpin.reading.zones import ALL_ROUND
 from fastpin.solver import Result

@@ -68,7 +68,7 @@ def tractions_plot(subject: Subject, states: StateChoice = None, sketch: bool = 
     sketch : bool
         Whether a small sketch of the joint with its loads stands beside the pressure.
     bars : bool
-        Whether a light band shows the error bars of each curve; see :mod:`fastpin.states.traction_bars`.
+        Whether a light band shows the error bars of each curve; see :mod:`fastpin.states.error_bars`.
 
     Raises
     ------

@@ -9,6 +9,7 @@ from functools import cached_property
 from itertools import combinations
 
 from fastpin.errors import InputError
+from fastpin.lugs.outline import Hole, Lug, Part, PartLoad
 from fastpin.model.checks import (
     as_toml,
     check_fields,
@@ -25,7 +26,6 @@ from fastpin.model.checks import (
     string,
 )
 from fastpin.model.loads import LOADS, REMOTE
-from fastpin.model.lug import Hole, Lug, Part, PartLoad
 from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
 from fastpin.model.read_only import ReadOnlyDict
@@ -54,7 +54,7 @@ class JointPlate:
     thickness : float
         m.
     outline : sequence of Part
-        A closed curve, see :class:`fastpin.model.lug.Lug`. An empty one is an infinite plate. All other plates of its
+        A closed curve, see :class:`fastpin.lugs.Lug`. An empty one is an infinite plate. All other plates of its
         joint must be free: under a net force an infinite plate moves without limit.
     supports : mapping of str to str
         What is held of a part of the outline, by its name, as in a lug.

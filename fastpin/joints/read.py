@@ -16,8 +16,8 @@ from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text,
 from fastpin.errors import InputError
 from fastpin.joints.parts import Joint, JointPin, JointPlate, tate_rosenfeld
 from fastpin.joints.solving import LEAST_NODES, MOST_HARMONICS, MOST_NODES, load_values
+from fastpin.lugs.outline import Part, rectangle
 from fastpin.model.checks import any_text, as_toml, choice, file_path, number, positive, string, whole_number
-from fastpin.model.lug import Part, rectangle
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, PLANES
 from fastpin.model.synonyms import closest
 

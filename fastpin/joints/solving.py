@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.elasticity.plates import harmonic_sizes
-from fastpin.elasticity.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
 from fastpin.errors import InputError
 from fastpin.joints.parts import MOVES, Joint, JointPlate
 from fastpin.joints.path import follow, unloaded
 from fastpin.joints.result import JointResult, JointState
 from fastpin.joints.states import StateMaker
 from fastpin.joints.system import JointLoads, Motion, PinSection, PinsSystem, build
+from fastpin.lugs.plates import harmonic_sizes
+from fastpin.lugs.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
 from fastpin.model.angles import BOTTOM
 from fastpin.model.checks import as_toml, check_callable, instance, items, known_name, number, whole_number
 from fastpin.model.grid import Grid

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.elasticity.several_holes import HolesCompliance
 from fastpin.errors import InputError
 from fastpin.joints.hole import HoleInPlate
 from fastpin.joints.parts import Joint
 from fastpin.joints.result import JointState
 from fastpin.joints.system import CENTRING, PinsSystem
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
+from fastpin.lugs.several_holes import HolesCompliance
 from fastpin.model.loads import LOADS
 from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, contact_residuals
 from fastpin.solver.errors import ConvergenceError

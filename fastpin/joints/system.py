@@ -30,8 +30,8 @@ from fastpin.bodies.compliance import basis
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.interfaces import TURN, Nodes
 from fastpin.elasticity.operator import DenseOperator
-from fastpin.elasticity.several_holes import HolesCompliance
 from fastpin.elasticity.system import Interface, System
+from fastpin.lugs.several_holes import HolesCompliance
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, P, Q
 from fastpin.model.problem import Problem

@@ -3,14 +3,11 @@ from .case import About as About
 from .case import Case as Case
 from .crack import CrackGrowth as CrackGrowth
 from .fatigue import FatigueConstants as FatigueConstants
+from .fatigue import stress_life_curves as stress_life_curves
 from .grid import Grid as Grid
 from .history import LoadHistory as LoadHistory
 from .laminate import Laminate as Laminate
 from .loads import LOADS as LOADS
-from .lug import Hole as Hole
-from .lug import Lug as Lug
-from .lug import Part as Part
-from .lug import PartLoad as PartLoad
 from .materials import MATERIALS as MATERIALS
 from .materials import Material as Material
 from .materials import MaterialPair as MaterialPair
@@ -23,5 +20,4 @@ from .problem import Problem as Problem
 from .profile import InitialGap as InitialGap
 from .profile import Profile as Profile
 from .strength import StrengthAssessment as StrengthAssessment
-from .stress_life import stress_life_curves as stress_life_curves
 from .wear import Wear as Wear

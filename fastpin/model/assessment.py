@@ -66,7 +66,7 @@ class FatigueAssessment:
     over : {"history", "cycle"}
         One pass of the spectrum: the whole history, or its last cycle.
     method : {"edge", "point", "line", "area"}
-        The stresses on the edge, or those of a method of the theory of critical distances, see
+        The stresses on the edge, or the mean stresses of a method of the theory of critical distances, see
         :func:`fastpin.damage.fatigue_at_distance`.
     length : float, optional
         The critical distance L, m; from ``threshold_range`` and ``limit_range`` of each material unless given. Only

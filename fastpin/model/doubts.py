@@ -328,7 +328,7 @@ def _of_sizes(problem: Problem) -> Iterator[Doubt]:
 
 
 def _of_moduli(problem: Problem) -> Iterator[Doubt]:
-    """Doubts about moduli that do not fit together: those of steel and rubber differ by a factor of 2e5."""
+    """Doubts about moduli that do not fit together. Steel and rubber differ by a factor of 2e5."""
     (soft, least), (stiff, most) = _softest_and_stiffest(problem)
     if most > STIFFEST and SOFTEST <= least <= STIFFEST:
         yield "E", f"{_beyond_diamond(stiff, most)}; a body that does not deform is rigid"

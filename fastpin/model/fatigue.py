@@ -1,10 +1,14 @@
-"""Fatigue constants of a material."""
+"""Fatigue constants of a material, and stress-life curves of alloys with scatter, as such constants by name."""
 
 from __future__ import annotations
 
+import csv
+import functools
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from fastpin.errors import InputError
@@ -23,7 +27,6 @@ from fastpin.model.checks import (
     string,
     whole_number,
 )
-from fastpin.model.stress_life import stress_life_curves
 from fastpin.model.synonyms import closest, explains_keywords
 
 LIFE_CONSTANTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -37,7 +40,7 @@ LIFE_CONSTANTS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "stress-life": (("curve_m",), ("curve_a", "curve_b", "curve_c", "curve_kt")),
 }
-"""The criteria with lives: the constants of the parameter, and those of the life."""
+"""The criteria with lives: the constants of the parameter, and the constants of the life."""
 
 LEAST_SAMPLES = 6
 """Least number of specimens: more than the constants of a curve."""
@@ -165,3 +168,31 @@ class FatigueConstants:
         if missing:
             raise InputError("fatigue", f"{purpose} needs {', '.join(missing)} of the {body}'s material")
         return tuple(getattr(self, name) for name in names)
+
+
+KSI = 6.894757293168361e6
+"""Pa in a ksi."""
+
+
+@functools.cache
+def stress_life_curves() -> dict[str, dict[str, Any]]:
+    """Return fields of :class:`fastpin.model.FatigueConstants` by the names of curves, such as "2024-T3 sheet, Kt 1".
+
+    They come from figures of MIL-HDBK-5J, read from a public transcription: compare a curve with the print before
+    relying on a life. Curves of specimens whose number is not printed have no ``curve_samples``.
+    """
+    with Path(__file__).with_name("stress_life.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return {
+        row["name"]: {
+            "curve_a": float(row["A"]) + float(row["B"]) * math.log10(KSI),
+            "curve_b": float(row["B"]),
+            "curve_c": float(row["C"]) * KSI,
+            "curve_m": float(row["m"]),
+            "curve_kt": float(row["Kt"]),
+            "curve_scatter": float(row["scatter"]),
+            "source": row["source"],
+        }
+        | ({"curve_samples": int(row["samples"])} if row["samples"] else {})
+        for row in rows
+    }

@@ -120,7 +120,7 @@ class Grid:
             return Grid.circle(nodes, float(self.theta[0]))
         return Grid.arc(float(self.theta[0]), float(self.theta[-1]), nodes)
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of nodes n."""
         return int(self.theta.size)

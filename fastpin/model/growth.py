@@ -328,7 +328,7 @@ LAWS: dict[str, tuple[type[Walker] | type[Nasgro], tuple[str, ...], tuple[str, .
         ("C", "n", "p", "q", "threshold_range", "toughness"),
     ),
 }
-"""The laws of case files by name: the class, its constants, and those that must be given."""
+"""The laws of case files by name: the class, all constants, and the constants that must be given."""
 
 
 def law_entries(law: KnownLaw) -> dict[str, Any]:

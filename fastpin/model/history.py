@@ -30,13 +30,9 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
-from fastpin.model.csv_columns import ColumnChoice, column_choices
-from fastpin.model.history_csv import read_corners
-from fastpin.model.load_units import Basis
 from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
 from fastpin.model.problem import Problem, checked_thickness
 from fastpin.model.synonyms import explains_keywords
-from fastpin.model.turning import recorded_cycles
 
 POINTS = 24
 """Default number of corners in a cycle of loads that are out of phase."""
@@ -87,6 +83,11 @@ class Block:
     count: int = 1
     cycle: bool = False
     size: int = 0
+
+    @classmethod
+    def plain(cls, given: np.ndarray) -> Block:
+        """A table (corners, loads) that is run through once, without cycles."""
+        return cls(given, np.zeros(len(given), dtype=np.int64))
 
     @property
     def corners(self) -> int:
@@ -172,7 +173,7 @@ class LoadHistory:
             for name, value in corner.items():
                 row[load_index(name, f"corner {index + 1}")] = number(f"{name} of corner {index + 1}", value)
             rows.append(row)
-        self._set([_plain(np.array(rows).reshape(-1, len(LOADS)))])
+        self._set([Block.plain(np.array(rows).reshape(-1, len(LOADS)))])
 
     def _set(self, blocks: Iterable[Block]) -> None:
         self._blocks = tuple(block for block in blocks if block.corners)
@@ -295,7 +296,7 @@ class LoadHistory:
             raise InputError("corners", "must be finite numbers, or NaN to keep the last value")
         given = np.full((len(array), len(LOADS)), np.nan)
         given[:, columns] = array
-        return cls.of_blocks([_plain(given)])
+        return cls.of_blocks([Block.plain(given)])
 
     @classmethod
     def from_csv(
@@ -327,13 +328,16 @@ class LoadHistory:
         ------
         CaseFileError
             If the file can't be read, a column is missing or unknown, a unit does not fit its load, or cells are not
-            finite numbers. The error lists the first :data:`fastpin.model.csv_table.MOST_FAULTS` faulty lines.
+            finite numbers. The error lists the first :data:`fastpin.tables.reader.MOST_FAULTS` faulty lines.
         InputError
             If `path`, `columns`, `thickness` or `skip` can't be used.
         """
+        from fastpin.tables import column_choices, history_from_csv
+
         path = file_path("path", path)
         choices = None if columns is None else column_choices("columns", columns)
-        found = read_csv(path, choices, "with thickness" if thickness else "per metre", whole_number("skip", skip, 0))
+        skip = whole_number("skip", skip, 0)
+        found = history_from_csv(path, choices, "with thickness" if thickness else "per metre", skip)
         return found if thickness is None else found.per_thickness(thickness)
 
     def repeated(self, count: int) -> LoadHistory:
@@ -465,16 +469,6 @@ class LoadHistory:
         return _filled([_times(block, min(block.count, 2)) for block in self._blocks], initial)
 
 
-def read_csv(
-    path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre", skip: int = 0
-) -> LoadHistory:
-    """Read a history as :meth:`LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
-    return LoadHistory.of_blocks(
-        replace(_plain(rows), count=n, cycle=True) if n else Block(rows, *recorded_cycles(rows))
-        for rows, n in read_corners(path, choices, basis, skip)
-    )
-
-
 def cycle_length(history: LoadHistory, cycle: CycleKey) -> int:
     """Number of corners of a cycle."""
     block = history.blocks[cycle[0]]
@@ -590,10 +584,6 @@ def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | Non
 
 def _times(block: Block, count: int) -> np.ndarray:
     return block.given if count == 1 else np.tile(block.given, (count, 1))
-
-
-def _plain(given: np.ndarray) -> Block:
-    return Block(given, np.zeros(len(given), dtype=np.int64))
 
 
 def _count_corners(count: int) -> str:

@@ -29,8 +29,16 @@ from fastpin.model.checks import (
     triples,
     whole_number,
 )
-from fastpin.model.lamination import Stack, checked_stack, ply_strains, ply_stresses, stress_turn, whole_compliance
-from fastpin.model.layup import checked_angles, layup_text
+from fastpin.model.layup import (
+    Stack,
+    checked_angles,
+    checked_stack,
+    layup_text,
+    ply_strains,
+    ply_stresses,
+    stress_turn,
+    whole_compliance,
+)
 from fastpin.model.materials import Material, Plane
 from fastpin.model.ply import LEAST_MODULUS, MOST_MODULUS, PLIES, Ply, checked_modulus, checked_ratio, ply_from
 from fastpin.model.synonyms import explains_keywords

@@ -13,7 +13,7 @@ from fastpin.model.checks import check_fields, instance, known_name, number, pos
 from fastpin.model.synonyms import explains_keywords
 
 LEAST_MODULUS, MOST_MODULUS = 1e-60, 1e60
-"""Limits of the moduli and strengths of a ply, Pa: those of a material."""
+"""Limits of the moduli and strengths of a ply, Pa. A material has the same."""
 
 PlyCriterion = Literal["maximum-stress", "maximum-strain", "tsai-hill", "tsai-wu", "hashin", "yamada-sun"]
 

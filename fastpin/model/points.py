@@ -34,7 +34,7 @@ The edge of "plate" is that of the hole. With a bush it is the bore of the bush,
 """
 
 EDGES: tuple[Body, ...] = ("plate", "seat")
-"""The edges of holes: that of the pin's hole, and that of the plate's own hole round a bush."""
+"""The edges of holes: of the pin's hole, and of the plate's own hole round a bush."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,9 +32,8 @@ from fastpin.model.checks import (
 )
 from fastpin.model.fields import FIELDS
 from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
-from fastpin.model.profile import NO_GAP, InitialGap, Profile, ProfileLike, is_pair
+from fastpin.model.profile import NO_GAP, InitialGap, Profile, ProfileLike, is_pair, widest_place
 from fastpin.model.profile_terms import Term
-from fastpin.model.room import widest_place
 from fastpin.model.synonyms import explains_attributes, explains_keywords
 
 Rotation = Literal["free", "fixed", "spring"]
@@ -319,9 +318,9 @@ class Problem:
         """Pin and plate with their materials."""
         return BodyPair(self.pair, self.hole_radius, self.pin_body, self.plate_body, self.pin_load)
 
-    @property
+    @cached_property
     def surfaces(self) -> MaterialPair:
-        """The materials of the two surfaces in contact: those of ``pair``, or pin and bush."""
+        """The materials of the two surfaces in contact: ``pair``, or pin and bush."""
         return self.joint.surfaces
 
     @property

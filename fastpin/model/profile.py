@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -29,7 +29,6 @@ from fastpin.model.checks import (
     whole_number,
 )
 from fastpin.model.grid import Grid
-from fastpin.model.profile_csv import ProfileKind, read_samples
 from fastpin.model.profile_terms import (
     MOST_ANGLE,
     MOST_ORDER,
@@ -43,6 +42,10 @@ from fastpin.model.profile_terms import (
     Zone,
 )
 from fastpin.model.synonyms import explains_keywords
+from fastpin.runtime.extensions import optimize
+
+ProfileKind = Literal["gap", "friction", "wear"]
+"""What the values of a profile in a file are."""
 
 MOST_TERMS = 512
 """Most terms of a profile."""
@@ -87,7 +90,7 @@ class Profile:
     def ellipse(cls, size: float, axis: float = 0.0) -> Profile:
         """An oval: `size` cos 2(theta - axis). Its half axes are larger and smaller by `size`.
 
-        The half axis of a hole is the larger one at `axis`, that of a pin the smaller one: the gap opens there.
+        At `axis` a hole has its larger half axis, and a pin its smaller one: the gap opens there.
         """
         return cls.lobes(2, size, axis)
 
@@ -176,6 +179,8 @@ class Profile:
         InputError
             If the samples do not go round the hole, see :meth:`samples`, or an argument can't be used.
         """
+        from fastpin.tables import read_samples
+
         kind = choice("quantity", quantity, get_args(ProfileKind))
         return cls.samples(*read_samples(path, kind, columns=columns, skip=skip), harmonics)  # type: ignore[arg-type]
 
@@ -366,7 +371,7 @@ class InitialGap:
         return {name: profile for name in ("hole", "pin") if (profile := getattr(self, name)).terms}
 
     def __bool__(self) -> bool:
-        return bool(self.given)
+        return bool(self.hole.terms or self.pin.terms)
 
     def angles(self, count: int, radius: float) -> np.ndarray:
         """Angles at which the gap shows itself, rad, in order; see :meth:`Profile.angles`."""
@@ -396,3 +401,29 @@ class InitialGap:
 
 NO_GAP = InitialGap()
 """A round pin in a round hole."""
+
+
+def widest_place(theta: np.ndarray, gap: np.ndarray, fixed: tuple[bool, bool]) -> tuple[float, np.ndarray]:
+    """The place at which the narrowest gap round a rigid pin is widest: a linear programme.
+
+    Parameters
+    ----------
+    theta : ndarray, shape (n,)
+        Angles round the hole, rad.
+    gap : ndarray, shape (n,)
+        Gap there when the pin is concentric. Negative where pin and hole overlap.
+    fixed : (bool, bool)
+        Whether the pin can't move along x, and along y.
+
+    Returns
+    -------
+    (float, ndarray)
+        The narrowest gap at this place, and the place, shape (2,), in the unit of `gap`. A negative gap says that the
+        pin fits nowhere.
+    """
+    size = max(float(np.abs(gap).max()), 1e-300)
+    bounds = [(None, None), *((0.0, 0.0) if held else (None, None) for held in fixed)]
+    cos, sin = np.cos(theta), np.sin(theta)
+    rows = np.column_stack([np.ones_like(theta), cos, sin])
+    place = size * optimize.linprog([-1.0, 0.0, 0.0], rows, gap / size, bounds=bounds).x[1:]
+    return float((gap - place[0] * cos - place[1] * sin).min()), place

@@ -17,7 +17,7 @@ from fastpin.model.problem import Problem
 
 
 class _Kind(NamedTuple):
-    """The units of a kind of quantity: SI, those of a dimensionless problem, and those of a problem with a thickness.
+    """The units of a kind of quantity: SI, of a dimensionless problem, and of a problem with a thickness.
 
     The last one is empty unless the SI unit is per thickness.
     """

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 
 from fastpin.assess.outputs import Curve
 from fastpin.bodies import Disk, Plate, Ring, Tube
+from fastpin.bodies.pins import TubeLoad
 from fastpin.bodies.ring import SUPPORTS, Support
-from fastpin.bodies.tube import TubeLoad
 from fastpin.figures.style import Line, line
 from fastpin.model import Material, MaterialPair, Problem
 from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, marked, panels, steps

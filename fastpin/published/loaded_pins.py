@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from fastpin.casefile.lug import parse_lug
-from fastpin.elasticity.plates import plate_compliance
+from fastpin.lugs.plates import plate_compliance
 from fastpin.model import MATERIALS, Material, MaterialPair, Problem
 from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
 from fastpin.solver.solving import solve

@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 
 from fastpin.assess.outputs import Curve
 from fastpin.bodies import Compliance, Plate
-from fastpin.elasticity.plates import plate_compliance
 from fastpin.figures.style import Line, angle_axis, line
+from fastpin.lugs.outline import Lug, rectangle
+from fastpin.lugs.plates import plate_compliance
 from fastpin.model.angles import BOTTOM
-from fastpin.model.lug import Lug, rectangle
 from fastpin.model.problem import Problem
 from fastpin.published.finite_bodies import CASE, INFINITE, LOAD_PARAMETER, PAIR
 from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, panels, steps

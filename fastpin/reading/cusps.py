@@ -18,11 +18,10 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.model.grid import Grid
-from fastpin.reading.ends import CUSP_TERMS, end_place
 from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import End, Fit, HalfLine, Tries, Try, half_line
 from fastpin.reading.old_borders import OldBorder, old_borders
-from fastpin.reading.zones import runs, unrolled
+from fastpin.reading.zones import CUSP_TERMS, end_place, runs, unrolled
 
 DEGREES = (3, 4, 5)
 """Degrees of the polynomial to try where no end of the zone is in the window."""
@@ -404,7 +403,7 @@ class ShearNodes:
     ) -> np.ndarray:
         """The integral of the shear up to a border, from the node beyond it, where the shear is smooth.
 
-        It is that of the nodes first : last of a contact.
+        The integral begins among the nodes first : last of a contact.
         """
         turned, outer, before = patch.turned(first, last), at - inwards, at - 2 * inwards
         if last - first == patch.nodes.size or not first <= outer < last:

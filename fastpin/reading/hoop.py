@@ -38,7 +38,7 @@ def hoop_peak(
 ) -> HoopPeak:  # fmt: skip
     """The largest hoop stress on the edge of a body that is not rigid, of a state with these `closed` nodes.
 
-    The `hoop` stress is taken for that of the loads alone.
+    The `hoop` stress is taken for the stress of the loads alone.
     """
     around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
     nodes = grid.theta[closed]
@@ -124,7 +124,7 @@ def _is_resolved(
 ) -> bool:
     """Whether power laws describe the peak, and no place without a law may have a higher one.
 
-    `distances` are those of the nodes in contact, and `wall` the distance from the contact to the edge of the body.
+    `distances` are the node distances in contact, and `wall` the distance from the contact to the edge of the body.
     """
     if 0 < distances.size < LEAST_NODES:
         return False

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.bodies.compliance import basis
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
 from fastpin.model.angles import near_bottom
 from fastpin.model.checks import number
 from fastpin.model.grid import Grid
@@ -71,7 +71,7 @@ def counted_twice(problem: Problem, resultants: Mapping[str, float]) -> dict[str
 
 @dataclass(frozen=True, eq=False)
 class BushFit(ReadOnly):
-    """The tractions between bush and plate in one state, and what the press fit must supply.
+    """The tractions between bush and plate in one state, and the pressure that the press fit must supply.
 
     The bush is bonded in the calculation. That holds where the pressure is positive all round, and the shear below
     friction times pressure.

@@ -15,10 +15,10 @@ import numpy as np
 from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.reading.ends import MOST_VALUES, end_place
 from fastpin.reading.exponents import Coupling
 from fastpin.reading.half_line import half_line
 from fastpin.reading.old_borders import BITS, OldBorder, is_ambiguous, present_borders, truly_sticking
+from fastpin.reading.zones import MOST_VALUES, end_place
 
 
 class MarkedPlace:
@@ -111,7 +111,7 @@ class Marks:
         tractions: tuple[np.ndarray, np.ndarray],
         status: np.ndarray,
     ) -> Marks:
-        """These marks and those of the present borders between stick and slip, and of the edges of the contact.
+        """Add marks at the present borders between stick and slip, and at the edges of the contact.
 
         `friction` (n,) is that of the nodes, `tractions` are the pressure and the shear (n,), `status` (n,) tells the
         zones.

@@ -12,8 +12,7 @@ from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid
 from fastpin.model.ties import top_angle, top_angles
 from fastpin.reading.cusps import ShearNodes
-from fastpin.reading.ends import by_two_nodes
-from fastpin.reading.zones import Interval, is_all_round, runs
+from fastpin.reading.zones import Interval, by_two_nodes, is_all_round, runs
 
 RIVAL = 0.8
 """Least nodal shear beside a border, in parts of the largest nodal shear.

@@ -18,9 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.kernels import power_laws as kernel
-from fastpin.reading.ends import end_fit
 from fastpin.reading.half_line import HalfLine
 from fastpin.reading.old_borders import OldBorder
+from fastpin.reading.zones import end_fit
 
 WINDOWS = np.array([(2, 6, 1, False), (2, 8, 2, False), (2, 8, 1, True), (2, 12, 2, True), (2, 12, 3, True),
                     (2, 20, 3, True), (4, 30, 3, True)])  # fmt: skip

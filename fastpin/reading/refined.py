@@ -25,12 +25,11 @@ from fastpin.elasticity.tractions import RefinedTractions, Tractions
 from fastpin.kernels.half_line import least_squares
 from fastpin.kernels.status import OPEN
 from fastpin.reading.cusps import ShearLaw, ShearNodes
-from fastpin.reading.ends import end_angle
 from fastpin.reading.exponents import Coupling, contact_exponents, signs_beside, stick_exponents
 from fastpin.reading.half_line import half_line
 from fastpin.reading.old_borders import OldBorder
 from fastpin.reading.power_laws import Law, fit_law, law_of_nodes
-from fastpin.reading.zones import Interval, is_all_round, runs, unrolled
+from fastpin.reading.zones import Interval, end_angle, is_all_round, runs, unrolled
 
 GRADED = np.linspace(0.0, 1.0, 61) ** 4
 """The ends of the linear pieces of a power law. They gather at the edge."""
@@ -264,7 +263,7 @@ def _refined(patch: Patch, laws: Laws, cusps: list[ShearLaw]) -> np.ndarray:
 
 
 def _apart(angles: np.ndarray) -> np.ndarray:
-    """Sorted angles without those that equal another one up to rounding. The first and the last one stay.
+    """Sorted angles, each once up to rounding. The first and the last one stay.
 
     A piece between equal angles has no stress.
     """

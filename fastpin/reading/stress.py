@@ -273,7 +273,7 @@ def stress_components(
 def assembly_stress(problem: Problem, assembled: Sequence[Tractions], points: Points, body: Body) -> Stress:
     """The stress at points of a body before any load; see :meth:`fastpin.State.assembly_stress`.
 
-    `assembled` are the tractions of all interfaces, that of the pin first; none if nothing is pressed.
+    `assembled` are the tractions of all interfaces, the pin first; none if nothing is pressed.
     """
     of_pin, *of_seat = assembled or (Tractions(()),)
     return stress_at(problem, of_pin, {}, points, body, *of_seat)

@@ -1,4 +1,4 @@
-"""A second process that compiles kernels while this one compiles others. Both store them; each takes what is stored."""
+"""A second process that compiles kernels while this one compiles others. Each stores its own and loads the other's."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def folder(package: str) -> Path:
 def library(name: str) -> ModuleType:
     """An extension module, such as ``numba._dynfunc``, without the packages around it.
 
-    It is the same module as the one that the packages import later.
+    The packages import the same module later.
     """
     if name in sys.modules:
         return sys.modules[name]

@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 from numpy import ndarray
 
-from fastpin.runtime import beside, compiler, machine, stored
+from fastpin.runtime import beside, machine, stored
 from fastpin.runtime.extensions import numba
-from fastpin.runtime.source import CACHED, KernelSource
+from fastpin.runtime.machine import CACHED, KernelSource
 from fastpin.runtime.threads import undisturbed
 
 PLAIN = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
@@ -60,7 +60,7 @@ class Kernel(KernelSource):
         try:
             types = argument_types(arguments)
         except KeyError:  # types that no kernel of fastpin takes: the compiler decides
-            function = compiler.dispatcher(self)
+            function = machine.dispatcher(self)
             undisturbed(lambda: function.compile(tuple(map(numba.typeof, arguments))))
             return function(*arguments)
         entry = self._entries.get(types)
@@ -75,7 +75,7 @@ class Kernel(KernelSource):
     @functools.cached_property
     def _numba_type_(self) -> Any:
         """The type of the kernel in other kernels. The compiler asks for it by this name."""
-        return numba.typeof(compiler.dispatcher(self, alone=False))
+        return numba.typeof(machine.dispatcher(self, alone=False))
 
     def _find(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
         """Load the machine code for these arguments, or compile it."""
@@ -92,7 +92,7 @@ class Kernel(KernelSource):
                     _announce()
                     if place and machine.CAN_LOAD:
                         beside.start()
-                    entry, code = compiler.compile_kernel(self, arguments)
+                    entry, code = machine.compile_kernel(self, arguments)
                     if place and code:
                         place.save(code)
                 self._entries[types] = entry

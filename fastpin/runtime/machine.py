@@ -1,22 +1,91 @@
-"""Machine code of kernels, loaded by LLVM without Numba.
+"""Machine code of kernels: the source of a kernel, its compilation by Numba, and its loading by LLVM without Numba.
 
-Numba's compiled functions need three small libraries of Numba, which are loaded from their files: one makes Python
-functions, two have helpers in C.
+Numba is imported when a kernel has no machine code on disk. Its private parts are used here to store machine code.
+Where this can't be loaded, Numba's own result is stored. Numba's compiled functions need three small libraries of
+Numba, which are loaded from their files: one makes Python functions, two have helpers in C.
 """
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
+import os
+import pickle
 import platform
 import sys
 from collections.abc import Callable, Iterable
+from hashlib import blake2b
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from fastpin.runtime.extensions import library, llvm
+from fastpin.runtime.extensions import library, llvm, numba
+
+CACHED = os.environ.get("FASTPIN_CACHE", "1") != "0"
+"""Whether compiled code is stored on disk."""
+
+SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+"""Settings of every kernel: no fastmath and no parallel sums.
+
+Division by zero gives inf or nan. C calls no kernel, so the wrapper for C is left out, which saves compiling.
+"""
+
+SHARED = ("kernels/arrays.py", "kernels/status.py")
+"""Files of constants and of records of arrays that kernels take from other files. Code depends on them, too."""
 
 CAN_LOAD = sys.platform == "linux" and platform.machine() == "x86_64"
 """Whether machine code is loaded in this way: on the processors on which it is tested."""
+
+
+# -- the source ------------------------------------------------------------------------------------------------
+
+
+def stamp(file: str) -> tuple[int, int] | None:
+    """Time and size of a file, which change with its text. None if there is no such file."""
+    try:
+        found = os.stat(file)  # noqa: PTH116  every process does it for each kernel, and paths take three times as long
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
+
+
+@functools.cache
+def digest(file: str, imported: tuple[int, int] | None) -> bytes:
+    """The digest of an imported text. :class:`OSError` if its file is gone, or was replaced since the import."""
+    content = Path(file).read_bytes()
+    if stamp(file) != imported:
+        raise OSError(f"{file} was replaced after its import")
+    return blake2b(content).digest()
+
+
+_shared = tuple((file, stamp(file)) for file in (str(Path(__file__).parents[1] / name) for name in SHARED))
+
+
+class KernelSource:
+    """A function that is to be compiled.
+
+    Attributes
+    ----------
+    py_func : callable
+        The function as plain Python.
+    texts : tuple
+        The files of its text, and their stamps at its import: its own file first, then those of the kernels of other
+        files that its file imports. An upgrade may replace the files in a running process.
+    """
+
+    texts: tuple[tuple[str, tuple[int, int] | None], ...]
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.py_func = function
+        file = function.__code__.co_filename
+        texts: dict[str, tuple[int, int] | None] = {file: stamp(file)}
+        for each in function.__globals__.values():
+            if isinstance(each, KernelSource):
+                texts.update((other, kept) for other, kept in each.texts if other != file)
+        self.texts = tuple({**texts, **dict(_shared)}.items())
+
+
+# -- the compiler ----------------------------------------------------------------------------------------------
 
 
 class Code(NamedTuple):
@@ -53,6 +122,87 @@ class Code(NamedTuple):
         if not (entry and environment):
             raise ValueError("symbols without names")  # LLVM would end the process
         return cls(machine_code, entry, environment, tuple(mathematics.split()), tuple(foreign.split()))
+
+
+@functools.cache
+def dispatcher(source: KernelSource, alone: bool = True) -> Any:
+    """Numba's function for a kernel: `alone` for calls from Python, else without a wrapper for these.
+
+    Numba stores neither.
+    """
+    return numba.njit(**SETTINGS, no_cpython_wrapper=not alone)(source.py_func)
+
+
+def compile_kernel(source: KernelSource, arguments: tuple[Any, ...]) -> tuple[Callable[..., Any], Code | bytes | None]:
+    """Compile a kernel for arguments of these types.
+
+    Returns
+    -------
+    entry : callable
+        The compiled function, which need not check the types of its arguments.
+    code : Code, bytes or None
+        What later processes load: its machine code, else a result for :func:`unpack`. None if there is neither.
+    """
+    function = dispatcher(source)
+    kinds = tuple(map(numba.typeof, arguments))
+    entry = function.compile(kinds)
+    # Private parts of Numba may change with any version, and an exception in a call from LLVM hides the object code.
+    with contextlib.suppress(Exception):
+        result = function.overloads[kinds]
+        if CAN_LOAD:
+            with contextlib.suppress(Exception):
+                code = _object_code(result)
+                load(code, result.fndesc.qualname, result.fndesc.modname)
+                return entry, code
+        return entry, _pack(result)
+    return entry, None
+
+
+def _object_code(result: Any) -> Code:
+    """The machine code of a compiled function. :class:`ImportError` if it needs more than C, Python and the helpers."""
+    library, description = result.library, result.fndesc
+    module = library._final_module
+    foreign = {one.name for one in (*module.functions, *module.global_variables) if one.is_declaration}
+    foreign = {name for name in foreign if not name.startswith("llvm.")}
+    if library.has_dynamic_globals or result.environment.consts or result.reload_init:
+        raise ImportError("the code depends on this process")
+    return Code(
+        library._get_compiled_object(),
+        description.llvm_cpython_wrapper_name,
+        description.env_name,
+        tuple(sorted(numba.core.intrinsics.INTR_MATH)),
+        tuple(sorted(foreign)),
+    )
+
+
+def _pack(result: Any) -> bytes | None:
+    """A compiled function for another process with Numba. None if it depends on this process."""
+    if result.library.has_dynamic_globals or result.lifted or result.reload_init:
+        return None
+    library = result.library.serialize_using_object_code()
+    description, environments = result.fndesc, result._find_referenced_environments()
+    description.typemap = description.calltypes = None  # these can't be packed, and nobody needs them
+    return numba.core.serialize.dumps((library, description, result.environment, environments))
+
+
+def unpack(content: bytes) -> Callable[..., Any]:
+    """The function of a packed result. :class:`ImportError` if it is not whole."""
+    target = numba.core.registry.cpu_target.target_context
+    target.refresh()
+    codegen = target.codegen()
+    packed, description, environment, environments = pickle.loads(content)
+    library = codegen.unserialize_library(packed)
+    engine, names = codegen._engine, [one.env_name for one in (environment, *environments)]
+    if not engine.get_function_address(description.llvm_cpython_wrapper_name) or not all(
+        map(engine.get_global_value_address, names)
+    ):
+        raise ImportError(f"no {description.llvm_cpython_wrapper_name}, or no environment")
+    for one in environments:
+        codegen.set_env(one.env_name, one)
+    return target.get_executable(library, description, environment)
+
+
+# -- loading without Numba -------------------------------------------------------------------------------------
 
 
 def load(code: Code, name: str, module: str) -> Callable[..., Any]:
@@ -104,7 +254,7 @@ def unknown_symbols(names: Iterable[str]) -> list[str]:
 
 @functools.cache
 def _process() -> ctypes.CDLL:
-    """The symbols of this process. It keeps those that were found: kernels ask for the same ones."""
+    """The symbols of this process. Found symbols are kept: kernels ask for the same ones."""
     return ctypes.CDLL(None)
 
 

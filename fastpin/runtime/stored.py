@@ -27,9 +27,9 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.runtime import compiler, files, machine
+from fastpin.runtime import files, machine
 from fastpin.runtime.extensions import folder, metadata
-from fastpin.runtime.source import SETTINGS, KernelSource, digest
+from fastpin.runtime.machine import SETTINGS, KernelSource, digest
 
 MACHINE, NUMBA = ".machine", ".numba"
 """Suffixes of machine code that is loaded without Numba, and of results of Numba."""
@@ -66,7 +66,7 @@ class StoredCode:
         if machine.CAN_LOAD:
             loaders[MACHINE] = lambda body: machine.load(machine.Code.from_bytes(body), self.name, self.module)
         for directory in directories or self._directories():
-            for suffix, loader in {**loaders, NUMBA: compiler.unpack}.items():
+            for suffix, loader in {**loaders, NUMBA: machine.unpack}.items():
                 # Damaged files and folders, and parts of Numba that have changed: the kernel is compiled anew.
                 with contextlib.suppress(Exception):
                     content = files.read(directory / (self.stem + self.text + suffix), self.home)
@@ -147,7 +147,7 @@ def _levels() -> list[str]:
 
 
 def _settings() -> list[str]:
-    """Settings of Numba by variables, of those that may change the code."""
+    """Environment variables of Numba that may change the code, with their values."""
     settings = sorted(f"{name}={value}" for name, value in os.environ.items() if name.startswith("NUMBA_"))
     unrelated = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
     return [text for text in settings if text.partition("=")[0] not in unrelated]

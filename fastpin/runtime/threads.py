@@ -1,8 +1,12 @@
-"""Work on several cores by threads. Each item is computed by itself: no bit depends on the number of threads."""
+"""Work on several cores by threads, and the signals that ask a process to stop.
+
+Each item is computed by itself: no bit depends on the number of threads.
+"""
 
 from __future__ import annotations
 
 import os
+import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -12,6 +16,9 @@ from typing import TypeVar
 
 Item = TypeVar("Item")
 Found = TypeVar("Found")
+
+STOPPING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+"""Ctrl-C; the end of a job of a batch system; the end of a terminal, which Windows does not tell by a signal."""
 
 LATE = 2.0
 """Seconds after which a thread that has not begun is taken for lost."""
@@ -100,7 +107,7 @@ class _Undisturbed(threading.Thread):
 
 
 def undisturbed(work: Callable[[], Found]) -> Found:
-    """Return ``work()``, computed whole in a thread of its own. What is raised in the caller meanwhile, comes after it.
+    """Return ``work()``, computed whole in a thread of its own. Exceptions in the caller meanwhile are raised after it.
 
     Handlers of signals run in the main thread, and other threads may raise exceptions in the caller's. Both would be
     lost in a call from a library in C to Python, and the library would go on without a result.

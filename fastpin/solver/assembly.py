@@ -10,7 +10,7 @@ from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import LOADS
-from fastpin.model.room import widest_place
+from fastpin.model.profile import widest_place
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     NODAL,

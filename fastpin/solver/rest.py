@@ -11,7 +11,7 @@ from fastpin.elasticity.interfaces import PIN, SEAT, TURN, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
 from fastpin.model.loads import ACTING, REMOTE, ROTATION, SXX, SXY, SYY
-from fastpin.model.room import widest_place
+from fastpin.model.profile import widest_place
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration, elastic_energy
 from fastpin.solver.errors import NoEquilibriumError

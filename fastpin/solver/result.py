@@ -478,6 +478,6 @@ def with_error_bars(result: Result, coarse: Result) -> Result:
         assert (state.step, state.fraction) == (coarse_state.step, coarse_state.fraction)
         seat = state.seat
         if seat is not None and coarse_state.seat is not None:
-            seat = replace(seat, error_bars=states.traction_bars.PairBars(seat, coarse_state.seat))
-        fine.append(replace(state, error_bars=states.traction_bars.PairBars(state, coarse_state), seat=seat))
+            seat = replace(seat, error_bars=states.error_bars.PairBars(seat, coarse_state.seat))
+        fine.append(replace(state, error_bars=states.error_bars.PairBars(state, coarse_state), seat=seat))
     return replace(result, states=fine, coarse=coarse)

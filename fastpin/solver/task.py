@@ -36,7 +36,7 @@ from fastpin.model.loads import REMOTE, Corner, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.runtime.stopping import STOPPING
+from fastpin.runtime.threads import STOPPING
 from fastpin.solver.arc import candidate_grids, narrow_grids
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.result import Restart, Result

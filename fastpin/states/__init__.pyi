@@ -1,6 +1,5 @@
 from . import error_bars as error_bars
 from . import extremes as extremes
-from . import traction_bars as traction_bars
 from .load_cycle import LoadCycle as LoadCycle
 from .load_cycle import Loop as Loop
 from .load_cycle import NodeBehaviour as NodeBehaviour

@@ -21,14 +21,13 @@ from fastpin.model.doubts import are_given, are_loads_plausible, yield_doubt
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE
-from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.model.ties import least_equal
 from fastpin.reading.marks import Marks
-from fastpin.states.quantities import QUANTITIES, Quantity, load_point, of_bush, point_name
+from fastpin.states.quantities import QUANTITIES, Quantity, load_point, of_bush, only_where, point_name
 from fastpin.states.reading_bounds import NUMBERS, Bounds, StateBlock
 from fastpin.states.state import State
-from fastpin.states.yielding import OWNERS, PREFIX, place_words, strength_of, von_mises_peak, yielding_owners
+from fastpin.states.yielding import OWNERS, PREFIX, place_words, von_mises_peak, yielding_owners
 
 Side = Literal["smallest", "largest", "largest magnitude"]
 """Which extreme of a quantity, as the ``take`` of an outcome."""
@@ -38,12 +37,12 @@ AT_ONCE = 256
 
 
 def _von_mises(owner: str) -> Quantity:
-    """Return the largest von Mises stress of a body; NaN if its yield strength is not known."""
-
-    def of(state: State) -> float:
-        return von_mises_peak(state, owner).value if owner in yielding_owners(state.problem) else math.nan
-
-    return Quantity(f"largest von Mises stress of the {owner}", "traction", of)
+    """Return the largest von Mises stress of a body whose yield strength is known."""
+    words = f"largest von Mises stress of the {owner}"
+    return only_where(
+        lambda problem: owner in yielding_owners(problem),
+        Quantity(words, "traction", lambda state: von_mises_peak(state, owner).value),
+    )
 
 
 READINGS: dict[str, Quantity] = {
@@ -52,9 +51,10 @@ READINGS: dict[str, Quantity] = {
         for name, each in QUANTITIES.items()
         if each.kind not in ("angle", "ratio", "class") and not each.is_part
     },
-    "bush_least_friction": Quantity("bush least friction", "ratio", of_bush("least_friction")),
-    "seat_slip": Quantity(
-        "slip in the seat", "displacement", lambda state: math.nan if state.seat is None else state.seat.peak_slip
+    "bush_least_friction": of_bush("bush least friction", "ratio", "least_friction"),
+    "seat_slip": only_where(
+        lambda problem: problem.seat is not None,
+        Quantity("slip in the seat", "displacement", lambda state: state.seat.peak_slip),  # type: ignore[union-attr]
     ),
     **{PREFIX + owner: _von_mises(owner) for owner in OWNERS},
 }
@@ -157,7 +157,7 @@ class KeptStates:
 
 
 def _block_of(states: Sequence[State]) -> StateBlock:
-    """The nodal values of some states on one grid, and those of their seats."""
+    """The nodal values of some states on one grid, and of their seats."""
     marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
     seats = [state.seat for state in states if state.seat is not None]
     numbers = {name: np.array([getattr(state, name) for state in states]) for name in NUMBERS}
@@ -231,7 +231,7 @@ def _is_near_yield(state: State, owner: str) -> bool:
     """
     with reading(PREFIX + owner):
         peak = von_mises_peak(state, owner, edges_only=True)
-    strength = strength_of(state.problem, peak.circle)
+    strength = state.problem.joint.materials[owner].known_yield_strength
     rims = (state,) if state.seat is None else (state, state.seat)
     largest = max(peak.value, *(float(rim.pressure.max()) for rim in rims))
     return strength is not None and 2.0 * largest > strength
@@ -253,7 +253,7 @@ def yield_doubts(
     history : LoadHistory
         If its loads are in doubt, the stresses are not.
     extremes : callable
-        ``extremes()`` gives extremes of all states, among them those of :func:`yield_extremes`.
+        ``extremes()`` gives extremes of all states, with all of :func:`yield_extremes`.
         It is called only if a strength is known.
     read : callable
         ``read(places)`` gives the states at these places.
@@ -311,14 +311,7 @@ def find_extremes(kept: Kept, wanted: Iterable[tuple[str, Side]]) -> Found:
 
 def exists(problem: Problem, name: str) -> bool:
     """Whether the states of a problem have a quantity."""
-    if name.startswith(PREFIX):
-        return name.removeprefix(PREFIX) in yielding_owners(problem)
-    if name in ("bush_slip_margin", "seat_slip"):
-        return problem.seat is not None
-    if name.startswith("bush_"):
-        return problem.joint.bush is not None
-    edge = READINGS[name].edge
-    return edge is None or edge in elastic_bodies(problem)
+    return READINGS[name].exists(problem)
 
 
 def marked_places(extremes: Mapping[tuple[str, Side], Extreme]) -> dict[int, str]:

@@ -19,8 +19,8 @@ from fastpin.model.angles import near_bottom
 from fastpin.model.checks import instances, number_array
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.read_only import ReadOnly
+from fastpin.model.recorded import is_back
 from fastpin.model.ties import top_angle
-from fastpin.model.turning import is_back
 from fastpin.model.units import units_per_thickness
 from fastpin.states.regimes import Regime, regime_of
 from fastpin.states.state import State
@@ -132,7 +132,7 @@ class LoadCycle:
     def differing_loads(self) -> list[str]:
         """Names of the loads that differ between the two ends; in a record of samples, by more than it can tell.
 
-        See :func:`fastpin.model.turning.is_back`. States inside steps are no samples.
+        See :func:`fastpin.model.recorded.is_back`. States inside steps are no samples.
         """
         given = [name for name in LOADS if name not in self.states[0].problem.reactions]
         corners = [state for state in self.states if state.fraction == 1.0]

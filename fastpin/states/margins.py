@@ -12,12 +12,12 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from fastpin.model.angles import from_bottom
-from fastpin.model.points import bodies_of, material_of
+from fastpin.model.points import bodies_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.extremes import Found
 from fastpin.states.state import State
-from fastpin.states.yielding import PREFIX, circles, place_words, strength_of, von_mises_peak
+from fastpin.states.yielding import PREFIX, elastic_owners, place_words, von_mises_peak
 
 MARGINS = {
     "yield": "yield strength over the von Mises stress",
@@ -35,7 +35,7 @@ MARGINS = {
 
 
 class Margin(NamedTuple):
-    """A margin, in SI units. What is not known is NaN, and the remark says why.
+    """A margin, in SI units. An unknown number is NaN, and the remark says why.
 
     Attributes
     ----------
@@ -96,13 +96,12 @@ def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[i
         ``read(places)`` gives the states at these places.
     """
     rows = []
-    for owner in dict.fromkeys(circle.owner for circle in circles(problem)):
-        circle = next(each for each in circles(problem) if each.owner == owner)
+    for owner, material in elastic_owners(problem).items():
         extreme = extremes.get((PREFIX + owner, "largest"))
         state = None if extreme is None else read([extreme.place])[0]
-        strengths = {"yield": strength_of(problem, circle)}
-        if (ultimate := material_of(problem, circle.body).ultimate_strength) is not None:
-            strengths["ultimate"] = ultimate
+        strengths = {"yield": material.known_yield_strength}
+        if material.ultimate_strength is not None:
+            strengths["ultimate"] = material.ultimate_strength
         for name, strength in strengths.items():
             row = Margin(f"{owner}: {name}, von Mises", name=name, owner=owner, part=part_of(problem, owner))
             if problem.dimensionless:

@@ -5,18 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from fastpin.model.angles import angle_between, degrees_from_bottom, from_bottom
 from fastpin.model.points import Body, elastic_bodies
+from fastpin.model.problem import Problem
 from fastpin.reading.zones import Interval, is_all_round
 from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
-
-if TYPE_CHECKING:  # this module imports compiled code
-    pass
 
 
 class Quantity(NamedTuple):
@@ -29,7 +27,7 @@ class Quantity(NamedTuple):
     kind : str
         A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad) or "class".
     of : callable
-        Gives its value for a state, in SI units or in the units of a dimensionless problem.
+        Gives its value for a state, in SI units or in the units of a dimensionless problem; NaN if there is none.
     words : str
         Its meaning, for reports.
     classes : dict of int to str
@@ -38,6 +36,8 @@ class Quantity(NamedTuple):
         Of a number of the largest hoop stress: the edge.
     is_part : bool
         Whether it is a part of another quantity, at the place of that. It has no extremes of its own.
+    exists : callable
+        Tells whether the states of a problem have it. See :func:`only_where`.
     """
 
     label: str
@@ -47,6 +47,7 @@ class Quantity(NamedTuple):
     classes: Mapping[int, str] = MappingProxyType({})
     edge: Body | None = None
     is_part: bool = False
+    exists: Callable[[Problem], bool] = lambda problem: True
 
     def is_resolved(self, state: State) -> bool:
         """Whether the nodes resolve its value in a state, if there is one, see :class:`fastpin.reading.HoopPeak`."""
@@ -71,26 +72,31 @@ def _integral(state: State, traction: np.ndarray) -> float:
     return state.problem.hole_radius * float(state.grid.weights @ traction)
 
 
+def only_where(exists: Callable[[Problem], bool], quantity: Quantity) -> Quantity:
+    """A quantity that the states of some problems have; NaN in all others."""
+    return quantity._replace(of=lambda state: quantity.of(state) if exists(state.problem) else math.nan, exists=exists)
+
+
 def _hoop(label: str, kind: str, name: str, words: str, edge: Body = "plate", is_part: bool = False) -> Quantity:
-    """A number of the largest hoop stress on an edge, by its name there; NaN without the body, or if it is rigid.
+    """A number of the largest hoop stress on an edge of an elastic body, by its name there.
 
-    The parts of assembly and loads are NaN where nothing is pressed.
+    The parts of assembly and loads exist where something is pressed.
     """
+    return only_where(
+        lambda problem: edge in elastic_bodies(problem) and (problem.is_pressed or not is_part),
+        Quantity(
+            label, kind, lambda state: float(getattr(state.peak_hoop_stress(edge), name)), words, edge=edge,
+            is_part=is_part,
+        ),
+    )  # fmt: skip
 
-    def of(state: State) -> float:
-        is_known = edge in elastic_bodies(state.problem) and (state.problem.is_pressed or not is_part)
-        return float(getattr(state.peak_hoop_stress(edge), name)) if is_known else math.nan
 
-    return Quantity(label, kind, of, words, edge=edge, is_part=is_part)
-
-
-def of_bush(name: str) -> Callable[[State], float]:
-    """A reading of the interface between bush and plate, by its name there; NaN without a bush."""
-
-    def of(state: State) -> float:
-        return math.nan if state.problem.joint.bush is None else float(getattr(state.bush_fit(), name))
-
-    return of
+def of_bush(label: str, kind: str, name: str, words: str = "") -> Quantity:
+    """A reading of the interface between bush and plate, by its name there. The margin of slip is that of a seat."""
+    return only_where(
+        lambda problem: (problem.seat if name == "slip_margin" else problem.joint.bush) is not None,
+        Quantity(label, kind, lambda state: float(getattr(state.bush_fit(), name)), words),
+    )
 
 
 QUANTITIES: dict[str, Quantity] = {
@@ -147,13 +153,11 @@ QUANTITIES: dict[str, Quantity] = {
     "joint_uy": Quantity(
         "joint uy", "displacement", lambda state: state.joint_displacement()["uy"], "displacement of the joint upwards"
     ),
-    "bush_open_margin": Quantity(
-        "bush open margin", "traction", of_bush("open_margin"), "least pressure between bush and plate"
-    ),
-    "bush_slip_margin": Quantity(
+    "bush_open_margin": of_bush("bush open margin", "traction", "open_margin", "least pressure between bush and plate"),
+    "bush_slip_margin": of_bush(
         "bush slip margin",
         "traction",
-        of_bush("slip_margin"),
+        "slip_margin",
         "least pressure between bush and plate, minus shear over friction",
     ),
     "regime": Quantity("regime", "class", lambda state: float(state.regime), "regime of the contact", REGIMES),

@@ -76,7 +76,7 @@ class StateBlock(NamedTuple):
 
     @property
     def read_parts(self) -> list[np.ndarray]:
-        """The arrays (k, ...) on which the readings of the states depend, without those that are numbers."""
+        """The arrays (k, ...) on which readings depend that are no stored numbers."""
         own = [self.pressure, self.shear, self.status, self.loads, *self.marks]
         own += [self.numbers[name] for name in ("dx", "dy")]
         return own if self.seat is None else own + self.seat.read_parts

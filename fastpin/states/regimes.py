@@ -1,6 +1,6 @@
 """Regimes of slip: separation, full stick, partial slip or gross sliding, of a state and of a load cycle.
 
-The words are those of fretting maps (O. Vingsbo and S. Söderberg, On fretting maps, Wear 126 (1988) 131-147).
+Fretting maps have the same words (O. Vingsbo and S. Söderberg, On fretting maps, Wear 126 (1988) 131-147).
 """
 
 from __future__ import annotations

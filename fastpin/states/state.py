@@ -67,7 +67,7 @@ class State(ReadOnly):
     fraction : float
         Part of the step from the previous corner to this one, 0 to 1; 1 at the corner itself.
     load : dict of str to float
-        Loads by name, see :data:`fastpin.model.loads.LOADS`. They hold the reactions of what is prescribed, see
+        Loads by name, see :data:`fastpin.model.loads.LOADS`. They hold the reactions to prescribed motion, see
         :attr:`fastpin.Problem.reactions`.
     theta : ndarray, shape (n,)
         Node angles, rad; -pi/2 is the bottom of the hole.
@@ -190,7 +190,7 @@ class State(ReadOnly):
     def contact(self) -> list[Interval]:
         """Contact intervals (start, stop), rad, read between the nodes.
 
-        The pressure is extrapolated to zero, see :mod:`fastpin.reading.ends`. A contact round the whole circle is one
+        The pressure is extrapolated to zero, see :mod:`fastpin.reading.zones`. A contact round the whole circle is one
         interval of length 2 pi.
         """
         return zones.in_order(self.contact_in_runs)
@@ -204,7 +204,7 @@ class State(ReadOnly):
     def stick(self) -> list[Interval]:
         """Stick intervals (start, stop), rad, read between the nodes.
 
-        mu N - |T| is extrapolated to zero, see :mod:`fastpin.reading.ends`. Sticking nodes that reach |T| = mu N
+        mu N - |T| is extrapolated to zero, see :mod:`fastpin.reading.zones`. Sticking nodes that reach |T| = mu N
         exactly at this load count as slipping.
         """
         return zones.in_order(self._stick)
@@ -422,7 +422,7 @@ class State(ReadOnly):
 
     @property
     def _assembled(self) -> Sequence[Tractions]:
-        """The tractions before any load of all interfaces, that of the pin first; none if nothing is pressed."""
+        """The tractions before any load of all interfaces, the pin first; none if nothing is pressed."""
         import fastpin
 
         return fastpin.solver.assembled_tractions(*self._joint)[-len(self.problem.interfaces) :]
@@ -567,7 +567,7 @@ class ErrorBars(Mapping[str, float]):
     @property
     @abstractmethod
     def pressure(self) -> np.ndarray:
-        """Error bars >= 0 of the pressure at the nodes, Pa, shape (n,); see :mod:`fastpin.states.traction_bars`."""
+        """Error bars >= 0 of the pressure at the nodes, Pa, shape (n,); see :mod:`fastpin.states.error_bars`."""
 
     @property
     @abstractmethod

@@ -14,6 +14,7 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom
 from fastpin.model.grid import Grid
+from fastpin.model.materials import Material
 from fastpin.model.points import Body, Points, elastic_bodies, known_depth, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.ties import top_angle
@@ -151,18 +152,20 @@ def von_mises_peak(state: State, owner: str, edges_only: bool = False) -> MisesP
     return MisesPeak(float(found[top]), float(places.theta[top]), places.circle[top])
 
 
+def elastic_owners(problem: Problem) -> dict[str, Material]:
+    """The bodies of :data:`OWNERS` that are not rigid, with their materials, the bush first."""
+    materials = problem.joint.materials
+    return {owner: materials[owner] for owner in OWNERS[::-1] if owner in materials and not materials[owner].is_rigid}
+
+
 def yielding_owners(problem: Problem) -> dict[str, float]:
     """The elastic bodies of :data:`OWNERS` whose yield strength is known, with the strength, Pa.
 
     Stresses without dimensions have none.
     """
-    known = {each.owner: strength_of(problem, each) for each in circles(problem) if not problem.dimensionless}
-    return {owner: strength for owner, strength in known.items() if strength is not None}
-
-
-def strength_of(problem: Problem, circle: Circle) -> float | None:
-    """The yield strength of the body of a circle, Pa; None if it is not known."""
-    return material_of(problem, circle.body).known_yield_strength
+    known = {} if problem.dimensionless else elastic_owners(problem)
+    strengths = ((owner, material.known_yield_strength) for owner, material in known.items())
+    return {owner: strength for owner, strength in strengths if strength is not None}
 
 
 def place_words(problem: Problem, peak: MisesPeak) -> str:

@@ -35,7 +35,7 @@ from fastpin.errors import InputError
 from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
 from fastpin.model import About, Grid, MaterialPair, Problem
-from fastpin.model.beside import BESIDE, read_text, stored_text
+from fastpin.model.case import BESIDE, read_text, stored_text
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import Block, LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS

@@ -19,7 +19,7 @@ from fastpin.model import (
     StrengthAssessment,
     checks,
 )
-from fastpin.model.beside import checked_beside
+from fastpin.model.case import checked_beside
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.options import OPTIONS, OptionValues, SolveOptions
 from fastpin.model.synonyms import unknown_keyword

@@ -19,7 +19,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model import checks
-from fastpin.model.beside import checked_beside
+from fastpin.model.case import checked_beside
 from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.model.inputs import note_input
 from fastpin.solver.result import Restart, Result, with_error_bars

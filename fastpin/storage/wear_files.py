@@ -17,7 +17,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model import FatigueAssessment, Grid, LoadHistory, Problem, Wear
-from fastpin.model.beside import checked_beside
+from fastpin.model.case import checked_beside
 from fastpin.model.checks import check_callable, file_path, string, true_or_false
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
 from fastpin.model.options import OptionValues, SolveOptions

@@ -15,13 +15,13 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, file_path, number, number_array
-from fastpin.model.csv_columns import ColumnChoice
-from fastpin.model.history_csv import read_corners
-from fastpin.model.load_units import Basis
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
-from fastpin.model.turning import least_reversal, noise, turning_points
+from fastpin.model.recorded import least_reversal, noise, turning_points
 from fastpin.runtime.extensions import interpolate
+from fastpin.tables.columns import ColumnChoice
+from fastpin.tables.files import read_corners
+from fastpin.tables.load_units import Basis
 
 REACTIONS = {"ux": "Q", "uy": "P", "rotation": "M"}
 """The loads that may be measured over, and their reactions."""

@@ -28,7 +28,7 @@ from fastpin.casefile.toml_text import CaseText, NamedTable, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA
-from fastpin.model.beside import BESIDE
+from fastpin.model.case import BESIDE
 from fastpin.model.checks import alternatives, as_toml, file_path, string
 from fastpin.model.crack import CRACK_KEYS
 from fastpin.model.points import BODIES

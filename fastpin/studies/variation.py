@@ -20,8 +20,7 @@ from fastpin.casefile.profiles import PROFILES, varied
 from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.beside import beside_of
-from fastpin.model.case import Case
+from fastpin.model.case import Case, beside_of
 from fastpin.model.checks import number
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries

@@ -24,8 +24,7 @@ from typing import Any, TypeVar
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError, InputError
-from fastpin.model.beside import beside_of
-from fastpin.model.case import Case
+from fastpin.model.case import Case, beside_of
 from fastpin.model.doubts import doubts_given
 from fastpin.runtime.jit import limit_to_one_thread
 from fastpin.runtime.threads import in_one_thread

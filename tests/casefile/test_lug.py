@@ -6,7 +6,7 @@ import pytest
 
 from fastpin.casefile.lug import LUG_EXAMPLE, LUG_KEYS, parse_lug, read_lug
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.lug import Hole, PartLoad, rectangle
+from fastpin.lugs.outline import Hole, PartLoad, rectangle
 from fastpin.model.materials import MATERIALS
 from tests.support.faults import faults_of
 

@@ -14,7 +14,7 @@ import psutil
 import pytest
 
 from fastpin.casefile.reader import EXAMPLE
-from fastpin.runtime.stopping import STOPPING
+from fastpin.runtime.threads import STOPPING
 from tests.support.processes import fastpin, python, started
 from tests.support.tiers import some_survey
 

@@ -8,10 +8,10 @@ import pytest
 
 import fastpin
 from fastpin import damage
+from fastpin.damage import plane_damage, plane_search
 from fastpin.damage.counted import CountedMaterial, Spectrum
 from fastpin.damage.lives import curve_with_knee, fatemi_socie_curve, smith_watson_topper_curve
 from fastpin.errors import InputError
-from fastpin.kernels import planes, rainflow
 from fastpin.model import FatigueAssessment, FatigueConstants
 from tests.support.fatigue import uniaxial
 from tests.support.refusals import refused
@@ -193,7 +193,7 @@ def test_a_table_of_lives_ends_at_the_knee():
         path = np.zeros((2, 6))
         path[:, 0] = path[:, 3] = -amplitude, amplitude
         out, places, values = np.empty((1, 2)), np.empty((8, 3), np.int64), np.empty((8, 3))
-        given = np.arange(2), np.array([[0, 2, 1]]), planes.SWING_TIMES_PUSH, 0.0, curve
-        rainflow.worst_sums(path[None], *given, out)
-        rainflow.cycles_on_plane(path, 0.3, *given, places, values)
+        given = np.arange(2), np.array([[0, 2, 1]]), plane_search.SWING_TIMES_PUSH, 0.0, curve
+        plane_damage.worst_sums(path[None], *given, out)
+        plane_damage.cycles_on_plane(path, 0.3, *given, places, values)
         assert out[0, 0] == pytest.approx(values[0, 2], rel=1e-9)

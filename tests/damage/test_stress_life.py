@@ -19,7 +19,7 @@ from fastpin.damage.reliability import failure_probability, tolerance_factor
 from fastpin.errors import CaseFileError
 from fastpin.model import FatigueAssessment, FatigueConstants, Material
 from fastpin.model.assessment import USUAL
-from fastpin.model.stress_life import KSI, stress_life_curves
+from fastpin.model.fatigue import KSI, stress_life_curves
 from fastpin.studies.outcome_tables import outcomes_from
 from fastpin.studies.outcomes import value_of
 from tests.support.documents import page_text

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from fastpin.bodies import harmonics
 from fastpin.elasticity.interfaces import PIN, SEAT, JointSystem, seat_grid
 from fastpin.elasticity.stress import bush_stress
 from fastpin.elasticity.tractions import Tractions
-from fastpin.kernels import harmonics
 from fastpin.model.grid import Grid
 from tests.support.joints import joint
 from tests.survey.joint_conditions import ring_responses

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.elasticity.laminate_stress import laminate_stress
-from fastpin.elasticity.stress import hole_stress
+from fastpin.elasticity.stress import hole_stress, laminate_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.model.laminate import Laminate
 from tests.support.laminates import TURNED, orthotropic

@@ -8,12 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin.bodies import Bushing, Plate, Ring, Tube
+from fastpin.bodies import Bushing, Plate, Ring, Tube, harmonics
 from fastpin.bodies.ring import HalfCosine
 from fastpin.elasticity.stress import disk_stress, hole_stress, pin_stress, plate_stress, traction_harmonics
 from fastpin.elasticity.terms import body_terms
 from fastpin.elasticity.tractions import Tractions
-from fastpin.kernels import harmonics
 from fastpin.model.loads import SXX, SXY, SYY
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem

@@ -4,7 +4,7 @@ import pytest
 
 from fastpin.errors import InputError
 from fastpin.figures.sketch import ARROWS, HOLD_WORDS, plot_lug
-from fastpin.model.lug import Hole, PartLoad
+from fastpin.lugs.outline import Hole, PartLoad
 from tests.support.drawing import legend_words
 from tests.support.lugs import plate
 

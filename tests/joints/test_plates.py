@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fastpin.bodies.compliance import complex_coefficients
-from fastpin.elasticity.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
-from fastpin.model.lug import Hole, Lug, rectangle
+from fastpin.lugs.outline import Hole, Lug, rectangle
+from fastpin.lugs.several_holes import HolesCompliance, holes_in_infinite_plate, holes_in_outline
 
 KOLOSOV = (3.0 - 0.33) / 1.33
 

@@ -7,7 +7,7 @@ import pytest
 
 from fastpin import Material, MaterialPair
 from fastpin.joints import Joint, JointPin, JointPlate, JointState, solve_joint
-from fastpin.model.lug import rectangle
+from fastpin.lugs.outline import rectangle
 from fastpin.solver import SolveError
 from tests.support.tiers import seeds
 

@@ -12,8 +12,8 @@ import pytest
 import fastpin
 from fastpin import Grid, InputError, Material, MaterialPair, Problem
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, solve_joint, tate_rosenfeld
+from fastpin.lugs.outline import rectangle
 from fastpin.model.angles import BOTTOM
-from fastpin.model.lug import rectangle
 from fastpin.solver import Interrupted, SolveError
 
 ALUMINIUM, STEEL = Material(72e9, 0.33), Material(210e9, 0.30)

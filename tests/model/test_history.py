@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model import csv_table, history_csv
-from fastpin.model.csv_table import MOST_FAULTS
 from fastpin.model.history import LoadHistory, cycle_length, cycles_after, same_ahead
 from fastpin.model.loads import LOADS, complete_load
 from fastpin.model.options import KeepRule
+from fastpin.tables import files, reader
+from fastpin.tables.reader import MOST_FAULTS
 from tests.support.refusals import refused
 from tests.support.tiers import seeds
 
@@ -254,8 +254,8 @@ def test_keep() -> None:
 
 @pytest.mark.parametrize("line", ["\n", "# " + "x" * 1000 + "\n", " " * 5000 + "\n", "#\r"])
 def test_a_csv_file_without_corners_is_not_read_to_its_end(line, path, monkeypatch):
-    monkeypatch.setattr(csv_table, "MOST_AROUND", 100_000)
-    lines = csv_table.MOST_AROUND // max(len(line), csv_table.SHORTEST_LINE) + 10
+    monkeypatch.setattr(reader, "MOST_AROUND", 100_000)
+    lines = reader.MOST_AROUND // max(len(line), reader.SHORTEST_LINE) + 10
     path.write_text("P\n1\n" + line * (2 * lines), newline="")
     with pytest.raises(
         CaseFileError, match="the lines up to here are too long or too many for their load corners"
@@ -265,7 +265,7 @@ def test_a_csv_file_without_corners_is_not_read_to_its_end(line, path, monkeypat
 
 
 def test_a_csv_file_has_a_limit_of_corners(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(history_csv, "MAX_ROWS", 100)
+    monkeypatch.setattr(files, "MAX_ROWS", 100)
     path.write_text("P\n" + "1\n" * 100 + "\n# end\n")
     assert len(LoadHistory.from_csv(path)) == 100
     path.write_text("P\n" + "1\n" * 100 + "\n# end\n1\n")
@@ -274,7 +274,7 @@ def test_a_csv_file_has_a_limit_of_corners(path: Path, monkeypatch: pytest.Monke
 
 
 def test_a_csv_file_of_long_corners_is_read(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(csv_table, "MOST_AROUND", 1000)
+    monkeypatch.setattr(reader, "MOST_AROUND", 1000)
     cells = ",".join(f"{-math.pi * 10.0 ** -(100 + k):.17g}" for k in range(len(LOADS)))
     path.write_text(",".join(LOADS) + "\n" + f"{cells}\n# a comment\n" * 1000)
     assert len(LoadHistory.from_csv(path)) == 1000

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fastpin.model.turning import is_back, least_reversal, noise, recorded_cycles, turning_points
+from fastpin.model.recorded import is_back, least_reversal, noise, recorded_cycles, turning_points
 
 
 def record(samples: int, cycles: float = 10.0, deviation: float = 0.0, drift: float = 0.0, seed: int = 0) -> np.ndarray:

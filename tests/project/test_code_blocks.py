@@ -29,7 +29,7 @@ from fastpin.casefile.lug import LUG_KEYS
 from fastpin.casefile.materials import FILE_KEYS
 from fastpin.casefile.reader import KEYS, ROOT_KEYS
 from fastpin.cli.options import join_words, parser
-from fastpin.elasticity import plate_compliance
+from fastpin.lugs import plate_compliance
 from fastpin.studies import parse_plan, sweep
 from fastpin.studies.tolerances import KEYS as TOLERANCE_KEYS
 from scripts.inline import Inline

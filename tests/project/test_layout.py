@@ -35,7 +35,7 @@ BREAKS = {
         "import fastpin.elasticity.system\n",
     ),
     "an import of the public face": ("one_direction", "storage/store.py", "import fastpin\n"),
-    "a circle of files": ("no_circles", "reading/old_borders.py", "from fastpin.reading.ends import end_place\n"),
+    "a circle of files": ("no_circles", "reading/old_borders.py", "from fastpin.reading.zones import end_place\n"),
     "a circle through names": ("no_circles", "cli/run.py", "from fastpin.cli.main import main\n"),
     "the face of the own folder": ("nothing_hidden", "states/cycles.py", "from fastpin import states\n"),
     "a name of the own face": ("nothing_hidden", "states/cycles.py", "from fastpin.states import Regime\n"),

@@ -8,7 +8,7 @@ from matplotlib.text import Text
 
 from fastpin.assess.outputs import Curve
 from fastpin.bodies.ring import SUPPORTS
-from fastpin.elasticity import plates
+from fastpin.lugs import plates
 from fastpin.model.problem import Problem
 from fastpin.published import catalog, finite_bodies, half_plane, rectangular_lug, rigid_pin
 

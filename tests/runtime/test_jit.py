@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import exchange, influence
-from fastpin.runtime import compiler, jit, machine, source
+from fastpin.runtime import jit, machine
 from tests.support import small_kernels
 from tests.support.processes import finished, python
 
@@ -90,7 +90,7 @@ print(small.doubled(1.5))
 
 @pytest.mark.gate
 @keeps
-@pytest.mark.parametrize("file", ["kernels/small.py", *source.SHARED])
+@pytest.mark.parametrize("file", ["kernels/small.py", *machine.SHARED])
 def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file: str) -> None:
     """The text on disk is not the text that it has imported, as after an upgrade while it runs."""
     path = installed / "fastpin" / file
@@ -135,7 +135,7 @@ def arguments_of_columns(rng: np.random.Generator) -> tuple[object, ...]:
 @keeps
 def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
     arguments = arguments_of_columns(np.random.default_rng(1))
-    entry, code = compiler.compile_kernel(influence._columns, arguments)
+    entry, code = machine.compile_kernel(influence._columns, arguments)
     assert isinstance(code, machine.Code)
     loaded = machine.load(code, "_columns", "fastpin.kernels.influence")
     entry(*arguments)
@@ -177,7 +177,7 @@ def test_code_is_chosen_by_the_types_of_the_arguments() -> None:
         table[:, :2], table[:, :1], table[:1], np.zeros((3, 1), order="F"), line.astype(int), line.astype(np.int8),
         Pair(line, 1), Pair(line[::2], 1), (line, 1),
     ]  # fmt: skip
-    kinds = [compiler.numba.typeof(value) for value in values]
+    kinds = [machine.numba.typeof(value) for value in values]
     words = [jit.signature(jit.argument_types((value,))) for value in values]
     for one, kind in zip(words, kinds, strict=True):
         for other, other_kind in zip(words, kinds, strict=True):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.runtime import compiler, files, jit, machine, stored
+from fastpin.runtime import files, jit, machine, stored
 from tests.support import small_kernels
 from tests.support.small_kernels import TEXT, VALUES, names, read, start
 
@@ -164,7 +164,7 @@ def test_a_full_or_locked_store_is_done_without(system: str, site: Path) -> None
 
 @pytest.fixture(scope="module")
 def code() -> machine.Code:
-    _, code = compiler.compile_kernel(jit.compiled(lambda x: x + x), (1.5,))
+    _, code = machine.compile_kernel(jit.compiled(lambda x: x + x), (1.5,))
     assert isinstance(code, machine.Code)
     return code
 

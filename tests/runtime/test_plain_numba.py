@@ -12,7 +12,7 @@ import pytest
 from numba.core import intrinsics
 
 from fastpin.kernels import influence
-from fastpin.runtime import compiler, extensions, jit, machine, stored
+from fastpin.runtime import extensions, jit, machine, stored
 from tests.support.processes import finished, python
 
 pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no machine code is stored")
@@ -49,7 +49,7 @@ CHANGES: dict[str, tuple[object, str, object]] = {
         without("numba.core.runtime._nrt_python", "memsys_use_cpython_allocator"),
     ),
     "no list of mathematics": (intrinsics, "INTR_MATH", None),
-    "no object code": (compiler, "_object_code", refuse),
+    "no object code": (machine, "_object_code", refuse),
     "no engine": (machine, "_engine", refuse),
 }
 
@@ -85,7 +85,7 @@ def test_a_result_of_numba_is_stored_when_a_part_changes(
     file.unlink()
     assert value() == before
     assert file.with_suffix(stored.NUMBA).is_file()
-    monkeypatch.setattr(compiler, "compile_kernel", refuse)
+    monkeypatch.setattr(machine, "compile_kernel", refuse)
     assert value() == before
 
 
@@ -100,7 +100,7 @@ def test_code_is_stored_for_versions_that_have_no_file(directory: Path, monkeypa
 @pytest.mark.gate
 def test_code_that_can_not_be_stored_is_compiled_each_time(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("_object_code", "_pack"):
-        monkeypatch.setattr(compiler, name, refuse)
+        monkeypatch.setattr(machine, name, refuse)
     for _ in range(2):
         assert jit.Kernel(influence.clausen.py_func, inner=False)(1.0) == pytest.approx(1.0139591323607684, rel=1e-14)
     assert not list(directory.iterdir())

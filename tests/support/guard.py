@@ -22,7 +22,7 @@ from typing import Any
 import pytest
 from matplotlib.figure import Figure
 
-from fastpin.runtime import compiler
+from fastpin.runtime import machine
 from tests.support.processes import ROOT
 from tests.support.tiers import TIERS, tier_of
 
@@ -111,7 +111,7 @@ def pytest_configure() -> None:
     _watch(BaseProcess, "start", lambda process: "a child process")
     _watch(Figure, "savefig", _size)
     for name in ("compile_kernel", "unpack"):
-        setattr(compiler, name, _uncounted(getattr(compiler, name)))
+        setattr(machine, name, _uncounted(getattr(machine, name)))
 
 
 def _uncounted(function: Callable[..., Any]) -> Callable[..., Any]:

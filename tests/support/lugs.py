@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fastpin.elasticity import plates
-from fastpin.elasticity.panels import Fineness
-from fastpin.model.lug import Lug, Part, rectangle
+from fastpin.lugs import plates
+from fastpin.lugs.outline import Lug, Part, rectangle
+from fastpin.lugs.panels import Fineness
 
 
 def disc(radius: float, gap: float = 0.0) -> tuple[Part, ...]:

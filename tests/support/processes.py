@@ -22,7 +22,7 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from fastpin.runtime.stopping import STOPPING
+from fastpin.runtime.threads import STOPPING
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.bodies import Compliance
-from fastpin.kernels import harmonics
+from fastpin.bodies import Compliance, harmonics
 
 
 def block(a: float, b: float, d: float) -> np.ndarray:

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 
 import fastpin
 from fastpin.cracks import Crack, Growth, GrowthLaw, Nasgro, Walker, growth, spectrum_growth, stress_intensity
-from fastpin.kernels.reversals import closed_cycles
+from fastpin.cracks.reversals import closed_cycles
 from fastpin.states.quantities import load_point
 
 M = 1e6

@@ -18,13 +18,13 @@ import numpy as np
 from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.bodies.body import PinBody, PlateBody
 from fastpin.bodies.compliance import Compliance
+from fastpin.bodies.pins import TUBE_LOADS
 from fastpin.bodies.ring import SUPPORTS
-from fastpin.bodies.tube import TUBE_LOADS
-from fastpin.elasticity.plates import plate_compliance
+from fastpin.lugs.outline import Lug, Part, PartLoad
+from fastpin.lugs.plates import plate_compliance
 from fastpin.model.history import LoadHistory
 from fastpin.model.laminate import Laminate, in_axes
 from fastpin.model.loads import LOADS, Corner
-from fastpin.model.lug import Lug, Part, PartLoad
 from fastpin.model.materials import Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap, Profile

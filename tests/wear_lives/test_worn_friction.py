@@ -12,7 +12,7 @@ from fastpin.errors import InputError
 from fastpin.model.grid import Grid
 from fastpin.model.profile import profile_of_nodes
 from fastpin.solver.errors import NoEquilibriumError
-from fastpin.solver.followed import followed_problem
+from fastpin.solver.followed import follow_friction, followed_problem
 from fastpin.wear_lives import WearResult, WornCycle
 from tests.support.tiers import gate
 from tests.support.wear_cases import WEAR_CASES, step, wearing
@@ -47,7 +47,7 @@ def test_a_life_with_other_friction_is_that_of_its_pieces_one_by_one() -> None:
             theta = run.system.grid.theta
             friction = lessened(replace(found[0], cycle=cycle))
             problem = followed_problem(problem, profile_of_nodes(CASE.grid(NODES), friction))
-            run = run.with_friction_followed(problem)
+            run = follow_friction(run, problem)
             assert run.system.friction == pytest.approx(friction, rel=1e-14)
             assert theta.size == NODES
         for loads in CASE.cycle:

@@ -13,7 +13,7 @@ import fastpin
 from fastpin import assess
 from fastpin.assess.wear import cycle_columns, cycles_curve, scar_curves
 from fastpin.model import FatigueAssessment
-from fastpin.model.beside import beside_of
+from fastpin.model.case import beside_of
 from fastpin.model.materials import MaterialPair
 from fastpin.model.units import units
 from fastpin.pages.sections import crack, fatigue, strength

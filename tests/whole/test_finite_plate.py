@@ -4,8 +4,8 @@ import pytest
 
 from fastpin import MATERIALS, Material, MaterialPair, Problem, solve
 from fastpin.bodies import Ring
-from fastpin.elasticity.plates import plate_compliance
-from fastpin.model.lug import Lug
+from fastpin.lugs.outline import Lug
+from fastpin.lugs.plates import plate_compliance
 from tests.support.lugs import disc, make_rough, plate
 from tests.support.tiers import for_gate
 

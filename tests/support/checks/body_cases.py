@@ -10,9 +10,8 @@ from functools import partial
 
 import numpy as np
 
-from fastpin.bodies import Bushing, Compliance, Ring, Tube
+from fastpin.bodies import Bushing, Compliance, Ring, Tube, harmonics
 from fastpin.elasticity.terms import body_terms
-from fastpin.kernels import harmonics
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem

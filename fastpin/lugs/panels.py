@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.lug import Part, distances
+from fastpin.lugs.outline import Part, distances
 
 MOST_NODES = 4000
 """Most nodes of all edges. The two matrices then take one gigabyte."""

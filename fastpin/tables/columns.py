@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from fastpin.errors import InputError
 from fastpin.model.checks import LONGEST_TEXT, as_toml, is_whole, number, string
-from fastpin.model.load_units import is_unit, is_unit_of, unit_name
 from fastpin.model.loads import LOADS, load_index
 from fastpin.model.synonyms import closest
+from fastpin.tables.load_units import is_unit, is_unit_of, unit_name
 
 COLUMN_KEYS = ("column", "scale", "unit")
 """Keys of the table of a load that is read from a column."""

@@ -1,7 +1,8 @@
 """Cycles of numbers: the closed cycles of a history that is repeated for ever.
 
 The history is turned so that it begins and ends at its largest value. Then four points in a row close a cycle
-(Matsuishi and Endo 1968; ASTM E1049, 5.4.5). :mod:`fastpin.kernels.rainflow` counts on planes, with a second component.
+(Matsuishi and Endo 1968; ASTM E1049, 5.4.5). :mod:`fastpin.damage.plane_damage` counts on planes, with a second
+component.
 """
 
 from __future__ import annotations

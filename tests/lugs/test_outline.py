@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fastpin.errors import InputError
-from fastpin.model.lug import MOST_PARTS, Hole, Lug, Part, PartLoad, distances, rectangle
+from fastpin.lugs.outline import MOST_PARTS, Hole, Lug, Part, PartLoad, distances, rectangle
 from tests.support.lugs import disc, plate
 
 ARC = Part("arc", 1.0, -1.0, 1j)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fastpin import damage
-from fastpin.kernels.reversals import closed_cycles
+from fastpin.cracks.reversals import closed_cycles
 from tests.support.kernels import python
 from tests.support.tiers import seeds
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from fastpin.kernels import planes
+from fastpin.damage import plane_search
 from tests.support.kernels import in_python
 
-FORMS = (planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE, planes.SWING_AND_PUSH)
+FORMS = (plane_search.SWING_TIMES_PUSH, plane_search.SWING_TIMES_MORE, plane_search.SWING_AND_PUSH)
 
 
 def on_plane(path, x, form):
@@ -14,9 +14,9 @@ def on_plane(path, x, form):
     sums = np.stack([np.ones_like(x), np.cos(x), np.sin(x)])
     swung, push = path[:, :3] @ sums, path[:, 3:] @ sums
     swing, most = 0.5 * np.ptp(swung, axis=0), push.max(axis=0)
-    if form == planes.SWING_AND_PUSH:
+    if form == plane_search.SWING_AND_PUSH:
         return swing + most
-    return swing * (np.maximum(most, 0.0) + (form == planes.SWING_TIMES_MORE))
+    return swing * (np.maximum(most, 0.0) + (form == plane_search.SWING_TIMES_MORE))
 
 
 def scan(path, form, levels=6):
@@ -46,7 +46,7 @@ def random_paths(seed, points, times):
 def test_the_worst_plane_is_that_of_a_scan(form):
     paths = random_paths(1, 40, 50)
     out = np.empty((len(paths), 2))
-    planes.worst_planes(paths, form, out)
+    plane_search.worst_planes(paths, form, out)
     for path, (value, angle) in zip(paths, out, strict=True):
         scanned = scan(path, form)
         assert value == pytest.approx(scanned, rel=1e-10)
@@ -63,8 +63,8 @@ def test_the_worst_plane_is_that_of_a_scan(form):
 def test_compiled_and_plain_python_agree(form):
     paths = random_paths(2, 3, 12)
     out, plain = np.empty((len(paths), 2)), np.empty((len(paths), 2))
-    planes.worst_planes(paths, form, out)
-    in_python(planes).worst_planes(paths, form, plain)
+    plane_search.worst_planes(paths, form, out)
+    in_python(plane_search).worst_planes(paths, form, plain)
     np.testing.assert_allclose(out[:, 0], plain[:, 0], rtol=1e-13)
     np.testing.assert_allclose(out[:, 1], plain[:, 1], rtol=1e-7)
 
@@ -73,7 +73,7 @@ def test_the_angle_is_a_zero_of_the_derivative():
     """U = 1 + cos x is swung once, V = 2 + sin x pushes: (1 + cos x)(2 + sin x)/2 is largest near x = 0.27."""
     path = np.array([[[1.0, 1.0, 0.0, 2.0, 0.0, 1.0], [0.0, 0.0, 0.0, 2.0, 0.0, 1.0]]])
     out = np.empty((1, 2))
-    planes.worst_planes(path, planes.SWING_TIMES_PUSH, out)
+    plane_search.worst_planes(path, plane_search.SWING_TIMES_PUSH, out)
     x = 2.0 * out[0, 1]
     assert -np.sin(x) * (2.0 + np.sin(x)) + (1.0 + np.cos(x)) * np.cos(x) == pytest.approx(0.0, abs=1e-14)
 
@@ -87,7 +87,7 @@ def test_of_two_planes_that_mirror_each_other_the_one_with_the_largest_angle_is_
         shear, normal = np.stack([0.0 * c, -s, c], axis=-1), np.stack([1.0 + 0.0 * c, c, s], axis=-1)
         paths = np.concatenate([shear, 0.4 * normal], axis=-1)[:, None] * np.array([1.0, 0.1, -0.6])[:, None]
         out = np.empty((len(paths), 2))
-        planes.worst_planes(paths, form, out)
+        plane_search.worst_planes(paths, form, out)
         away = np.remainder(2.0 * out[:, 1] - 2.0 * mirrored * edges, 2.0 * np.pi)
         first = np.minimum(away, 2.0 * np.pi - away)  # from the edge's normal, either way
         np.testing.assert_allclose(first, first[0], rtol=1e-6)
@@ -98,15 +98,15 @@ def test_of_two_planes_that_mirror_each_other_the_one_with_the_largest_angle_is_
 
 @pytest.mark.parametrize("turned", [-1e-12, 0.0, 1e-12])
 def test_rounding_turns_no_plane_at_90_degrees_round(turned):
-    assert in_python(planes).plane_angle(np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
-    assert in_python(planes).plane_angle(-np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
-    assert in_python(planes).plane_angle(1.0 + turned, 1e-6) == pytest.approx(0.5, abs=1e-11)
+    assert in_python(plane_search).plane_angle(np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
+    assert in_python(plane_search).plane_angle(-np.pi + turned, 1e-6) == pytest.approx(0.5 * np.pi, abs=1e-11)
+    assert in_python(plane_search).plane_angle(1.0 + turned, 1e-6) == pytest.approx(0.5, abs=1e-11)
 
 
 def test_a_swing_without_push_counts_nothing():
     path = np.array([[[1.0, 0.3, 0.2, -2.0, 0.5, 0.5], [0.0, -0.4, 0.1, -2.0, 0.4, 0.4]]])
     out = np.empty((1, 2))
-    planes.worst_planes(path, planes.SWING_TIMES_PUSH, out)
+    plane_search.worst_planes(path, plane_search.SWING_TIMES_PUSH, out)
     assert out[0, 0] == 0.0
     assert np.isnan(out[0, 1])
 
@@ -118,8 +118,8 @@ def test_planes_that_are_hardly_pushed_are_found(excess):
     paths = random_paths(5, 10, 60)
     paths[..., 3] -= np.max(paths[..., 3] + np.hypot(paths[..., 4], paths[..., 5]), axis=1)[:, None] - excess
     out = np.empty((len(paths), 2))
-    planes.worst_planes(paths, planes.SWING_TIMES_PUSH, out)
-    scanned = np.array([scan(path, planes.SWING_TIMES_PUSH, levels=8) for path in paths])
+    plane_search.worst_planes(paths, plane_search.SWING_TIMES_PUSH, out)
+    scanned = np.array([scan(path, plane_search.SWING_TIMES_PUSH, levels=8) for path in paths])
     assert np.all(out[:, 0] > 0.0)
     rounding = 1e-15 * np.abs(paths).max() ** 2  # of V, a small difference of large terms
     np.testing.assert_array_less(scanned - out[:, 0], 1e-10 * scanned + rounding)
@@ -131,7 +131,7 @@ def test_planes_that_are_all_alike_end_the_search():
     ones = np.ones_like(turn)
     path = np.stack([0.0 * ones, np.cos(turn), np.sin(turn), ones, 0.5 * np.cos(turn), 0.5 * np.sin(turn)], axis=-1)
     out = np.empty((1, 2))
-    planes.worst_planes(path[None], planes.SWING_TIMES_PUSH, out)
+    plane_search.worst_planes(path[None], plane_search.SWING_TIMES_PUSH, out)
     assert out[0, 0] == pytest.approx(1.5, rel=1e-12)
 
 
@@ -140,10 +140,10 @@ def test_components_in_other_units_have_the_same_worst_plane(form):
     """A power of two changes no bit. Where a criterion adds 1 to V, only U is in another unit."""
     paths, factor = random_paths(7, 5, 15), 2.0**-30
     scaled = factor * paths
-    if form == planes.SWING_TIMES_MORE:
+    if form == plane_search.SWING_TIMES_MORE:
         scaled[..., 3:] = paths[..., 3:]
     out, small = np.empty((len(paths), 2)), np.empty((len(paths), 2))
-    planes.worst_planes(paths, form, out)
-    planes.worst_planes(scaled, form, small)
-    assert np.array_equal(small[:, 0], (factor**2 if form == planes.SWING_TIMES_PUSH else factor) * out[:, 0])
+    plane_search.worst_planes(paths, form, out)
+    plane_search.worst_planes(scaled, form, small)
+    assert np.array_equal(small[:, 0], (factor**2 if form == plane_search.SWING_TIMES_PUSH else factor) * out[:, 0])
     assert np.array_equal(small[:, 1], out[:, 1], equal_nan=True)

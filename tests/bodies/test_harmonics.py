@@ -7,7 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from fastpin.kernels import harmonics
+from fastpin.bodies import harmonics
 from tests.support import walls
 from tests.support.potentials import Potentials, first_harmonic
 

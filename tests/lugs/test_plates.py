@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.elasticity import panels, plates
-from fastpin.elasticity.panels import Edges, Fineness
-from fastpin.elasticity.plates import COARSE, KEPT, hole_compliance, plate_compliance, respond
+from fastpin.bodies import harmonics
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
-from fastpin.model.lug import Hole, Lug, Part, PartLoad, rectangle
+from fastpin.lugs import panels, plates
+from fastpin.lugs.outline import Hole, Lug, Part, PartLoad, rectangle
+from fastpin.lugs.panels import Edges, Fineness
+from fastpin.lugs.plates import COARSE, KEPT, hole_compliance, plate_compliance, respond
 from tests.support.lugs import disc, make_coarse, make_rough, plate
 from tests.support.ring_compliance import block, held_ring_matrix
 from tests.support.tiers import for_gate, gate

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fastpin import damage
-from fastpin.kernels import planes, rainflow
+from fastpin.damage import plane_damage, plane_search
 from tests.support.kernels import in_python
 from tests.support.tiers import seeds
 
@@ -17,7 +17,9 @@ def one_block(states):
     return np.arange(states), np.array([[0, states, 1]])
 
 
-def counted(path, angle, order, blocks, form=planes.SWING_TIMES_PUSH, kernel=rainflow.cycles_on_plane, life=LIFE):
+def counted(
+    path, angle, order, blocks, form=plane_search.SWING_TIMES_PUSH, kernel=plane_damage.cycles_on_plane, life=LIFE
+):
     most = 3 * order.size + 2
     places, values = np.empty((most, 3), dtype=np.int64), np.empty((most, 3))
     count = kernel(path, angle, order, blocks, form, 0.0, life, places, values)
@@ -107,14 +109,14 @@ def test_the_history_of_the_standard():
 
 
 @pytest.mark.gate
-@pytest.mark.parametrize("form", [planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE, rainflow.POWERS])
+@pytest.mark.parametrize("form", [plane_search.SWING_TIMES_PUSH, plane_search.SWING_TIMES_MORE, plane_damage.POWERS])
 def test_the_worst_plane_is_that_of_a_scan(form):
     rng = np.random.default_rng(5)
     for size in (2, 3, 7, 30, 80):
         paths = rng.normal(size=(4, size, 6))
         paths[..., 3:] = 3.0 * paths[..., :3]  # a stress and its strain
         out = np.empty((4, 2))
-        rainflow.worst_sums(paths, *one_block(size), form, 0.0, LIFE, out)
+        plane_damage.worst_sums(paths, *one_block(size), form, 0.0, LIFE, out)
         for path, (found, angle) in zip(paths, out, strict=True):
             scanned = [counted(path, x, *one_block(size), form)[1][:, 2].sum() for x in np.linspace(0.0, np.pi, 2001)]
             assert found == pytest.approx(counted(path, angle, *one_block(size), form)[1][:, 2].sum(), rel=1e-12)
@@ -128,10 +130,12 @@ def test_compiled_and_plain_python():
     paths, order = rng.normal(size=(3, 9, 6)), rng.integers(0, 9, 14)
     blocks = np.array([[0, 5, 1], [5, 9, 6], [9, 14, 2]])
     knees = [LIFE, np.r_[LIFE[:4], 0.3, 40.0, 6.0, 0.5], np.r_[LIFE[:4], 0.3, 40.0, np.inf, 0.5]]
-    plain = in_python(rainflow)
-    for form, life in itertools.product((planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE, rainflow.POWERS), knees):
+    plain = in_python(plane_damage)
+    for form, life in itertools.product(
+        (plane_search.SWING_TIMES_PUSH, plane_search.SWING_TIMES_MORE, plane_damage.POWERS), knees
+    ):
         one, two = np.empty((3, 2)), np.empty((3, 2))
-        rainflow.worst_sums(paths, order, blocks, form, 0.0, life, one)
+        plane_damage.worst_sums(paths, order, blocks, form, 0.0, life, one)
         plain.worst_sums(paths, order, blocks, form, 0.0, life, two)
         np.testing.assert_allclose(one[:, 0], two[:, 0], rtol=1e-12)
         np.testing.assert_allclose(one[:, 1], two[:, 1], rtol=0.0, atol=1e-3)
@@ -147,7 +151,7 @@ def test_of_two_planes_that_mirror_each_other_the_one_with_the_largest_angle_is_
     c, s = np.cos(2.0 * edges), np.sin(2.0 * edges)
     paths = np.stack([0.0 * c, -s, c, 1.0 + 0.0 * c, c, s], axis=-1)[:, None] * loads[:, None]
     out = np.empty((len(paths), 2))
-    rainflow.worst_sums(paths, *one_block(4), planes.SWING_TIMES_PUSH, 0.0, LIFE, out)
+    plane_damage.worst_sums(paths, *one_block(4), plane_search.SWING_TIMES_PUSH, 0.0, LIFE, out)
     away = np.abs(np.remainder(out[:, 1] - edges + 0.5 * np.pi, np.pi) - 0.5 * np.pi)
     np.testing.assert_allclose(away, away[0], rtol=1e-3)
     both = 0.5 * np.pi - np.remainder(0.5 * np.pi - edges[:, None] - away[:, None] * [1.0, -1.0], np.pi)
@@ -156,6 +160,6 @@ def test_of_two_planes_that_mirror_each_other_the_one_with_the_largest_angle_is_
 
 def test_no_damage_without_tension():
     out = np.empty((1, 2))
-    rainflow.worst_sums(uniaxial([-1.0, -3.0])[None], *one_block(2), planes.SWING_TIMES_PUSH, 0.0, LIFE, out)
+    plane_damage.worst_sums(uniaxial([-1.0, -3.0])[None], *one_block(2), plane_search.SWING_TIMES_PUSH, 0.0, LIFE, out)
     assert out[0, 0] == 0.0
     assert np.isnan(out[0, 1])

@@ -8,8 +8,8 @@ import pytest
 
 from fastpin import LoadHistory
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.load_units import INCH, POUND
 from fastpin.model.loads import LOADS
+from fastpin.tables.load_units import INCH, POUND
 from tests.support.times import growth
 
 

@@ -17,9 +17,9 @@ import numpy as np
 
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import as_toml, count, number, why_unreadable
-from fastpin.model.csv_columns import CsvColumn, with_unit_row
 from fastpin.model.inputs import open_input
-from fastpin.model.load_units import LoadUnit, is_unit, unit_name
+from fastpin.tables.columns import CsvColumn, with_unit_row
+from fastpin.tables.load_units import LoadUnit, is_unit, unit_name
 
 MOST_FAULTS = 20
 """Most faulty lines of a CSV file that an error lists."""

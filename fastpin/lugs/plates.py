@@ -1,7 +1,7 @@
 """The compliance of a finite plate with a hole, by boundary integral equations.
 
 The known tractions are the harmonics on the edge of the hole, and the tractions of the loads. The unknowns are
-displacements on free edges and tractions on held ones. :mod:`fastpin.elasticity.panels` makes the two matrices.
+displacements on free edges and tractions on held ones. :mod:`fastpin.lugs.panels` makes the two matrices.
 
 Finite elements of second degree were tried for the same matrix, see docs/compliance.md. With 74,000 unknowns they agree
 to 4e-7, in 10 s. The integral equations reach 1e-10 in 2 s. They need neither a mesh generator nor another package.
@@ -19,10 +19,10 @@ import scipy.linalg
 from threadpoolctl import threadpool_limits
 
 from fastpin.bodies.compliance import LEAST_ORDER, MOST_ORDER, Compliance
-from fastpin.elasticity.panels import Boundary, Edges, Fineness, matrices
 from fastpin.errors import InputError
+from fastpin.lugs.outline import Hole, Lug, Part
+from fastpin.lugs.panels import Boundary, Edges, Fineness, matrices
 from fastpin.model.checks import check_callable, instance, string, whole_number
-from fastpin.model.lug import Hole, Lug, Part
 from fastpin.version import __version__
 
 FINE, COARSE = Fineness(10, 16), Fineness(8, 12)

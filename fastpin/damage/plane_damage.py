@@ -1,7 +1,7 @@
 """Rainflow counts on planes: the damage of a spectrum on the worst plane of each point.
 
 The planes hold the z axis, and their components U and V are sums f0 + f1 cos x + f2 sin x, see
-:mod:`fastpin.kernels.planes`. The cycles of U are counted (Matsuishi and Endo 1968; four points, as ASTM E1049 for
+:mod:`fastpin.damage.plane_search`. The cycles of U are counted (Matsuishi and Endo 1968; four points, as ASTM E1049 for
 repeated histories). A cycle has the amplitude of U and the largest V of all its stops. Its
 parameter is that of the forms SWING_TIMES_PUSH and SWING_TIMES_MORE, or of POWERS, with m = life[7]:
 
@@ -24,7 +24,7 @@ import math
 
 import numpy as np
 
-from fastpin.kernels.planes import plane_angle
+from fastpin.damage.plane_search import plane_angle
 from fastpin.runtime.jit import compiled, inner
 
 COARSE = 72
@@ -46,7 +46,7 @@ WORTH = 0.5
 """Planes of the scan with less than this part of the largest damage are not refined."""
 
 POWERS = 3
-"""The form of Walker's equivalent stress. The other forms stand in :mod:`fastpin.kernels.planes`."""
+"""The form of Walker's equivalent stress. The other forms stand in :mod:`fastpin.damage.plane_search`."""
 
 SMOOTH = 1e-5
 """Step of Newton's method in log 2N up to which a table of lives is exact. Beside a stress without an end it is not."""
@@ -227,7 +227,7 @@ def worst_sums(paths, order, blocks, form, least, life, out):
     blocks : ndarray of int64, shape (blocks, 3)
         First stop of each block, the stop after its last one, and the number of its passes.
     form : int
-        SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.kernels.planes`, or POWERS.
+        SWING_TIMES_PUSH or SWING_TIMES_MORE of :mod:`fastpin.damage.plane_search`, or POWERS.
     least : float
         Cycles with a parameter up to this one do no damage.
     life : ndarray, shape (8,)

@@ -1,4 +1,4 @@
-"""A hollow pin."""
+"""Pins: a solid one, a hollow one, and a bush as the pin of its seat."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Literal
 
 import numpy as np
 
+from fastpin.bodies import harmonics
 from fastpin.bodies.body import THINNEST, Control, Harmonics, InWords, PinBody, PinLoad, Rim, Shape, Table
 from fastpin.bodies.walls import Amplitudes, Wall, first_change, free_at_contact
 from fastpin.errors import InputError
-from fastpin.kernels import harmonics
 from fastpin.model.checks import check_fields, choice, is_above, positive
 from fastpin.model.synonyms import explains_keywords
 
@@ -19,6 +19,14 @@ TubeLoad = Literal["uniform", "normal", "shear", "held", "body"]
 """Kinds of load in the bore of a hollow pin."""
 
 TUBE_LOADS: tuple[TubeLoad, ...] = ("uniform", "normal", "shear", "held", "body")
+
+
+@dataclass(frozen=True)
+class Disk(PinBody):
+    """A solid pin. Its load enters as the problem's ``pin_load`` says."""
+
+    kind = "disk"
+    bore_radius = 0.0
 
 
 @explains_keywords

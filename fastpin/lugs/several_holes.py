@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fastpin.elasticity.plates import FINE, edge_basis, hole_compliance, respond
+from fastpin.lugs.outline import Lug
+from fastpin.lugs.plates import FINE, edge_basis, hole_compliance, respond
 from fastpin.model.loads import LOADS, SXX, SXY, SYY
-from fastpin.model.lug import Lug
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from fastpin.kernels import spheres
+from fastpin.damage import spheres
 from tests.support.kernels import in_python
 from tests.support.tiers import gate
 

@@ -1,0 +1,8 @@
+"""Finite plates of any outline: their shape, supports and loads, and their compliance by boundary integrals.
+
+The public names stand in ``__init__.pyi``. They are loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
