@@ -358,6 +358,10 @@ class PlateBody(BodyBase):
     def check_remote(self, name: str) -> None:
         """Raise :class:`InputError` if the remote stress of this name can't act."""
 
+    def hindered(self, pair: MaterialPair) -> str:
+        """Why the body can't expand freely when it gets warm; empty if it can."""
+        return ""
+
     def fitted(self, table: Table, radius: float, dimensionless: bool, pair: MaterialPair | None) -> PlateBody | None:
         """Return the part of the body that fits round the hole, for a case file. Other parts are reported."""
         return self if table.passes(lambda: self.check(radius, dimensionless)) else None

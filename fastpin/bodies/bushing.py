@@ -227,6 +227,11 @@ class Bushing(PlateBody):
         }  # fmt: skip
         return {"pair": self.surface(pair), "plate_body": Ring(self.outer_radius, "uniform")}, seat
 
+    def hindered(self, pair: MaterialPair) -> str:
+        if not self.has_seat and self.material.expansion != pair.plate.expansion:
+            return "a bonded bush and its plate hinder one another: give the bush a friction, and bonded = false"
+        return self.inside.hindered(pair)
+
     def surface(self, pair: MaterialPair) -> MaterialPair:
         return MaterialPair(pair.pin, self.material, pair.plane)
 

@@ -307,6 +307,9 @@ class Compliance(PlateBody):
             known = ", ".join(self.columns) or "none"
             raise InputError(name, f"the compliance of the plate has no column of this load; its columns are: {known}")
 
+    def hindered(self, pair: MaterialPair) -> str:
+        return "supports may hinder the expansion of a lug, and its compliance does not tell: take a ring or a plate"
+
     def fitted(self, table: Table, radius: float, dimensionless: bool, pair: MaterialPair | None) -> PlateBody | None:
         return None if pair is None else self
 

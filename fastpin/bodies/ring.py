@@ -15,7 +15,7 @@ from fastpin.bodies.walls import UNIT_STRESS, Amplitudes, Displacements, Other, 
 from fastpin.errors import InputError
 from fastpin.model.checks import check_fields, choice, is_above, positive
 from fastpin.model.loads import REMOTE, P, Q
-from fastpin.model.materials import Material
+from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.synonyms import explains_keywords
 
 Support = Literal["held", "uniform", "normal", "shear", "half", "body"]
@@ -81,6 +81,9 @@ class Ring(PlateBody):
         if self.held:
             words = 'a held rim leaves no remote stress; leave it out, or choose another support, such as "uniform"'
             raise InputError(name, words)
+
+    def hindered(self, pair: MaterialPair) -> str:
+        return "a held rim hinders the expansion of the ring: choose another support" if self.held else ""
 
     # -- the response of the rim
 

@@ -20,11 +20,19 @@ from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.growth import LAWS, KnownLaw, known_law
 from fastpin.model.laminate import ALONG_LOAD, LAMINATE_KEYS, MODULI, Laminate
 from fastpin.model.layup import checked_angles
-from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, STRENGTHS, Material, MaterialPair
+from fastpin.model.materials import (
+    MATERIAL_KEYS,
+    MATERIALS,
+    NUMBERS,
+    STRENGTHS,
+    Material,
+    MaterialPair,
+    checked_expansion,
+)
 from fastpin.model.ply import PLIES, PLY_KEYS, PLY_NUMBERS, STRENGTH_KEYS, Ply, ply_from
 from fastpin.model.synonyms import closest
 
-FILE_KEYS = ("E", "nu", "yield_strength", "ultimate_strength", "fatigue", "growth", "source")
+FILE_KEYS = ("E", "nu", "yield_strength", "ultimate_strength", "expansion", "fatigue", "growth", "source")
 """Keys of a material in a file of materials."""
 
 _FATIGUE_KEYS = tuple(field.name for field in fields(FatigueConstants))
@@ -67,6 +75,8 @@ def read_material(
     for strength in STRENGTHS:
         if strength in section and _has_stresses(source, section, strength):
             given[strength] = section.checked(strength, positive)
+    if "expansion" in section:
+        given["expansion"] = section.checked("expansion", checked_expansion)
     material = _elastic(section, materials, may_be_rigid)
     if material is None:
         return None
@@ -287,7 +297,7 @@ def read_laminate(source: CaseText, section: Section) -> Laminate | None:
         )
         return None
     for key in (*MATERIAL_KEYS, *LAMINATE_KEYS):
-        if key in section and key in ("fatigue", "growth", *STRENGTHS):
+        if key in section and key in ("fatigue", "growth", *NUMBERS):
             section.report(f"{key}: has no meaning for a laminate", key)
         elif key in section and key not in (*KINDS[way], "axis"):
             section.report(f"[plate]: {key} can't be given together with {way}", key)

@@ -27,7 +27,7 @@ from fastpin.elasticity.system import Interface, System
 from fastpin.kernels import fourier
 from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.grid import Grid
-from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION
+from fastpin.model.loads import FRICTION_CHANGE, LOADS, PIN_TEMPERATURE, REMOTE, ROTATION, TEMPERATURE, THERMAL
 from fastpin.model.problem import Problem
 
 PIN, SEAT = 0, 1
@@ -209,24 +209,26 @@ def seat_grid(problem: Problem, grid: Grid) -> Grid:
 
 
 def _without_remote(system: System) -> System:
-    """The system of the pin in the bush. The remote stress acts on the lug alone."""
+    """The system of the pin in the bush. The remote stress acts on the lug alone; temperatures act on all bodies."""
     loads = system.loads.copy()
     loads[:, REMOTE] = 0.0
     assert system.bodies is not None
-    bodies = replace(system.bodies, columns={})  # of forces it has none
+    thermal = {place: each for place, each in system.bodies.columns.items() if place in THERMAL}
+    bodies = replace(system.bodies, columns=thermal)  # of forces it has none
     return replace(system, loads=loads, drive=Drive(system.motion[:, :2], loads), bodies=bodies)
 
 
 def _scaled(seat: System, pin: System, radius: float) -> System:
     """The system of the seat, of that `radius` over R, in the units of the system of the `pin`."""
     stretch = seat.scales.displacement / pin.scales.displacement
-    loads, motion = stretch * seat.loads, seat.motion.copy()
-    loads[:, REMOTE] *= radius
+    # A load counts in units of the pin's system. The pin of the seat is the bush, not the pin.
+    unit = np.full(len(LOADS), stretch)
+    unit[[*REMOTE]] *= radius
+    unit[[TEMPERATURE, PIN_TEMPERATURE]] = radius, 0.0
+    loads, motion = unit * seat.loads, seat.motion.copy()
     motion[:, TURN] *= radius
     assert seat.bodies is not None
-    columns = {
-        place: stretch * (radius if place in REMOTE else 1.0) * each for place, each in seat.bodies.columns.items()
-    }
+    columns = {place: unit[place] * each for place, each in seat.bodies.columns.items()}
     equilibrium, motion_rows, forces = radius * seat.equilibrium, seat.motion_rows.copy(), seat.forces.copy()
     if seat.problem.frictionless:
         equilibrium[TURN], forces[TURN] = 0.0, 0.0

@@ -22,10 +22,10 @@ import numpy as np
 
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, make_drive
 from fastpin.elasticity.operator import DenseOperator, Operator, SoftOperator, make_operator, uniform_part
-from fastpin.elasticity.terms import BodyTerms, body_terms
+from fastpin.elasticity.terms import BodyTerms, body_terms, thermal_columns
 from fastpin.kernels.arrays import Equations
 from fastpin.model.grid import Grid, arc_of
-from fastpin.model.loads import ACTING, FRICTION_CHANGE, LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
+from fastpin.model.loads import ACTING, FRICTION_CHANGE, LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, TEMPERATURE, M, P, Q
 from fastpin.model.problem import Problem
 
 IN_PLACE = {"friction", "clearance", "gap"}
@@ -71,7 +71,7 @@ class Scales:
         radius, beta = problem.hole_radius, problem.surfaces.beta_star
         traction, rotation = force / radius, force * beta / radius
         unit = {"force": force, "moment": force * radius, "traction": traction, "rotation": rotation}
-        unit |= {"displacement": force * beta, "ratio": 1.0}
+        unit |= {"displacement": force * beta, "ratio": 1.0, "temperature": rotation}
         loads = np.array([unit[kind] for kind in LOAD_KIND.values()])
         return cls(force, traction, force * beta, rotation, force * force * beta, loads)
 
@@ -382,7 +382,7 @@ class System:
     def _acting(self) -> int:
         """Number of loads in products. Displacements that stand last are left out under forces: zeros cost bits."""
         columns = self.loads.shape[1]
-        if columns > len(LOADS):  # wear is one more
+        if columns > len(LOADS) or self.loads[:, TEMPERATURE:].any():  # wear is one more
             return columns
         stand_last = max(DISPLACEMENTS) == ACTING - 1
         return min(DISPLACEMENTS) if stand_last and not self.drive.has_displacements else ACTING
@@ -434,6 +434,8 @@ def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) 
         for place, column in bodies.load_columns(theta).items():
             loads[:, place] += column
         return plate, loads
+    for place, column in thermal_columns(problem).items():
+        loads[: theta.size, place] = column.real
     loads[:, SXX] = plate * np.concatenate([0.5 + cos_double, sin_double])
     loads[:, SYY] = plate * np.concatenate([0.5 - cos_double, -sin_double])
     loads[:, SXY] = 2.0 * plate * np.concatenate([sin_double, -cos_double])

@@ -17,7 +17,7 @@ from fastpin.bodies.compliance import basis
 from fastpin.bodies.walls import Displacements
 from fastpin.kernels import fourier
 from fastpin.model.grid import Grid
-from fastpin.model.loads import REMOTE
+from fastpin.model.loads import PIN_TEMPERATURE, REMOTE, TEMPERATURE, THERMAL
 from fastpin.model.problem import Problem
 
 
@@ -65,10 +65,10 @@ class BodyTerms:
         return float(mean.real), float(oval.real), float(oval.imag)
 
     def radial(self, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
-        """v_r under the remote stresses of a `load` (loads,), and two derivatives, at `theta`; shape (3, ...)."""
+        """v_r under remote stresses and temperatures of a `load`, and two derivatives, at `theta`; (3, ...)."""
         angles = np.asarray(theta)
         found = np.zeros((3, *angles.shape))
-        for place in REMOTE:
+        for place in (*REMOTE, *THERMAL):
             column = self.columns.get(place)
             if column is None or load[place] == 0.0:
                 continue
@@ -85,6 +85,17 @@ class BodyTerms:
         padded = np.array([np.pad(column, highest - column.size // 2) for column in self.columns.values()])
         moved = fourier.waves(theta, -highest, 2 * highest + 1) @ padded.T
         return {place: np.r_[v.real, -v.imag] for place, v in zip(self.columns, moved.T, strict=True)}
+
+
+def thermal_columns(problem: Problem) -> dict[int, np.ndarray]:
+    """Growth of the gap per unit of each temperature, its harmonic 0; none where an expansion is not known.
+
+    Bodies expand freely, so the gap grows all round by R times the difference of their strains.
+    """
+    if problem.expansions is None:
+        return {}
+    pin, hole = problem.expansions
+    return {TEMPERATURE: np.array([hole - pin + 0j]), PIN_TEMPERATURE: np.array([-pin + 0j])}
 
 
 @lru_cache(maxsize=16)
@@ -107,7 +118,8 @@ def body_terms(problem: Problem) -> BodyTerms | None:
     if not problem.has_bodies:  # the rest is rounding
         coefficients[:] = 0.0
     scale = 1.0 / (4.0 * math.pi * beta)
-    columns, matrix = plate_body.load_columns(hole, beta), plate_body.matrix_in(hole, beta)
+    columns = {**plate_body.load_columns(hole, beta), **thermal_columns(problem)}
+    matrix = plate_body.matrix_in(hole, beta)
     laminate = hole.laminate
     factor = None if laminate is None else -2.0 * laminate.delta / beta
     return BodyTerms(scale * coefficients, matrix, -scale * float(of_pin[1] - of_plate[1]), columns, factor)

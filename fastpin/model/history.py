@@ -30,7 +30,7 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
-from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
+from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, REMOTE, THERMAL, Corner, check_corner, load_index
 from fastpin.model.problem import Problem, checked_thickness
 from fastpin.model.synonyms import explains_keywords
 
@@ -550,6 +550,8 @@ def check_largest(problem: Problem, largest: Mapping[str, float]) -> None:
     for name in (LOADS[place] for place in REMOTE):
         if largest.get(name, 0.0) != 0.0:
             problem.plate_body.lug.check_remote(name)
+    for name in (LOADS[place] for place in THERMAL):
+        problem.check_temperature(name, largest.get(name, 0.0))
     if problem.pin_load == "body" and largest.get("M", 0.0) != 0.0:
         raise InputError(
             "M",

@@ -128,7 +128,7 @@ class Laminate(Material):
             raise InputError("compliance", "must be positive definite: no stable material has these values")
         lambda0, s = self.lambda0, self.s
         set_fields(self, E=2.0 / lambda0, nu=1.0 - 2.0 * s / lambda0)
-        for name in ("fatigue", "yield_strength", "ultimate_strength", "growth"):
+        for name in ("fatigue", "yield_strength", "ultimate_strength", "growth", "expansion"):
             if getattr(self, name) is not None:
                 raise InputError(name, "has no meaning for a laminate")
 

@@ -41,6 +41,8 @@ LOAD = {
     "ux": Load("displacement", "displacement ux", "prescribed displacement of the pin to the right"),
     "uy": Load("displacement", "displacement uy", "prescribed displacement of the pin upwards"),
     "friction_change": Load("ratio", "change of the friction", "relative change of the coefficient of friction"),
+    "temperature": Load("temperature", "rise of the temperature", "rise of all temperatures over that of the fit"),
+    "pin_temperature": Load("temperature", "rise of the pin's temperature", "further rise of the pin's temperature"),
 }
 """The loads by name.
 
@@ -55,6 +57,9 @@ LOAD = {
   problem's ``drive`` says so. Q is then the reaction to ``ux``, and P to ``uy``.
 * ``friction_change``: relative change of the coefficient of friction, a plain number from -1. All round the hole the
   friction is that of the problem times 1 + ``friction_change``.
+* ``temperature``: rise of the temperature of all bodies, K, over that at which the clearance is given. The bodies
+  expand freely, each by its material's ``expansion``, and the fit changes.
+* ``pin_temperature``: further rise of the temperature of the pin, K. It adds to ``temperature``.
 
 Files hold load vectors, so a new load stands at the end.
 """
@@ -65,14 +70,17 @@ LOADS = tuple(LOAD)
 LOAD_KIND = {name: load.kind for name, load in LOAD.items()}
 """The kind of quantity of every load."""
 
-P, Q, M, SXX, SYY, ROTATION, SXY, UX, UY, FRICTION_CHANGE = range(len(LOADS))
+P, Q, M, SXX, SYY, ROTATION, SXY, UX, UY, FRICTION_CHANGE, TEMPERATURE, PIN_TEMPERATURE = range(len(LOADS))
 """Places of the loads in a load vector."""
 
 ACTING = FRICTION_CHANGE
-"""Number of loads, the first ones, with columns in the equations. Later ones change their coefficients."""
+"""Number of mechanical loads, the first ones. Later loads change the friction or the fit."""
 
 LATER = LOADS[ACTING:]
 """Names of the later loads. JSON has them only where they are given, as files of older versions."""
+
+THERMAL = (TEMPERATURE, PIN_TEMPERATURE)
+"""Places of the temperatures in a load vector."""
 
 REMOTE = tuple(place for place, kind in enumerate(LOAD_KIND.values()) if kind == "traction")
 """Places of the remote stresses in a load vector."""

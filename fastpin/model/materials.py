@@ -28,11 +28,17 @@ from fastpin.model.synonyms import explains_keywords
 Plane = Literal["strain", "stress"]
 """Plane strain or plane stress, for type checkers."""
 
-MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "growth", "yield_strength", "ultimate_strength")
-"""Keys of the material of a body in case files."""
-
 STRENGTHS = ("yield_strength", "ultimate_strength")
 """Strengths of a material, Pa, each of them optional."""
+
+MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "growth", *STRENGTHS, "expansion")
+"""Keys of the material of a body in case files."""
+
+NUMBERS = (*STRENGTHS, "expansion")
+"""Optional numbers of a material."""
+
+MOST_EXPANSION = 1e-3
+"""Largest coefficient of thermal expansion, 1/K. That of rubber is 2e-4."""
 
 PLANES = ("strain", "stress")
 """Words for plane strain and plane stress."""
@@ -48,6 +54,11 @@ LEAST_BETA_STAR, MOST_BETA_STAR = 1e-40, 1e40
 
 LEAST_SQUEEZE = 1e-11
 """Least compliance of a pair under uniform pressure, in parts of beta*. A smaller compliance is rounding."""
+
+
+def checked_expansion(field: str, value: object) -> float:
+    """Check a coefficient of thermal expansion, 1/K, and return it as a float."""
+    return number(field, value, -MOST_EXPANSION, MOST_EXPANSION)
 
 
 @explains_keywords
@@ -71,6 +82,8 @@ class Material:
         Stress at which a tensile specimen breaks, Pa, positive. It changes no state.
     growth : Walker or Nasgro, optional
         Law of crack growth with its constants, see :mod:`fastpin.cracks`. It changes no state.
+    expansion : float, optional
+        Coefficient of thermal expansion, 1/K. A load ``temperature`` needs that of every body.
 
     Attributes
     ----------
@@ -81,7 +94,7 @@ class Material:
     ------
     InputError
         If `E` is not positive or beyond its limits, `nu` is outside [0, 0.5], `name` is no text, `fatigue` is of
-        another class, a strength is not positive, or `growth` is no law of fastpin.
+        another class, a strength is not positive, `growth` is no law of fastpin, or `expansion` is out of range.
     """
 
     is_isotropic: ClassVar[bool] = True
@@ -93,6 +106,7 @@ class Material:
     yield_strength: float | None = None
     ultimate_strength: float | None = None
     growth: KnownLaw | None = None
+    expansion: float | None = None
 
     def __post_init__(self) -> None:
         rigid = isinstance(self.E, (float, np.floating)) and math.inf == self.E
@@ -111,10 +125,11 @@ class Material:
         check_fields(self, positive, " ".join(STRENGTHS), optional=True)
         if self.growth is not None:
             known_law("growth", self.growth)
+        check_fields(self, checked_expansion, "expansion", optional=True)
 
     def __repr__(self) -> str:
         fatigue = "" if self.fatigue is None else f", fatigue={self.fatigue!r}"
-        strengths = "".join(f", {name}={value:g}" for name, value in self.strengths.items())
+        strengths = "".join(f", {name}={value:g}" for name, value in self.numbers.items())
         growth = "" if self.growth is None else f", growth={self.growth!r}"
         return f"{self.elastic_form[:-1]}{fatigue}{strengths}{growth})"
 
@@ -141,7 +156,7 @@ class Material:
 
     def constants(self) -> dict[str, Any]:
         """The numbers that the elastic response depends on, by name. A modulus may be infinite."""
-        return {"E": self.E, "nu": self.nu}
+        return {"E": self.E, "nu": self.nu} | ({} if self.expansion is None else {"expansion": self.expansion})
 
     def entries(self) -> dict[str, Any]:
         """The elastic constants and the name as a JSON-ready dict. A modulus may be infinite."""
@@ -154,12 +169,12 @@ class Material:
     def toml(self) -> dict[str, Any]:
         """The keys and values of the section of a case file. A name that fastpin does not know is left out."""
         if self.is_rigid:
-            return {"rigid": True}
+            return {"rigid": True} | ({} if self.expansion is None else {"expansion": self.expansion})
         if MATERIALS.get(self.name) == self:
             return {"material": self.name}
         fatigue = {} if self.fatigue is None else {"fatigue": self.fatigue.given()}
         growth = {} if self.growth is None else {"growth": law_entries(self.growth)}
-        return {"E": self.E, "nu": self.nu, **self.strengths, **fatigue, **growth}
+        return {"E": self.E, "nu": self.nu, **self.numbers, **fatigue, **growth}
 
     @classmethod
     def rigid(cls) -> Material:
@@ -180,6 +195,11 @@ class Material:
     def strengths(self) -> dict[str, float]:
         """The strengths that are given, Pa, by name: `yield_strength` and `ultimate_strength`."""
         return {name: value for name in STRENGTHS if (value := getattr(self, name)) is not None}
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The optional numbers that are given, by name: the strengths and `expansion`."""
+        return {name: value for name in NUMBERS if (value := getattr(self, name)) is not None}
 
     @property
     def known_yield_strength(self) -> float | None:

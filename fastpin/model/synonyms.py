@@ -22,6 +22,7 @@ _SYNONYMS: dict[str, str] = {
     "nu": "v poisson poissons_ratio poisson_s_ratio poisson_ratio",
     "yield_strength": "yield yield_stress yield_point sigma_y sy fy rp02 rp0_2 re proof_stress",
     "ultimate_strength": "ultimate ultimate_stress uts tensile_strength sigma_u su fu ftu rm breaking_strength",
+    "expansion": "alpha cte thermal_expansion expansion_coefficient coefficient_of_thermal_expansion",
     "material": "mat alloy",
     "rigid": "is_rigid stiff",
     "fatigue": "fatigue_constants",

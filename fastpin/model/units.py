@@ -38,6 +38,7 @@ _KINDS = {
     "rig stiffness": _Kind("N/m^2", "1/beta*", "N per m"),
     "energy": _Kind("J/m", "F^2 beta*", "J"),
     "ratio": _Kind("", ""),
+    "temperature": _Kind("K", "K"),
     "energy density": _Kind("J/m^2", "F^2 beta*/R"),
     "stress times strain": _Kind("Pa", "F^2 beta*/R^2"),
     "stress intensity": _Kind("Pa sqrt(m)", "F/sqrt(R)"),
@@ -51,7 +52,7 @@ PER_THICKNESS = {name: kind.whole for name, kind in _KINDS.items() if kind.whole
 """The kinds that are per thickness in Python, and their units in printed texts of a problem with a thickness."""
 
 _WITH_PREFIX = frozenset(
-    {*(kind.si for kind in _KINDS.values()), *PER_THICKNESS.values(), "s"} - {"", "cycles", "1/Pa"}
+    {*(kind.si for kind in _KINDS.values()), *PER_THICKNESS.values(), "s"} - {"", "cycles", "1/Pa", "K"}
 )
 """Units that may get an SI prefix."""
 

@@ -146,12 +146,13 @@ def _problem() -> Schema:
         "E": UNKNOWN | {"description": "Pa; null: rigid; of a laminate: that of the isotropic plate with its contact"},
         "nu": NUMBER,
         **dict.fromkeys(STRENGTHS, UNKNOWN | {"description": "Pa; null: unknown"}),
+        "expansion": NUMBER | {"description": "1/K"},
     }
-    plate = object_of(material | {"laminate": _laminate()}, without=["laminate"])
+    plate = object_of(material | {"laminate": _laminate()}, without=["laminate", "expansion"])
     body = {"type": "object", "properties": {"kind": TEXT}, "required": ["kind"]}
     return object_of(
         {
-            "pin": object_of(material),
+            "pin": object_of(material, without=["expansion"]),
             "plate": plate,
             "plane": {"enum": ["strain", "stress"]},
             "dundurs": object_of({"alpha": NUMBER, "beta": NUMBER, "convention": TEXT}),

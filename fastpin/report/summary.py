@@ -126,7 +126,8 @@ def _in_its_unit(problem: Problem, name: str) -> Any:
 def _material_summary(material: Material) -> dict[str, Any]:
     modulus = None if material.is_rigid else material.E
     known = {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
-    return known | {name: getattr(material, name) for name in STRENGTHS} | material.summary()
+    expands = {} if material.expansion is None else {"expansion": material.expansion}
+    return known | {name: getattr(material, name) for name in STRENGTHS} | expands | material.summary()
 
 
 def _body_summary(body: BodyBase) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from fastpin.elasticity.system import System
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid, graded_size
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import REMOTE, M, P, Q
+from fastpin.model.loads import REMOTE, THERMAL, M, P, Q
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver.assembly import unloaded_configuration
@@ -163,7 +163,9 @@ def _touched_arc(
     A run with fewer `nodes` than a coarse run has a quick coarse run first: the search would take longer than the run.
     `progress` sees each coarse run as a separate run before the fine run.
     """
-    arc = None if problem.gap else _estimated_arc(problem, values)  # with a gap the pin may touch anywhere
+    # With a gap, or where a temperature changes the fit, the pin may touch anywhere.
+    may_touch = problem.gap or values[:, THERMAL].any()
+    arc = None if may_touch else _estimated_arc(problem, values)
     values = _outline(problem, _without_repetition(values))
     quick = _quick_arc(problem, values, arc, force, progress) if nodes < COARSE_NODES else None
     if quick is not None:

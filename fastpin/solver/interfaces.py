@@ -16,7 +16,7 @@ from fastpin.elasticity.interfaces import PIN, SEAT, TURN, JointSystem
 from fastpin.elasticity.operator import DenseOperator
 from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels.status import OPEN
-from fastpin.model.loads import REMOTE, M, P, Q
+from fastpin.model.loads import REMOTE, THERMAL, M, P, Q
 from fastpin.model.profile import InitialGap, Profile
 from fastpin.solver.configuration import (
     MARKS,
@@ -309,12 +309,14 @@ def _with_followed_seat(joint: JointSystem, start: Configuration) -> Configurati
 
 
 def _moved_bore(bodies: BodyTerms | None, columns: np.ndarray) -> BodyTerms | None:
-    """The terms of the bodies with the bore's displacement under remote stress; `columns` (angles, loads) is radial."""
+    """The terms of the bodies with the bore's radial displacement `columns` (angles, loads) under loads in the seat."""
     assert bodies is not None
     angles = len(columns)
     start = np.exp(1.5j * np.pi * np.arange(angles // 2))
     moved = {}
-    for place in REMOTE:
+    for place in (*REMOTE, *THERMAL):
         series = np.fft.rfft(columns[:, place])[: angles // 2] / angles * start
         moved[place] = np.r_[series[:0:-1].conj(), series]
+        if place in bodies.columns:
+            moved[place][series.size - 1] += bodies.columns[place][0]
     return replace(bodies, columns=moved)

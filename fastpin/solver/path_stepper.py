@@ -9,7 +9,7 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
-from fastpin.model.loads import FRICTION_CHANGE, M
+from fastpin.model.loads import FRICTION_CHANGE, LOADS, M
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.drift import DriftPath
 from fastpin.solver.driven import can_float
@@ -150,18 +150,23 @@ class PathStepper:
     def _steady_system(self, before: np.ndarray, after: np.ndarray) -> System | None:
         """The system on the way between two loads (loads,); None if the friction changes on it."""
         system = self._under(before)
-        if before[FRICTION_CHANGE:].tolist() == after[FRICTION_CHANGE:].tolist():
+        if self._friction_key(before) == self._friction_key(after):
             return system
         return system if np.array_equal(system.friction, self._under(after).friction) else None
 
     def _under(self, load: np.ndarray) -> System:
         """The system with the friction under a load (loads,), kept for the next question."""
-        key = load[FRICTION_CHANGE:].tobytes()
+        key = self._friction_key(load)
         if key not in self._systems:
             if len(self._systems) == MOST_SYSTEMS:
                 self._systems.clear()
             self._systems[key] = self._system.under(load)
         return self._systems[key]
+
+    @staticmethod
+    def _friction_key(load: np.ndarray) -> bytes:
+        """The loads that change the friction: that of the history, and the last one of a :class:`DriftingSystem`."""
+        return load[[FRICTION_CHANGE, *range(len(LOADS), load.size)]].tobytes()
 
     def _jump(self, position: Position, piece: Piece, stop: float) -> bool:
         """Take the pin over a snap to a state at a finite distance. Returns whether one was found."""

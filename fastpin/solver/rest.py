@@ -10,7 +10,7 @@ import numpy as np
 from fastpin.elasticity.interfaces import PIN, SEAT, TURN, JointSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
-from fastpin.model.loads import ACTING, REMOTE, ROTATION, SXX, SXY, SYY
+from fastpin.model.loads import ACTING, REMOTE, ROTATION, SXX, SXY, SYY, THERMAL
 from fastpin.model.profile import widest_place
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration, elastic_energy
@@ -292,7 +292,7 @@ def climb_angle(force: np.ndarray | float, moment: np.ndarray | float) -> np.nda
 
 
 def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
-    """Gap of the unloaded, concentric pin in the hole deformed by the remote stress (T16), and two derivatives.
+    """Gap of the unloaded, concentric pin in the hole under remote stress (T16) and temperature, and two derivatives.
 
     The initial gap is part of it.
 
@@ -300,11 +300,13 @@ def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.
     """
     if system.bodies is None:
         sxx, syy, sxy = load[[SXX, SYY, SXY]].tolist()
+        warmed = float(system.loads[0, THERMAL] @ load[list(THERMAL)])
         if not (sxx or syy or sxy):
             found = np.zeros((3, *np.shape(theta)))
-            found[0] = system.rest_clearance
+            found[0] = system.rest_clearance + warmed
             return found + _initial_gap(system, theta)
         mean, oval, diagonal = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy), 2.0 * system.plate * sxy
+        mean += warmed
     elif system.bodies.anisotropy is not None:
         mean, oval, diagonal = system.bodies.ellipse(load)
     else:

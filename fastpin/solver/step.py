@@ -14,7 +14,7 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
-from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION, UX, UY, M, P, Q
+from fastpin.model.loads import FRICTION_CHANGE, REMOTE, ROTATION, THERMAL, UX, UY, M, P, Q
 from fastpin.model.problem import Problem
 from fastpin.reading.zones import runs
 from fastpin.solver.configuration import Configuration
@@ -24,7 +24,7 @@ StepReport = Callable[[float], None]
 """Called with the fraction of the step that is done."""
 
 
-SCALING = [P, Q, M, *REMOTE, UX, UY]
+SCALING = [P, Q, M, *REMOTE, UX, UY, *THERMAL]
 """Loads with which the contact of a neat fit scales. A rotation or a change of friction presses nothing."""
 
 OPPOSITE = 1e-12

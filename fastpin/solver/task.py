@@ -32,7 +32,7 @@ from fastpin.model.case import check_arc, check_keep
 from fastpin.model.checks import as_toml, check_callable, instance
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory, check_loads
-from fastpin.model.loads import REMOTE, Corner, M
+from fastpin.model.loads import REMOTE, THERMAL, Corner, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
@@ -348,8 +348,9 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
     """The reference force F of a history, N/m: its largest load, rounded up.
 
     It is R/beta* times a power of two, so that no bit of a result depends on it. A moment M counts as M/R. Remote
-    stresses times R count only where no force and no moment acts. The reaction to a prescribed displacement is
-    estimated. `values` are the loads at the corners, SI, shape (corners, loads).
+    stresses times R, and strains of temperatures times R/beta*, count only where no force and no moment acts. The
+    reaction to a prescribed displacement is estimated. `values` are the loads at the corners, SI, of the shape
+    (corners, loads).
 
     Raises
     ------
@@ -362,7 +363,9 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
     moment = float(np.abs(values[:, M]).max()) / radius
     remote = float(np.abs(values[:, REMOTE]).max()) * radius
     unit = radius / problem.surfaces.beta_star
-    largest = max(pin, moment) or remote or unit
+    strains = [] if problem.expansions is None else [*map(abs, problem.expansions)]
+    thermal = max(strains, default=0.0) * float(np.abs(values[:, THERMAL]).max()) * unit
+    largest = max(pin, moment) or remote or thermal or unit
     if largest < LEAST_LOAD * unit:
         printed = units(problem)["force"]
         least = f"{LEAST_LOAD:g} times R/beta* = {printed.factor * unit:g} {printed.name}"

@@ -19,7 +19,7 @@ from fastpin.model.checks import as_toml
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries, law_from
 from fastpin.model.laminate import Laminate, laminate_from
-from fastpin.model.materials import STRENGTHS, Material
+from fastpin.model.materials import NUMBERS, Material
 from fastpin.model.ply import PLY_KEYS
 from fastpin.model.profile import MOST_TERMS, InitialGap, Profile
 from fastpin.model.profile_terms import MOST_SAMPLES, TERMS, Term
@@ -32,7 +32,7 @@ LAMINATE = "laminate"
 def write_material(group: h5py.Group, name: str, material: Material) -> None:
     """Write a material into a new group of this name."""
     body = group.create_group(name)
-    body.attrs.update(E=material.E, nu=material.nu, name=material.name, **material.strengths)
+    body.attrs.update(E=material.E, nu=material.nu, name=material.name, **material.numbers)
     if not material.is_isotropic:
         _write(body, LAMINATE, material.entries())
     if material.fatigue is not None:
@@ -52,7 +52,7 @@ def read_material(group: h5py.Group) -> Material:
     growth = None
     if "growth" in group:
         growth = law_from({str(constant): as_python(value) for constant, value in group["growth"].attrs.items()})
-    strengths = {name: float(attributes[name]) for name in STRENGTHS if name in attributes}
+    strengths = {name: float(attributes[name]) for name in NUMBERS if name in attributes}
     elastic = float(attributes["E"]), float(attributes["nu"])
     return Material(*elastic, text_of(attributes["name"]), fatigue, **strengths, growth=growth)
 

@@ -27,7 +27,7 @@ from fastpin.model.growth import law_entries
 from fastpin.model.history import check_loads
 from fastpin.model.laminate import LAMINATE_KEYS, MODULI
 from fastpin.model.loads import ACTING, LOAD, LOAD_KIND, LOADS
-from fastpin.model.materials import MATERIALS, STRENGTHS, Material
+from fastpin.model.materials import MATERIALS, NUMBERS, Material
 from fastpin.states.error_bars import check_nodes
 
 LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
@@ -121,13 +121,13 @@ def _scaled(text: CaseText, case: Case, factors: Mapping[str, Any]) -> Case:
     return replace(case, history=history)
 
 
-_ISOTROPIC = ("material", "E", "nu", "rigid", "fatigue", "growth", *STRENGTHS)
+_ISOTROPIC = ("material", "E", "nu", "rigid", "fatigue", "growth", *NUMBERS)
 
 _REPLACED: dict[str, tuple[str, ...]] = {
-    "material": ("E", "nu", "rigid", "fatigue", "growth", *STRENGTHS, *LAMINATE_KEYS),
+    "material": ("E", "nu", "rigid", "fatigue", "growth", *NUMBERS, *LAMINATE_KEYS),
     "E": ("material", "rigid", *LAMINATE_KEYS),
     "nu": ("material", "rigid", *LAMINATE_KEYS),
-    "rigid": ("material", "E", "nu", "fatigue", "growth", *STRENGTHS, *LAMINATE_KEYS),
+    "rigid": ("material", "E", "nu", "fatigue", "growth", *NUMBERS, *LAMINATE_KEYS),
     **dict.fromkeys(("layup", "ply"), (*_ISOTROPIC, *MODULI, "compliance")),
     **dict.fromkeys(MODULI, (*_ISOTROPIC, "layup", "ply", "compliance")),
     "compliance": (*_ISOTROPIC, "layup", "ply", *MODULI),
@@ -244,7 +244,7 @@ def _make_room(tables: dict[str, Any], name: str, value: Any, materials: Mapping
             body.setdefault("fatigue", material.fatigue.given())
         if material.growth is not None:
             body.setdefault("growth", law_entries(material.growth))
-        body |= {name: value for name, value in material.strengths.items() if name not in body}
+        body |= {name: value for name, value in material.numbers.items() if name not in body}
     for replaced in _REPLACED.get(key, ()):
         body.pop(replaced, None)
 
