@@ -11,7 +11,7 @@ from fastpin.elasticity.system import Interface, System
 from fastpin.kernels import conditions, equations
 from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
-from fastpin.model.loads import M, P, Q
+from fastpin.model.loads import THERMAL, M, P, Q
 from fastpin.reading.marks import Marks
 from fastpin.solver.slip_tally import NOT_COUNTED, SlipTally
 from fastpin.solver.unknowns import SINGULAR, DenseUnknowns
@@ -344,6 +344,18 @@ def elastic_energy(system: System, configuration: Configuration, elastic: np.nda
     weights = np.concatenate([system.weights, system.weights])
     energy = float(np.sum(weights * tractions * (0.5 * elastic + system.held_displacement(configuration.load))))
     return energy + system.drive.energy(weights, tractions, configuration.motion)
+
+
+def thermal_energy(system: System, configuration: Configuration) -> float:
+    """What the temperatures add to work and :func:`elastic_energy`, dimensionless: pressure times growth of the gap.
+
+    Both count every load times its displacement. A body that expands freely stores nothing, so users see both less it.
+    """
+    load = configuration.load[list(THERMAL)]
+    if not load.any():
+        return 0.0
+    n = system.grid.size
+    return float((system.weights * configuration.pressure) @ (system.drive.columns[:n, list(THERMAL)] @ load))
 
 
 def marks_left(before: Configuration, now: Configuration, interface: Interface, name: str) -> Marks:

@@ -29,6 +29,7 @@ from fastpin.solver.configuration import (
     marks_left,
     moment_that_holds,
     slip_tally_with,
+    thermal_energy,
     unbalanced,
 )
 from fastpin.solver.errors import BEYOND, ArcError, ConvergenceError, SolveError
@@ -493,14 +494,15 @@ class Run:
         if system.problem.held:
             load = load.copy()
             load[M] = moment_that_holds(self.system, now)
+        heat = thermal_energy(system, now)
         # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
         is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
         common = {
             "step": step,
             "fraction": fraction,
             "load": named_load(np.where(is_given, self.target, load * system.scales.loads)),
-            "work": (self.work + now.work) * system.scales.energy,
-            "energy": elastic_energy(system, now, elastic) * system.scales.energy,
+            "work": (self.work + now.work - heat) * system.scales.energy,
+            "energy": (elastic_energy(system, now, elastic) - heat) * system.scales.energy,
             "residuals": residuals,
         }
         seat = None

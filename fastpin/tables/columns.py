@@ -11,7 +11,7 @@ from fastpin.model.loads import LOADS, load_index
 from fastpin.model.synonyms import closest
 from fastpin.tables.load_units import is_unit, is_unit_of, unit_name
 
-COLUMN_KEYS = ("column", "scale", "unit")
+COLUMN_KEYS = ("column", "scale", "unit", "zero")
 """Keys of the table of a load that is read from a column."""
 
 COUNT = "count"
@@ -34,11 +34,14 @@ class ColumnChoice(NamedTuple):
         Factor of all numbers: -1 turns the sign. Not 0.
     unit : str
         Unit of the numbers in its usual spelling; empty if the file says it.
+    zero : float, optional
+        The number in the file that counts as 0.
     """
 
     columns: tuple[str | int, ...]
     scale: float = 1.0
     unit: str = ""
+    zero: float | None = None
 
 
 class CsvColumn(NamedTuple):
@@ -55,6 +58,8 @@ class CsvColumn(NamedTuple):
     scale : float
     unit : str
         Unit in its usual spelling; empty for N/m, N and so on, as loads are in Python or in a case file.
+    zero : float, optional
+        The number in the file that counts as 0.
     """
 
     place: int
@@ -62,6 +67,7 @@ class CsvColumn(NamedTuple):
     title: str
     scale: float = 1.0
     unit: str = ""
+    zero: float | None = None
 
     @property
     def named(self) -> str:
@@ -97,7 +103,8 @@ def column_choice(name: str, given: object) -> ColumnChoice:
     scale = number(f"{name}.scale", given.get("scale", 1.0))
     if scale == 0.0:
         raise InputError(f"{name}.scale", "must not be 0")
-    return ColumnChoice(columns, scale, unit_name(string(f"{name}.unit", given["unit"])) if "unit" in given else "")
+    unit = unit_name(string(f"{name}.unit", given["unit"])) if "unit" in given else ""
+    return ColumnChoice(columns, scale, unit, number(f"{name}.zero", given["zero"]) if "zero" in given else None)
 
 
 def column_choices(field: str, given: object) -> dict[str, ColumnChoice]:
@@ -122,7 +129,7 @@ def chosen_columns(titles: Sequence[str], choices: Mapping[str, ColumnChoice]) -
         for column in choice.columns:
             place = _place(name, column, titles, [part for part, _ in parts])
             unit = _one_unit(name, choice.unit, parts[place][1], "the header says")
-            found.append(CsvColumn(place, name, titles[place], choice.scale, unit))
+            found.append(CsvColumn(place, name, titles[place], choice.scale, unit, choice.zero))
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Literal, NamedTuple
 
@@ -20,11 +21,13 @@ POUND, INCH = 4.4482216152605, 0.0254
 class LoadUnit(NamedTuple):
     """The way of a number in a unit to SI units: times `factor` and 10 to the `power`.
 
-    A power of ten is put behind the digits of a number, so 1.005 kN are exactly 1005 N.
+    A power of ten is put behind the digits of a number, so 1.005 kN are exactly 1005 N. The number `zero` is 0; a unit
+    whose own zero lies elsewhere has NaN until the user gives it.
     """
 
     power: int = 0
     factor: float = 1.0
+    zero: float = 0.0
 
 
 _UNITS = {
@@ -53,6 +56,7 @@ _UNITS = {
         "mil": LoadUnit(-3, INCH),
     },
     "ratio": {"%": LoadUnit(-2)},
+    "temperature": {"K": LoadUnit(), "C": LoadUnit(zero=math.nan), "F": LoadUnit(factor=5.0 / 9.0, zero=math.nan)},
 }
 _PER_METRE = {
     **_UNITS,
@@ -115,6 +119,10 @@ _OTHER_WORDS = {
     "inch": "in",
     "degree": "deg",
     "degrees": "deg",
+    "degC": "C",
+    "degF": "F",
+    "deg C": "C",
+    "deg F": "F",
 }
 _SIGNS = str.maketrans({"µ": "u", "μ": "u", "²": "2", "·": " ", "⋅": " ", "*": " ", "°": "deg", "-": " ", ".": " "})
 

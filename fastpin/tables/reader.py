@@ -259,7 +259,12 @@ class _Reading:
         for column in columns:
             try:
                 unit = self._wanted.unit(column.name, column.unit) if column.unit else LoadUnit()
-                units.append(unit._replace(factor=column.scale * unit.factor))
+                zero = unit.zero if column.zero is None else column.zero
+                if math.isnan(zero):
+                    words = f"a column in {column.unit} needs its zero, the temperature at which the clearance is given"
+                    raise InputError(column.name, f"{words}, such as zero = 20")
+                zero *= 10.0**unit.power
+                units.append(unit._replace(factor=column.scale * unit.factor, zero=zero))
             except InputError as error:
                 raise InputError(column.name, f"{error.reason}{column.named}") from None
         self.columns, self._units, self._separator, self._width = columns, units, separator, len(titles)
@@ -301,7 +306,8 @@ class _Reading:
         try:
             for column, unit in zip(self.columns, self._units, strict=True):
                 end = f"e{unit.power}" if unit.power else ""
-                numbers.append(np.array([float(cell + end) for cell in cells[column.place]]) * unit.factor)
+                values = np.array([float(cell + end) for cell in cells[column.place]])
+                numbers.append((values - unit.zero) * unit.factor)
         except ValueError:
             return False
         if not np.isfinite(numbers).all():
@@ -332,7 +338,7 @@ class _Reading:
                     if unit.power:  # the exponent is moved in the text: 1.005 kN are exactly 1005 N
                         digits, _, exponent = text.lower().partition("e")
                         text = f"{digits}e{int(exponent or 0) + unit.power}"
-                    value = number(column.name, float(text) * unit.factor)
+                    value = number(column.name, (float(text) - unit.zero) * unit.factor)
                     if "_" in cell:
                         raise ValueError
                     value = count(column.name, value, MOST_COUNT) if is_count else value

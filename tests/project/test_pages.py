@@ -41,6 +41,7 @@ HOW_TO = [
     "bodies",
     "joints",
     "interference",
+    "temperature",
     "compliance",
     "superposition",
     "fatigue",

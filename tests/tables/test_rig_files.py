@@ -69,7 +69,7 @@ def test_columns_units_and_signs(text, columns, thickness, found, tmp_path):
         ("F,F\n0,1\n", {"P": "F"}, None, 1, 'P: 2 columns of the file are "F"; its columns are "F", "F"'),
         ("Force [N]\n1\n", None, None, 1,
          'column 1: unknown load "Force [N]"; the loads are P, Q, M, sxx, syy, rotation, sxy, ux, uy, '
-         'friction_change; a [[load]] block reads it with P = { column = "Force [N]" }'),
+         'friction_change, temperature, pin_temperature; a [[load]] block reads it with P = { column = "Force [N]" }'),
         ("P [MPa]\n1\n", None, 1.0, 1,
          'P: a force must be in N, kN, MN, daN, kgf, lbf or kip, not "MPa" (column "P [MPa]")'),
         ("P [kN]\n1\n", None, None, 1,
@@ -117,7 +117,11 @@ def test_bytes_that_are_no_text_get_a_remedy(tmp_path: Path) -> None:
         ("Force", "columns", "must map loads to columns"),
         ({"F": "Force"}, "columns", 'unknown load "F"; the loads are P, Q, M'),
         ({"P": 3}, "P", 'must be a column of the CSV file, such as P = { column = "Force [N]"'),
-        ({"P": {"colum": "F"}}, "P", 'unknown key "colum"; the keys are column, scale, unit, did you mean "column"?'),
+        (
+            {"P": {"colum": "F"}},
+            "P",
+            'the keys are column, scale, unit, zero, did you mean "column"?',
+        ),
         ({"P": {"scale": 2.0}}, "P", "column is missing"),
         ({"P": {"column": "F", "scale": 0}}, "P.scale", "must not be 0"),
         ({"P": {"column": "F", "scale": "x"}}, "P.scale", "must be a number"),
