@@ -241,8 +241,8 @@ class AnisotropicTerm:
 
     def _plain(self, nodes: np.ndarray) -> np.ndarray:
         """The columns D of the `nodes` (k,) in the form that takes any spacing, complex, shape (n, k)."""
-        theta, (left, right) = self.grid.theta, self.grid.knots()
-        hats = _hats(theta, theta[nodes], theta[nodes] - left[nodes], right[nodes] - theta[nodes])
+        theta, (left, right) = self.grid.theta, self.grid.halves
+        hats = _hats(theta, theta[nodes], left[nodes], right[nodes])
         return self._factor * (self._turn**2)[:, None] * hats
 
     def product(self, tractions: np.ndarray) -> np.ndarray:

@@ -223,10 +223,9 @@ class ShearNodes:
 
         None if the solutions of the half line do not show the border at this angle.
         """
-        (left, right), node = self.grid.knots(), int(nodes[0])
-        theta = float(self.grid.theta[node])
-        away = math.remainder(angle - theta, 2.0 * math.pi)
-        offset = away / float(right[node] - theta if away > 0.0 else theta - left[node])
+        node = int(nodes[0])
+        away = math.remainder(angle - float(self.grid.theta[node]), 2.0 * math.pi)
+        offset = away / float(self.grid.halves[away > 0.0][node])
         place = self._border_place(nodes[::-outwards], -outwards)
         if not abs(-outwards * place - offset) <= 0.01:  # else the two readings of the border do not agree
             return None
@@ -419,9 +418,7 @@ class ShearNodes:
 
     def _angle(self, node: int, offset: float) -> float:
         """Angle of a place `offset` node distances from a node, rad."""
-        left, right = self.grid.knots()
-        theta = float(self.grid.theta[node])
-        return theta + offset * float(right[node] - theta if offset > 0.0 else theta - left[node])
+        return float(self.grid.theta[node]) + offset * float(self.grid.halves[offset > 0.0][node])
 
 
 def _spans(at: int, size: int) -> list[tuple[int, int]]:

@@ -118,7 +118,7 @@ def intervals(
     if mask.all() and grid.closed:
         start = float(grid.theta[0])
         return [(start, start + 2.0 * math.pi)]
-    left, right = grid.knots()
+    left, right = grid.halves
     at_starts, at_stops = quantity if quantity.ndim == 2 else (quantity, quantity)
     zones = []
     for run in runs(grid, mask):
@@ -127,10 +127,10 @@ def intervals(
         at_start, at_stop = lines(run)
         is_read = sides(run)
         if is_read[0]:
-            outside = float(theta[0] - (grid.theta[run[0]] - left[run[0]]))
+            outside = float(theta[0] - left[run[0]])
             ends[0] = end_angle(theta, at_starts[run], at_start, outside, inside)
         if is_read[1]:
-            outside = float(theta[-1] + (right[run[-1]] - grid.theta[run[-1]]))
+            outside = float(theta[-1] + right[run[-1]])
             inside = [cusp.mirrored(run.size) for cusp in inside]
             ends[1] = end_angle(theta[::-1], at_stops[back], at_stop, outside, inside)
         zones.append((ends[0], ends[1]))
