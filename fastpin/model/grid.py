@@ -150,7 +150,7 @@ class Grid:
 
         They are the distances of a node from its neighbours. They can't be written to.
         """
-        left, right = self.knots()
+        left, right = self._knots
         found = self.theta - left, right - self.theta
         for lengths in found:
             lengths.setflags(write=False)
