@@ -32,10 +32,8 @@ MOST = {
 
 CALLS = {
     "files of a warm solve": 52,
-    "calls of a warm solve": 1_853,
     "depth of a warm solve": 27,
     "files of a warm fastpin run": 90,
-    "calls of a warm fastpin run": 8_912,
     "depth of a warm fastpin run": 31,
 }
 """The most for the calls."""
