@@ -411,9 +411,8 @@ def basis(matrix: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     Rows and columns of the nodes belong to (gap, slip) and (N, T).
     """
     n = np.arange((len(matrix) - 2) // 4 + 1.0)
-    left, right = grid.knots()
     waves = np.exp(-1j * np.multiply.outer(grid.theta, n))
-    hats = fourier.hat_moments(n, grid.theta - left, right - grid.theta) * waves / math.pi
+    hats = fourier.hat_moments(n, *grid.halves) * waves / math.pi
     return _in_basis(waves), _in_basis(hats).T
 
 

@@ -19,10 +19,9 @@ from fastpin.model.problem import Problem
 from fastpin.model.strength import StrengthAssessment
 from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import Margin, part_of
+from fastpin.states.margins import Margin, part_of, walk_margins
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
-from fastpin.states.walking import walk_margins
 
 MOST_STOPS = 100
 """Most states of a cycle whose fatigue is printed unasked: some tenths of a second."""

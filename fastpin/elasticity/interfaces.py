@@ -253,8 +253,7 @@ def _coupling(problem: Problem, grids: tuple[Grid, Grid], place: int) -> np.ndar
     sense = 1.0 if place == PIN else -1.0  # the bush is the outer body at the pin, the inner body in its seat
     unit = -sense / (4.0 * math.pi * bush.shear_modulus * pin.surfaces.beta_star)
     (a, b), (c, d) = matrices.transpose(1, 2, 0)
-    left, right = other.knots()
-    hats = to.theta, other.theta, other.theta - left, right - other.theta
+    hats = to.theta, other.theta, *other.halves
     series = unit * np.array([a + b + c + d, a - b - c + d, a - b + c - d])
     series[1, 0] = 0.0  # shear all round turns the other rim
     gap_of_pressure, slip_of_shear, gap_of_shear = fourier.hat_columns(*hats, series)

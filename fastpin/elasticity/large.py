@@ -41,15 +41,14 @@ class ColumnsOperator(Operator):
         n, scale = grid.size, 1.0 / (4.0 * np.pi)
         pressure, shear = tractions[:n], tractions[n:]
         loaded = np.flatnonzero((pressure != 0.0) | (shear != 0.0))
-        left, right = grid.knots()
-        h_left, h_right = grid.theta - left, right - grid.theta
+        left, right = grid.halves
         gap = np.full(n, -scale * uniform_part(self._problem) * float(grid.weights @ pressure))
         slip = np.zeros(n)
         for begin in range(0, loaded.size, 64):  # so many columns at a time
             nodes = loaded[begin : begin + 64]
             direct, cross = (np.empty((n, nodes.size), order="F") for _ in range(2))
             influence.log_columns(
-                grid.theta, grid.theta[nodes], h_left[nodes], h_right[nodes], pair.alpha_star / pair.beta_star, scale,
+                grid.theta, grid.theta[nodes], left[nodes], right[nodes], pair.alpha_star / pair.beta_star, scale,
                 direct, cross,
             )  # fmt: skip
             gap += direct @ pressure[nodes] + cross @ shear[nodes]
@@ -61,7 +60,7 @@ class ColumnsOperator(Operator):
         found = np.r_[gap, slip]
         if self._bodies is not None and self._bodies.coefficients.any():
             given = np.array([pressure, shear])
-            found += fourier.product(grid.theta, grid.theta, h_left, h_right, self._bodies.coefficients, given).ravel()
+            found += fourier.product(grid.theta, grid.theta, left, right, self._bodies.coefficients, given).ravel()
         if self._bodies is not None and self._bodies.matrix.size:
             found += self._bodies.matrix_product(grid, tractions)
         moved, coupling = self._drive.factors

@@ -150,7 +150,7 @@ class SoftOperator(Operator):
         return None if self._base.matrix is None else self.entries()
 
 
-def spectra(kernels: np.ndarray, signs: tuple[float, ...], closed: bool) -> tuple[int, np.ndarray]:
+def _spectra(kernels: np.ndarray, signs: tuple[float, ...], closed: bool) -> tuple[int, np.ndarray]:
     """The period of convolutions with kernels of the distance of two nodes, and the transforms of the kernels.
 
     On a circle a convolution is periodic. On an arc its period has room for all distances of either sign.
@@ -217,7 +217,7 @@ class AnisotropicTerm:
     @cached_property
     def _spectrum(self) -> tuple[int, np.ndarray]:
         """The period of a convolution with the even k, and the transform of k, real."""
-        period, found = spectra(self.by_distance[None], (1.0,), self.grid.closed)
+        period, found = _spectra(self.by_distance[None], (1.0,), self.grid.closed)
         return period, np.ascontiguousarray(found[0].real)
 
     def columns(self, nodes: np.ndarray) -> np.ndarray:
@@ -241,8 +241,8 @@ class AnisotropicTerm:
 
     def _plain(self, nodes: np.ndarray) -> np.ndarray:
         """The columns D of the `nodes` (k,) in the form that takes any spacing, complex, shape (n, k)."""
-        theta, (left, right) = self.grid.theta, self.grid.knots()
-        hats = _hats(theta, theta[nodes], theta[nodes] - left[nodes], right[nodes] - theta[nodes])
+        theta, (left, right) = self.grid.theta, self.grid.halves
+        hats = _hats(theta, theta[nodes], left[nodes], right[nodes])
         return self._factor * (self._turn**2)[:, None] * hats
 
     def product(self, tractions: np.ndarray) -> np.ndarray:
@@ -314,7 +314,7 @@ class ToeplitzOperator(Operator):
         self._closed, self._left, self._right, self._term = closed, left, right, term
         self._by_distance = np.array(influence.by_distance(blocks, closed))
         self._half_hat = np.zeros((4, 0)) if closed else np.ascontiguousarray(blocks[..., 0].reshape(4, n))
-        self._period, found = spectra(self._by_distance, (1.0, 1.0, -1.0), closed)
+        self._period, found = _spectra(self._by_distance, (1.0, 1.0, -1.0), closed)
         self._even, self._odd = np.ascontiguousarray(found[:2].real), 1j * found[2].imag
 
     def __matmul__(self, tractions: np.ndarray) -> np.ndarray:

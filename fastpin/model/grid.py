@@ -144,6 +144,18 @@ class Grid:
             knots.setflags(write=False)
         return left, right
 
+    @cached_property
+    def halves(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lengths of the left and the right half of every node's hat function, rad, shape (n,) each; 0 for no half.
+
+        They are the distances of a node from its neighbours. They can't be written to.
+        """
+        left, right = self._knots
+        found = self.theta - left, right - self.theta
+        for lengths in found:
+            lengths.setflags(write=False)
+        return found
+
     @property
     def weights(self) -> np.ndarray:
         """Integral of every node's hat function, shape (n,), rad."""
@@ -153,9 +165,7 @@ class Grid:
     @cached_property
     def uniform(self) -> bool:
         """Whether all nodes are equally spaced; on a circle also from the last node to the first."""
-        spacing = self.knots()[1] - self.theta
-        if not self.closed:
-            spacing = spacing[:-1]
+        spacing = self.halves[1] if self.closed else self.halves[1][:-1]
         return bool(np.ptp(spacing) <= 1e-12 * self.size * spacing[0])
 
     def trig_moments(self) -> tuple[np.ndarray, np.ndarray]:
@@ -167,9 +177,8 @@ class Grid:
 
     @cached_property
     def _trig_moments(self) -> tuple[np.ndarray, np.ndarray]:
-        left, right = self.knots()
         total = np.zeros(self.size, dtype=complex)
-        for length, sense in ((self.theta - left, -1.0), (right - self.theta, 1.0)):
+        for length, sense in zip(self.halves, (-1.0, 1.0), strict=True):
             total += _half_hat_moment(length, sense)
         total *= np.exp(1j * self.theta)
         total.setflags(write=False)

@@ -30,8 +30,7 @@ from fastpin.states import LoadCycle, State
 from fastpin.states.choice import even_choice, span_of
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import marked_places
-from fastpin.states.margins import Margin, over_yield, static_margins
-from fastpin.states.walking import walk_margins
+from fastpin.states.margins import Margin, over_yield, static_margins, walk_margins
 from fastpin.storage.held import Held
 from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.layout import versions

@@ -18,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.model.grid import Grid
-from fastpin.reading.exponents import Coupling
+from fastpin.reading.exponents import Coupling, reserve_beside, stick_exponents
 from fastpin.reading.half_line import End, Fit, HalfLine, Tries, Try, half_line
 from fastpin.reading.old_borders import OldBorder, old_borders
-from fastpin.reading.zones import CUSP_TERMS, end_place, runs, unrolled
+from fastpin.reading.zones import CUSP_TERMS, Interval, end_place, interval_of, runs, unrolled, whole_turn
 
 DEGREES = (3, 4, 5)
 """Degrees of the polynomial to try where no end of the zone is in the window."""
@@ -184,6 +184,46 @@ class ShearNodes:
             found.append(_Patch(nodes, np.concatenate([[0.0], np.cumsum(areas)]), margins, cusps))
         return found
 
+    def stick_intervals(self, closed: np.ndarray, contact: list[Interval]) -> list[Interval]:
+        """The stick intervals of the runs of sticking nodes, in their order; inside the contact.
+
+        A stick zone ends where mu N - |T| falls to zero, or with the contact. It ends with the contact if it reaches
+        the outermost closed node: a slip zone has at least one node.
+
+        Parameters
+        ----------
+        closed : ndarray of bool, shape (n,)
+            Nodes in contact.
+        contact : list of (float, float)
+            Contact intervals of their runs, rad.
+
+        Returns
+        -------
+        list of (float, float)
+            Start and stop, rad. A zone round the whole circle is one interval of length 2 pi.
+        """
+        grid, zones = self.grid, []
+        if self.sticking.all() and grid.closed:
+            return [whole_turn(grid)]
+        sticking = runs(grid, self.sticking)
+        reserve = reserve_beside(sticking, self.friction, self.pressure, self.shear)
+        outer = [] if closed.all() and grid.closed else list(zip(runs(grid, closed), contact, strict=True))
+        starts, stops = ({int(nodes[end]) for nodes, _ in outer} for end in (0, -1))
+        for run in sticking:
+            before, after = stick_exponents(self.shear, self.coupling.tilt, run)
+            first_beta, last_beta = self.coupling.beta[run[[0, -1]]].tolist()
+            lines = half_line(before, first_beta), half_line(after, last_beta)
+            is_read = int(run[0]) not in starts, int(run[-1]) not in stops
+            start, stop = interval_of(grid, run, tuple(reserve), lines, self.old_borders(run), is_read)
+            for nodes, (first, last) in outer:
+                if run[0] in nodes:
+                    turn = 2.0 * math.pi * round((0.5 * (first + last) - 0.5 * (start + stop)) / (2.0 * math.pi))
+                    start = first if run[0] == nodes[0] else max(start + turn, first)
+                    stop = last if run[-1] == nodes[-1] else min(stop + turn, last)
+                    break
+            zones.append((float(start), float(stop)))
+        return zones
+
     def old_cusps(self, least: float) -> Iterator[Cusp]:
         """Read the cusps at old borders beside which a node has the shear `least` or more."""
         size = np.abs(self.shear)
@@ -223,10 +263,9 @@ class ShearNodes:
 
         None if the solutions of the half line do not show the border at this angle.
         """
-        (left, right), node = self.grid.knots(), int(nodes[0])
-        theta = float(self.grid.theta[node])
-        away = math.remainder(angle - theta, 2.0 * math.pi)
-        offset = away / float(right[node] - theta if away > 0.0 else theta - left[node])
+        node = int(nodes[0])
+        away = math.remainder(angle - float(self.grid.theta[node]), 2.0 * math.pi)
+        offset = away / float(self.grid.halves[away > 0.0][node])
         place = self._border_place(nodes[::-outwards], -outwards)
         if not abs(-outwards * place - offset) <= 0.01:  # else the two readings of the border do not agree
             return None
@@ -419,9 +458,7 @@ class ShearNodes:
 
     def _angle(self, node: int, offset: float) -> float:
         """Angle of a place `offset` node distances from a node, rad."""
-        left, right = self.grid.knots()
-        theta = float(self.grid.theta[node])
-        return theta + offset * float(right[node] - theta if offset > 0.0 else theta - left[node])
+        return float(self.grid.theta[node]) + offset * float(self.grid.halves[offset > 0.0][node])
 
 
 def _spans(at: int, size: int) -> list[tuple[int, int]]:

@@ -142,8 +142,7 @@ def _bound_by_two_nodes(
     inner, outer = int(nodes[0]), int(nodes[0] + outwards) % grid.size
     part = 0.5
     if nodes.size > 1:
-        left, right = grid.knots()
-        before, after = float(grid.theta[inner] - left[inner]), float(right[inner] - grid.theta[inner])
+        before, after = (float(half[inner]) for half in grid.halves)
         low = -after / before if outwards > 0 else -before / after
         first, second = (float(value) for value in (bound - magnitude)[nodes[:2]])
         part = by_two_nodes(first, second, exponent, low) / low
@@ -179,14 +178,14 @@ def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float
     at_node = float(values[top]), float(grid.theta[top])
     if not grid.closed and not 2 <= top <= n - 3:
         return at_node
-    left, right = grid.knots()
+    left, right = grid.halves
     nodes = [(top + k) % n for k in (-2, -1, 0, 1, 2)]
-    beside, steps = values[nodes].tolist(), (right[nodes] - grid.theta[nodes]).tolist()
+    beside, steps = values[nodes].tolist(), right[nodes].tolist()
     slopes = [(beside[k + 1] - beside[k]) / steps[k] for k in range(4)]
     bends = [before - after for before, after in pairwise(slopes)]
     if abs(bends[1]) > 3.0 * min(abs(bends[0]), abs(bends[2])):
         return at_node
-    before, after = float(left[top] - grid.theta[top]), steps[2]
+    before, after = -float(left[top]), steps[2]
     curvature = (slopes[2] - slopes[1]) / (after - before)  # values = values[top] + slope x + curvature x^2
     slope = slopes[2] - curvature * after
     if curvature >= 0.0:

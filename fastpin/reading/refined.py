@@ -348,7 +348,7 @@ def _patches(
 ) -> Iterator[Patch]:
     """The contact intervals of a state. All round, the first node is one that sticks."""
     grid = nodes.grid
-    left, right = grid.knots()
+    left, right = grid.halves
     for run, edges in zip(runs(grid, status != OPEN), contact, strict=True):
         whole = is_all_round(edges[1] - edges[0])
         exponents = None if whole else contact_exponents(status, nodes.coupling.tilt, run)
@@ -357,9 +357,9 @@ def _patches(
         theta = unrolled(grid, run)
         if whole:
             edges = float(theta[0]), float(theta[0]) + 2.0 * math.pi
-        before, after = grid.theta[run[0]] - left[run[0]], right[run[-1]] - grid.theta[run[-1]]
+        outside = theta[0] - left[run[0]], theta[-1] + right[run[-1]]
         yield Patch(
-            theta, nodes.pressure[run], nodes.shear[run], edges, (theta[0] - before, theta[-1] + after), exponents,
+            theta, nodes.pressure[run], nodes.shear[run], edges, outside, exponents,
             _zones(nodes, stick, run), nodes.friction[run], nodes.coupling.at(run),
         )  # fmt: skip
 

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any, TypeVar
 
 import numpy as np
 
+from fastpin.kernels.status import OPEN
 from fastpin.model.angles import BOTTOM, angle_between, interval_near_bottom
 from fastpin.model.grid import Grid
+from fastpin.reading.exponents import Coupling, contact_exponents
 from fastpin.reading.half_line import End, Fit, HalfLine, Tries, Try, half_line
 from fastpin.reading.old_borders import OldBorder
 
@@ -25,23 +27,6 @@ ALL_ROUND = BOTTOM - math.pi, BOTTOM + math.pi
 """The interval of a zone round the whole hole, from the top to the top, rad."""
 
 Zone = TypeVar("Zone", bound=tuple[Any, ...])
-
-
-Lines = Callable[[np.ndarray], tuple[HalfLine, HalfLine]]
-"""Gives for the node indices of a zone the half lines at its start and stop."""
-
-
-Cusps = Callable[[np.ndarray], list[OldBorder]]
-"""Gives for the node indices of a zone the old borders in it."""
-
-
-Sides = Callable[[np.ndarray], tuple[bool, bool]]
-"""Tells for the node indices of a zone whether its start and its stop are to be read."""
-
-
-def square_root(run: np.ndarray) -> tuple[HalfLine, HalfLine]:
-    """The half lines at both ends of a zone of like bodies: the exponent is 1/2 for any nodes `run`."""
-    return half_line(0.5), half_line(0.5)
 
 
 def is_all_round(length: float) -> bool:
@@ -84,110 +69,68 @@ def _runs(mask: bytes, closed: bool) -> list[np.ndarray]:
     return parts
 
 
-def intervals(
-    grid: Grid,
-    mask: np.ndarray,
-    quantity: np.ndarray,
-    lines: Lines = square_root,
-    cusps: Cusps = lambda run: [],
-    sides: Sides = lambda run: (True, True),
-) -> list[Interval]:
-    """Intervals of the zones in `mask`. A quantity falls to zero at their ends.
+def whole_turn(grid: Grid) -> Interval:
+    """The interval of a zone of all nodes of a circle, rad."""
+    start = float(grid.theta[0])
+    return start, start + 2.0 * math.pi
+
+
+def contact_intervals(grid: Grid, status: np.ndarray, pressure: np.ndarray, coupling: Coupling) -> list[Interval]:
+    """The contact intervals of the runs of closed nodes, in their order. The pressure falls to zero at their ends.
 
     Parameters
     ----------
     grid : Grid
-    mask : ndarray of bool, shape (n,)
-        Nodes inside the zones.
-    quantity : ndarray, shape (n,) or (2, n)
-        Nodal values, >= 0 inside the zones; the values beside the start and beside the stop of each zone, if these
-        differ.
-    lines : callable
-        Gives for the node indices of a zone the half lines at its start and stop.
-    cusps : callable
-        Gives for the node indices of a zone the old borders in it, at which the quantity has a cusp. None by default.
-    sides : callable
-        Tells for the node indices of a zone whether its start and its stop are to be read. Any other end is the angle
-        of the outermost node.
+    status, pressure : ndarray, shape (n,)
+        The statuses tell the signs of the slip at the ends, and so the exponents.
+    coupling : Coupling
 
     Returns
     -------
     list of (float, float)
-        Start and stop, rad. A zone round the whole circle is one interval of length 2 pi.
+        Start and stop, rad. A contact round the whole circle is one interval of length 2 pi.
     """
-    if mask.all() and grid.closed:
-        start = float(grid.theta[0])
-        return [(start, start + 2.0 * math.pi)]
-    left, right = grid.knots()
-    at_starts, at_stops = quantity if quantity.ndim == 2 else (quantity, quantity)
-    zones = []
-    for run in runs(grid, mask):
-        theta = unrolled(grid, run)
-        ends, back, inside = [float(theta[0]), float(theta[-1])], run[::-1], cusps(run)
-        at_start, at_stop = lines(run)
-        is_read = sides(run)
-        if is_read[0]:
-            outside = float(theta[0] - (grid.theta[run[0]] - left[run[0]]))
-            ends[0] = end_angle(theta, at_starts[run], at_start, outside, inside)
-        if is_read[1]:
-            outside = float(theta[-1] + (right[run[-1]] - grid.theta[run[-1]]))
-            inside = [cusp.mirrored(run.size) for cusp in inside]
-            ends[1] = end_angle(theta[::-1], at_stops[back], at_stop, outside, inside)
-        zones.append((ends[0], ends[1]))
-    return zones
-
-
-def stick_intervals(
-    grid: Grid,
-    sticking: np.ndarray,
-    reserve: np.ndarray,
-    closed: np.ndarray,
-    contact: list[Interval],
-    lines: Lines = square_root,
-    cusps: Cusps = lambda run: [],
-) -> list[Interval]:
-    """Intervals of the stick zones. A stick zone ends where mu N - |T| falls to zero, or with the contact.
-
-    A stick zone that reaches the outermost closed node ends with the contact: a slip zone has at least one node.
-
-    Parameters
-    ----------
-    grid : Grid
-    sticking, closed : ndarray of bool, shape (n,)
-        Nodes that stick, and nodes in contact.
-    reserve : ndarray, shape (n,) or (2, n)
-        mu N - |T|, or mu N - s T beside the start and beside the stop of each zone, with the sign s of the slip zone
-        there.
-    contact : list of (float, float)
-        Contact intervals of the closed nodes, rad.
-    lines : callable
-    cusps : callable
-        As for :func:`intervals`.
-
-    Returns
-    -------
-    list of (float, float)
-        Start and stop, rad.
-    """
+    closed = status != OPEN
     if closed.all() and grid.closed:
-        return intervals(grid, sticking, reserve, lines, cusps=cusps)
-    zones = []
-    outer = list(zip(runs(grid, closed), contact, strict=True))
-    starts, stops = ({int(nodes[end]) for nodes, _ in outer} for end in (0, -1))
+        return [whole_turn(grid)]
+    found = []
+    for run in runs(grid, closed):
+        start, stop = map(half_line, contact_exponents(status, coupling.tilt, run))
+        found.append(interval_of(grid, run, (pressure, pressure), (start, stop)))
+    return found
 
-    def sides(run: np.ndarray) -> tuple[bool, bool]:
-        return int(run[0]) not in starts, int(run[-1]) not in stops
 
-    found = intervals(grid, sticking, reserve, lines, cusps=cusps, sides=sides)
-    for run, (start, stop) in zip(runs(grid, sticking), found, strict=True):
-        for nodes, (first, last) in outer:
-            if run[0] in nodes:
-                turn = 2.0 * math.pi * round((0.5 * (first + last) - 0.5 * (start + stop)) / (2.0 * math.pi))
-                start = first if run[0] == nodes[0] else max(start + turn, first)
-                stop = last if run[-1] == nodes[-1] else min(stop + turn, last)
-                break
-        zones.append((float(start), float(stop)))
-    return zones
+def interval_of(
+    grid: Grid,
+    run: np.ndarray,
+    values: Sequence[np.ndarray],
+    lines: tuple[HalfLine, HalfLine],
+    borders: Sequence[OldBorder] = (),
+    is_read: tuple[bool, bool] = (True, True),
+) -> Interval:
+    """The interval of the zone of the nodes `run`, rad. A quantity falls to zero at its ends.
+
+    Parameters
+    ----------
+    grid : Grid
+    run : ndarray of int, shape (k,)
+    values : two ndarrays, shape (n,)
+        Nodal values of the quantity beside the start and beside the stop, >= 0 inside the zone.
+    lines : (HalfLine, HalfLine)
+        The half lines at start and stop.
+    borders : sequence of OldBorder
+        The old borders in the zone, at which the quantity has a cusp.
+    is_read : (bool, bool)
+        Whether start and stop are read between the nodes. Any other end is the angle of the outermost node.
+    """
+    theta, (left, right) = unrolled(grid, run), grid.halves
+    start, stop = float(theta[0]), float(theta[-1])
+    if is_read[0]:
+        start = end_angle(theta, values[0][run], lines[0], float(theta[0] - left[run[0]]), borders)
+    if is_read[1]:
+        mirrored = [border.mirrored(run.size) for border in borders]
+        stop = end_angle(theta[::-1], values[1][run[::-1]], lines[1], float(theta[-1] + right[run[-1]]), mirrored)
+    return start, stop
 
 
 def unrolled(grid: Grid, run: np.ndarray) -> np.ndarray:

@@ -34,7 +34,7 @@ SHARED = ("kernels/arrays.py", "kernels/status.py")
 """Files of constants and of records of arrays that kernels take from other files. Code depends on them, too."""
 
 CAN_LOAD = sys.platform == "linux" and platform.machine() == "x86_64"
-"""Whether machine code is loaded in this way: on the processors on which it is tested."""
+"""Whether LLVM loads machine code without Numba: on the processors on which this is tested."""
 
 
 # -- the source ------------------------------------------------------------------------------------------------

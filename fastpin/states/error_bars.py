@@ -332,6 +332,4 @@ def _curves_and_bars(state: State, bars: ErrorBars, theta: np.ndarray) -> tuple[
 
 def _spacing(grid: Grid, theta: np.ndarray) -> np.ndarray:
     """The node distance at some angles, rad, shape (m,)."""
-    left, right = grid.knots()
-    spacing = np.maximum(right - grid.theta, grid.theta - left)  # the end of an arc has one neighbour
-    return np.interp(theta, grid.theta, spacing, period=2.0 * np.pi)
+    return np.interp(theta, grid.theta, np.maximum(*grid.halves), period=2.0 * np.pi)

@@ -16,7 +16,9 @@ from fastpin.model.points import bodies_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.extremes import Found
+from fastpin.states.quantities import load_point
 from fastpin.states.state import State
+from fastpin.states.walking import Walk
 from fastpin.states.yielding import PREFIX, elastic_owners, place_words, von_mises_peak
 
 MARGINS = {
@@ -116,6 +118,20 @@ def static_margins(problem: Problem, extremes: Found, read: Callable[[Sequence[i
                 known = "traction", extreme.value, strength, extreme.load_point, place, state.load, name, owner
                 rows.append(Margin(row.subject, *known, row.part))
     return rows + (_of_bush(problem, extremes, read) if "seat" in bodies_of(problem) else [])
+
+
+def walk_margins(states: Sequence[State]) -> list[Margin]:
+    """Return the margin of a bush against walking over the states of a cycle; none if that is not known.
+
+    No turn is allowed: the margin of a bush that walks is -1, and one that rests needs none.
+    """
+    walk = Walk.of(states)
+    if walk is None:
+        return []
+    turn = abs(walk.turn) if walk.goes_on else 0.0
+    words = walk.words(states[0].problem).removeprefix("it ")
+    end, subject = states[-1], "bush: walks in its seat"
+    return [Margin(subject, "rotation", turn, 0.0, load_point(end), words, end.load, "walk", "bush")]
 
 
 def smallest_margin(rows: Sequence[Margin]) -> Margin | None:

@@ -23,8 +23,7 @@ from fastpin.model.synonyms import explains_attributes
 from fastpin.model.units import named_loads, units
 from fastpin.reading import peaks, zones
 from fastpin.reading.cusps import ShearNodes
-from fastpin.reading.exponents import Coupling, contact_exponents, reserve_beside, stick_exponents
-from fastpin.reading.half_line import HalfLine, half_line
+from fastpin.reading.exponents import Coupling
 from fastpin.reading.marks import Marks
 from fastpin.reading.old_borders import truly_sticking
 from fastpin.reading.zones import Interval, runs
@@ -198,7 +197,7 @@ class State(ReadOnly):
     @cached_property
     def contact_in_runs(self) -> list[Interval]:
         """The contact intervals of the runs of closed nodes, in their order and in the turns of the grid."""
-        return zones.intervals(self.grid, self.status != OPEN, self.pressure, self._contact_lines)
+        return zones.contact_intervals(self.grid, self.status, self.pressure, self.coupling)
 
     @cached_property
     def stick(self) -> list[Interval]:
@@ -212,10 +211,7 @@ class State(ReadOnly):
     @cached_property
     def _stick(self) -> list[Interval]:
         """The stick intervals of the runs of sticking nodes, in their order; inside the contact."""
-        closed, reserve = self.status != OPEN, self._reserve_beside
-        return zones.stick_intervals(
-            self.grid, self._sticking, reserve, closed, self.contact_in_runs, self._stick_lines, self.nodes.old_borders
-        )
+        return self.nodes.stick_intervals(self.status != OPEN, self.contact_in_runs)
 
     @cached_property
     def stick_runs(self) -> list[tuple[np.ndarray, Interval]]:
@@ -315,22 +311,9 @@ class State(ReadOnly):
         """How the surfaces couple pressure and shear at the nodes."""
         return Coupling.of(self.problem, self.friction, self.theta)
 
-    def _contact_lines(self, run: np.ndarray) -> tuple[HalfLine, HalfLine]:
-        start, stop = contact_exponents(self.status, self.coupling.tilt, run)
-        return half_line(start), half_line(stop)
-
-    def _stick_lines(self, run: np.ndarray) -> tuple[HalfLine, HalfLine]:
-        start, stop = stick_exponents(self.shear, self.coupling.tilt, run)
-        return half_line(start, float(self.coupling.beta[run[0]])), half_line(stop, float(self.coupling.beta[run[-1]]))
-
     @cached_property
     def _reserve(self) -> np.ndarray:
         return self.friction * self.pressure - np.abs(self.shear)
-
-    @cached_property
-    def _reserve_beside(self) -> np.ndarray:
-        """The reserve beside the start and beside the stop of each stick zone, shape (2, n)."""
-        return reserve_beside(runs(self.grid, self._sticking), self.friction, self.pressure, self.shear)
 
     @cached_property
     def _sticking(self) -> np.ndarray:

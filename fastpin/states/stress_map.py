@@ -21,8 +21,7 @@ NodalTractions = tuple[np.ndarray, np.ndarray]
 
 def spacings(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Distances from each node to its neighbours on the left and on the right, rad, shape (n,)."""
-    left, right = grid.knots()
-    before, after = grid.theta - left, right - grid.theta
+    before, after = grid.halves
     return np.where(before > 0.0, before, after), np.where(after > 0.0, after, before)
 
 

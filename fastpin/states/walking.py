@@ -19,8 +19,6 @@ from fastpin.model.units import units
 from fastpin.states.choice import last_cycle_states
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
-from fastpin.states.margins import Margin
-from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
 LEAST_WALK = 1e-3
@@ -75,20 +73,6 @@ def walk_words(states: Sequence[State]) -> str:
     """What a bush does in its seat over the states of a cycle; empty if that is not known."""
     walk = Walk.of(states)
     return "" if walk is None else walk.words(states[0].problem)
-
-
-def walk_margins(states: Sequence[State]) -> list[Margin]:
-    """Return the margin of a bush against walking over the states of a cycle; none if that is not known.
-
-    No turn is allowed: the margin of a bush that walks is -1, and one that rests needs none.
-    """
-    walk = Walk.of(states)
-    if walk is None:
-        return []
-    turn = abs(walk.turn) if walk.goes_on else 0.0
-    words = walk.words(states[0].problem).removeprefix("it ")
-    end, subject = states[-1], "bush: walks in its seat"
-    return [Margin(subject, "rotation", turn, 0.0, load_point(end), words, end.load, "walk", "bush")]
 
 
 def walk_doubts(states: Sequence[State], cycles: Sequence[Cycle]) -> list[InputWarning]:

@@ -36,5 +36,5 @@ def test_pressure_points_at_the_edge():
 
 
 def test_something_else_is_refused():
-    with pytest.raises(InputError, match=r"lug: must be fastpin\.model\.Lug"):
+    with pytest.raises(InputError, match=r"lug: must be fastpin\.lugs\.Lug"):
         plot_lug("lug.toml")

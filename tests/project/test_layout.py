@@ -34,6 +34,7 @@ BREAKS = {
         "casefile/reader.py",
         "import fastpin.elasticity.system\n",
     ),
+    "a wing in the core": ("wings_apart", "reading/peaks.py", "from fastpin.lugs.plates import respond\n"),
     "an import of the public face": ("one_direction", "storage/store.py", "import fastpin\n"),
     "a circle of files": ("no_circles", "reading/old_borders.py", "from fastpin.reading.zones import end_place\n"),
     "a circle through names": ("no_circles", "cli/run.py", "from fastpin.cli.main import main\n"),

@@ -11,6 +11,8 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.reading import peaks, zones
+from fastpin.reading.cusps import ShearNodes
+from fastpin.reading.exponents import Coupling
 from fastpin.solver.solving import solve
 
 SAMPLED = 0.2
@@ -19,6 +21,12 @@ SAMPLED = 0.2
 The nodal values of a solved contact differ from samples near an edge; tests/states/test_half_line.py has such values.
 The largest error here is 0.18.
 """
+
+
+def contact(grid, values):
+    """The intervals of a contact of like bodies with these nodal pressures (n,)."""
+    status = np.where(values > 0.0, STICK, OPEN)
+    return zones.contact_intervals(grid, status, values, Coupling.of_isotropic(np.zeros(grid.size), 0.0))
 
 
 def half_circle(theta, start, stop):
@@ -31,7 +39,7 @@ def test_square_root_edges(nodes):
     grid = Grid.arc(-2.0, 0.5, nodes)
     start, stop = -1.7123, 0.2345
     values = half_circle(grid.theta, start, stop)
-    found = zones.intervals(grid, values > 0.0, values)[0]
+    found = contact(grid, values)[0]
     assert found == pytest.approx((start, stop), abs=SAMPLED * grid.weights[1])
 
 
@@ -39,26 +47,26 @@ def test_edges_of_graded_nodes():
     t = np.linspace(-1.0, 1.0, 300)
     grid = Grid(1.5 * (t + 0.1 * np.sin(np.pi * t)))
     values = half_circle(grid.theta, -1.1, 0.9)
-    found = zones.intervals(grid, values > 0.0, values)[0]
+    found = contact(grid, values)[0]
     assert found == pytest.approx((-1.1, 0.9), abs=SAMPLED * grid.weights.max())
 
 
 def test_zones_across_the_seam_of_the_circle():
     grid = Grid.circle(400, start=0.0)
     values = half_circle(np.where(grid.theta > math.pi, grid.theta - 2.0 * math.pi, grid.theta), -0.5, 0.7)
-    found = zones.intervals(grid, values > 0.0, values)
+    found = contact(grid, values)
     assert len(found) == 1
     assert found[0] == pytest.approx((2.0 * math.pi - 0.5, 2.0 * math.pi + 0.7), abs=SAMPLED * grid.weights[0])
-    full = zones.intervals(grid, np.ones(400, dtype=bool), np.ones(400))
+    full = contact(grid, np.ones(400))
     assert full == [(0.0, 2.0 * math.pi)]
-    assert zones.intervals(grid, np.zeros(400, dtype=bool), np.zeros(400)) == []
+    assert contact(grid, np.zeros(400)) == []
 
 
 def test_several_zones_and_tiny_ones():
     grid = Grid.arc(0.0, 3.0, 301)
     values = half_circle(grid.theta, 0.3, 1.1) + half_circle(grid.theta, 1.9, 2.6)
     values[150] = 0.1  # a zone of one node ends halfway to its neighbours
-    found = zones.intervals(grid, values > 0.0, values)
+    found = contact(grid, values)
     assert np.allclose(found, [(0.3, 1.1), (1.495, 1.505), (1.9, 2.6)], atol=SAMPLED * 0.01)
 
 
@@ -90,13 +98,16 @@ def test_stick_zones_of_a_contact_all_round():
     status = np.ones(100, dtype=np.int8)
     sticking = (grid.theta < 1.0) | (grid.theta > 5.0)
     status[sticking] = STICK
-    reserve = np.where(sticking, 1.0, 0.0)
-    closed = np.ones(100, dtype=bool)
-    contact = zones.intervals(grid, closed, np.ones(100))
-    stick = zones.stick_intervals(grid, sticking, reserve, closed, contact)
+    none, pressure = np.zeros(100), np.ones(100)
+    coupling = Coupling.of_isotropic(none, 0.0)
+    marks = np.zeros(100, dtype=np.int8), np.full(100, np.nan)
+    shear = np.where(sticking, 0.0, 1.0)
+    nodes = ShearNodes(grid, pressure, shear, sticking, *marks, np.ones(100), coupling)
+    whole = contact(grid, pressure)
+    stick = nodes.stick_intervals(np.ones(100, dtype=bool), whole)
     assert len(stick) == 1
     assert stick[0] == pytest.approx((5.0, 2.0 * math.pi + 1.0), abs=0.07)
-    (slip,) = zones.complement(grid, contact, stick, status)
+    (slip,) = zones.complement(grid, whole, stick, status)
     assert slip == (stick[0][1], stick[0][0] + 2.0 * math.pi, 1)
 
 

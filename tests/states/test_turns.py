@@ -115,7 +115,7 @@ def test_slip_zones_round_the_hole_do_not_depend_on_the_first_node(start: float)
     grid = Grid.circle(360, start)
     angle = zones.ALL_ROUND[0] + np.mod(grid.theta - zones.ALL_ROUND[0], TURN)
     status = np.where((angle > -3.0) & (angle < 0.5), -1, 1).astype(np.int8)
-    contact = zones.intervals(grid, np.ones(360, dtype=bool), np.ones(360))
+    contact = [zones.whole_turn(grid)]
     found: list[Any] = zones.in_order(zones.complement(grid, contact, [], status))
     assert [sign for *_, sign in found] == [1, -1]
     assert np.array([zone[:2] for zone in found]) == pytest.approx(

@@ -8,8 +8,8 @@ import pytest
 import fastpin
 from fastpin.assess.margins import document
 from fastpin.errors import InputWarning
-from fastpin.states.margins import smallest_margin
-from fastpin.states.walking import LEAST_WALK, Walk, walk_doubts, walk_margins, walk_words
+from fastpin.states.margins import smallest_margin, walk_margins
+from fastpin.states.walking import LEAST_WALK, Walk, walk_doubts, walk_words
 from tests.support.outcomes import value
 from tests.support.seats import sample_seat
 

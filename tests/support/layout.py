@@ -53,6 +53,12 @@ LEVELS = (
 RANKS = {folder: rank for rank, level in enumerate(LEVELS) for folder in level if level != ABOVE_BODIES}
 """Every folder and its rank. A file imports from its own folder and from lower ranks."""
 
+CORE = ("runtime", "kernels", "model", "bodies", "elasticity", "reading", "states", "solver")
+"""The folders that a solution needs."""
+
+WINGS = ("lugs", "tables")
+"""Folders of lower rank that few solutions need. The core does not import them."""
+
 ROOT_FILES = ("errors", "moved", "version")
 """Files of rank 0, beside the folders."""
 
@@ -307,6 +313,14 @@ def _calls_a_face(tree: Tree, one: Import) -> bool:
     return one.inside and one.file in UPWARD and face
 
 
+def wings_apart(tree: Tree) -> Iterator[str]:
+    """The core imports no wing, but for faces inside functions and the faces of names that have moved there."""
+    for one in tree.imports:
+        target = tree.target(one) or ""
+        if _folder(one.file) in CORE and _folder(target) in WINGS and not target.endswith("/__init__.py"):
+            yield f"{one.file}:{one.line} imports {target}, a file of a wing"
+
+
 def no_circles(tree: Tree) -> Iterator[str]:
     """No file imports itself through others."""
     edges: dict[str, set[str]] = {}
@@ -454,6 +468,7 @@ def sentences_in_folders(tree: Tree) -> Iterator[str]:
 RULES: tuple[Callable[[Tree], Iterator[str]], ...] = (
     known_folders,
     one_direction,
+    wings_apart,
     no_circles,
     nothing_hidden,
     kernels_alone,
