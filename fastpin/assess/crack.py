@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fastpin import cracks, damage
-from fastpin.assess.outputs import Curve, Follow, Output, Schema, chosen, kept, object_of, properties, table
-from fastpin.assess.outputs import document as document_of
-from fastpin.cracks.fates import CRACK_FATES, CrackFate
-from fastpin.cracks.margins import crack_margins
+from fastpin.assess import outputs
+from fastpin.assess.margins import ROW, in_json
+from fastpin.assess.outputs import Curve, Follow, Output, chosen, kept, or_null, table
+from fastpin.cracks.fates import CRACK_FATES, CrackFate, crack_margins
 from fastpin.errors import InputError
 from fastpin.model import Case, LoadHistory, Problem
 from fastpin.model.angles import from_bottom
@@ -34,34 +34,31 @@ GROWTH = (
     Output("direction", "width", lambda found: found.crack.angle),
     Output("body", "text", lambda found: found.crack.body, allowed=EDGES),
     Output(
-        "law", "table", lambda found: law_entries(found.law) if isinstance(found.law, Walker | Nasgro) else None
+        "law", of=lambda found: law_entries(found.law) if isinstance(found.law, Walker | Nasgro) else None,
+        form=or_null({"type": "object"}),
     ),
     Output("repeated", "text", lambda found: found.per, allowed=("cycle", "spectrum")),
-    Output("fate", "class", lambda found: found.fate, classes=CRACK_FATES),
-    Output("life", "life", lambda found: found.life, "cycles or spectra; null: no end", optional=True),
-    Output(
-        "error", "", lambda found: found.error, "numerical, in parts of the life or of the arrest; null: unknown",
-        optional=True,
-    ),
+    Output("fate", "class", classes=CRACK_FATES),
+    Output("life", "life", words="cycles or spectra; null: no end", optional=True),
+    Output("error", words="numerical, in parts of the life or of the arrest; null: unknown", optional=True),
     Output("first", "length", lambda found: float(found.length[0]), optional=True),
     Output("last", "length", lambda found: float(found.length[-1]), optional=True),
-    Output("arrest", "length", lambda found: found.arrest, optional=True),
-    Output("fracture", "length", lambda found: found.fracture, optional=True),
-    Output("words", "text", lambda found: found.words),
+    *outputs.numbers("arrest fracture", "length", optional=True),
+    Output("words", "text"),
     Output("doubts", "texts", lambda found: [str(doubt) for doubt in found.doubts]),
 )  # fmt: skip
 """Outputs of a :class:`fastpin.cracks.Growth`."""
 
 
 LENGTHS = (
-    Output("length", "length", lambda found: found.length),
-    Output("K_max", "stress intensity", lambda found: found.K_max, heading="K_I largest"),
-    Output("K_min", "stress intensity", lambda found: found.K_min, heading="K_I smallest", short="smallest"),
-    Output("K_II", "stress intensity", lambda found: found.K_II, heading="K_II"),
-    Output("delta_K", "stress intensity", lambda found: found.delta_K, heading="range"),
-    Output("threshold", "stress intensity", lambda found: found.threshold),
-    Output("rate", "crack growth", lambda found: found.rate, short="growth"),
-    Output("cycles", "", lambda found: found.cycles),
+    Output("length", "length"),
+    Output("K_max", "stress intensity", heading="K_I largest"),
+    Output("K_min", "stress intensity", heading="K_I smallest", short="smallest"),
+    Output("K_II", "stress intensity", heading="K_II"),
+    Output("delta_K", "stress intensity", heading="range"),
+    Output("threshold", "stress intensity"),
+    Output("rate", "crack growth", short="growth"),
+    Output("cycles"),
 )
 """Outputs at each length: columns of CSV, JSON and the table of ``fastpin crack``."""
 
@@ -180,12 +177,12 @@ def lines(growth: cracks.Growth, over: Mapping[str, float]) -> list[str]:
 
 def document(growth: cracks.Growth, over: Mapping[str, float]) -> dict[str, Any]:
     """Return the growth as a dict for JSON."""
-    return document_of(GROWTH, growth, units(growth.problem))
+    return outputs.document(GROWTH, growth, units(growth.problem))
 
 
-def schema() -> Schema:
+def schema() -> outputs.Schema:
     """Return the JSON schema of :func:`document`."""
-    return object_of(properties(GROWTH))
+    return outputs.schema_of(GROWTH)
 
 
 margins = crack_margins
@@ -208,6 +205,20 @@ def growth_curve(growth: cracks.Growth) -> Curve:
     columns = {each.column(unit).replace("cycle", growth.per): each.shown(growth, unit) for each in LENGTHS[:-1]}
     mouth = {"mouth [deg]": from_bottom(growth.crack.theta), "body": growth.crack.body}
     return Curve(mouth, columns | {growth.passes: growth.cycles})
+
+
+DOCUMENT = (
+    outputs.UNITS,
+    Output("crack", of=lambda growth: growth, parts=GROWTH),
+    Output(
+        "lengths", of=lambda growth: {name: column.tolist() for name, column in growth_curve(growth).columns.items()},
+        form=outputs.map_of(
+            outputs.list_of(outputs.UNKNOWN), "a column of numbers at all lengths, with its unit in its name"
+        ),
+    ),
+    Output("margins", "list", lambda growth: in_json(growth.problem, crack_margins(growth)), parts=ROW),
+)  # fmt: skip
+"""Outputs of a :class:`fastpin.cracks.Growth` in the JSON of ``fastpin crack``."""
 
 
 def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) -> str:
@@ -234,9 +245,9 @@ def growth_table(growth: cracks.Growth) -> str:
     at = np.unique(np.abs(np.log(growth.length[:, None] / rows)).argmin(axis=0))
     cells = []
     for each in LENGTHS:
-        same = [float(value) for other in LENGTHS if other.kind == each.kind for value in other.of(growth)]
+        same = [float(value) for other in LENGTHS if other.kind == each.kind for value in other.value(growth)]
         factor, label = unit[each.kind].scale(same) if each.kind else (1.0, "")
-        texts = [f"{factor * value:.4g}" for value in each.of(growth)[at].tolist()]
+        texts = [f"{factor * value:.4g}" for value in each.value(growth)[at].tolist()]
         name = each.short or each.heading or each.name if each.kind else growth.passes
         cells.append((name, label.replace("cycle", growth.per), ["never" if text == "inf" else text for text in texts]))
     return table(cells)

@@ -6,17 +6,17 @@ import csv
 import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 
-from fastpin.assess.outputs import ROUNDING, Curve, Output
+from fastpin.assess.outputs import ROUNDING, UNKNOWN, WHOLE, Curve, Output, map_of
 from fastpin.assess.outputs import document as document_of
 from fastpin.model.angles import from_bottom
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.states.cycles import Cycle
+from fastpin.states.cycles import CYCLE_KINDS, Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.states.quantities import load_point, sizes
 from fastpin.states.regimes import REGIMES
@@ -34,19 +34,26 @@ def _largest(name: str, kind: str) -> Iterator[Output]:
 
 
 CYCLE = (
-    Output("first", "whole", lambda cycle: cycle.first),
-    Output("last", "whole", lambda cycle: cycle.last),
+    Output("first", "whole"),
+    Output("last", "whole"),
     Output("closed", "truth", lambda cycle: cycle.is_closed),
     *_largest("slip_range", "displacement"),
     *_largest("slip_distance", "displacement"),
     *_largest("friction_energy", "energy density"),
     *_largest("pressure_range", "traction"),
     *_largest("shear_range", "traction"),
-    Output("regime", "class", lambda cycle: cycle.regime, classes=REGIMES),
+    Output("regime", "class", classes=REGIMES),
     Output("slip_range_is_exact", "truth", lambda cycle: cycle.has_exact_slip_range),
-    Output("dissipation", "energy", lambda cycle: cycle.dissipation, optional=True),
+    Output("dissipation", "energy", optional=True),
 )
 """Outputs of a :class:`fastpin.states.LoadCycle`."""
+
+
+CHANGES = tuple(
+    Output(name, {int: "whole", bool: "truth"}.get(type_, CYCLE_KINDS[name]), heading=name, optional=type_ is float)
+    for name, type_ in get_type_hints(Cycle).items()
+)
+"""Outputs of a :class:`fastpin.states.cycles.Cycle`: how one cycle of a block changed the contact."""
 
 
 WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
@@ -83,16 +90,32 @@ def natural_sizes(cycle: LoadCycle) -> dict[str, float]:
     return largest | {"energy density": largest["displacement"] * largest["traction"]}
 
 
+def _nodes(cycle: LoadCycle) -> dict[str, int]:
+    """The number of nodes of each behaviour."""
+    return {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
+
+
+def _work(cycle: LoadCycle) -> dict[str, float | None]:
+    """The work of each load; it is not known if only the ends of the cycle were kept."""
+    factor, inside = units(cycle.states[0].problem)["energy"].factor, len(cycle.states) > 2
+    return {name: factor * loop.work if inside else None for name, loop in cycle.loops.items()}
+
+
+DOCUMENT = (
+    *CYCLE,
+    Output("nodes", of=_nodes, form=map_of(WHOLE, "number of nodes of each behaviour")),
+    Output("work", of=_work, form=map_of(UNKNOWN, "work of each load")),
+)
+"""Outputs of a load cycle in JSON."""
+
+
 def document(cycle: LoadCycle) -> dict[str, Any]:
     """Return the largest values of a cycle with their places, and its energies, as a dict.
 
     A value that is not known is NaN. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load;
     it is not known if only the ends of the cycle were kept.
     """
-    unit, inside = units(cycle.states[0].problem), len(cycle.states) > 2
-    nodes = {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
-    work = {name: unit["energy"].factor * loop.work if inside else None for name, loop in cycle.loops.items()}
-    return document_of(CYCLE, cycle, unit) | {"nodes": nodes, "work": work}
+    return document_of(DOCUMENT, cycle, units(cycle.states[0].problem))
 
 
 def write_csv(cycle: LoadCycle, path: Path) -> None:
@@ -136,13 +159,8 @@ def loop_curve(cycle: LoadCycle) -> Curve:
 
 def cycles_curve(problem: Problem, cycles: Sequence[Cycle]) -> Curve:
     """Return the changes over cycles, a row for each cycle. Cycles and corners are counted from 1, as in tables."""
-    unit = units(problem)
-    kinds = {"dissipation": "energy", "rotation_change": "rotation"}
-    columns = {"cycle": np.arange(1.0, len(cycles) + 1.0)}
-    for name in Cycle._fields:
-        values = np.array([getattr(cycle, name) for cycle in cycles], dtype=float) + (name == "corner")
-        if name in kinds:
-            columns[f"{name} [{unit[kinds[name]].name}]"] = unit[kinds[name]].factor * values
-        elif name != "solved":
-            columns[name] = values
+    unit, columns = units(problem), {"cycle": np.arange(1.0, len(cycles) + 1.0)}
+    for each in CHANGES[:-1]:  # whether it was solved is no change
+        values = [each.shown(cycle, unit) + (each.name == "corner") for cycle in cycles]
+        columns[each.column(unit)] = np.array(values, dtype=float)
     return Curve({}, columns)

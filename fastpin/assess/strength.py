@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from fastpin import damage, solver
@@ -122,23 +123,6 @@ def margins(found: StrengthFound) -> list[Margin]:
     return strength_margins(found.how, found.state, found.strength)
 
 
-def schema() -> outputs.Schema:
-    """Return the JSON schema of :func:`document`."""
-    place, loads = outputs.properties(PLACE), outputs.map_of(outputs.NUMBER, "loads of the state that fails")
-    return outputs.object_of(
-        {
-            "criterion": {"enum": list(CRITERION_NAMES)},
-            **dict.fromkeys(LENGTHS, outputs.UNKNOWN),
-            "states": outputs.WHOLE,
-            **place,
-            "failure": outputs.or_null(
-                outputs.object_of({"factor": outputs.NUMBER, "load": loads, "solved": outputs.WHOLE, **place})
-            ),
-            "error": outputs.OPTIONAL_TEXT,
-        }
-    )
-
-
 def strength_words(problem: Problem, how: StrengthAssessment) -> str:
     """Criterion of an assessment of strength, and where it is evaluated."""
     length = units(problem)["length"]
@@ -194,6 +178,11 @@ def lines(found: StrengthFound, over: Mapping[str, float]) -> list[str]:
     return text
 
 
+def _length(name: str, found: StrengthFound) -> float | None:
+    """A length of the assessment; None if it has another one."""
+    return found.how.lengths.get(name)
+
+
 def place_words(strength: damage.JointStrength) -> str:
     """Return the place of the least ratio, its ply and its modes in words."""
     at = f"at {from_bottom(strength.angle):z.2f} deg from the bottom"
@@ -201,23 +190,36 @@ def place_words(strength: damage.JointStrength) -> str:
     return ", ".join(filter(None, parts))
 
 
+FOUND = (
+    outputs.Output("criterion", "text", lambda found: found.how.criterion, allowed=CRITERION_NAMES),
+    *(outputs.Output(name, "length", partial(_length, name), optional=True) for name in LENGTHS),
+    outputs.Output("states", "whole"),
+    *PLACE,
+    outputs.Output(
+        "failure", optional=True,
+        parts=(
+            outputs.Output("factor"),
+            outputs.Output(
+                "load", of=lambda found: printed_loads(found.state.problem, found.state.load),
+                form=outputs.map_of(outputs.NUMBER, "loads of the state that fails"),
+            ),
+            outputs.Output("solved", "whole"),
+            *PLACE,
+        ),
+    ),
+    outputs.Output("error", "text", lambda found: found.reason or None, optional=True),
+)  # fmt: skip
+"""Outputs of a :class:`StrengthFound`. A ratio without stress is infinite."""
+
+
 def document(found: StrengthFound, over: Mapping[str, float]) -> dict[str, Any]:
-    """Return a strength as a JSON-ready dict. A ratio without stress is infinite."""
-    unit, failure = units(found.state.problem), None
-    lengths = {name: unit["length"].factor * value for name, value in found.how.lengths.items()}
-    if found.failure is not None:
-        load = printed_loads(found.state.problem, found.failure.state.load)
-        failure = {"factor": found.failure.factor, "load": load, "solved": found.failure.solved}
-        failure |= outputs.document(PLACE, found.failure, unit)
-    return {
-        "criterion": found.how.criterion,
-        **dict.fromkeys(LENGTHS),
-        **lengths,
-        "states": found.states,
-        **outputs.document(PLACE, found, unit),
-        "failure": failure,
-        "error": found.reason or None,
-    }
+    """Return a strength as a dict for JSON."""
+    return outputs.document(FOUND, found, units(found.state.problem))
+
+
+def schema() -> outputs.Schema:
+    """Return the JSON schema of :func:`document`."""
+    return outputs.schema_of(FOUND)
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, PlaneCount
-from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve, scattered
-from fastpin.damage.reliability import life_shift
+from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve, life_shift, scattered
 from fastpin.errors import InputError
 from fastpin.kernels import rainflow
 from fastpin.model.assessment import USUAL, FatigueAssessment

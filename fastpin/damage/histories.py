@@ -1,16 +1,22 @@
-"""Stress histories: the stresses of many states at points, by one product with a matrix or state by state."""
+"""Stress histories: the stresses of many states at points, by one product with a matrix or state by state.
+
+A residual hoop stress round a hole, as cold working leaves it, may be added.
+"""
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
 from fastpin.elasticity.tractions import Tractions
 from fastpin.model.checks import instance, instances, true_or_false
+from fastpin.model.crack import residual_at
 from fastpin.model.loads import LOADS, REMOTE
-from fastpin.model.points import Body, Points
+from fastpin.model.points import Body, Points, owner_of
+from fastpin.model.problem import Problem
 from fastpin.reading.stress import Stress, stress_at
 from fastpin.runtime.threads import in_threads
 from fastpin.states.reading_bounds import MAPPED
@@ -153,3 +159,26 @@ def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progr
 def _components(stress: Stress) -> np.ndarray:
     """Return sxx, syy, szz and sxy, shape (4, points)."""
     return np.array([stress.sxx, stress.syy, stress.axial, stress.sxy]).reshape(4, -1)
+
+
+Blocks = Callable[[Progress], Iterator[tuple[slice, np.ndarray]]]
+"""Yields blocks of points, with their stresses (states, points of the block, 4)."""
+
+
+def with_residual(blocks: Blocks, problem: Problem, body: Body, points: Points, residual: Any) -> Blocks:
+    """Return the blocks of points of a body with a residual stress of the plate, a number or pairs, added.
+
+    It acts in the plate alone: pins and bushes keep their stresses.
+    """
+    if residual is None or owner_of(problem, body) != "plate":
+        return blocks
+    depth = np.broadcast_to(points.depths(problem, body), points.shape).ravel()
+    hoop, theta = residual_at(residual, depth * problem.hole_radius), points.theta.ravel()
+    cos, sin = np.cos(theta), np.sin(theta)
+    added = hoop[:, None] * np.stack([sin * sin, cos * cos, np.zeros(theta.size), -sin * cos], axis=-1)
+
+    def summed(progress: Progress) -> Iterator[tuple[slice, np.ndarray]]:
+        for part, history in blocks(progress):
+            yield part, history + added[part]
+
+    return summed

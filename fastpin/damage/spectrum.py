@@ -13,10 +13,9 @@ from numpy.typing import ArrayLike
 
 from fastpin.damage.counted import SPECTRUM_CRITERIA, CountedMaterial, Spectrum
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, Criterion
-from fastpin.damage.histories import different_states, history_blocks
+from fastpin.damage.histories import different_states, history_blocks, with_residual
 from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_angles
-from fastpin.damage.reliability import failure_probability
-from fastpin.damage.residual import with_residual
+from fastpin.damage.lives import failure_probability
 from fastpin.errors import InputError
 from fastpin.model.assessment import USUAL, FatigueAssessment
 from fastpin.model.checks import check_callable, choice, instance, true_or_false

@@ -104,6 +104,11 @@ class Study:
     nodes: int
     series: tuple[QuantitySeries, ...]
 
+    @property
+    def of_grids(self) -> bool:
+        """Whether its values are those of several grids, not of several numbers of increments."""
+        return self.method == "path"
+
 
 @dataclass(frozen=True)
 class Convergence(ReadOnly):
