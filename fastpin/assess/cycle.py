@@ -6,14 +6,13 @@ import csv
 import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 import numpy as np
 
-from fastpin.assess.outputs import ROUNDING, UNKNOWN, WHOLE, Curve, Output, map_of
+from fastpin.assess.outputs import ROUNDING, UNKNOWN, WHOLE, Curve, Output, map_of, of_fields
 from fastpin.assess.outputs import document as document_of
-from fastpin.model.angles import from_bottom
-from fastpin.model.loads import LOAD_KIND
+from fastpin.model import angles, loads
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.cycles import CYCLE_KINDS, Cycle
@@ -33,6 +32,10 @@ def _largest(name: str, kind: str) -> Iterator[Output]:
     yield Output(f"largest_{name}_angle", "angle", known(LoadCycle.angle_of_largest), optional=True)
 
 
+WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
+"""Words for the behaviours of a node: "no contact", "sticks", "slips" and "opens"."""
+
+
 CYCLE = (
     Output("first", "whole"),
     Output("last", "whole"),
@@ -45,19 +48,17 @@ CYCLE = (
     Output("regime", "class", classes=REGIMES),
     Output("slip_range_is_exact", "truth", lambda cycle: cycle.has_exact_slip_range),
     Output("dissipation", "energy", optional=True),
-)
+    Output(
+        "nodes", form=map_of(WHOLE, "number of nodes of each behaviour"),
+        of=lambda cycle: {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()},
+    ),
+    Output("work", of=lambda cycle: work_of_loads(cycle), form=map_of(UNKNOWN, "work of each load")),
+)  # fmt: skip
 """Outputs of a :class:`fastpin.states.LoadCycle`."""
 
 
-CHANGES = tuple(
-    Output(name, {int: "whole", bool: "truth"}.get(type_, CYCLE_KINDS[name]), heading=name, optional=type_ is float)
-    for name, type_ in get_type_hints(Cycle).items()
-)
+CHANGES = of_fields(Cycle, CYCLE_KINDS)
 """Outputs of a :class:`fastpin.states.cycles.Cycle`: how one cycle of a block changed the contact."""
-
-
-WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
-"""Words for the behaviours of a node: "no contact", "sticks", "slips" and "opens"."""
 
 
 def cycle_line(cycle: LoadCycle) -> str:
@@ -83,30 +84,17 @@ def cycle_line(cycle: LoadCycle) -> str:
     return f"from corner {cycle.first:,} to {cycle.last:,}: {regime}, {', '.join(parts)}"
 
 
+def work_of_loads(cycle: LoadCycle) -> dict[str, float | None]:
+    """Return the work of each load; it is not known if only the ends of the cycle were kept."""
+    factor, inside = units(cycle.states[0].problem)["energy"].factor, len(cycle.states) > 2
+    return {name: factor * loop.work if inside else None for name, loop in cycle.loops.items()}
+
+
 def natural_sizes(cycle: LoadCycle) -> dict[str, float]:
     """Return natural sizes of slip, traction and friction energy in a cycle. Much smaller values are rounding."""
     found = [sizes(state) for state in cycle.states]
     largest = {kind: max(each[kind] for each in found) for kind in ("displacement", "traction")}
     return largest | {"energy density": largest["displacement"] * largest["traction"]}
-
-
-def _nodes(cycle: LoadCycle) -> dict[str, int]:
-    """The number of nodes of each behaviour."""
-    return {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
-
-
-def _work(cycle: LoadCycle) -> dict[str, float | None]:
-    """The work of each load; it is not known if only the ends of the cycle were kept."""
-    factor, inside = units(cycle.states[0].problem)["energy"].factor, len(cycle.states) > 2
-    return {name: factor * loop.work if inside else None for name, loop in cycle.loops.items()}
-
-
-DOCUMENT = (
-    *CYCLE,
-    Output("nodes", of=_nodes, form=map_of(WHOLE, "number of nodes of each behaviour")),
-    Output("work", of=_work, form=map_of(UNKNOWN, "work of each load")),
-)
-"""Outputs of a load cycle in JSON."""
 
 
 def document(cycle: LoadCycle) -> dict[str, Any]:
@@ -115,7 +103,7 @@ def document(cycle: LoadCycle) -> dict[str, Any]:
     A value that is not known is NaN. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load;
     it is not known if only the ends of the cycle were kept.
     """
-    return document_of(DOCUMENT, cycle, units(cycle.states[0].problem))
+    return document_of(CYCLE, cycle, units(cycle.states[0].problem))
 
 
 def write_csv(cycle: LoadCycle, path: Path) -> None:
@@ -134,7 +122,7 @@ def write_csv(cycle: LoadCycle, path: Path) -> None:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["angle [deg]", *header])
         for angle, *values in zip(cycle.theta.tolist(), *cells.values(), strict=True):
-            writer.writerow([from_bottom(angle), *values])
+            writer.writerow([angles.from_bottom(angle), *values])
 
 
 CONJUGATES = {
@@ -150,8 +138,8 @@ def loop_curve(cycle: LoadCycle) -> Curve:
     unit = units(cycle.states[0].problem)
     columns = {"load point": np.array([load_point(state) for state in cycle.states])}
     for name, loop in cycle.loops.items():
-        words, conjugate = CONJUGATES[LOAD_KIND[name]]
-        of_load, of_displacement = unit[LOAD_KIND[name]], unit[conjugate]
+        words, conjugate = CONJUGATES[loads.LOAD_KIND[name]]
+        of_load, of_displacement = unit[loads.LOAD_KIND[name]], unit[conjugate]
         columns[f"{name} [{of_load.name}]"] = of_load.factor * loop.load
         columns[f"{words} of {name} [{of_displacement.name}]"] = of_displacement.factor * loop.displacement
     return Curve({}, columns)

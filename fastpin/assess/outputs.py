@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import wraps
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar, get_type_hints
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,6 +17,7 @@ import numpy as np
 from fastpin.model.angles import from_bottom
 from fastpin.model.problem import Problem
 from fastpin.model.units import DEGREE, Unit, units
+from fastpin.states.margins import Margin
 from fastpin.storage.files import replacing
 from fastpin.version import __version__
 
@@ -39,7 +40,6 @@ TRUTH: Schema = {"type": "boolean"}
 
 UNKNOWN: Schema = {"type": ["number", "null"]}
 
-OPTIONAL_TEXT: Schema = {"type": ["string", "null"]}
 """Schemas of single values. NaN and infinity are null."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -68,8 +68,8 @@ class Output(NamedTuple):
         A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad), "class", "text",
         "texts", "whole", "truth", or "" for a plain number. Of an output with parts: "list", "map" or "".
     of : callable, optional
-        Gives its value for a subject, in SI units: a number, an array, or a text. Unless given, it is the attribute
-        `name` of the subject.
+        Gives its value for a subject, in SI units: a number, an array, or a text. Unless given, it is the attribute or
+        the key `name` of the subject.
     words : str
         What it is, in the schema.
     heading : str
@@ -105,7 +105,9 @@ class Output(NamedTuple):
 
     def value(self, subject: Any) -> Any:
         """The value of a subject in SI units."""
-        return getattr(subject, self.name) if self.of is None else self.of(subject)
+        if self.of is not None:
+            return self.of(subject)
+        return subject[self.name] if isinstance(subject, Mapping) else getattr(subject, self.name)
 
     def shown(self, subject: Any, unit: Mapping[str, Unit]) -> Any:
         """The value in printed units, angles in degrees, a class in words, and parts as dicts."""
@@ -206,6 +208,15 @@ def numbers(names: str, kind: str = "", optional: bool = False) -> list[Output]:
     return [Output(name, kind, optional=optional) for name in names.split()]
 
 
+def of_fields(record: type, kinds: Mapping[str, str] = MappingProxyType({})) -> tuple[Output, ...]:
+    """Return an output for each field of a record, of the kind of its type. A float may be unknown, and has a kind."""
+    types = {int: "whole", bool: "truth", str: "text"}
+    return tuple(
+        Output(name, types.get(its_type, kinds.get(name, "")), heading=name, optional=its_type not in types)
+        for name, its_type in get_type_hints(record).items()
+    )
+
+
 def chosen(outputs: Iterable[Output], names: Sequence[str]) -> dict[str, Output]:
     """Return some of the outputs by name, in the order of the names."""
     known = {each.name: each for each in outputs}
@@ -238,11 +249,50 @@ def or_null(item: Schema) -> Schema:
     return {"anyOf": [item, {"type": "null"}]}
 
 
-ERROR = Output("error", "text", optional=True)
-"""Why a result is incomplete."""
-
 UNITS = Output("units", of=lambda found: unit_names(found.problem), form=map_of(TEXT, "unit of each kind of quantity"))
 """The units of the problem of a subject."""
+
+
+class Question(NamedTuple):
+    """A question that a case asks of its result. What is found is an object of its own class.
+
+    Attributes
+    ----------
+    bar : str
+        Text of the progress bar while it is looked for.
+    failed : str
+        What it means that nothing is found; the reason follows.
+    margin_names : tuple of str
+        Names of its margins of safety.
+    outcomes : mapping of str
+        Outcomes of sweeps by name, pairs of an :class:`Output` and a callable ``read(result, how)``, which gives the
+        subject of the output for the value of the section.
+    find : callable
+        ``find(case, held, progress)``: what is found; None if it is not looked for. InputError says why nothing is
+        found.
+    judged : callable
+        ``judged(result, how)``: what margins need of a whole result in a sweep.
+    lines : callable
+        ``lines(found, over)``: lines of text. `over` has the bodies that yield, see
+        :func:`fastpin.states.margins.over_yield`.
+    document : callable
+        ``document(found, over)``: a dict for JSON.
+    schema : callable
+        ``schema()``: its JSON schema.
+    margins : callable
+        ``margins(found)``: its margins of safety.
+    """
+
+    bar: str
+    failed: str
+    margin_names: tuple[str, ...]
+    outcomes: Mapping[str, tuple[Output, Callable[[Any, Any], Any]]]
+    find: Callable[..., Any]
+    judged: Callable[[Any, Any], Any]
+    lines: Callable[[Any, Mapping[str, float]], list[str]]
+    document: Callable[[Any, Mapping[str, float]], dict[str, Any]]
+    schema: Callable[[], Schema]
+    margins: Callable[[Any], list[Margin]]
 
 
 @dataclass(frozen=True, eq=False)

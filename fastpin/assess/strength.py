@@ -14,16 +14,13 @@ from fastpin.damage.hole_strength import JOINT_MODES
 from fastpin.damage.laminates import MODES
 from fastpin.damage.margins import strength_margins
 from fastpin.errors import InputError
-from fastpin.model import Case, LoadHistory, Problem
-from fastpin.model.angles import from_bottom
-from fastpin.model.checks import choice
+from fastpin.model import Case, LoadHistory, Problem, angles, checks
 from fastpin.model.doubts import doubts_given
 from fastpin.model.loads import LOAD_KIND, Corner
 from fastpin.model.ply import CRITERION_NAMES, PlyCriterion
 from fastpin.model.strength import LENGTHS, StrengthAssessment
 from fastpin.model.units import printed_loads, units
 from fastpin.solver.errors import ConvergenceError, SolveError
-from fastpin.states.margins import Margin
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
@@ -36,11 +33,6 @@ CLOSE = 1e-6
 
 MOST_SOLVED = 40
 """Most histories that are solved to find it. Three or four are usual: stresses nearly grow with the load."""
-
-
-BAR = "state {n} of {total}"
-FAILED = "no strength is assessed"
-MARGINS = ("ply",)
 
 
 PLACE = (
@@ -85,6 +77,10 @@ class StrengthFound(NamedTuple):
     failure: FailureLoad | None = None
     reason: str = ""
 
+    def length(self, name: str) -> float | None:
+        """A length of the assessment, m; None if it has another one."""
+        return self.how.lengths.get(name)
+
 
 @outputs.kept
 def worst_state(result: Any, how: StrengthAssessment) -> StrengthFound:
@@ -98,9 +94,6 @@ def worst_state(result: Any, how: StrengthAssessment) -> StrengthFound:
     return StrengthFound(how, len(result.states), *damage.least_strength(result.states, how))
 
 
-judged = worst_state
-
-
 def _load_at_failure(result: Any, how: StrengthAssessment) -> FailureLoad:
     """Find the load at failure, on as many nodes and with states at the same fractions of each step."""
     fractions = sorted({state.fraction for state in result} - {1.0})
@@ -110,17 +103,6 @@ def _load_at_failure(result: Any, how: StrengthAssessment) -> FailureLoad:
             result.problem, result.history, how.criterion, **how.lengths, over="history",
             nodes=result.grid.size, **options,
         )  # fmt: skip
-
-
-OUTCOMES = {name: (output, worst_state) for name, output in outputs.chosen(PLACE, ("ratio", "angle")).items()} | {
-    "factor": (outputs.Output("factor", "", lambda found: found.factor), _load_at_failure)
-}
-"""Outcomes of sweeps. The history is solved several times for the "factor" at failure."""
-
-
-def margins(found: StrengthFound) -> list[Margin]:
-    """Return the margin of the first ply."""
-    return strength_margins(found.how, found.state, found.strength)
 
 
 def strength_words(problem: Problem, how: StrengthAssessment) -> str:
@@ -178,21 +160,16 @@ def lines(found: StrengthFound, over: Mapping[str, float]) -> list[str]:
     return text
 
 
-def _length(name: str, found: StrengthFound) -> float | None:
-    """A length of the assessment; None if it has another one."""
-    return found.how.lengths.get(name)
-
-
 def place_words(strength: damage.JointStrength) -> str:
     """Return the place of the least ratio, its ply and its modes in words."""
-    at = f"at {from_bottom(strength.angle):z.2f} deg from the bottom"
+    at = f"at {angles.from_bottom(strength.angle):z.2f} deg from the bottom"
     parts = [at, f"ply of {strength.ply_angle:g} deg by {strength.ply_mode}", strength.joint_mode]
     return ", ".join(filter(None, parts))
 
 
 FOUND = (
     outputs.Output("criterion", "text", lambda found: found.how.criterion, allowed=CRITERION_NAMES),
-    *(outputs.Output(name, "length", partial(_length, name), optional=True) for name in LENGTHS),
+    *(outputs.Output(name, "length", partial(StrengthFound.length, name=name), optional=True) for name in LENGTHS),
     outputs.Output("states", "whole"),
     *PLACE,
     outputs.Output(
@@ -212,14 +189,20 @@ FOUND = (
 """Outputs of a :class:`StrengthFound`. A ratio without stress is infinite."""
 
 
-def document(found: StrengthFound, over: Mapping[str, float]) -> dict[str, Any]:
-    """Return a strength as a dict for JSON."""
-    return outputs.document(FOUND, found, units(found.state.problem))
-
-
-def schema() -> outputs.Schema:
-    """Return the JSON schema of :func:`document`."""
-    return outputs.schema_of(FOUND)
+QUESTION = outputs.Question(
+    bar="state {n} of {total}",
+    failed="no strength is assessed",
+    margin_names=("ply",),
+    outcomes={name: (output, worst_state) for name, output in outputs.chosen(PLACE, ("ratio", "angle")).items()}
+    | {"factor": (outputs.Output("factor"), _load_at_failure)},
+    find=find,
+    judged=worst_state,
+    lines=lines,
+    document=lambda found, over: outputs.document(FOUND, found, units(found.state.problem)),
+    schema=lambda: outputs.schema_of(FOUND),
+    margins=lambda found: strength_margins(found.how, found.state, found.strength),
+)
+"""The strength of [strength]. The history is solved several times for its outcome "factor" at failure."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -281,7 +264,7 @@ def failure_load(
     """
     loads = history if isinstance(history, LoadHistory) else LoadHistory(history)
     how = StrengthAssessment(criterion, distance, tension, compression)
-    last = slice(-1 if choice("over", over, ("end", "history")) == "end" else 0, None)
+    last = slice(-1 if checks.choice("over", over, ("end", "history")) == "end" else 0, None)
     scaled = [name for name, kind in LOAD_KIND.items() if kind != "ratio"]  # all but the change of friction
     factor, known = 1.0, []
     for solved in range(1, MOST_SOLVED + 1):

@@ -217,16 +217,19 @@ def _cycles(result: WearResult) -> list[dict[str, Any]]:
     ]
 
 
-_NUMBERS = outputs.list_of(outputs.NUMBER)
-
 LIFE = (
     outputs.Output("complete", "truth"),
     outputs.UNITS,
     outputs.Output("law", "text"),
     outputs.Output("tolerance"),
-    outputs.Output("angles", of=lambda life: [from_bottom(angle) for angle in life.theta.tolist()], form=_NUMBERS),
-    outputs.Output("pin_coefficient", of=lambda life: _profile(life, life.coefficients[0]), form=_NUMBERS),
-    outputs.Output("plate_coefficient", of=lambda life: _profile(life, life.coefficients[1]), form=_NUMBERS),
+    *(
+        outputs.Output(name, of=read, form=outputs.list_of(outputs.NUMBER))
+        for name, read in {
+            "angles": lambda life: [from_bottom(angle) for angle in life.theta.tolist()],
+            "pin_coefficient": lambda life: _profile(life, life.coefficients[0]),
+            "plate_coefficient": lambda life: _profile(life, life.coefficients[1]),
+        }.items()
+    ),
     outputs.Output("statistics", form=outputs.map_of(outputs.NUMBER, "counters of the solver")),
     outputs.Output(
         "cycles", of=_cycles,

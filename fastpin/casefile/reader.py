@@ -23,16 +23,14 @@ from fastpin.casefile.materials import known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
-from fastpin.model import LOADS, LoadHistory, SolveOptions
+from fastpin.model import LOADS, LoadHistory, SolveOptions, checks, synonyms
 from fastpin.model.assessment import FatigueAssessment, check_assessment
 from fastpin.model.beside import BESIDE
 from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
-from fastpin.model.checks import file_path, string
 from fastpin.model.fields import FIELDS
 from fastpin.model.laminate import LAMINATE_KEYS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
-from fastpin.model.synonyms import closest, meant
 from fastpin.model.units import PER_THICKNESS
 from fastpin.model.wear import WEAR_KEYS
 
@@ -92,7 +90,7 @@ def read_case(path: str | Path) -> Case:
     InputError
         If `path` is no path.
     """
-    path = file_path("path", path)
+    path = checks.file_path("path", path)
     return parse_case(read_text(path), str(path), path.parent)
 
 
@@ -113,7 +111,7 @@ def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> 
     CaseFileError, InputError
         See :func:`fastpin.read_case`.
     """
-    place = file_path("folder", folder)
+    place = checks.file_path("folder", folder)
     return parse_text(text, name, "case file", lambda source: case_from(source, place))
 
 
@@ -154,7 +152,7 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     """
     shared, tables = shared or SharedParts(), source.root.table
     shared.part("keys", source, _keys_of(tables), lambda: _check_keys(source))
-    title = source.root.checked("title", string) or ""
+    title = source.root.checked("title", checks.string) or ""
     about = _about(source.section("about"))
     materials = known_materials(source, folder)
     pair = shared.part("pair", source, _given_of_pair(tables, materials), lambda: read_pair(source, materials))
@@ -244,7 +242,7 @@ def _check_keys(source: CaseText) -> None:
         elif written(name, value):
             source.report_unknown(name, _section_hint(name))
         else:
-            source.report_unknown(name, _owners(name) or closest(name, ROOT_KEYS) or _elsewhere(name))
+            source.report_unknown(name, _owners(name) or synonyms.closest(name, ROOT_KEYS) or _elsewhere(name))
 
 
 def _section_hint(name: str) -> str:
@@ -257,14 +255,14 @@ def _section_hint(name: str) -> str:
     for kind, (sections, command) in KINDS.items():
         if name in sections:
             return f"; a file with [{name}] is a {kind}, see fastpin {command}"
-    return closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_in_brackets, KEYS))}"
+    return synonyms.closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_in_brackets, KEYS))}"
 
 
 def key_hint(section: str, key: str) -> str:
     """A hint at the key that is meant by an unknown `key` of a section, or at all keys of the section."""
     known = KEYS[section]
-    elsewhere = closest(key, known, spelling=False) or _owners(key) or _elsewhere(key)
-    return elsewhere or closest(key, known) or f"; the keys are {', '.join(known)}"
+    elsewhere = synonyms.closest(key, known, spelling=False) or _owners(key) or _elsewhere(key)
+    return elsewhere or synonyms.closest(key, known) or f"; the keys are {', '.join(known)}"
 
 
 def _owners(key: str) -> str:
@@ -286,10 +284,10 @@ def _in_words(sections: list[str]) -> str:
 
 def _elsewhere(word: str) -> str:
     """A hint at a key of some section that is meant by `word`; empty if there is none."""
-    for name in meant(word):
+    for name in synonyms.meant(word):
         owners = sections_with(name)
         if owners:
-            hint = closest(word, [name])
+            hint = synonyms.closest(word, [name])
             return f"{hint.removesuffix('?')} in {_in_words(owners)}{'?' * hint.endswith('?')}"
     return ""
 

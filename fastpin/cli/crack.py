@@ -7,7 +7,7 @@ import sys
 
 from fastpin import casefile, figures, storage
 from fastpin.assess import outputs
-from fastpin.assess.crack import BAR, DOCUMENT, CrackStops, growth_curve, growth_line, growth_table
+from fastpin.assess.crack import DOCUMENT, QUESTION, CrackStops, growth_curve, growth_line, growth_table
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
@@ -23,7 +23,7 @@ def run(options: argparse.Namespace) -> int:
     stops = CrackStops.of(len(case.history), held.result.cycles, held.between, options.spectrum)
     check_outputs({"--output": options.output, "--csv": options.csv, "--json": options.json}, figures=("--output",))
     try:
-        with Bar(1, BAR) as bar:
+        with Bar(1, QUESTION.bar) as bar:
             found = stops.growth(_how(options, case), progress_to(bar))
     except InputError as error:
         name = "at" if error.field == "theta" else error.field

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fastpin.model.angles import from_bottom
-from fastpin.model.points import edge_body, owner_of
+from fastpin.model import angles, points
 from fastpin.model.units import units
 from fastpin.states.margins import Margin
 
@@ -50,14 +49,14 @@ def crack_margins(growth: Growth) -> list[Margin]:
     length or to its arrest. Growth: threshold over the range of K_I at the first length.
     """
     length, body = units(growth.problem)["length"], growth.crack.body
-    where = f"mouth at {from_bottom(growth.crack.theta):z.2f} deg"
-    subject = f"{edge_body(growth.problem, body)}: crack"
+    where = f"mouth at {angles.from_bottom(growth.crack.theta):z.2f} deg"
+    subject = f"{points.edge_body(growth.problem, body)}: crack"
 
     def row(name: str, words: str, value: np.ndarray, allowable: float, at: int, remark: str) -> Margin:
         point = float(growth.largest_at[at])
         return Margin(
             f"{subject}, {words}", "stress intensity", float(value[at]), allowable, point, remark, growth.loads[point],
-            name, owner_of(growth.problem, body),
+            name, points.owner_of(growth.problem, body),
         )  # fmt: skip
 
     rows, toughness = [], growth.law.fracture_toughness

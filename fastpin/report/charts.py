@@ -81,20 +81,6 @@ def value_text(chart: lookups.ChartQuantity, found: lookups.ChartValue) -> str:
     return f"{chart.name} = {value:.{places}f} +- {error:.{places}f} {unit}".rstrip()
 
 
-CHART = (
-    Output("words", "text"),
-    Output("unit", "text"),
-    Output("parameters", "texts", lambda chart: list(chart.parameters)),
-    Output("relative", "truth", lambda chart: STORED[chart.name].is_relative),
-    Output(
-        "bounds", "map", lambda chart: {table.group.name: bounds_of(table, chart) for table in tables_of(chart)},
-        "bounds of each table",
-        parts=(Output("usual", of=lambda bounds: bounds[0]), Output("largest", of=lambda bounds: bounds[1])),
-    ),
-)  # fmt: skip
-"""Outputs of a chart."""
-
-
 class Looked(NamedTuple):
     """Charts, the parameters that were given, and the value of the only chart at them, if it was looked up."""
 
@@ -104,11 +90,24 @@ class Looked(NamedTuple):
 
 
 LOOKED = (
-    Output("charts", "map", words="the charts", parts=CHART),
+    Output(
+        "charts", "map", words="the charts",
+        parts=(
+            Output("words", "text"),
+            Output("unit", "text"),
+            Output("parameters", "texts", lambda chart: list(chart.parameters)),
+            Output("relative", "truth", lambda chart: STORED[chart.name].is_relative),
+            Output(
+                "bounds", "map", words="bounds of each table",
+                of=lambda chart: {table.group.name: bounds_of(table, chart) for table in tables_of(chart)},
+                parts=(Output("usual", of=lambda bounds: bounds[0]), Output("largest", of=lambda bounds: bounds[1])),
+            ),
+        ),
+    ),
     Output("parameters", form={"type": "object", "description": "the parameters that were given"}),
     Output("value", of=lambda looked: None if looked.found is None else float(looked.found), optional=True),
     Output("error", of=lambda looked: None if looked.found is None else float(looked.found.error), optional=True),
-)
+)  # fmt: skip
 """Outputs of a look-up."""
 
 

@@ -25,7 +25,6 @@ from fastpin.assess.outputs import (
     WHOLE,
     Column,
     Output,
-    Schema,
     csv_cell,
     list_of,
     map_of,
@@ -207,13 +206,6 @@ SERIES = (
 COLUMNS = ("corner", "solver", "nodes", "increments", "quantity", "unit", "value", *(each.name for each in SERIES[4:]))
 """Columns of the CSV file. Each value has a line."""
 
-_COUNTS: Schema = {"type": ["array", "integer", "null"], "items": WHOLE}
-
-
-def _arc(convergence: Convergence) -> list[float]:
-    grid = convergence.grid
-    return [float(grid.theta[0]), 2.0 * math.pi + grid.theta[0] if grid.closed else float(grid.theta[-1])]
-
 
 def _with_series(convergence: Convergence) -> Iterator[tuple[Study, list[ReportedSeries]]]:
     """Yield the studies, each with its series at all corners."""
@@ -224,7 +216,7 @@ def _with_series(convergence: Convergence) -> Iterator[tuple[Study, list[Reporte
 
 CONVERGENCE = (
     Output("complete", "truth"),
-    Output("arc", of=_arc, form=list_of(NUMBER, 2)),
+    Output("arc", form=list_of(NUMBER, 2)),
     UNITS,
     Output(
         "loads", form=map_of(map_of(NUMBER, "loads"), "loads at each corner"),
@@ -235,8 +227,14 @@ CONVERGENCE = (
         "studies", "list", _with_series,
         parts=(
             Output("solver", "text", lambda each: each[0].method, allowed=METHODS),
-            Output("nodes", of=lambda each: each[0].counts if each[0].of_grids else each[0].nodes, form=_COUNTS),
-            Output("increments", of=lambda each: None if each[0].of_grids else each[0].counts, form=_COUNTS),
+            Output(
+                "nodes", of=lambda each: each[0].counts if each[0].of_grids else each[0].nodes,
+                form={"type": ["array", "integer", "null"], "items": WHOLE},
+            ),
+            Output(
+                "increments", of=lambda each: None if each[0].of_grids else each[0].counts,
+                form={"type": ["array", "integer", "null"], "items": WHOLE},
+            ),
             Output("quantities", "list", lambda each: each[1], parts=SERIES),
         ),
     ),
@@ -264,11 +262,8 @@ def write_csv(convergence: Convergence, path: Path) -> None:
                 for count, value in zip(study.counts, cells.pop("values"), strict=True):
                     grid = (count, "") if study.of_grids else (study.nodes, count)
                     whole = cells | dict(zip(("nodes", "increments", "value"), (*grid, value), strict=True))
-                    writer.writerow({name: _csv_cell(cell) for name, cell in whole.items()})
-
-
-def _csv_cell(value: Any) -> Any:
-    return "" if isinstance(value, float) and math.isnan(value) else csv_cell(value)
+                    unknown = {name for name, cell in whole.items() if isinstance(cell, float) and math.isnan(cell)}
+                    writer.writerow({name: "" if name in unknown else csv_cell(whole[name]) for name in COLUMNS})
 
 
 def document(convergence: Convergence, title: str = "") -> dict[str, Any]:

@@ -64,20 +64,6 @@ def _shown(found: Identified, name: str, *values: float) -> list[float]:
     return [factor * value for value in values]
 
 
-def _noise(found: Identified) -> dict[str, float]:
-    names = ("displacement", "force")
-    return {name: _shown(found, name, noise)[0] for name, noise in zip(names, found.loop.noise, strict=True)}
-
-
-def _estimates(found: Identified) -> dict[str, FittedValue]:
-    return {name: FittedValue(*_shown(found, name, *each)) for name, each in found.estimates.items()}
-
-
-def _energies(found: Identified) -> list[dict[str, float]]:
-    energies = units(found.problem)["energy"].factor * found.energies
-    return [dict(zip(ENERGIES, each, strict=True)) for each in energies.tolist()]
-
-
 IDENTIFIED = (
     outputs.UNITS,
     Output("displacement", "text", lambda found: found.names[0]),
@@ -85,10 +71,18 @@ IDENTIFIED = (
     Output("samples", "whole", lambda found: found.loop.time.size),
     Output("turning_points", "whole", lambda found: len(found.loop.ends) - 2),
     Output("least_reversal", of=lambda found: _shown(found, "displacement", found.loop.width)[0]),
-    Output("noise", of=_noise, form=outputs.object_of(dict.fromkeys(("displacement", "force"), outputs.NUMBER))),
+    Output(
+        "noise", of=lambda found: found,
+        parts=(
+            Output("displacement", of=lambda found: _shown(found, "displacement", found.loop.noise[0])[0]),
+            Output("force", of=lambda found: _shown(found, "force", found.loop.noise[1])[0]),
+        ),
+    ),
     Output("scatter"),
     Output(
-        "estimates", "map", _estimates, "an identified value and its interval of 95 %; null: no bound",
+        "estimates", "map",
+        lambda found: {name: FittedValue(*_shown(found, name, *each)) for name, each in found.estimates.items()},
+        "an identified value and its interval of 95 %; null: no bound",
         parts=(Output("value", words="null: not told", optional=True), *outputs.numbers("low high", optional=True)),
     ),
     Output(
@@ -96,7 +90,12 @@ IDENTIFIED = (
         form=outputs.list_of({"type": "array", "prefixItems": [outputs.TEXT, outputs.TEXT, outputs.NUMBER]}),
     ),
     Output(
-        "energies", of=_energies, form=outputs.list_of(outputs.object_of(dict.fromkeys(ENERGIES, outputs.NUMBER)))
+        "energies",
+        of=lambda found: [
+            dict(zip(ENERGIES, each, strict=True))
+            for each in (units(found.problem)["energy"].factor * found.energies).tolist()
+        ],
+        form=outputs.list_of(outputs.object_of(dict.fromkeys(ENERGIES, outputs.NUMBER)))
     ),
     Output("notes", "texts", lambda found: list(found.notes)),
 )  # fmt: skip

@@ -10,22 +10,22 @@ from functools import partial
 
 from fastpin.assess import crack, wear
 from fastpin.assess.outputs import (
-    ERROR,
     NUMBER,
-    OPTIONAL_TEXT,
     TEXT,
-    TRUTH,
     UNKNOWN,
     WHOLE,
+    Output,
     Schema,
     list_of,
     map_of,
     object_of,
+    of_fields,
     whole_schema,
 )  # fmt: skip
 from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.model.checks import choice
 from fastpin.report import charts, convergence, identify, joints, summary, tolerances
+from fastpin.verification.rows import Check
 from fastpin.version import __version__
 
 
@@ -52,25 +52,14 @@ def json_schema(command: str) -> Schema:
     }
 
 
-def _verify() -> Schema:
-    check = object_of(
-        {
-            **dict.fromkeys(("topic", "case", "quantity"), TEXT),
-            **dict.fromkeys(("reference", "ours", "difference", "tolerance"), UNKNOWN),
-            **dict.fromkeys(("unit", "message"), TEXT),
-            "passed": TRUTH,
-        }
-    )
-    return object_of(
-        {
-            "fastpin": TEXT,
-            "versions": map_of(TEXT, "version of each library"),
-            "cores": WHOLE,
-            "seconds": NUMBER,
-            "passed": TRUTH,
-            "checks": list_of(check),
-        }
-    )
+CHECKS = (
+    Output("versions", form=map_of(TEXT, "version of each library")),
+    Output("cores", "whole"),
+    Output("seconds"),
+    Output("passed", "truth"),
+    Output("checks", "list", parts=(*of_fields(Check), Output("passed", "truth"))),
+)
+"""Outputs of the checks of an installation."""
 
 
 def _benchmarks() -> Schema:
@@ -78,7 +67,7 @@ def _benchmarks() -> Schema:
         {
             "quantity": TEXT,
             "unit": TEXT,
-            "published": OPTIONAL_TEXT | {"description": "the number as its source prints it"},
+            "published": {"type": ["string", "null"]} | {"description": "the number as its source prints it"},
             "fastpin": UNKNOWN,
             "difference": UNKNOWN,
             "agrees": {"type": ["boolean", "null"]},
@@ -107,10 +96,10 @@ def _compliance() -> Schema:
 _DOCUMENTS: dict[str, Callable[[], Schema]] = {
     "run": partial(whole_schema, summary.RUN),
     "converge": partial(whole_schema, convergence.CONVERGENCE),
-    "verify": _verify,
+    "verify": partial(whole_schema, CHECKS, has_title=False),
     "benchmarks": _benchmarks,
     "compliance": _compliance,
-    "wear": partial(whole_schema, (ERROR, *wear.LIFE)),
+    "wear": partial(whole_schema, (Output("error", "text", optional=True), *wear.LIFE)),
     "tolerances": tolerances.schema,
     "crack": partial(whole_schema, crack.DOCUMENT),
     "charts": partial(whole_schema, charts.LOOKED, has_title=False),

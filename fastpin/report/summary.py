@@ -16,12 +16,11 @@ from fastpin.assess.outputs import NUMBER, TEXT, UNKNOWN, WHOLE, Output
 from fastpin.assess.questions import QUESTIONS, margins_of
 from fastpin.bodies.body import BodyBase
 from fastpin.errors import ReadingError, reading
-from fastpin.model import Case, Problem, Profile
-from fastpin.model.angles import interval_from_bottom
+from fastpin.model import Case, Problem, Profile, angles
 from fastpin.model.fields import FIELDS, Field
 from fastpin.model.laminate import MODULI, ORDER
 from fastpin.model.loads import ACTING, LATER, LOAD_KIND, LOADS
-from fastpin.model.materials import STRENGTHS, Material
+from fastpin.model.materials import STRENGTHS
 from fastpin.model.options import SolveOptions
 from fastpin.model.units import DEGREE, Unit, printed_loads, units
 from fastpin.solver.result import Result
@@ -31,24 +30,6 @@ from fastpin.states.margins import Margin, over_yield
 from fastpin.states.quantities import QUANTITIES, ZONES, bar_in_degrees, in_degrees, load_point, quantity
 
 # -- the problem -------------------------------------------------------------------------------------------------
-
-_LAMINATE = outputs.object_of(
-    {
-        "layup": outputs.or_null(TEXT),
-        "ply": {
-            "description": "name or numbers of the ply; a list: of each ply",
-            "type": ["string", "object", "array", "null"],
-        },
-        "axis": NUMBER | {"description": "deg from the bottom of the hole"},
-        "moduli": outputs.object_of(dict.fromkeys(MODULI, NUMBER)),
-        "compliance": outputs.list_of(NUMBER, len(ORDER)) | {"description": f"{', '.join(ORDER)}, 1/Pa"},
-        "is_isotropic_contact": outputs.TRUTH,
-    }
-)
-_BODY = {"type": "object", "properties": {"kind": TEXT}, "required": ["kind"]}
-_PROFILE = outputs.list_of({"type": "object"}) | {
-    "description": "terms of a profile; angles in degrees from the bottom"
-}
 
 MATERIAL = (
     Output("name", "text"),
@@ -63,19 +44,10 @@ MATERIAL = (
 """Outputs of a material."""
 
 
-def _laminate(material: Material) -> dict[str, Any] | None:
-    """The entry of a laminate; None for an isotropic material."""
-    return material.summary().get("laminate")
-
-
-def _body(name: str, problem: Problem) -> dict[str, Any]:
-    """The entries of a body, with its material."""
-
-    def summary(material: Material) -> dict[str, Any]:
-        return outputs.document(PLATE, material, {})
-
+def body_entries(problem: Problem, name: str) -> dict[str, Any]:
+    """Return the entries of a body, with its material."""
     body: BodyBase = getattr(problem, name)
-    return body.as_json(summary) | body.summary()
+    return body.as_json(lambda material: outputs.document(PLATE, material, {})) | body.summary()
 
 
 def _in_its_unit(name: str, problem: Problem) -> Any:
@@ -90,14 +62,35 @@ def _in_its_unit(name: str, problem: Problem) -> Any:
 
 def _form(each: Field) -> outputs.Schema:
     """The schema of a field."""
+    words = "terms of a profile; angles in degrees from the bottom"
+    profile = outputs.list_of({"type": "object"}) | {"description": words}
     if each.has_section:
-        return outputs.map_of(_PROFILE, "profiles; left out without any")
+        return outputs.map_of(profile, "profiles; left out without any")
     if each.is_profile:
-        return {"anyOf": [NUMBER, _PROFILE]}
+        return {"anyOf": [NUMBER, profile]}
     return TEXT if each.choices else UNKNOWN if each.is_optional else NUMBER
 
 
-PLATE = (*MATERIAL, Output("laminate", of=_laminate, form=_LAMINATE, may_lack=True))
+PLATE = (
+    *MATERIAL,
+    Output(
+        "laminate", of=lambda material: material.summary().get("laminate"), may_lack=True,
+        form=outputs.object_of(
+            {
+                "layup": outputs.or_null(TEXT),
+                "ply": {
+                    "description": "name or numbers of the ply; a list: of each ply",
+                    "type": ["string", "object", "array", "null"],
+                },
+                "axis": NUMBER | {"description": "deg from the bottom of the hole"},
+                "moduli": outputs.object_of(dict.fromkeys(MODULI, NUMBER)),
+                "compliance": outputs.list_of(NUMBER, len(ORDER)) | {"description": f"{', '.join(ORDER)}, 1/Pa"},
+                "is_isotropic_contact": outputs.TRUTH,
+            }
+        ),
+    ),
+)  # fmt: skip
+"""Outputs of a material that may be a laminate."""
 
 PROBLEM = (
     Output("pin", of=lambda problem: problem.pair.pin, parts=MATERIAL),
@@ -114,7 +107,13 @@ PROBLEM = (
     Output("beta_star", of=lambda problem: problem.surfaces.beta_star),
     *(Output(name, of=partial(_in_its_unit, name), form=_form(each), may_lack=each.has_section)
       for name, each in FIELDS.items()),
-    *(Output(name, of=partial(_body, name), form=_BODY) for name in ("pin_body", "plate_body")),
+    *(
+        Output(
+            name, of=partial(body_entries, name=name),
+            form={"type": "object", "properties": {"kind": TEXT}, "required": ["kind"]},
+        )
+        for name in ("pin_body", "plate_body")
+    ),
     Output("assembled_clearance"),
     Output("press_fit_pressure"),
     Output("dimensionless", "truth"),
@@ -125,7 +124,7 @@ PROBLEM = (
 # -- a state -----------------------------------------------------------------------------------------------------
 
 
-class _Reading(NamedTuple):
+class ReadState(NamedTuple):
     """A state, and the quantities that could not be read, with the reasons."""
 
     state: State
@@ -140,6 +139,35 @@ class _Reading(NamedTuple):
             self.unread[error.field] = error.reason
             return None
 
+    @property
+    def unresolved(self) -> list[str]:
+        """The quantities that the nodes do not resolve."""
+        is_resolved = {name: partial(each.is_resolved, self.state) for name, each in QUANTITIES.items()}
+        return [name for name, each in is_resolved.items() if self.known(name, each) is False]
+
+    @property
+    def peak_hoop_resolved(self) -> bool | None:
+        """Whether the nodes resolve the largest hoop stress; None for a rigid plate."""
+        is_rigid = self.state.problem.surfaces.plate.is_rigid
+        is_resolved: bool | None
+        is_resolved = None if is_rigid else self.known("peak_hoop", lambda: self.state.peak_hoop_stress().resolved)
+        return is_resolved
+
+    def intervals(self, zone: str) -> list[tuple[float, float]]:
+        """The intervals of a zone, degrees from the bottom."""
+        return [angles.interval_from_bottom(*each) for each in getattr(self.state, zone)]
+
+    @property
+    def error_bars(self) -> Mapping[str, float] | None:
+        """The error bars in printed units; None without."""
+        bars, unit = self.state.error_bars, units(self.state.problem)
+        return bars and {name: _in_units(unit, name, bar_in_degrees(name, bar)) for name, bar in bars.items()}
+
+    @property
+    def seat(self) -> ReadState | None:
+        """The state of a bush that slips in its seat."""
+        return None if self.state.seat is None else ReadState(self.state.seat, self.unread)
+
 
 def _quantity(name: str) -> Output:
     """A quantity of a state. A class has words, and is never null."""
@@ -151,31 +179,7 @@ def _quantity(name: str) -> Output:
     )  # fmt: skip
 
 
-def _unresolved(read: _Reading) -> list[str]:
-    """The quantities that the nodes do not resolve."""
-    is_resolved = {name: partial(each.is_resolved, read.state) for name, each in QUANTITIES.items()}
-    return [name for name, each in is_resolved.items() if read.known(name, each) is False]
-
-
-def _peak_hoop_resolved(read: _Reading) -> bool | None:
-    if read.state.problem.surfaces.plate.is_rigid:
-        return None
-    is_resolved: bool | None = read.known("peak_hoop", lambda: read.state.peak_hoop_stress().resolved)
-    return is_resolved
-
-
-def _intervals(zone: str, read: _Reading) -> list[tuple[float, float]]:
-    return [interval_from_bottom(*each) for each in getattr(read.state, zone)]
-
-
-def _bars(read: _Reading) -> Mapping[str, float] | None:
-    bars, unit = read.state.error_bars, units(read.state.problem)
-    return bars and {name: _in_units(unit, name, bar_in_degrees(name, bar)) for name, bar in bars.items()}
-
-
 _RESULTANTS = ("P", "Q", "M")
-_INTERVALS = outputs.list_of(outputs.list_of(NUMBER, 2))
-_SLIP = {"description": "start and stop, deg, and the sign of the slip", **outputs.list_of(NUMBER, 3)}
 
 STATE = (
     Output("load_point", of=lambda read: load_point(read.state)),
@@ -187,12 +191,21 @@ STATE = (
     ),
     Output("in_contact", "truth", lambda read: read.state.in_contact),
     *(_quantity(name) for name in QUANTITIES if name not in _RESULTANTS),
-    Output("unresolved", "texts", _unresolved, allowed=[name for name, each in QUANTITIES.items() if each.edge]),
-    Output("peak_hoop_resolved", "truth", _peak_hoop_resolved, optional=True),
-    *(Output(zone, of=partial(_intervals, zone), form=_INTERVALS) for zone in ZONES),
+    Output("unresolved", "texts", allowed=[name for name, each in QUANTITIES.items() if each.edge]),
+    Output("peak_hoop_resolved", "truth", optional=True),
+    *(
+        Output(
+            zone, form=outputs.list_of(outputs.list_of(NUMBER, 2)),
+            of=partial(ReadState.intervals, zone=zone),
+        )
+        for zone in ZONES
+    ),
     Output(
-        "slip", form=outputs.list_of(_SLIP),
-        of=lambda read: [(*interval_from_bottom(start, stop), sign) for start, stop, sign in read.state.slip_zones],
+        "slip",
+        form=outputs.list_of(
+            outputs.list_of(NUMBER, 3) | {"description": "start and stop, deg, and the sign of the slip"}
+        ),
+        of=lambda read: [(*angles.interval_from_bottom(*ends), sign) for *ends, sign in read.state.slip_zones],
     ),
     Output("energy", "energy", lambda read: read.state.energy, optional=True),
     Output(
@@ -203,23 +216,9 @@ STATE = (
         "residuals", of=lambda read: read.state.residuals,
         form=outputs.map_of(UNKNOWN, "errors of the contact conditions"),
     ),
-    Output("error_bars", of=_bars, form=outputs.or_null(outputs.map_of(UNKNOWN, "largest likely errors"))),
+    Output("error_bars", form=outputs.or_null(outputs.map_of(UNKNOWN, "largest likely errors"))),
 )  # fmt: skip
 """Outputs of a state of one interface."""
-
-
-def _seat(read: _Reading) -> _Reading | None:
-    return None if read.state.seat is None else _Reading(read.state.seat, read.unread)
-
-
-WITH_SEAT = (
-    *STATE,
-    Output(
-        "seat", of=_seat, parts=STATE, may_lack=True,
-        words="the contact of a bush that slips in its seat; left out without one",
-    ),
-)  # fmt: skip
-"""Outputs of a state."""
 
 
 # -- a run -------------------------------------------------------------------------------------------------------
@@ -246,11 +245,10 @@ class _Run:
         """The known margins."""
         return margins_of(self.result, self.found) if self.result is not None and self.result.states else []
 
-
-def _answer(name: str, run: _Run) -> dict[str, Any] | None:
-    """What is found for a question; None if nothing is found."""
-    found: Any = run.found.get(name)
-    return None if found is None else QUESTIONS[name].document(found, over_yield(run.margins))
+    def answer(self, name: str) -> dict[str, Any] | None:
+        """What is found for a question; None if nothing is found."""
+        found: Any = self.found.get(name)
+        return None if found is None else QUESTIONS[name].document(found, over_yield(self.margins))
 
 
 def _history(run: _Run) -> dict[str, Any]:
@@ -286,19 +284,21 @@ def _extremes(run: _Run) -> dict[str, Any]:
     }
 
 
+def sides() -> outputs.Schema:
+    """Return the schema of the smallest and the largest value of a quantity."""
+    extreme = outputs.object_of({"value": UNKNOWN, "place": WHOLE, "load_point": NUMBER})
+    return outputs.object_of({"smallest": extreme, "largest": extreme})
+
+
 def _in_units(unit: Mapping[str, Unit], name: str, value: float) -> float:
     """A quantity that is in degrees already, if it is an angle, in printed units."""
     kind = READINGS[name].kind if name in READINGS else quantity(name).kind
     return unit.get(kind, DEGREE).factor * value
 
 
-_CORNERS = outputs.list_of(outputs.list_of(UNKNOWN))
-_EXTREME = outputs.object_of({"value": UNKNOWN, "place": WHOLE, "load_point": NUMBER})
-_SIDES = outputs.object_of({"smallest": _EXTREME, "largest": _EXTREME})
-
 RUN = (
     Output("complete", "truth", lambda run: run.result is not None and run.result.complete),
-    outputs.ERROR,
+    Output("error", "text", optional=True),
     outputs.UNITS,
     Output("problem", parts=PROBLEM),
     Output(
@@ -306,7 +306,9 @@ RUN = (
         form=outputs.object_of(
             {
                 "loads": outputs.list_of({"enum": list(LOADS)}),
-                "blocks": outputs.list_of(outputs.object_of({"repeat": WHOLE, "corners": _CORNERS})),
+                "blocks": outputs.list_of(
+                    outputs.object_of({"repeat": WHOLE, "corners": outputs.list_of(outputs.list_of(UNKNOWN))})
+                ),
             }
         ),
     ),
@@ -319,16 +321,26 @@ RUN = (
         form=outputs.map_of(NUMBER, "counters of the solver, and its time, s"),
     ),
     Output(
-        "states", "list", lambda run: [_Reading(state, run.unread) for state in run.result or ()], parts=WITH_SEAT
+        "states", "list", lambda run: [ReadState(state, run.unread) for state in run.result or ()],
+        parts=(
+            *STATE,
+            Output(
+                "seat", parts=STATE, may_lack=True,
+                words="the contact of a bush that slips in its seat; left out without one",
+            ),
+        ),
     ),
-    Output("extremes", of=_extremes, form=outputs.object_of(dict.fromkeys(READINGS, _SIDES), required=())),
+    Output("extremes", of=_extremes, form=outputs.object_of(dict.fromkeys(READINGS, sides()), required=())),
     Output("margins", "list", lambda run: margins.in_json(run.problem, run.margins), parts=margins.ROW),
     Output("unread", form=outputs.map_of(TEXT, "why a quantity could not be read from the states, by quantity")),
     Output(
         "cycles", "list", lambda run: () if run.result is None else run.result.cycles, parts=load_cycle.CHANGES
     ),
-    Output("cycle", parts=load_cycle.DOCUMENT, optional=True),
-    *(Output(name, of=partial(_answer, name), form=outputs.or_null(QUESTIONS[name].schema())) for name in QUESTIONS),
+    Output("cycle", parts=load_cycle.CYCLE, optional=True),
+    *(
+        Output(name, of=partial(_Run.answer, name=name), form=outputs.or_null(question.schema()))
+        for name, question in QUESTIONS.items()
+    ),
 )  # fmt: skip
 """Outputs of a case and its result."""
 

@@ -12,8 +12,7 @@ import numpy as np
 from fastpin.assess import outputs
 from fastpin.assess.outputs import Column, table
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml
-from fastpin.model.synonyms import closest
+from fastpin.model import checks, synonyms
 from fastpin.model.units import scaled
 from fastpin.report.sweep import TableRow, axis_label, printed_rows, unit_name
 from fastpin.studies.index import DONE, FAILED
@@ -114,8 +113,8 @@ def check_outcomes(study: Tolerances, names: Sequence[str]) -> None:
     known = tuple(study.plan.outcomes)
     for name in names:
         if name not in known:
-            hint = closest(name, known) or f"; there are {', '.join(known)}"
-            raise InputError("value", f"there is no outcome {as_toml(name)}{hint}")
+            hint = synonyms.closest(name, known) or f"; there are {', '.join(known)}"
+            raise InputError("value", f"there is no outcome {checks.as_toml(name)}{hint}")
     if len(names) > MOST_OUTCOMES:
         raise InputError("value", f"a figure shows at most {MOST_OUTCOMES} outcomes, not {len(names)}")
 
