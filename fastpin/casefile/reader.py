@@ -16,15 +16,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
-from fastpin.casefile.beside import READERS, read_assessment
+from fastpin.casefile.beside import READERS
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.materials import known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
-from fastpin.model import LOADS, LoadHistory, SolveOptions, checks, synonyms
-from fastpin.model.assessment import FatigueAssessment, check_assessment
+from fastpin.model import LOADS, SolveOptions, checks, synonyms
+from fastpin.model.assessment import check_assessment
 from fastpin.model.beside import BESIDE
 from fastpin.model.case import About, Case, check_arc, check_keep, check_wear
 from fastpin.model.fields import FIELDS
@@ -176,28 +176,19 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     wear = read_wear(how, folder, count) if how.present else None
     if problem is not None and wear is not None:
         _check_together(source, lambda: check_wear(problem), "plate_body")
-    fatigue = _fatigue(source, problem, history, options)
-    beside = {name: read(source, source.section(name)) for name, read in READERS.items() if name in source.root}
-    for name, value in beside.items():
+    beside = {}
+    for name in (name for name in READERS if name in source.root):
+        beside[name] = value = READERS[name](source, source.section(name))
         check = BESIDE[name].check
-        if problem is not None and pair is not None and value is not None and check is not None:
+        if problem is None or value is None:
+            continue
+        if check is None and not source.placed:  # a fatigue is checked with everything else
+            _check_together(source, partial(check_assessment, problem, value, history, options), name)
+        elif check is not None and pair is not None:
             _check_together(source, partial(check, problem, value), name)
     if problem is None or history is None:
         return None
-    return Case(problem, history, options, title, about, wear, fatigue, **beside)
-
-
-def _fatigue(
-    source: CaseText, problem: Problem | None, history: LoadHistory | None, options: SolveOptions
-) -> FatigueAssessment | None:
-    """How the fatigue of the history is assessed; None without the section, or if it can't be used (reported)."""
-    section = source.section("fatigue")
-    if not section.present:
-        return None
-    how = read_assessment(source, section)
-    if how is not None and problem is not None and not source.placed:
-        _check_together(source, lambda: check_assessment(problem, how, history, options), "fatigue")
-    return how
+    return Case(problem, history, options, title, about, wear, **beside)
 
 
 def _keys_of(tables: Mapping[str, Any]) -> object:

@@ -22,7 +22,7 @@ from typing import Any
 
 from fastpin.assess.questions import LEAST, QUESTIONS, of_margin, of_question
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
-from fastpin.casefile.beside import READERS, read_assessment
+from fastpin.casefile.beside import READERS
 from fastpin.casefile.profiles import read_wear
 from fastpin.casefile.toml_text import CaseText, NamedTable, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
@@ -295,8 +295,7 @@ def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> Study
 def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of a section beside the problem: as the case says, unless the table does."""
     quantity = section.choice(name, tuple(QUESTIONS[name].outcomes))
-    read: Callable[..., Any] = READERS.get(name, read_assessment)
-    how = read(source, section, _entries(name, beside[name]) if name in beside else {})
+    how = READERS[name](source, section, _entries(name, beside[name]) if name in beside else {})
     if quantity is None or how is None:
         return None
     if name == "fatigue" and "criterion" in section and len(how.criteria) > 1:
