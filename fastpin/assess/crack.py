@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fastpin import cracks, damage
-from fastpin.assess.outputs import Curve, Follow, Output, Schema, chosen, kept, object_of, properties, table
-from fastpin.assess.outputs import document as document_of
-from fastpin.cracks.fates import CRACK_FATES, CrackFate
-from fastpin.cracks.margins import crack_margins
+from fastpin.assess import outputs
+from fastpin.assess.margins import ROW, in_json
+from fastpin.assess.outputs import Curve, Follow, Output, chosen, kept, or_null, table
+from fastpin.cracks.fates import CRACK_FATES, CrackFate, crack_margins
 from fastpin.errors import InputError
-from fastpin.model import Case, LoadHistory, Problem
-from fastpin.model.angles import from_bottom
+from fastpin.model import Case, LoadHistory, Problem, angles, points
 from fastpin.model.crack import CrackGrowth, law_of
 from fastpin.model.doubts import doubts_given
 from fastpin.model.growth import Nasgro, Walker, law_entries, law_words
-from fastpin.model.points import EDGES, owner_of
 from fastpin.model.units import units
 from fastpin.states.choice import missing_corners, span_of
 from fastpin.states.cycles import Cycle
@@ -32,43 +30,35 @@ if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
 GROWTH = (
     Output("angle_of_mouth", "angle", lambda found: found.crack.theta),
     Output("direction", "width", lambda found: found.crack.angle),
-    Output("body", "text", lambda found: found.crack.body, allowed=EDGES),
+    Output("body", "text", lambda found: found.crack.body, allowed=points.EDGES),
     Output(
-        "law", "table", lambda found: law_entries(found.law) if isinstance(found.law, Walker | Nasgro) else None
+        "law", of=lambda found: law_entries(found.law) if isinstance(found.law, Walker | Nasgro) else None,
+        form=or_null({"type": "object"}),
     ),
     Output("repeated", "text", lambda found: found.per, allowed=("cycle", "spectrum")),
-    Output("fate", "class", lambda found: found.fate, classes=CRACK_FATES),
-    Output("life", "life", lambda found: found.life, "cycles or spectra; null: no end", optional=True),
-    Output(
-        "error", "", lambda found: found.error, "numerical, in parts of the life or of the arrest; null: unknown",
-        optional=True,
-    ),
+    Output("fate", "class", classes=CRACK_FATES),
+    Output("life", "life", words="cycles or spectra; null: no end", optional=True),
+    Output("error", words="numerical, in parts of the life or of the arrest; null: unknown", optional=True),
     Output("first", "length", lambda found: float(found.length[0]), optional=True),
     Output("last", "length", lambda found: float(found.length[-1]), optional=True),
-    Output("arrest", "length", lambda found: found.arrest, optional=True),
-    Output("fracture", "length", lambda found: found.fracture, optional=True),
-    Output("words", "text", lambda found: found.words),
+    *outputs.numbers("arrest fracture", "length", optional=True),
+    Output("words", "text"),
     Output("doubts", "texts", lambda found: [str(doubt) for doubt in found.doubts]),
 )  # fmt: skip
 """Outputs of a :class:`fastpin.cracks.Growth`."""
 
 
 LENGTHS = (
-    Output("length", "length", lambda found: found.length),
-    Output("K_max", "stress intensity", lambda found: found.K_max, heading="K_I largest"),
-    Output("K_min", "stress intensity", lambda found: found.K_min, heading="K_I smallest", short="smallest"),
-    Output("K_II", "stress intensity", lambda found: found.K_II, heading="K_II"),
-    Output("delta_K", "stress intensity", lambda found: found.delta_K, heading="range"),
-    Output("threshold", "stress intensity", lambda found: found.threshold),
-    Output("rate", "crack growth", lambda found: found.rate, short="growth"),
-    Output("cycles", "", lambda found: found.cycles),
+    Output("length", "length"),
+    Output("K_max", "stress intensity", heading="K_I largest"),
+    Output("K_min", "stress intensity", heading="K_I smallest", short="smallest"),
+    Output("K_II", "stress intensity", heading="K_II"),
+    Output("delta_K", "stress intensity", heading="range"),
+    Output("threshold", "stress intensity"),
+    Output("rate", "crack growth", short="growth"),
+    Output("cycles"),
 )
 """Outputs at each length: columns of CSV, JSON and the table of ``fastpin crack``."""
-
-
-BAR = "{whole} of {total} places"
-FAILED = "no crack is followed"
-MARGINS = ("fracture", "growth")
 
 
 class CrackStops(NamedTuple):
@@ -147,19 +137,6 @@ def grown(result: Any, how: CrackGrowth) -> cracks.Growth:
         return stops.growth(how)
 
 
-OUTCOMES = {
-    name: (output, grown)
-    for name, output in {
-        **chosen(GROWTH, ("fate", "life", "arrest")),
-        "theta": GROWTH[0],
-        "largest_K": Output("largest_K", "stress intensity", lambda found: found.K_max.max()),
-    }.items()
-}
-"""Outcomes of sweeps: "theta" is its mouth, and "largest_K" the largest K_I up to the last length."""
-
-judged = grown
-
-
 def find(case: Case, held: Held | None, progress: Follow | None = None) -> cracks.Growth | None:
     """Follow the crack of a case under its last cycle or its spectrum; None without a state.
 
@@ -173,28 +150,32 @@ def find(case: Case, held: Held | None, progress: Follow | None = None) -> crack
     return CrackStops.of(len(case.history), held.result.cycles, held.between).growth(case.crack, progress)
 
 
-def lines(growth: cracks.Growth, over: Mapping[str, float]) -> list[str]:
-    """Return :func:`growth_line` in a list."""
-    return [growth_line(growth, over)]
-
-
-def document(growth: cracks.Growth, over: Mapping[str, float]) -> dict[str, Any]:
-    """Return the growth as a dict for JSON."""
-    return document_of(GROWTH, growth, units(growth.problem))
-
-
-def schema() -> Schema:
-    """Return the JSON schema of :func:`document`."""
-    return object_of(properties(GROWTH))
-
-
-margins = crack_margins
+QUESTION = outputs.Question(
+    bar="{whole} of {total} places",
+    failed="no crack is followed",
+    margin_names=("fracture", "growth"),
+    outcomes={
+        name: (output, grown)
+        for name, output in {
+            **chosen(GROWTH, ("fate", "life", "arrest")),
+            "theta": GROWTH[0],  # the mouth
+            "largest_K": Output("largest_K", "stress intensity", lambda found: found.K_max.max()),
+        }.items()
+    },
+    find=find,
+    judged=grown,
+    lines=lambda growth, over: [growth_line(growth, over)],
+    document=lambda growth, over: outputs.document(GROWTH, growth, units(growth.problem)),
+    schema=lambda: outputs.schema_of(GROWTH),
+    margins=crack_margins,
+)
+"""The crack of [crack]. Its outcome "largest_K" is the largest K_I up to the last length."""
 
 
 def crack_words(problem: Problem, crack: CrackGrowth) -> str:
     """Lengths, place, direction, law and residual stress of a crack that is to grow."""
     length = units(problem)["length"]
-    place = "where it grows fastest" if crack.theta is None else f"at {from_bottom(crack.theta):.4g} deg"
+    place = "where it grows fastest" if crack.theta is None else f"at {angles.from_bottom(crack.theta):.4g} deg"
     parts = [f"{length.text(crack.first)} to {length.text(crack.last)}", place]
     parts += [f"{math.degrees(crack.angle):.4g} deg from the radius"] if crack.angle else []
     parts += ["in the plate round the bush"] if crack.body == "seat" else []
@@ -206,8 +187,22 @@ def growth_curve(growth: cracks.Growth) -> Curve:
     """Return length, stress intensities, range, threshold, rate and cycles of a crack, by its length."""
     unit = units(growth.problem)
     columns = {each.column(unit).replace("cycle", growth.per): each.shown(growth, unit) for each in LENGTHS[:-1]}
-    mouth = {"mouth [deg]": from_bottom(growth.crack.theta), "body": growth.crack.body}
+    mouth = {"mouth [deg]": angles.from_bottom(growth.crack.theta), "body": growth.crack.body}
     return Curve(mouth, columns | {growth.passes: growth.cycles})
+
+
+DOCUMENT = (
+    outputs.UNITS,
+    Output("crack", of=lambda growth: growth, parts=GROWTH),
+    Output(
+        "lengths", of=lambda growth: {name: column.tolist() for name, column in growth_curve(growth).columns.items()},
+        form=outputs.map_of(
+            outputs.list_of(outputs.UNKNOWN), "a column of numbers at all lengths, with its unit in its name"
+        ),
+    ),
+    Output("margins", "list", lambda growth: in_json(growth.problem, crack_margins(growth)), parts=ROW),
+)  # fmt: skip
+"""Outputs of a :class:`fastpin.cracks.Growth` in the JSON of ``fastpin crack``."""
 
 
 def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) -> str:
@@ -215,9 +210,9 @@ def growth_line(growth: cracks.Growth, over: Mapping[str, float] | None = None) 
 
     `over` has the bodies that yield, see :func:`fastpin.states.margins.over_yield`: their lives are marked.
     """
-    mark = over_yield_words(over or {}, owner_of(growth.problem, growth.crack.body))
+    mark = over_yield_words(over or {}, points.owner_of(growth.problem, growth.crack.body))
     where = " in the plate round the bush" if growth.crack.body == "seat" else ""
-    line = f"crack{where} at {from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}"
+    line = f"crack{where} at {angles.from_bottom(growth.crack.theta):z.2f} deg from the bottom: {growth.words}"
     if growth.fate == CrackFate.NONE or math.isnan(growth.error):
         return line + mark
     of = "length" if growth.fate == CrackFate.STOPS else "life"
@@ -234,9 +229,9 @@ def growth_table(growth: cracks.Growth) -> str:
     at = np.unique(np.abs(np.log(growth.length[:, None] / rows)).argmin(axis=0))
     cells = []
     for each in LENGTHS:
-        same = [float(value) for other in LENGTHS if other.kind == each.kind for value in other.of(growth)]
+        same = [float(value) for other in LENGTHS if other.kind == each.kind for value in other.value(growth)]
         factor, label = unit[each.kind].scale(same) if each.kind else (1.0, "")
-        texts = [f"{factor * value:.4g}" for value in each.of(growth)[at].tolist()]
+        texts = [f"{factor * value:.4g}" for value in each.value(growth)[at].tolist()]
         name = each.short or each.heading or each.name if each.kind else growth.passes
         cells.append((name, label.replace("cycle", growth.per), ["never" if text == "inf" else text for text in texts]))
     return table(cells)

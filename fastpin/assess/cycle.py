@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.assess.outputs import ROUNDING, Curve, Output
+from fastpin.assess.outputs import ROUNDING, UNKNOWN, WHOLE, Curve, Output, map_of, of_fields
 from fastpin.assess.outputs import document as document_of
-from fastpin.model.angles import from_bottom
-from fastpin.model.loads import LOAD_KIND
+from fastpin.model import angles, loads
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.states.cycles import Cycle
+from fastpin.states.cycles import CYCLE_KINDS, Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.states.quantities import load_point, sizes
 from fastpin.states.regimes import REGIMES
@@ -33,24 +32,33 @@ def _largest(name: str, kind: str) -> Iterator[Output]:
     yield Output(f"largest_{name}_angle", "angle", known(LoadCycle.angle_of_largest), optional=True)
 
 
+WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
+"""Words for the behaviours of a node: "no contact", "sticks", "slips" and "opens"."""
+
+
 CYCLE = (
-    Output("first", "whole", lambda cycle: cycle.first),
-    Output("last", "whole", lambda cycle: cycle.last),
+    Output("first", "whole"),
+    Output("last", "whole"),
     Output("closed", "truth", lambda cycle: cycle.is_closed),
     *_largest("slip_range", "displacement"),
     *_largest("slip_distance", "displacement"),
     *_largest("friction_energy", "energy density"),
     *_largest("pressure_range", "traction"),
     *_largest("shear_range", "traction"),
-    Output("regime", "class", lambda cycle: cycle.regime, classes=REGIMES),
+    Output("regime", "class", classes=REGIMES),
     Output("slip_range_is_exact", "truth", lambda cycle: cycle.has_exact_slip_range),
-    Output("dissipation", "energy", lambda cycle: cycle.dissipation, optional=True),
-)
+    Output("dissipation", "energy", optional=True),
+    Output(
+        "nodes", form=map_of(WHOLE, "number of nodes of each behaviour"),
+        of=lambda cycle: {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()},
+    ),
+    Output("work", of=lambda cycle: work_of_loads(cycle), form=map_of(UNKNOWN, "work of each load")),
+)  # fmt: skip
 """Outputs of a :class:`fastpin.states.LoadCycle`."""
 
 
-WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
-"""Words for the behaviours of a node: "no contact", "sticks", "slips" and "opens"."""
+CHANGES = of_fields(Cycle, CYCLE_KINDS)
+"""Outputs of a :class:`fastpin.states.cycles.Cycle`: how one cycle of a block changed the contact."""
 
 
 def cycle_line(cycle: LoadCycle) -> str:
@@ -76,6 +84,12 @@ def cycle_line(cycle: LoadCycle) -> str:
     return f"from corner {cycle.first:,} to {cycle.last:,}: {regime}, {', '.join(parts)}"
 
 
+def work_of_loads(cycle: LoadCycle) -> dict[str, float | None]:
+    """Return the work of each load; it is not known if only the ends of the cycle were kept."""
+    factor, inside = units(cycle.states[0].problem)["energy"].factor, len(cycle.states) > 2
+    return {name: factor * loop.work if inside else None for name, loop in cycle.loops.items()}
+
+
 def natural_sizes(cycle: LoadCycle) -> dict[str, float]:
     """Return natural sizes of slip, traction and friction energy in a cycle. Much smaller values are rounding."""
     found = [sizes(state) for state in cycle.states]
@@ -89,10 +103,7 @@ def document(cycle: LoadCycle) -> dict[str, Any]:
     A value that is not known is NaN. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load;
     it is not known if only the ends of the cycle were kept.
     """
-    unit, inside = units(cycle.states[0].problem), len(cycle.states) > 2
-    nodes = {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
-    work = {name: unit["energy"].factor * loop.work if inside else None for name, loop in cycle.loops.items()}
-    return document_of(CYCLE, cycle, unit) | {"nodes": nodes, "work": work}
+    return document_of(CYCLE, cycle, units(cycle.states[0].problem))
 
 
 def write_csv(cycle: LoadCycle, path: Path) -> None:
@@ -111,7 +122,7 @@ def write_csv(cycle: LoadCycle, path: Path) -> None:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["angle [deg]", *header])
         for angle, *values in zip(cycle.theta.tolist(), *cells.values(), strict=True):
-            writer.writerow([from_bottom(angle), *values])
+            writer.writerow([angles.from_bottom(angle), *values])
 
 
 CONJUGATES = {
@@ -127,8 +138,8 @@ def loop_curve(cycle: LoadCycle) -> Curve:
     unit = units(cycle.states[0].problem)
     columns = {"load point": np.array([load_point(state) for state in cycle.states])}
     for name, loop in cycle.loops.items():
-        words, conjugate = CONJUGATES[LOAD_KIND[name]]
-        of_load, of_displacement = unit[LOAD_KIND[name]], unit[conjugate]
+        words, conjugate = CONJUGATES[loads.LOAD_KIND[name]]
+        of_load, of_displacement = unit[loads.LOAD_KIND[name]], unit[conjugate]
         columns[f"{name} [{of_load.name}]"] = of_load.factor * loop.load
         columns[f"{words} of {name} [{of_displacement.name}]"] = of_displacement.factor * loop.displacement
     return Curve({}, columns)
@@ -136,13 +147,8 @@ def loop_curve(cycle: LoadCycle) -> Curve:
 
 def cycles_curve(problem: Problem, cycles: Sequence[Cycle]) -> Curve:
     """Return the changes over cycles, a row for each cycle. Cycles and corners are counted from 1, as in tables."""
-    unit = units(problem)
-    kinds = {"dissipation": "energy", "rotation_change": "rotation"}
-    columns = {"cycle": np.arange(1.0, len(cycles) + 1.0)}
-    for name in Cycle._fields:
-        values = np.array([getattr(cycle, name) for cycle in cycles], dtype=float) + (name == "corner")
-        if name in kinds:
-            columns[f"{name} [{unit[kinds[name]].name}]"] = unit[kinds[name]].factor * values
-        elif name != "solved":
-            columns[name] = values
+    unit, columns = units(problem), {"cycle": np.arange(1.0, len(cycles) + 1.0)}
+    for each in CHANGES[:-1]:  # whether it was solved is no change
+        values = [each.shown(cycle, unit) + (each.name == "corner") for cycle in cycles]
+        columns[each.column(unit)] = np.array(values, dtype=float)
     return Curve({}, columns)

@@ -24,7 +24,7 @@ from fastpin.model.points import BODIES, EDGES, Body, edge_body, elastic_bodies,
 from fastpin.model.units import units
 from fastpin.states.choice import missing_corners
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import Margin, over_yield_words
+from fastpin.states.margins import over_yield_words
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
@@ -83,12 +83,6 @@ DAMAGE = (
 """Outputs of a :class:`fastpin.damage.SpectrumDamage`: those of its hot spot. The plane's normal counts from +x."""
 
 
-BAR = "damage of the spectrum"
-FAILED = ""
-"""Never said: what is found holds the reason."""
-MARGINS = ("fatigue",)
-
-
 @outputs.kept
 def worst_damage(result: Any, how: FatigueAssessment) -> Any:
     """Return the largest damage by the first criterion. It is kept while the result lives.
@@ -145,27 +139,9 @@ def find(case: Case, held: Held | None, progress: outputs.Follow | None = None) 
         return Assessed(case.fatigue, [], [], str(error))
 
 
-OUTCOMES = {
-    **{
-        name: (output, worst_damage)
-        for name, output in outputs.chosen(DAMAGE, ("life", "median_life", "damage", "angle")).items()
-    },
-    "failure_probability": (
-        outputs.Output("failure_probability", "", lambda part: part),
-        lambda result, how: worst_damage(result, how).failure_probability(how.life),
-    ),
-}
-"""Outcomes of sweeps: those of the hot spot with the largest damage of all bodies."""
-
-
 def judged(result: Result, how: FatigueAssessment) -> Assessed:
     """Return the reserves of a whole result, for its margins."""
     return Assessed(how, [], result.assessed_reserves(how))
-
-
-def margins(assessed: Assessed) -> list[Margin]:
-    """Return the margins on the stresses, see :func:`fastpin.damage.margins.reserve_margins`."""
-    return reserve_margins(assessed.reserves, assessed.how)
 
 
 def schema() -> outputs.Schema:
@@ -176,7 +152,7 @@ def schema() -> outputs.Schema:
     rest = {"cycles": cycles, "failure_probability": outputs.UNKNOWN, "over_yield": outputs.UNKNOWN}
     body = outputs.object_of(outputs.properties(DAMAGE) | rest)
     return outputs.object_of(
-        outputs.properties(HOW) | {"error": outputs.OPTIONAL_TEXT, "bodies": outputs.list_of(body)}
+        outputs.properties(HOW) | {"error": {"type": ["string", "null"]}, "bodies": outputs.list_of(body)}
     )
 
 
@@ -233,6 +209,30 @@ def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
         rest = {"failure_probability": None if math.isnan(failing) else failing, "over_yield": over_yield}
         bodies.append(outputs.document(DAMAGE, one, units(one.problem)) | {"cycles": rows} | rest)
     return outputs.document(HOW, assessed.how, {}) | {"error": assessed.reason or None, "bodies": bodies}
+
+
+QUESTION = outputs.Question(
+    bar="damage of the spectrum",
+    failed="",  # never said: what is found holds the reason
+    margin_names=("fatigue",),
+    outcomes={
+        **{
+            name: (output, worst_damage)
+            for name, output in outputs.chosen(DAMAGE, ("life", "median_life", "damage", "angle")).items()
+        },
+        "failure_probability": (
+            outputs.Output("failure_probability", "", lambda part: part),
+            lambda result, how: worst_damage(result, how).failure_probability(how.life),
+        ),
+    },
+    find=find,
+    judged=judged,
+    lines=lines,
+    document=document,
+    schema=schema,
+    margins=lambda assessed: reserve_margins(assessed.reserves, assessed.how),
+)
+"""The fatigue of [fatigue]. Its outcomes are those of the hot spot with the largest damage of all bodies."""
 
 
 def assessment_words(how: FatigueAssessment) -> str:

@@ -8,18 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import NamedTuple
 
-from fastpin.assess.outputs import NUMBER, TEXT, TRUTH, UNKNOWN, Schema, aligned, list_of, map_of, object_of
+from fastpin.assess.outputs import NUMBER, Output, aligned, map_of
 from fastpin.model.problem import Problem
-from fastpin.model.units import named_loads, printed_loads, units
-from fastpin.states.margins import (
-    Margin,
-    over_yield,
-    over_yield_of,
-    over_yield_words,
-    smallest_margin,
-)
+from fastpin.model.units import Unit, named_loads, printed_loads, units
+from fastpin.states.margins import Margin, over_yield, over_yield_of, over_yield_words, smallest_margin
 from fastpin.states.quantities import point_name
 
 HEADS = ("subject", "value", "allowable", "margin", "load point", "loads", "remark")
@@ -98,36 +92,41 @@ def margin_rows(problem: Problem, margins: Sequence[Margin]) -> list[tuple[str, 
     ]
 
 
-def document(problem: Problem, margins: Sequence[Margin]) -> list[dict[str, Any]]:
-    """Return margins as JSON-ready dicts, in printed units."""
+class MarginRow(NamedTuple):
+    """A margin in JSON, with its unit and what its table says of it."""
+
+    margin: Margin
+    problem: Problem
+    unit: Unit
+    is_smallest: bool
+    over_yield: float | None
+
+
+ROW = (
+    Output("subject", "text", lambda row: row.margin.subject),
+    Output("name", "text", lambda row: row.margin.name),
+    Output("body", "text", lambda row: row.margin.owner),
+    Output("value", of=lambda row: row.unit.factor * row.margin.value, optional=True),
+    Output("allowable", of=lambda row: row.unit.factor * row.margin.allowable, optional=True),
+    Output("unit", "text", lambda row: row.unit.name),
+    Output("margin", of=lambda row: row.margin.margin, optional=True),
+    Output("smallest", "truth", lambda row: row.is_smallest),
+    Output("part", "text", lambda row: row.margin.part),
+    Output("over_yield", words="stress over the yield strength where it is above 1", optional=True),
+    Output(
+        "loads", of=lambda row: printed_loads(row.problem, row.margin.loads),
+        form=map_of(NUMBER, "loads of the state that governs"),
+    ),
+    Output("load_point", of=lambda row: row.margin.load_point, optional=True),
+    Output("remark", "text", lambda row: row.margin.remark),
+)  # fmt: skip
+"""Outputs of a margin."""
+
+
+def in_json(problem: Problem, margins: Sequence[Margin]) -> list[MarginRow]:
+    """Return the subjects of :data:`ROW` for the margins of a result."""
     unit, least, over = units(problem), smallest_margin(margins), over_yield(margins)
-    factors = {row.kind: 1.0 if row.kind == "ratio" else unit[row.kind].factor for row in margins}
     return [
-        {
-            "subject": row.subject,
-            "name": row.name,
-            "body": row.owner,
-            "value": factors[row.kind] * row.value,
-            "allowable": factors[row.kind] * row.allowable,
-            "unit": "" if row.kind == "ratio" else unit[row.kind].name,
-            "margin": row.margin,
-            "smallest": row is least and not row.part,
-            "part": row.part,
-            "over_yield": over_yield_of(row, over),
-            "loads": printed_loads(problem, row.loads),
-            "load_point": row.load_point,
-            "remark": row.remark,
-        }
+        MarginRow(row, problem, unit[row.kind], row is least and not row.part, over_yield_of(row, over))
         for row in margins
     ]
-
-
-def schema() -> Schema:
-    """Return the JSON schema of :func:`document`."""
-    texts, numbers = (
-        ("subject", "name", "body", "unit", "remark", "part"),
-        ("value", "allowable", "margin", "load_point"),
-    )
-    governing = {"smallest": TRUTH, "loads": map_of(NUMBER, "loads of the state that governs")}
-    governing["over_yield"] = UNKNOWN | {"description": "stress over the yield strength where it is above 1"}
-    return list_of(object_of(dict.fromkeys(texts, TEXT) | dict.fromkeys(numbers, UNKNOWN) | governing))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import wraps
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar, get_type_hints
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,7 +17,9 @@ import numpy as np
 from fastpin.model.angles import from_bottom
 from fastpin.model.problem import Problem
 from fastpin.model.units import DEGREE, Unit, units
+from fastpin.states.margins import Margin
 from fastpin.storage.files import replacing
+from fastpin.version import __version__
 
 Schema = dict[str, Any]
 """A JSON schema of draft 2020-12."""
@@ -38,7 +40,6 @@ TRUTH: Schema = {"type": "boolean"}
 
 UNKNOWN: Schema = {"type": ["number", "null"]}
 
-OPTIONAL_TEXT: Schema = {"type": ["string", "null"]}
 """Schemas of single values. NaN and infinity are null."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -65,9 +66,10 @@ class Output(NamedTuple):
         Its key in JSON.
     kind : str
         A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad), "class", "text",
-        "texts", "whole", "truth", "table" (of JSON), or "" for a plain number.
-    of : callable
-        Gives its value for a subject, in SI units: a number, an array, or a text.
+        "texts", "whole", "truth", or "" for a plain number. Of an output with parts: "list", "map" or "".
+    of : callable, optional
+        Gives its value for a subject, in SI units: a number, an array, or a text. Unless given, it is the attribute or
+        the key `name` of the subject.
     words : str
         What it is, in the schema.
     heading : str
@@ -80,30 +82,56 @@ class Output(NamedTuple):
         The texts that it may be; empty if it may be any.
     optional : bool
         Whether it may be unknown or infinite: null in JSON.
+    parts : sequence of Output
+        Outputs of the value, which is an object in JSON; of the kinds "list" and "map", of each of its values.
+    form : dict
+        The JSON schema of a value that is JSON-ready already, also where it is null.
+    may_lack : bool
+        Whether JSON lacks it where the value is None.
     """
 
     name: str
-    kind: str
-    of: Callable[[Any], Any]
+    kind: str = ""
+    of: Callable[[Any], Any] | None = None
     words: str = ""
     heading: str = ""
     short: str = ""
     classes: Mapping[int, str] = MappingProxyType({})
     allowed: Collection[str] = ()
     optional: bool = False
+    parts: Sequence[Output] = ()
+    form: Schema | None = None
+    may_lack: bool = False
+
+    def value(self, subject: Any) -> Any:
+        """The value of a subject in SI units."""
+        if self.of is not None:
+            return self.of(subject)
+        return subject[self.name] if isinstance(subject, Mapping) else getattr(subject, self.name)
 
     def shown(self, subject: Any, unit: Mapping[str, Unit]) -> Any:
-        """The value in printed units, angles in degrees, and a class in words."""
-        value = self.of(subject)
+        """The value in printed units, angles in degrees, a class in words, and parts as dicts."""
+        value = self.value(subject)
+        if value is None or self.form is not None:
+            return value
+        if self.parts:
+            return self._shown_parts(value, unit)
         if self.classes:
             return self.classes[value]
         if self.kind in ("angle", "width") and not math.isnan(value):
             return from_bottom(value) if self.kind == "angle" else math.degrees(value)
         return unit[self.kind].factor * value if self.kind in unit else value
 
+    def _shown_parts(self, value: Any, unit: Mapping[str, Unit]) -> Any:
+        if self.kind == "list":
+            return [document(self.parts, each, unit) for each in value]
+        if self.kind == "map":
+            return {name: document(self.parts, each, unit) for name, each in value.items()}
+        return document(self.parts, value, unit)
+
     def number(self, subject: Any) -> float:
         """The value as an outcome of sweeps, with angles in rad; NaN for a life without end."""
-        value = float(self.of(subject))
+        value = float(self.value(subject))
         return math.nan if self.kind == "life" and math.isinf(value) else value
 
     def column(self, unit: Mapping[str, Unit]) -> str:
@@ -113,29 +141,80 @@ class Output(NamedTuple):
         return f"{heading} [{name}]" if name else heading
 
     @property
-    def schema(self) -> dict[str, Any]:
+    def schema(self) -> Schema:
         """The schema of its value in JSON."""
-        found: dict[str, Any] = {"enum": list(self.allowed or self.classes.values())}
-        if not found["enum"]:
-            found = {"type": {"text": "string", "whole": "integer", "truth": "boolean"}.get(self.kind, "number")}
+        found: Schema = {"type": {"text": "string", "whole": "integer", "truth": "boolean"}.get(self.kind, "number")}
+        if self.form is not None:
+            found = self.form
+        elif self.parts:
+            found = schema_of(self.parts)
+        elif self.allowed or self.classes:
+            found = {"enum": list(self.allowed or self.classes.values())}
         if self.kind == "texts":
-            found = {"type": "array", "items": found if self.allowed else {"type": "string"}}
-        elif self.kind == "table":
-            found = {"anyOf": [{"type": "object"}, {"type": "null"}]}
-        elif self.optional:
-            found["type"] = [found["type"], "null"]
+            found = list_of(found if self.allowed else TEXT)
+        elif self.kind == "list":
+            found = list_of(found)
+        elif self.kind == "map":
+            found = {"type": "object", "additionalProperties": found}
+        if self.optional:
+            found = or_null(found) if self.parts else found | {"type": [found["type"], "null"]}
         return found | ({"description": self.words} if self.words else {})
 
 
 def document(outputs: Iterable[Output], subject: Any, unit: Mapping[str, Unit]) -> dict[str, Any]:
     """Return the outputs of a subject as a dict, in printed units. An array becomes a list."""
-    values = {each.name: each.shown(subject, unit) for each in outputs}
-    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in values.items()}
+    values = [(each, each.shown(subject, unit)) for each in outputs]
+    return {
+        each.name: value.tolist() if isinstance(value, np.ndarray) else value
+        for each, value in values
+        if value is not None or not each.may_lack
+    }
 
 
-def properties(outputs: Iterable[Output]) -> dict[str, dict[str, Any]]:
+def properties(outputs: Iterable[Output]) -> dict[str, Schema]:
     """Return the schemas of outputs in JSON by name."""
     return {each.name: each.schema for each in outputs}
+
+
+def schema_of(outputs: Sequence[Output]) -> Schema:
+    """Return the schema of :func:`document`."""
+    return object_of(properties(outputs), without=[each.name for each in outputs if each.may_lack])
+
+
+def whole_document(
+    outputs: Sequence[Output], subject: Any, unit: Mapping[str, Unit], **head: str | None
+) -> dict[str, Any]:
+    """Return what a command writes as JSON: the version, a `head` such as the title, and the outputs of a subject.
+
+    NaN and infinity become None.
+    """
+    ready: dict[str, Any] = json_ready({"fastpin": __version__, **head, **document(outputs, subject, unit)})
+    return ready
+
+
+def whole_schema(outputs: Sequence[Output], has_title: bool = True) -> Schema:
+    """Return the schema of :func:`whole_document`."""
+    return schema_of([Output("fastpin", "text"), *([Output("title", "text")] if has_title else []), *outputs])
+
+
+def unit_names(problem: Problem) -> dict[str, str]:
+    """Return the name of the unit of every kind of quantity in the JSON of a problem."""
+    angle = {"angle": "deg from the bottom of the hole, counter-clockwise"}
+    return {kind: unit.name for kind, unit in units(problem).items()} | angle
+
+
+def numbers(names: str, kind: str = "", optional: bool = False) -> list[Output]:
+    """Return outputs that are attributes of their subject, of one kind, with these names."""
+    return [Output(name, kind, optional=optional) for name in names.split()]
+
+
+def of_fields(record: type, kinds: Mapping[str, str] = MappingProxyType({})) -> tuple[Output, ...]:
+    """Return an output for each field of a record, of the kind of its type. A float may be unknown, and has a kind."""
+    types = {int: "whole", bool: "truth", str: "text"}
+    return tuple(
+        Output(name, types.get(its_type, kinds.get(name, "")), heading=name, optional=its_type not in types)
+        for name, its_type in get_type_hints(record).items()
+    )
 
 
 def chosen(outputs: Iterable[Output], names: Sequence[str]) -> dict[str, Output]:
@@ -168,6 +247,52 @@ def list_of(item: Schema, length: int | None = None) -> Schema:
 def or_null(item: Schema) -> Schema:
     """Return the schema of a value that may be null."""
     return {"anyOf": [item, {"type": "null"}]}
+
+
+UNITS = Output("units", of=lambda found: unit_names(found.problem), form=map_of(TEXT, "unit of each kind of quantity"))
+"""The units of the problem of a subject."""
+
+
+class Question(NamedTuple):
+    """A question that a case asks of its result. What is found is an object of its own class.
+
+    Attributes
+    ----------
+    bar : str
+        Text of the progress bar while it is looked for.
+    failed : str
+        What it means that nothing is found; the reason follows.
+    margin_names : tuple of str
+        Names of its margins of safety.
+    outcomes : mapping of str
+        Outcomes of sweeps by name, pairs of an :class:`Output` and a callable ``read(result, how)``, which gives the
+        subject of the output for the value of the section.
+    find : callable
+        ``find(case, held, progress)``: what is found; None if it is not looked for. InputError says why nothing is
+        found.
+    judged : callable
+        ``judged(result, how)``: what margins need of a whole result in a sweep.
+    lines : callable
+        ``lines(found, over)``: lines of text. `over` has the bodies that yield, see
+        :func:`fastpin.states.margins.over_yield`.
+    document : callable
+        ``document(found, over)``: a dict for JSON.
+    schema : callable
+        ``schema()``: its JSON schema.
+    margins : callable
+        ``margins(found)``: its margins of safety.
+    """
+
+    bar: str
+    failed: str
+    margin_names: tuple[str, ...]
+    outcomes: Mapping[str, tuple[Output, Callable[[Any, Any], Any]]]
+    find: Callable[..., Any]
+    judged: Callable[[Any, Any], Any]
+    lines: Callable[[Any, Mapping[str, float]], list[str]]
+    document: Callable[[Any, Mapping[str, float]], dict[str, Any]]
+    schema: Callable[[], Schema]
+    margins: Callable[[Any], list[Margin]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,12 +369,6 @@ def kept(function: Function) -> Function:
         return values[others]
 
     return value  # type: ignore[return-value]
-
-
-def unit_names(problem: Problem) -> dict[str, str]:
-    """Return the name of the unit of every kind of quantity in the JSON of a problem."""
-    angle = {"angle": "deg from the bottom of the hole, counter-clockwise"}
-    return {kind: unit.name for kind, unit in units(problem).items()} | angle
 
 
 def json_ready(value: Any) -> Any:

@@ -1,19 +1,4 @@
-"""The questions that a case asks of its result: for each a section beside the problem, and the file that answers it.
-
-The file of a question has these names. What is found is an object of its own class.
-
-* ``BAR``: text of the progress bar while it is looked for.
-* ``FAILED``: what it means that nothing is found; the reason follows.
-* ``MARGINS``: names of its margins of safety.
-* ``OUTCOMES``: outcomes of sweeps by name, pairs of an :class:`fastpin.assess.outputs.Output` and a callable
-  ``read(result, how)``, which gives the subject of the output for the value of the section.
-* ``find(case, held, progress)``: what is found; None if it is not looked for. InputError says why nothing is found.
-* ``judged(result, how)``: what margins need of a whole result in a sweep.
-* ``lines(found, over)``: lines of text. `over` has the bodies that yield, see
-  :func:`fastpin.states.margins.over_yield`.
-* ``document(found, over)``: a dict for JSON, and ``schema()``, its JSON schema.
-* ``margins(found)``: its margins of safety.
-"""
+"""The questions that a case asks of its result: for each a section beside the problem, and the file that answers it."""
 
 from __future__ import annotations
 
@@ -22,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from fastpin.assess import crack, fatigue, strength
-from fastpin.assess.outputs import kept
+from fastpin.assess.outputs import Question, kept
 from fastpin.damage.margins import last_cycle_margins
 from fastpin.model.problem import Problem
 from fastpin.states.cycles import Cycle
@@ -34,7 +19,9 @@ if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
     from fastpin.solver.result import Result
 
 
-QUESTIONS: dict[str, Any] = {"fatigue": fatigue, "crack": crack, "strength": strength}
+QUESTIONS: dict[str, Question] = {
+    "fatigue": fatigue.QUESTION, "crack": crack.QUESTION, "strength": strength.QUESTION
+}  # fmt: skip
 """The questions by the names of their sections, in the order of all texts."""
 
 LEAST = "least"
@@ -49,7 +36,7 @@ def of_question(name: str, quantity: str, how: Any, result: Result) -> float:
     FastpinError
         If the result can't be judged so.
     """
-    output, read = QUESTIONS[name].OUTCOMES[quantity]
+    output, read = QUESTIONS[name].outcomes[quantity]
     value: float = output.number(read(result, how))
     return value
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from fastpin import damage, solver
@@ -13,16 +14,13 @@ from fastpin.damage.hole_strength import JOINT_MODES
 from fastpin.damage.laminates import MODES
 from fastpin.damage.margins import strength_margins
 from fastpin.errors import InputError
-from fastpin.model import Case, LoadHistory, Problem
-from fastpin.model.angles import from_bottom
-from fastpin.model.checks import choice
+from fastpin.model import Case, LoadHistory, Problem, angles, checks
 from fastpin.model.doubts import doubts_given
 from fastpin.model.loads import LOAD_KIND, Corner
 from fastpin.model.ply import CRITERION_NAMES, PlyCriterion
 from fastpin.model.strength import LENGTHS, StrengthAssessment
 from fastpin.model.units import printed_loads, units
 from fastpin.solver.errors import ConvergenceError, SolveError
-from fastpin.states.margins import Margin
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
@@ -35,11 +33,6 @@ CLOSE = 1e-6
 
 MOST_SOLVED = 40
 """Most histories that are solved to find it. Three or four are usual: stresses nearly grow with the load."""
-
-
-BAR = "state {n} of {total}"
-FAILED = "no strength is assessed"
-MARGINS = ("ply",)
 
 
 PLACE = (
@@ -84,6 +77,10 @@ class StrengthFound(NamedTuple):
     failure: FailureLoad | None = None
     reason: str = ""
 
+    def length(self, name: str) -> float | None:
+        """A length of the assessment, m; None if it has another one."""
+        return self.how.lengths.get(name)
+
 
 @outputs.kept
 def worst_state(result: Any, how: StrengthAssessment) -> StrengthFound:
@@ -97,9 +94,6 @@ def worst_state(result: Any, how: StrengthAssessment) -> StrengthFound:
     return StrengthFound(how, len(result.states), *damage.least_strength(result.states, how))
 
 
-judged = worst_state
-
-
 def _load_at_failure(result: Any, how: StrengthAssessment) -> FailureLoad:
     """Find the load at failure, on as many nodes and with states at the same fractions of each step."""
     fractions = sorted({state.fraction for state in result} - {1.0})
@@ -109,34 +103,6 @@ def _load_at_failure(result: Any, how: StrengthAssessment) -> FailureLoad:
             result.problem, result.history, how.criterion, **how.lengths, over="history",
             nodes=result.grid.size, **options,
         )  # fmt: skip
-
-
-OUTCOMES = {name: (output, worst_state) for name, output in outputs.chosen(PLACE, ("ratio", "angle")).items()} | {
-    "factor": (outputs.Output("factor", "", lambda found: found.factor), _load_at_failure)
-}
-"""Outcomes of sweeps. The history is solved several times for the "factor" at failure."""
-
-
-def margins(found: StrengthFound) -> list[Margin]:
-    """Return the margin of the first ply."""
-    return strength_margins(found.how, found.state, found.strength)
-
-
-def schema() -> outputs.Schema:
-    """Return the JSON schema of :func:`document`."""
-    place, loads = outputs.properties(PLACE), outputs.map_of(outputs.NUMBER, "loads of the state that fails")
-    return outputs.object_of(
-        {
-            "criterion": {"enum": list(CRITERION_NAMES)},
-            **dict.fromkeys(LENGTHS, outputs.UNKNOWN),
-            "states": outputs.WHOLE,
-            **place,
-            "failure": outputs.or_null(
-                outputs.object_of({"factor": outputs.NUMBER, "load": loads, "solved": outputs.WHOLE, **place})
-            ),
-            "error": outputs.OPTIONAL_TEXT,
-        }
-    )
 
 
 def strength_words(problem: Problem, how: StrengthAssessment) -> str:
@@ -196,28 +162,47 @@ def lines(found: StrengthFound, over: Mapping[str, float]) -> list[str]:
 
 def place_words(strength: damage.JointStrength) -> str:
     """Return the place of the least ratio, its ply and its modes in words."""
-    at = f"at {from_bottom(strength.angle):z.2f} deg from the bottom"
+    at = f"at {angles.from_bottom(strength.angle):z.2f} deg from the bottom"
     parts = [at, f"ply of {strength.ply_angle:g} deg by {strength.ply_mode}", strength.joint_mode]
     return ", ".join(filter(None, parts))
 
 
-def document(found: StrengthFound, over: Mapping[str, float]) -> dict[str, Any]:
-    """Return a strength as a JSON-ready dict. A ratio without stress is infinite."""
-    unit, failure = units(found.state.problem), None
-    lengths = {name: unit["length"].factor * value for name, value in found.how.lengths.items()}
-    if found.failure is not None:
-        load = printed_loads(found.state.problem, found.failure.state.load)
-        failure = {"factor": found.failure.factor, "load": load, "solved": found.failure.solved}
-        failure |= outputs.document(PLACE, found.failure, unit)
-    return {
-        "criterion": found.how.criterion,
-        **dict.fromkeys(LENGTHS),
-        **lengths,
-        "states": found.states,
-        **outputs.document(PLACE, found, unit),
-        "failure": failure,
-        "error": found.reason or None,
-    }
+FOUND = (
+    outputs.Output("criterion", "text", lambda found: found.how.criterion, allowed=CRITERION_NAMES),
+    *(outputs.Output(name, "length", partial(StrengthFound.length, name=name), optional=True) for name in LENGTHS),
+    outputs.Output("states", "whole"),
+    *PLACE,
+    outputs.Output(
+        "failure", optional=True,
+        parts=(
+            outputs.Output("factor"),
+            outputs.Output(
+                "load", of=lambda found: printed_loads(found.state.problem, found.state.load),
+                form=outputs.map_of(outputs.NUMBER, "loads of the state that fails"),
+            ),
+            outputs.Output("solved", "whole"),
+            *PLACE,
+        ),
+    ),
+    outputs.Output("error", "text", lambda found: found.reason or None, optional=True),
+)  # fmt: skip
+"""Outputs of a :class:`StrengthFound`. A ratio without stress is infinite."""
+
+
+QUESTION = outputs.Question(
+    bar="state {n} of {total}",
+    failed="no strength is assessed",
+    margin_names=("ply",),
+    outcomes={name: (output, worst_state) for name, output in outputs.chosen(PLACE, ("ratio", "angle")).items()}
+    | {"factor": (outputs.Output("factor"), _load_at_failure)},
+    find=find,
+    judged=worst_state,
+    lines=lines,
+    document=lambda found, over: outputs.document(FOUND, found, units(found.state.problem)),
+    schema=lambda: outputs.schema_of(FOUND),
+    margins=lambda found: strength_margins(found.how, found.state, found.strength),
+)
+"""The strength of [strength]. The history is solved several times for its outcome "factor" at failure."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -279,7 +264,7 @@ def failure_load(
     """
     loads = history if isinstance(history, LoadHistory) else LoadHistory(history)
     how = StrengthAssessment(criterion, distance, tension, compression)
-    last = slice(-1 if choice("over", over, ("end", "history")) == "end" else 0, None)
+    last = slice(-1 if checks.choice("over", over, ("end", "history")) == "end" else 0, None)
     scaled = [name for name, kind in LOAD_KIND.items() if kind != "ratio"]  # all but the change of friction
     factor, known = 1.0, []
     for solved in range(1, MOST_SOLVED + 1):

@@ -20,46 +20,42 @@ if TYPE_CHECKING:  # they import compiled code, and a plan is read without it
     from fastpin.damage import WornFatigue
     from fastpin.wear_lives.wear_result import WearResult
 
-COUNTS = (
-    outputs.Output("cycle", "whole", lambda one: one.cycle),
-    outputs.Output("next_jump", "whole", lambda one: one.next_jump),
-    outputs.Output("solved", "whole", lambda one: one.solved),
-)
+COUNTS = outputs.numbers("cycle next_jump solved", "whole")
 """Counts of a :class:`fastpin.wear_lives.WornCycle`."""
 
 
 WORN = (
-    outputs.Output("depth", "displacement", lambda one: one.depth),
-    outputs.Output("volume", "work per stress", lambda one: one.volume),
+    outputs.Output("depth", "displacement"),
+    outputs.Output("volume", "work per stress"),
     outputs.Output("pin_volume", "work per stress", lambda one: one.volumes[0]),
     outputs.Output("plate_volume", "work per stress", lambda one: one.volumes[1]),
-    outputs.Output("energy_per_cycle", "energy", lambda one: one.energy_per_cycle, short="energy/cycle"),
-    outputs.Output("dissipation", "energy", lambda one: one.dissipation),
-    outputs.Output("removed", "energy", lambda one: one.removed),
-    outputs.Output("largest_pressure", "traction", lambda one: one.largest_pressure, short="largest p"),
+    outputs.Output("energy_per_cycle", "energy", short="energy/cycle"),
+    outputs.Output("dissipation", "energy"),
+    outputs.Output("removed", "energy"),
+    outputs.Output("largest_pressure", "traction", short="largest p"),
 )
 """Outputs of a :class:`fastpin.wear_lives.WornCycle`. Dissipation and removed energy are those of all cycles so far."""
 
 
 PROFILES = (
-    outputs.Output("pin_depth", "displacement", lambda one: one.pin_depth),
-    outputs.Output("plate_depth", "displacement", lambda one: one.plate_depth),
+    outputs.Output("pin_depth", "displacement"),
+    outputs.Output("plate_depth", "displacement"),
     outputs.Output("pressure", "traction", lambda one: one.states[-1].pressure),
 )
 """Outputs at each node. The pressure is that on the profile at the end of one more cycle."""
 
 
 WEAR_OUTCOMES = outputs.chosen(
-    (*WORN, outputs.Output("pin_share", "", lambda one: one.pin_share)),
+    (*WORN, outputs.Output("pin_share")),
     ("volume", "depth", "pin_share", "energy_per_cycle", "largest_pressure"),
 )
 """Outcomes of the last cycle: the last profile, and one cycle on it."""
 
 
 RACE_OUTCOMES = {
-    "life": outputs.Output("life", "life", lambda found: found.life),
+    "life": outputs.Output("life", "life"),
     "damage": outputs.Output("damage", "", lambda found: found.damage[-1].max()),
-    "race": outputs.Output("race", "class", lambda found: found.race, classes={int(race): race.words for race in Race}),
+    "race": outputs.Output("race", "class", classes={int(race): race.words for race in Race}),
 }
 """Outcomes of a :class:`fastpin.damage.WornFatigue`: cycles until a crack starts, largest sum of damage, who wins."""
 
@@ -109,7 +105,7 @@ def cycle_columns(result: WearResult) -> list[outputs.Column]:
     unit = units(result.problem)
     columns: list[outputs.Column] = [("cycle", "", [f"{each.cycle:,}" for each in result])]
     for each in outputs.chosen(WORN, ("depth", "volume", "energy_per_cycle", "largest_pressure")).values():
-        values = [each.of(one) for one in result]
+        values = [each.value(one) for one in result]
         factor, label = unit[each.kind].scale(values)
         columns.append((each.short or each.name, label, [f"{factor * value:.5g}" for value in values]))
     shares = ["-" if np.isnan(each.pin_share) else f"{100.0 * each.pin_share:.3g}" for each in result]
@@ -206,31 +202,55 @@ def damage_curve(damage: WornFatigue) -> outputs.Curve:
     return outputs.Curve({"body": damage.body}, {name: np.ravel(values) for name, values in columns.items()})
 
 
+def _profile(result: WearResult, values: np.ndarray) -> list[float]:
+    """Values at the nodes in the unit of a wear coefficient."""
+    scaled: np.ndarray = units(result.problem)["wear coefficient"].factor * values
+    return scaled.tolist()
+
+
+def _cycles(result: WearResult) -> list[dict[str, Any]]:
+    """The chosen cycles, each with its loss of friction."""
+    unit = units(result.problem)
+    return [
+        outputs.document(COUNTS, each, unit) | {"tau": tau} | outputs.document((*WORN, *PROFILES), each, unit)
+        for each, tau in zip(result, _profile(result, result.tau), strict=True)
+    ]
+
+
+LIFE = (
+    outputs.Output("complete", "truth"),
+    outputs.UNITS,
+    outputs.Output("law", "text"),
+    outputs.Output("tolerance"),
+    *(
+        outputs.Output(name, of=read, form=outputs.list_of(outputs.NUMBER))
+        for name, read in {
+            "angles": lambda life: [from_bottom(angle) for angle in life.theta.tolist()],
+            "pin_coefficient": lambda life: _profile(life, life.coefficients[0]),
+            "plate_coefficient": lambda life: _profile(life, life.coefficients[1]),
+        }.items()
+    ),
+    outputs.Output("statistics", form=outputs.map_of(outputs.NUMBER, "counters of the solver")),
+    outputs.Output(
+        "cycles", of=_cycles,
+        form=outputs.list_of(
+            outputs.object_of(
+                outputs.properties(COUNTS) | {"tau": outputs.NUMBER} | outputs.properties(WORN)
+                | {name: outputs.list_of(each) for name, each in outputs.properties(PROFILES).items()}
+            )
+        ),
+    ),
+)  # fmt: skip
+"""Outputs of a life of wear."""
+
+
 def document(result: WearResult | None, title: str = "", error: str | None = None) -> dict[str, Any]:
     """Return a life of wear as a JSON-ready dict. Angles are in degrees from the bottom of the hole.
 
     `error` is the reason why it is incomplete. Without a result no cycle was reached.
     """
-    found: dict[str, Any] = {"fastpin": __version__, "title": title, "error": error}
     if result is None:
-        empty: dict[str, Any] = {key: [] for key in ("angles", "pin_coefficient", "plate_coefficient", "cycles")}
-        rest = {"complete": False, "units": {}, "law": "", "tolerance": 0.0, "statistics": {}}
-        return found | rest | empty
-    unit = units(result.problem)
-    pin, plate = unit["wear coefficient"].factor * result.coefficients
-    found |= {
-        "complete": result.complete,
-        "units": outputs.unit_names(result.problem),
-        "law": result.law,
-        "tolerance": result.tolerance,
-        "angles": [from_bottom(angle) for angle in result.theta.tolist()],
-        "pin_coefficient": pin.tolist(),
-        "plate_coefficient": plate.tolist(),
-        "statistics": result.statistics,
-        "cycles": [
-            outputs.document(COUNTS, each, unit) | {"tau": tau} | outputs.document((*WORN, *PROFILES), each, unit)
-            for each, tau in zip(result, (unit["wear coefficient"].factor * result.tau).tolist(), strict=True)
-        ],
-    }
-    ready: dict[str, Any] = outputs.json_ready(found)
-    return ready
+        empty = {"complete": False, "units": {}, "law": "", "tolerance": 0.0, "statistics": {}}
+        rest: dict[str, Any] = {each.name: empty.get(each.name, []) for each in LIFE}
+        return {"fastpin": __version__, "title": title, "error": error, **rest}
+    return outputs.whole_document(LIFE, result, {}, title=title, error=error)

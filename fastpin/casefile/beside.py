@@ -75,8 +75,7 @@ def read_strength(
     return found if len(source.placed) == faults else None
 
 
-READERS: dict[str, Callable[..., Any]] = {"crack": read_crack, "strength": read_strength}
-"""Functions of a text, a section and the values of keys that it leaves out. None: a key is wrong (reported).
-
-The section [fatigue] is checked with the history and the options, and has a way of its own in the reader of cases.
-"""
+READERS: dict[str, Callable[..., Any]] = {
+    "fatigue": read_assessment, "crack": read_crack, "strength": read_strength
+}  # fmt: skip
+"""Functions of a text, a section and the values of keys that it leaves out. None: a key is wrong (reported)."""

@@ -146,11 +146,7 @@ def _repeat(section: Section, history: LoadHistory | None) -> LoadHistory | None
     if len(history) > MAX_ROWS and len(history) * count <= MAX_CORNERS:  # beyond both limits the second is reported
         section.report(f"repeat: more than {MAX_ROWS:,} corners can't be repeated", "repeat")
         return None
-    try:
-        return history.repeated(count)
-    except InputError as error:
-        section.report(f"repeat: {error.reason}", "repeat")
-        return None
+    return section.made(lambda: history.repeated(count), "repeat")
 
 
 def _harmonic(block: Section) -> LoadHistory | None:

@@ -233,8 +233,5 @@ def _load(section: Section, known: Sequence[str] | None, supports: dict[str, str
     if name is None or parts is None:
         return None
     load = PartLoad(name, parts, **components)
-    try:
-        check_not_held(load, supports)
-    except InputError as error:
-        section.report(str(error), error.field)
+    section.made(lambda: check_not_held(load, supports))
     return load

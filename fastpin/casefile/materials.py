@@ -325,11 +325,7 @@ def _of_plies(source: CaseText, section: Section, axis: float) -> Laminate | Non
         section.report(f"ply: must be one ply, or a list of {len(angles)} for the whole stack, not {len(known)}", "ply")
         return None
     each = known if isinstance(given, list) else known * len(angles)
-    try:
-        return Laminate.from_plies(zip(each, angles, strict=True), axis)
-    except InputError as error:
-        section.report(f"layup: {error.reason}", "layup")
-        return None
+    return section.made(lambda: Laminate.from_plies(zip(each, angles, strict=True), axis), "layup")
 
 
 def _ply(source: CaseText, section: Section, given: Any) -> Ply | None:

@@ -16,22 +16,20 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
-from fastpin.casefile.beside import READERS, read_assessment
+from fastpin.casefile.beside import READERS
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.materials import known_materials, read_pair
 from fastpin.casefile.profiles import GAP_KEYS, read_friction, read_gap, read_wear
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
-from fastpin.model import LOADS, LoadHistory, SolveOptions
-from fastpin.model.assessment import FatigueAssessment, check_assessment
+from fastpin.model import LOADS, SolveOptions, checks, synonyms
+from fastpin.model.assessment import check_assessment
 from fastpin.model.case import BESIDE, About, Case, check_arc, check_keep, check_wear
-from fastpin.model.checks import file_path, string
 from fastpin.model.fields import FIELDS
 from fastpin.model.laminate import LAMINATE_KEYS
 from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
-from fastpin.model.synonyms import closest, meant
 from fastpin.model.units import PER_THICKNESS
 from fastpin.model.wear import WEAR_KEYS
 
@@ -91,7 +89,7 @@ def read_case(path: str | Path) -> Case:
     InputError
         If `path` is no path.
     """
-    path = file_path("path", path)
+    path = checks.file_path("path", path)
     return parse_case(read_text(path), str(path), path.parent)
 
 
@@ -112,7 +110,7 @@ def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> 
     CaseFileError, InputError
         See :func:`fastpin.read_case`.
     """
-    place = file_path("folder", folder)
+    place = checks.file_path("folder", folder)
     return parse_text(text, name, "case file", lambda source: case_from(source, place))
 
 
@@ -153,7 +151,7 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     """
     shared, tables = shared or SharedParts(), source.root.table
     shared.part("keys", source, _keys_of(tables), lambda: _check_keys(source))
-    title = source.root.checked("title", string) or ""
+    title = source.root.checked("title", checks.string) or ""
     about = _about(source.section("about"))
     materials = known_materials(source, folder)
     pair = shared.part("pair", source, _given_of_pair(tables, materials), lambda: read_pair(source, materials))
@@ -177,28 +175,19 @@ def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None)
     wear = read_wear(how, folder, count) if how.present else None
     if problem is not None and wear is not None:
         _check_together(source, lambda: check_wear(problem), "plate_body")
-    fatigue = _fatigue(source, problem, history, options)
-    beside = {name: read(source, source.section(name)) for name, read in READERS.items() if name in source.root}
-    for name, value in beside.items():
+    beside = {}
+    for name in (name for name in READERS if name in source.root):
+        beside[name] = value = READERS[name](source, source.section(name))
         check = BESIDE[name].check
-        if problem is not None and pair is not None and value is not None and check is not None:
+        if problem is None or value is None:
+            continue
+        if check is None and not source.placed:  # a fatigue is checked with everything else
+            _check_together(source, partial(check_assessment, problem, value, history, options), name)
+        elif check is not None and pair is not None:
             _check_together(source, partial(check, problem, value), name)
     if problem is None or history is None:
         return None
-    return Case(problem, history, options, title, about, wear, fatigue, **beside)
-
-
-def _fatigue(
-    source: CaseText, problem: Problem | None, history: LoadHistory | None, options: SolveOptions
-) -> FatigueAssessment | None:
-    """How the fatigue of the history is assessed; None without the section, or if it can't be used (reported)."""
-    section = source.section("fatigue")
-    if not section.present:
-        return None
-    how = read_assessment(source, section)
-    if how is not None and problem is not None and not source.placed:
-        _check_together(source, lambda: check_assessment(problem, how, history, options), "fatigue")
-    return how
+    return Case(problem, history, options, title, about, wear, **beside)
 
 
 def _keys_of(tables: Mapping[str, Any]) -> object:
@@ -243,7 +232,7 @@ def _check_keys(source: CaseText) -> None:
         elif written(name, value):
             source.report_unknown(name, _section_hint(name))
         else:
-            source.report_unknown(name, _owners(name) or closest(name, ROOT_KEYS) or _elsewhere(name))
+            source.report_unknown(name, _owners(name) or synonyms.closest(name, ROOT_KEYS) or _elsewhere(name))
 
 
 def _section_hint(name: str) -> str:
@@ -256,14 +245,14 @@ def _section_hint(name: str) -> str:
     for kind, (sections, command) in KINDS.items():
         if name in sections:
             return f"; a file with [{name}] is a {kind}, see fastpin {command}"
-    return closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_in_brackets, KEYS))}"
+    return synonyms.closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_in_brackets, KEYS))}"
 
 
 def key_hint(section: str, key: str) -> str:
     """A hint at the key that is meant by an unknown `key` of a section, or at all keys of the section."""
     known = KEYS[section]
-    elsewhere = closest(key, known, spelling=False) or _owners(key) or _elsewhere(key)
-    return elsewhere or closest(key, known) or f"; the keys are {', '.join(known)}"
+    elsewhere = synonyms.closest(key, known, spelling=False) or _owners(key) or _elsewhere(key)
+    return elsewhere or synonyms.closest(key, known) or f"; the keys are {', '.join(known)}"
 
 
 def _owners(key: str) -> str:
@@ -285,10 +274,10 @@ def _in_words(sections: list[str]) -> str:
 
 def _elsewhere(word: str) -> str:
     """A hint at a key of some section that is meant by `word`; empty if there is none."""
-    for name in meant(word):
+    for name in synonyms.meant(word):
         owners = sections_with(name)
         if owners:
-            hint = closest(word, [name])
+            hint = synonyms.closest(word, [name])
             return f"{hint.removesuffix('?')} in {_in_words(owners)}{'?' * hint.endswith('?')}"
     return ""
 

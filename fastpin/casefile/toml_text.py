@@ -326,6 +326,14 @@ class Section:
             self.report(str(error), key)
             return None
 
+    def made(self, make: Callable[[], T], key: str = "") -> T | None:
+        """The result of ``make()``; None if it fails: reported for a `key`, or else for the field of the error."""
+        try:
+            return make()
+        except InputError as error:
+            self.report(f"{key or error.field}: {error.reason}", key or error.field)
+            return None
+
     def number(self, key: str) -> float | None:
         """A finite number; None if it is missing or wrong (reported)."""
         return self.checked(key, number)

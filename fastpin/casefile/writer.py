@@ -16,11 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.model import Case, LoadHistory, Material, Problem, Profile, SolveOptions
+from fastpin.model import Case, LoadHistory, Material, Problem, Profile, SolveOptions, checks, loads
 from fastpin.model.case import BESIDE, beside_of
-from fastpin.model.checks import instance
 from fastpin.model.fields import FIELDS
-from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import PER_THICKNESS
 
 PER_LINE = 8
@@ -37,7 +35,7 @@ def case_text(case: Case) -> str:
     InputError
         If `case` is no Case, or the plate is a compliance, which has a file of its own.
     """
-    instance("case", case, Case, "a Case")
+    checks.instance("case", case, Case, "a Case")
     wear = {} if case.wear is None else case.wear.toml()
     blocks = [
         *([[f"title = {_value(case.title)}"]] if case.title else []),
@@ -89,9 +87,9 @@ def _bodies(problem: Problem) -> Iterator[list[str]]:
 
 def _loads(history: LoadHistory, thickness: float | None) -> Iterator[str]:
     given = np.any([np.any(~np.isnan(block.given), axis=0) for block in history.blocks], axis=0)
-    for name, column, is_given in zip(LOADS, history.values().T.tolist(), given, strict=True):
+    for name, column, is_given in zip(loads.LOADS, history.values().T.tolist(), given, strict=True):
         if is_given:
-            if LOAD_KIND[name] in PER_THICKNESS:
+            if loads.LOAD_KIND[name] in PER_THICKNESS:
                 whole = {value: _whole(value, thickness) for value in set(column)}
                 column = [whole[value] for value in column]
             lines = [", ".join(map(repr, column[k : k + PER_LINE])) for k in range(0, len(column), PER_LINE)]

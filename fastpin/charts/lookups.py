@@ -19,9 +19,6 @@ from fastpin.model.checks import choice, in_one_shape, instance, known_name, num
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 
-FIRST_PARAMETERS = ("load_parameter", "friction", "alpha", "beta", "kolosov", "pin_load")
-"""Parameters of a chart of the first load."""
-
 CYCLE_PARAMETERS = ("load_parameter", "friction", "load_ratio", "alpha", "beta", "kolosov", "pin_load", "rotation")
 """Parameters of a chart of a load cycle: those of the first load, and two more."""
 
@@ -79,7 +76,8 @@ class ChartQuantity:
     @property
     def parameters(self) -> tuple[str, ...]:
         """Names of its parameters."""
-        return CYCLE_PARAMETERS if self.is_cycle else FIRST_PARAMETERS
+        of_cycles = () if self.is_cycle else ("load_ratio", "rotation")
+        return tuple(name for name in CYCLE_PARAMETERS if name not in of_cycles)
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 
-from fastpin import figures, report
+from fastpin import assess, figures, report
 from fastpin.charts import lookups
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import as_options, check_outputs, flag, say, write_outputs
@@ -35,7 +36,9 @@ def run(options: argparse.Namespace) -> int:
         (options.csv, lambda path: report.charts.write_chart(lookups.chart_of(options.chart), path)),
         (options.book, _write_book),
     ]
-    return write_outputs(files, options.json, lambda: report.charts.chart_document(chart, given, found))
+    looked = report.charts.Looked(lookups.CHARTS if chart is None else {chart.name: chart}, given, found)
+    document = partial(assess.outputs.whole_document, report.charts.LOOKED, looked, {})
+    return write_outputs(files, options.json, document)
 
 
 def _write_book(path: Path) -> None:

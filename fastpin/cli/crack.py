@@ -5,37 +5,37 @@ from __future__ import annotations
 import argparse
 import sys
 
-from fastpin import casefile, figures, report, storage
-from fastpin.assess.crack import BAR, CrackStops, growth_curve, growth_line, growth_table
-from fastpin.assess.outputs import write_csv
+from fastpin import casefile, figures, storage
+from fastpin.assess import outputs
+from fastpin.assess.crack import DOCUMENT, QUESTION, CrackStops, growth_curve, growth_line, growth_table
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, flag, say, write_outputs
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
 from fastpin.model.growth import LAWS
+from fastpin.model.units import units
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the growth of a crack, at one place or where a crack grows fastest, and draw it."""
     case, held = storage.stored_case(options.result), storage.HeldInFile(options.result)
     stops = CrackStops.of(len(case.history), held.result.cycles, held.between, options.spectrum)
-    outputs = {"--output": options.output, "--csv": options.csv, "--json": options.json}
-    check_outputs(outputs, figures=("--output",))
+    check_outputs({"--output": options.output, "--csv": options.csv, "--json": options.json}, figures=("--output",))
     try:
-        with Bar(1, BAR) as bar:
+        with Bar(1, QUESTION.bar) as bar:
             found = stops.growth(_how(options, case), progress_to(bar))
     except InputError as error:
         name = "at" if error.field == "theta" else error.field
         raise InputError(flag(name) if hasattr(options, name) else name, error.reason) from None
     files = [
         (options.output, lambda path: figures.plot_crack_growth(found, path, case.title)),
-        (options.csv, lambda path: write_csv([growth_curve(found)], path)),
+        (options.csv, lambda path: outputs.write_csv([growth_curve(found)], path)),
     ]
     code = write_outputs(
         files,
         options.json,
-        lambda: report.summary.crack_document(case, found),
+        lambda: outputs.whole_document(DOCUMENT, found, units(found.problem), title=case.title),
         lambda: [growth_line(found), "", *growth_table(found).split("\n")],
     )
     if not stops.is_spectrum and all(state.fraction == 1.0 for state in stops.states):

@@ -6,17 +6,8 @@ import argparse
 import sys
 
 from fastpin import figures, joints, report
+from fastpin.cli import terminal
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
-from fastpin.cli.terminal import (
-    EXIT_FAILED,
-    EXIT_INTERRUPTED,
-    EXIT_OK,
-    as_options,
-    check_outputs,
-    fail,
-    say,
-    write_outputs,
-)
 from fastpin.errors import InputError
 from fastpin.solver import Interrupted, SolveError
 
@@ -25,26 +16,31 @@ def run(options: argparse.Namespace) -> int:
     """Solve a joint file and print, draw and write its result; or print a commented joint file."""
     if options.example:
         sys.stdout.write(joints.JOINT_EXAMPLE)
-        return EXIT_OK
+        return terminal.EXIT_OK
     if options.file is None:
         raise InputError("file", "the joint file is missing; start with: fastpin joint --example > joint.toml")
     case = joints.read_joint(options.file)
-    check_outputs({"--plot": options.plot, "--shares": options.shares, "--json": options.json}, ("--plot", "--shares"))
+    terminal.check_outputs(
+        {"--plot": options.plot, "--shares": options.shares, "--json": options.json}, ("--plot", "--shares")
+    )
     nodes = case.nodes if options.nodes is None else options.nodes
-    code = EXIT_OK
+    code = terminal.EXIT_OK
     try:
-        with Bar(len(case.corners), LOAD_POINTS) as bar, as_options(() if options.nodes is None else ("nodes",)):
+        with (
+            Bar(len(case.corners), LOAD_POINTS) as bar,
+            terminal.as_options(() if options.nodes is None else ("nodes",)),
+        ):
             result = joints.solve_joint(
                 case.joint, case.corners, nodes=nodes, harmonics=case.harmonics, progress=progress_to(bar)
             )
     except (SolveError, Interrupted) as ended:
-        code = EXIT_INTERRUPTED if isinstance(ended, Interrupted) else EXIT_FAILED
-        fail(str(ended) or "interrupted", code)
+        code = terminal.EXIT_INTERRUPTED if isinstance(ended, Interrupted) else terminal.EXIT_FAILED
+        terminal.fail(str(ended) or "interrupted", code)
         result = ended.result  # type: ignore[assignment]
         if result is None or not len(result):
             return code
-        say(f"note: {len(result)} of {len(case.corners)} load points were reached", file=sys.stderr)
-    written = write_outputs(
+        terminal.say(f"note: {len(result)} of {len(case.corners)} load points were reached", file=sys.stderr)
+    written = terminal.write_outputs(
         [
             (options.plot, lambda path: figures.plot_joint(result, path, case.title)),
             (options.shares, lambda path: figures.plot_shares(result, path, case.title)),
@@ -53,5 +49,5 @@ def run(options: argparse.Namespace) -> int:
         lambda: report.joints.document(result, case.title),
     )
     if options.json != "-":
-        say(*filter(None, [case.title]), *report.joints.describe(result).split("\n"))
+        terminal.say(*filter(None, [case.title]), *report.joints.describe(result).split("\n"))
     return code or written

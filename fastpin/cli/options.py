@@ -437,22 +437,19 @@ def add_benchmarks(commands: Any) -> None:
     _add_json(benchmarks, "write the numbers as JSON")
 
 
-CHART_NUMBERS = {
-    "load_parameter": "L_p = (R - R_D)/(P beta*)",
-    "friction": "coefficient of friction",
-    "alpha": "first parameter of Dundurs, in the usual sign (default 0)",
-    "beta": "second parameter of Dundurs (default 0)",
-    "kolosov": "Kolosov's constant of the pin: 3 - 4 nu or, in plane stress, (3 - nu)/(1 + nu) (default 1.8)",
-    "load_ratio": "Q/P: amplitude of the cycle (cycles only)",
-}
-"""Parameters of charts that are numbers, and their help."""
-
-
 def add_charts(commands: Any) -> None:
     """Add ``charts``."""
     charts = _command(commands, "charts", "charts", "run", "look up pressures, angles and Kt in tables, with errors")
     _option(charts, "chart", "CHART", "a chart; without one: list them with their bounds", nargs="?")
-    for name, words in CHART_NUMBERS.items():
+    numbers = {
+        "load_parameter": "L_p = (R - R_D)/(P beta*)",
+        "friction": "coefficient of friction",
+        "alpha": "first parameter of Dundurs, in the usual sign (default 0)",
+        "beta": "second parameter of Dundurs (default 0)",
+        "kolosov": "Kolosov's constant of the pin: 3 - 4 nu or, in plane stress, (3 - nu)/(1 + nu) (default 1.8)",
+        "load_ratio": "Q/P: amplitude of the cycle (cycles only)",
+    }
+    for name, words in numbers.items():
         _option(charts, f"--{name.replace('_', '-')}", "X", words, literal)
     _option(charts, "--pin-load", "LOAD", "body or centre (default centre)")
     _option(charts, "--rotation", "HOW", "free or fixed (default free; cycles only)")

@@ -37,8 +37,7 @@ from fastpin.report.states import (
     way_on,
 )
 from fastpin.runtime import beside
-from fastpin.states.choice import check_choice, last_cycle_states, span_of
-from fastpin.states.extremes import marked_places
+from fastpin.states import choice, extremes
 from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.storage.held import Held
 
@@ -179,7 +178,7 @@ def _check_shown(case: Case, options: argparse.Namespace) -> None:
     if options.plot is None:
         raise InputError("--states", "chooses the states of a figure: it needs --plot FILE")
     with terminal.as_options(["states"]):
-        check_choice(options.states, case.history)
+        choice.check_choice(options.states, case.history)
 
 
 def _corners(corners: int, text: str | None) -> list[int]:
@@ -285,10 +284,10 @@ class RunReport:
             return None
         question = assess.questions.QUESTIONS[name]
         try:
-            with Bar(1, question.BAR) as bar:
+            with Bar(1, question.bar) as bar:
                 return question.find(self.case, self.held, progress_to(bar))
         except InputError as error:
-            terminal.say(f"fastpin: note: {question.FAILED}: {error}", file=sys.stderr)
+            terminal.say(f"fastpin: note: {question.failed}: {error}", file=sys.stderr)
             return None
 
     def _report_end(self) -> tuple[int, str | None]:
@@ -310,7 +309,7 @@ class RunReport:
         result = self.held.result
         if not result.cycles:
             return result.cycle()
-        return self.held.part(*span_of(result.cycles[-1])).cycle()
+        return self.held.part(*choice.span_of(result.cycles[-1])).cycle()
 
     def _plot(self, held: Held, options: argparse.Namespace, path: Path) -> None:
         """Draw the tractions."""
@@ -330,7 +329,7 @@ class RunReport:
             reached = held is not None and _reached(held.result)
             terminal.say("none of the states was to be kept" if reached else "no state was reached")
             return
-        result, marks = held.result, marked_places(held.extremes)
+        result, marks = held.result, extremes.marked_places(held.extremes)
         rows = stored_rows(case.problem, held.points, result.cycles, held.read, marks)
         places = sorted({*rows.printed, *marks, *self._told(held)})
         states = dict(zip(places, held.read(places), strict=True))
@@ -348,7 +347,7 @@ class RunReport:
         problem, cycles, size = self.case.problem, held.result.cycles, held.points.size
         last = [] if problem.seat is None else [size - 1]
         if cycles:
-            begin, end = span_of(cycles[-1])
+            begin, end = choice.span_of(cycles[-1])
             within = np.flatnonzero((held.points >= begin) & (held.points <= end)).tolist()
             # The fatigue over the last cycle is told, and whether a bush walks.
             return within + last if len(within) <= assess.fatigue.MOST_STOPS or last else []
@@ -359,11 +358,11 @@ class RunReport:
     ) -> dict[str, Callable[[], list[str]]]:
         """The lines below the table, each with the name of what is read for them."""
         case, problem, cycles = self.case, self.case.problem, held.result.cycles
-        peaks, every = [at[place] for place in marked_places(held.extremes)], list(at.values())
+        peaks, every = [at[place] for place in extremes.marked_places(held.extremes)], list(at.values())
         states = every if cycle is None else cycle.states
 
         def seat() -> list[str]:
-            turning = [] if problem.seat is None else last_cycle_states(every, cycles)
+            turning = [] if problem.seat is None else choice.last_cycle_states(every, cycles)
             return seat_lines(problem, peaks, every[-1], turning)
 
         @cache

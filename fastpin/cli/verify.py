@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import time
 from collections.abc import Sequence
+from functools import partial
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from fastpin import assess, storage, verification
+from fastpin import storage, verification
+from fastpin.assess import outputs
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, write_outputs
+from fastpin.report.schema import CHECKS
 from fastpin.runtime.threads import cores
-from fastpin.version import __version__
 
 if TYPE_CHECKING:  # it imports NumPy
     from fastpin.verification.rows import Check
@@ -30,16 +31,10 @@ def run(options: argparse.Namespace) -> int:
     code = EXIT_OK if count == len(checks) else EXIT_FAILED
     libraries = ", ".join(f"{name} {version}" for name, version in storage.versions().items())
     end = f"{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {cores()} cores"
-    document = {
-        "fastpin": __version__,
-        "versions": storage.versions(),
-        "cores": cores(),
-        "seconds": seconds,
-        "passed": code == EXIT_OK,
-        "checks": [{**dataclasses.asdict(check), "passed": check.passed} for check in checks],
-    }
+    found = {"versions": storage.versions(), "cores": cores(), "seconds": seconds, "passed": code == EXIT_OK}
+    document = partial(outputs.whole_document, CHECKS, found | {"checks": checks}, {})
     lines = [*check_table(checks).split("\n"), "", end]
-    return write_outputs([], options.json, lambda: assess.outputs.json_ready(document), lambda: lines) or code
+    return write_outputs([], options.json, document, lambda: lines) or code
 
 
 def check_table(checks: Sequence[Check]) -> str:
@@ -51,7 +46,7 @@ def check_table(checks: Sequence[Check]) -> str:
         same = (check.topic, check.case) == above
         rows.append(("" if same else check.case, *_cells(check)))
         above = check.topic, check.case
-    first, *lines = assess.outputs.aligned(rows, "llrrrrll")
+    first, *lines = outputs.aligned(rows, "llrrrrll")
     units = "Dimensionless (R = F = beta* = 1): N and T in F/R, angles in rad, moments in F R, energies in F^2 beta*."
     text = [units, "", first]
     for topic, group in groupby(zip(checks, lines, strict=True), lambda pair: pair[0].topic):

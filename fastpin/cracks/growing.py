@@ -15,14 +15,13 @@ from fastpin.cracks.intensity import Crack, CrackedBody, CrackedEdge, Residual, 
 from fastpin.cracks.lengths import drawn, refined, spline_of, step_cycles
 from fastpin.cracks.reversals import closed_cycles
 from fastpin.errors import InputError, InputWarning
-from fastpin.model.angles import from_bottom, near_bottom
+from fastpin.model import angles, ties
 from fastpin.model.checks import check_callable, instance, numbers, positive, true_or_false
 from fastpin.model.crack import CrackGrowth, edge_of, law_of
 from fastpin.model.doubts import warn_of
 from fastpin.model.growth import GrowthLaw, checked_law
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.ties import is_top, top_angle
 from fastpin.model.units import units
 from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.quantities import load_point
@@ -86,7 +85,7 @@ class Growth(ReadOnly):
     """What a life counts: cycles, or spectra."""
 
     def __repr__(self) -> str:
-        place = from_bottom(self.crack.theta)
+        place = angles.from_bottom(self.crack.theta)
         return f"<Growth of a crack at {place:.2f} deg from the bottom: {self.words}>"
 
     @property
@@ -428,7 +427,7 @@ class _Following(NamedTuple):
         every = (
             np.linspace(-1.5 * np.pi, 0.5 * np.pi, 360, endpoint=False) if theta is None else numbers("theta", theta)
         )
-        every = np.array([near_bottom(place) for place in every.ravel()])
+        every = np.array([angles.near_bottom(place) for place in every.ravel()])
         if not every.size:
             raise InputError("theta", "must be at least one angle")
         grown: list[Growth] = []
@@ -439,8 +438,8 @@ class _Following(NamedTuple):
                 if progress is not None:
                     progress(len(grown), every.size)
         life, arrest = np.array([one.life for one in grown]), np.array([one.arrest for one in grown])
-        farthest = np.flatnonzero(is_top(np.where(np.isnan(arrest), np.inf, arrest)))
-        at = int(farthest[top_angle(-life[farthest], every[farthest])])
+        farthest = np.flatnonzero(ties.is_top(np.where(np.isnan(arrest), np.inf, arrest)))
+        at = int(farthest[ties.top_angle(-life[farthest], every[farthest])])
         fastest = self.grown(grown[at].crack)
         life[at], arrest[at] = fastest.life, fastest.arrest
         return EdgeGrowth(every, life, arrest, fastest)
@@ -479,7 +478,7 @@ class _Following(NamedTuple):
         def row(a: np.ndarray) -> np.ndarray:
             there = between(a)
             opening, (pace, sums) = there[..., 0], self.pace(a, there)
-            top = np.argmax(is_top(opening.T), axis=1)  # of equal ones the first
+            top = np.argmax(ties.is_top(opening.T), axis=1)  # of equal ones the first
             K_II = np.take_along_axis(there[..., 1], top[None], axis=0)[0]
             return np.array([*pace, opening.max(axis=0), opening.min(axis=0), K_II, top, *sums])
 

@@ -17,11 +17,10 @@ from fastpin.bodies.harmonics import FREE
 from fastpin.cracks.dislocations import CrackLine, needed_points, places, rule, weights
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import FastpinError, InputError, InputWarning
-from fastpin.model.angles import from_bottom
+from fastpin.model import angles, loads
 from fastpin.model.checks import check_callable, choice, instances, number, numbers, true_or_false
 from fastpin.model.crack import MOST_INCLINATION, NO_INSIDE, check_length, depth_of, wall_of
 from fastpin.model.doubts import warn_of
-from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.points import EDGES, MOST_ANGLE, Points, isotropic_material, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
@@ -354,7 +353,10 @@ def histories(
 
 def _mapped(states: Sequence[State], edge: CrackedEdge, cracks: CrackWeights) -> np.ndarray:
     """The intensities of many states: the product of their nodal tractions and those of the nodes' hat functions."""
-    names, shape = [list(LOADS)[place] for place in REMOTE], (len(states), *cracks.points.theta.shape[:3], 2)
+    names, shape = (
+        [list(loads.LOADS)[place] for place in loads.REMOTE],
+        (len(states), *cracks.points.theta.shape[:3], 2),
+    )
 
     # The residual stress is added at the end: beside it the hat of a node would be rounding.
     none = np.zeros((1, *cracks.turn.shape))
@@ -378,7 +380,7 @@ def _check_apart(rows: Sequence[tuple[CrackLine, ...]]) -> None:
         for k, one in enumerate(ends):
             for other, line in zip(ends[:k], row, strict=False):
                 if _distance(one, other) < NEAREST * min(line.length, row[k].length):
-                    places_ = " and ".join(f"{from_bottom(each.mouth):.2f}" for each in (line, row[k]))
+                    places_ = " and ".join(f"{angles.from_bottom(each.mouth):.2f}" for each in (line, row[k]))
                     raise InputError("cracks", f"must not touch: those at {places_} deg from the bottom nearly do")
 
 

@@ -10,10 +10,9 @@ import numpy as np
 
 from fastpin.damage.counted import CountedMaterial
 from fastpin.damage.distance import checked_length, mean_depth, points_of_means
-from fastpin.damage.histories import Progress, different_states, history_blocks
+from fastpin.damage.histories import Progress, different_states, history_blocks, with_residual
 from fastpin.damage.hot_spots import edge_angles
 from fastpin.damage.reserve import Goal, StressReserve, stress_reserve
-from fastpin.damage.residual import with_residual
 from fastpin.damage.spectrum import SpectrumCount, SpectrumDamage, halves, spectrum_count
 from fastpin.errors import InputWarning
 from fastpin.model.assessment import FatigueAssessment, assessed_bodies, check_assessment

@@ -16,8 +16,7 @@ import numpy as np
 
 from fastpin.damage import plane_damage
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, PlaneCount
-from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve, scattered
-from fastpin.damage.reliability import life_shift
+from fastpin.damage.lives import LifeCurve, curve_with_knee, cycles_on_curve, life_shift, scattered
 from fastpin.errors import InputError
 from fastpin.model.assessment import USUAL, FatigueAssessment
 from fastpin.model.checks import alternatives, choice

@@ -1,16 +1,21 @@
-"""Stress histories: the stresses of many states at points, by one product with a matrix or state by state."""
+"""Stress histories: the stresses of many states at points, by one product with a matrix or state by state.
+
+A residual hoop stress round a hole, as cold working leaves it, may be added.
+"""
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
 from fastpin.elasticity.tractions import Tractions
-from fastpin.model.checks import instance, instances, true_or_false
-from fastpin.model.loads import LOADS, REMOTE
-from fastpin.model.points import Body, Points
+from fastpin.model import checks, loads
+from fastpin.model.crack import residual_at
+from fastpin.model.points import Body, Points, owner_of
+from fastpin.model.problem import Problem
 from fastpin.reading.stress import Stress, stress_at
 from fastpin.runtime.threads import in_threads
 from fastpin.states.reading_bounds import MAPPED
@@ -48,11 +53,11 @@ def stress_history(states: Sequence[State], points: Points, body: Body = "plate"
     InputError
         See :meth:`fastpin.State.stress`.
     """
-    every = instances("states", states, State, "a sequence of fastpin.State")
-    instance("points", points, Points, "fastpin.Points")
+    every = checks.instances("states", states, State, "a sequence of fastpin.State")
+    checks.instance("points", points, Points, "fastpin.Points")
     if not every:
         return np.zeros((0, 0))
-    different, order = different_states(every, true_or_false("straight", straight))
+    different, order = different_states(every, checks.true_or_false("straight", straight))
     found = np.empty((len(different), points.theta.size, 4))
     for part, values in history_blocks(different, points, body, straight):
         found[:, part] = values
@@ -74,7 +79,7 @@ def different_states(states: Sequence[State], straight: bool) -> tuple[list[Stat
         change = state.load.get("friction_change", 0.0)
         if (change, same) not in shared:
             shared[change, same] = _digest(parts, straight)
-        remote = np.array([part.load.get(LOADS[place], 0.0) for part in parts for place in REMOTE])
+        remote = np.array([part.load.get(loads.LOADS[place], 0.0) for part in parts for place in loads.REMOTE])
         key = shared[change, same] + remote.tobytes()
         order[k] = seen.setdefault(key, len(different))
         if order[k] == len(different):
@@ -141,7 +146,7 @@ def _read(states: Sequence[State], points: Points, body: Body, straight: bool, p
 
 def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progress | None) -> np.ndarray:
     """Multiply the nodal tractions with the stresses of the hat functions of the nodes, also of the seat of a bush."""
-    problem, names = states[0].problem, [list(LOADS)[place] for place in REMOTE]
+    problem, names = states[0].problem, [list(loads.LOADS)[place] for place in loads.REMOTE]
 
     def stress(tractions: list[Tractions], remote: np.ndarray) -> np.ndarray:
         load = dict(zip(names, remote.tolist(), strict=True))
@@ -153,3 +158,26 @@ def _mapped(states: Sequence[State], points: Points, body: Body, progress: Progr
 def _components(stress: Stress) -> np.ndarray:
     """Return sxx, syy, szz and sxy, shape (4, points)."""
     return np.array([stress.sxx, stress.syy, stress.axial, stress.sxy]).reshape(4, -1)
+
+
+Blocks = Callable[[Progress], Iterator[tuple[slice, np.ndarray]]]
+"""Yields blocks of points, with their stresses (states, points of the block, 4)."""
+
+
+def with_residual(blocks: Blocks, problem: Problem, body: Body, points: Points, residual: Any) -> Blocks:
+    """Return the blocks of points of a body with a residual stress of the plate, a number or pairs, added.
+
+    It acts in the plate alone: pins and bushes keep their stresses.
+    """
+    if residual is None or owner_of(problem, body) != "plate":
+        return blocks
+    depth = np.broadcast_to(points.depths(problem, body), points.shape).ravel()
+    hoop, theta = residual_at(residual, depth * problem.hole_radius), points.theta.ravel()
+    cos, sin = np.cos(theta), np.sin(theta)
+    added = hoop[:, None] * np.stack([sin * sin, cos * cos, np.zeros(theta.size), -sin * cos], axis=-1)
+
+    def summed(progress: Progress) -> Iterator[tuple[slice, np.ndarray]]:
+        for part, history in blocks(progress):
+            yield part, history + added[part]
+
+    return summed

@@ -16,15 +16,13 @@ import numpy as np
 
 from fastpin.damage.laminates import MODES, characteristic_radius, first_ply_failure
 from fastpin.errors import InputError
-from fastpin.model.angles import angle_between, near_bottom
-from fastpin.model.checks import check_callable, instance, instances
+from fastpin.model import angles, checks, ties
 from fastpin.model.laminate import Laminate
 from fastpin.model.ply import PlyCriterion
 from fastpin.model.points import Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.strength import StrengthAssessment, checked_lengths
-from fastpin.model.ties import TIE, top_angle
 from fastpin.states.state import State
 
 AROUND = 720
@@ -55,7 +53,7 @@ def ply_stresses(state: State, points: Points) -> np.ndarray:
     InputError
         If the plate is no laminate with plies, or a point lies outside it.
     """
-    instance("state", state, State, "a fastpin.State")
+    checks.instance("state", state, State, "a fastpin.State")
     return laminate_of(state.problem).ply_stresses(state.stress(points).in_plane)
 
 
@@ -97,7 +95,7 @@ class JointStrength(ReadOnly):
     @property
     def least(self) -> int:
         """The point with the least ratio; of equal points the one farthest to the right."""
-        return top_angle(-self.ratio, self.theta)
+        return ties.top_angle(-self.ratio, self.theta)
 
     @property
     def least_ratio(self) -> float:
@@ -107,7 +105,7 @@ class JointStrength(ReadOnly):
     @property
     def angle(self) -> float:
         """The angle of the point with the least ratio, rad, at most half a turn from the bottom."""
-        return near_bottom(float(self.theta[self.least]))
+        return angles.near_bottom(float(self.theta[self.least]))
 
     @property
     def ply_angle(self) -> float:
@@ -125,7 +123,7 @@ class JointStrength(ReadOnly):
 
         Empty without a force, and behind the pin.
         """
-        away = math.degrees(abs(float(angle_between(np.array(self.angle), self.direction))))
+        away = math.degrees(abs(float(angles.angle_between(np.array(self.angle), self.direction))))
         if not away <= 90.0:
             return ""
         return JOINT_MODES[int(np.searchsorted(MODE_ENDS, away))]
@@ -157,7 +155,7 @@ def joint_strength(
         If neither or both kinds of lengths are given, there is no force for the curve, a length is negative, or the
         plate is no laminate whose plies have strengths.
     """
-    instance("state", state, State, "a fastpin.State")
+    checks.instance("state", state, State, "a fastpin.State")
     plate = laminate_of(state.problem)
     lengths = checked_lengths(distance, tension, compression)
     force = force_on_pin(state)
@@ -201,10 +199,10 @@ def least_strength(
     InputError
         See :func:`joint_strength`; also if no state has a force on the pin, which `tension` needs.
     """
-    instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
-    known = instances("states", states, State, "a sequence of states")
+    checks.instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
+    known = checks.instances("states", states, State, "a sequence of states")
     if progress is not None:
-        check_callable("progress", progress)
+        checks.check_callable("progress", progress)
     if not known:
         raise InputError("states", "must hold at least one state")
     if "distance" not in how.lengths:
@@ -212,7 +210,7 @@ def least_strength(
     found: tuple[State, JointStrength] | None = None
     for done, state in enumerate(known, 1):
         strength = joint_strength(state, how.criterion, **how.lengths)
-        if found is None or strength.least_ratio < (1.0 - TIE) * found[1].least_ratio:
+        if found is None or strength.least_ratio < (1.0 - ties.TIE) * found[1].least_ratio:
             found = state, strength
         if progress is not None:
             progress(done, len(known))

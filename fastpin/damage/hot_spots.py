@@ -14,14 +14,12 @@ from fastpin.damage import lives
 from fastpin.damage.criteria import FATIGUE_CRITERIA, Criterion, CriterionValues
 from fastpin.damage.histories import stress_history
 from fastpin.errors import InputError
-from fastpin.model.angles import near_bottom
-from fastpin.model.checks import choice, instance, instances, items, whole_number
+from fastpin.model import angles, checks, ties
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
 from fastpin.model.points import CRITERION, Body, Points, is_beyond_bush, isotropic_material, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.ties import top_angle
 from fastpin.model.units import units_per_thickness
 from fastpin.reading.stress import check_body
 from fastpin.states.choice import loaded_span_of, missing_corners, states_between, stops_of_one_problem
@@ -120,7 +118,7 @@ class Fatigue(ReadOnly):
         """The point with the largest parameter; of equal points the first one farthest to the right."""
         if not self.parameter.any():
             return HotSpot(0.0, math.nan, math.nan, math.nan, math.nan if self.life is None else math.inf)
-        at = np.unravel_index(top_angle(self.parameter, self.theta), self.parameter.shape)
+        at = np.unravel_index(ties.top_angle(self.parameter, self.theta), self.parameter.shape)
         optional = (np.nan if array is None else float(array[at]) for array in (self.plane, self.life))
         return HotSpot(float(self.parameter[at]), float(self.theta[at]), float(self.depth[at]), *optional)
 
@@ -168,7 +166,7 @@ def fatigue(
     elif depth is not None:
         raise InputError("depth", "can't be given together with points")
     check_body(stops[0].problem, body)
-    instance("points", points, Points, "fastpin.Points")
+    checks.instance("points", points, Points, "fastpin.Points")
     place = points.theta, points.depths(stops[0].problem, body) * stops[0].problem.hole_radius
     history = stress_history(stops, points, body)
     return evaluated(history, stops[0], criterion, body, place, constants)
@@ -182,7 +180,7 @@ def edge_angles(states: Sequence[State], most: float = math.inf) -> np.ndarray:
     read = states if len(states) <= most else ()
     ends = [angle for state in read for interval in (*state.contact, *state.stick) for angle in interval]
     degrees = np.linspace(-1.5 * np.pi, 0.5 * np.pi, 360, endpoint=False)
-    return np.unique([near_bottom(angle) for angle in np.concatenate([states[0].theta, ends, degrees])])
+    return np.unique([angles.near_bottom(angle) for angle in np.concatenate([states[0].theta, ends, degrees])])
 
 
 def cycle_states(states: Sequence[State], cycle: Cycle) -> list[State]:
@@ -200,8 +198,8 @@ def cycle_states(states: Sequence[State], cycle: Cycle) -> list[State]:
     InputError
         If the states at some corners of the cycle were not kept, or if the cycle begins without load.
     """
-    states = instances("states", states, State, "a sequence of fastpin.State")
-    first, last = loaded_span_of(instance("cycle", cycle, Cycle, "a cycle of a result"))
+    states = checks.instances("states", states, State, "a sequence of fastpin.State")
+    first, last = loaded_span_of(checks.instance("cycle", cycle, Cycle, "a cycle of a result"))
     within = states_between(states, first, last)
     if missing_corners(within, first, last):
         raise InputError("states", f"must hold all corners of the cycle, {first} to {last}")
@@ -241,7 +239,7 @@ def damage_sum(
     InputError
         See :func:`fatigue`; also if there are no cycles, or the material has no constants for a life.
     """
-    chosen = [cycle_states(states, cycle) for cycle in items("cycles", cycles, "cycles of a result")]
+    chosen = [cycle_states(states, cycle) for cycle in checks.items("cycles", cycles, "cycles of a result")]
     if not chosen:
         raise InputError("cycles", "must be at least one")
     points = Points.at_depth(depth, edge_angles(stops_of_one_problem([state for one in chosen for state in one])))
@@ -252,7 +250,7 @@ def damage_sum(
             "criterion",
             f"the {owner_of(chosen[0][0].problem, body)}'s material has no constants for a life by {criterion}",
         )
-    counts = np.full(len(known), whole_number("repeats", repeats, 1))
+    counts = np.full(len(known), checks.whole_number("repeats", repeats, 1))
     return points.theta, lives.miner(counts, np.array(known))
 
 
@@ -268,9 +266,9 @@ def evaluated(
 
     The points may lie in a bush and in the plate round it: each takes the constants of its material.
     """
-    choice("criterion", criterion, CRITERIA)
+    checks.choice("criterion", criterion, CRITERIA)
     if constants is not None:
-        instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
+        checks.instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
     problem = state.problem
     depth = np.broadcast_to(place[1], place[0].shape).ravel() / problem.hole_radius
     parts: list[tuple[np.ndarray, CriterionValues]] = []

@@ -13,18 +13,16 @@ from numpy.typing import ArrayLike
 
 from fastpin.damage.counted import SPECTRUM_CRITERIA, CountedMaterial, Spectrum
 from fastpin.damage.criteria import FATIGUE_CRITERIA, ROUNDING, Criterion
-from fastpin.damage.histories import different_states, history_blocks
+from fastpin.damage.histories import different_states, history_blocks, with_residual
 from fastpin.damage.hot_spots import CRITERIA, bodies_at, edge_angles
-from fastpin.damage.reliability import failure_probability
-from fastpin.damage.residual import with_residual
+from fastpin.damage.lives import failure_probability
 from fastpin.errors import InputError
+from fastpin.model import checks, ties
 from fastpin.model.assessment import USUAL, FatigueAssessment
-from fastpin.model.checks import check_callable, choice, instance, true_or_false
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import CRITERION, Body, Points, isotropic_bodies, isotropic_material, material_of, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.ties import is_top, top_angle
 from fastpin.reading.stress import check_body
 from fastpin.states.choice import stops_of_one_problem
 from fastpin.states.quantities import load_point
@@ -145,7 +143,7 @@ class SpectrumDamage(ReadOnly):
         """The point with the largest damage; of equal points the first one farthest to the right."""
         if not self.damage.any():
             return SpectrumSpot(0.0, math.nan, math.nan, math.nan, math.inf)
-        at = np.unravel_index(top_angle(self.damage, self.theta), self.damage.shape)
+        at = np.unravel_index(ties.top_angle(self.damage, self.theta), self.damage.shape)
         place = (float(values[at]) for values in (self.theta, self.depth, self.plane, self.life))
         return SpectrumSpot(float(self.damage[at]), *place)
 
@@ -199,7 +197,7 @@ def spectrum_damage(
         not change, or the rule of small cycles can't be used.
     """
     if progress is not None:
-        check_callable("progress", progress)
+        checks.check_callable("progress", progress)
     tell_read, tell_counted = halves(progress)
     how = FatigueAssessment(small_cycles=small_cycles, knee=knee)
     return spectrum_count(states, criterion, body, points, depth, constants, straight, how).damage(
@@ -274,14 +272,14 @@ def spectrum_count(
     stops = stops_of_one_problem(states)
     problem = stops[0].problem
     check_body(problem, body)
-    different, order = different_states(stops, true_or_false("straight", straight))
+    different, order = different_states(stops, checks.true_or_false("straight", straight))
     if points is None:
         points = Points.at_depth(0.0 if depth is None else depth, edge_angles(different, FEW))
     elif depth is not None:
         raise InputError("depth", "can't be given together with points")
-    instance("points", points, Points, "fastpin.Points")
+    checks.instance("points", points, Points, "fastpin.Points")
     if constants is not None:
-        instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
+        checks.instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
     below = np.broadcast_to(points.depths(problem, body), points.shape)
     parts = [
         (
@@ -327,7 +325,9 @@ def damage_ranking(
         See :func:`spectrum_damage`; also if no body has the constants.
     """
     problem = stops_of_one_problem(states)[0].problem
-    bodies = bodies_with_lives(problem, choice("criterion", criterion, CRITERIA)) or isotropic_bodies(problem)[:1]
+    bodies = (
+        bodies_with_lives(problem, checks.choice("criterion", criterion, CRITERIA)) or isotropic_bodies(problem)[:1]
+    )
     how: dict[str, Any] = {"depth": depth, "straight": straight, "small_cycles": small_cycles, "knee": knee}
     found = [spectrum_damage(states, criterion, body, progress=progress, **how) for body in bodies]
     return sorted((one for one in found if one.damage.any()), key=lambda one: -one.hot_spot.damage)
@@ -376,9 +376,9 @@ class _Found:
             history, spectrum, lambda part: progress((before + part * places.size) / self.damage.size)
         )
         self.damage[places], self.plane[places] = damage, plane
-        at = top_angle(damage, self._theta[places])
+        at = ties.top_angle(damage, self._theta[places])
         rivals = [places[at], *(() if self.best is None else self.best[:1])]
-        if damage[at] > 0.0 and top_angle(self.damage[rivals], self._theta[rivals]) == 0:
+        if damage[at] > 0.0 and ties.top_angle(self.damage[rivals], self._theta[rivals]) == 0:
             self.best = int(places[at]), history[:, at : at + 1].copy(), counted
 
     def cycles(self, spectrum: Spectrum, load_points: np.ndarray) -> SpectrumCycles:
@@ -388,6 +388,6 @@ class _Found:
             point, history, counted = self.best
             places, values = counted.cycles(history, spectrum, float(self.plane[point]))
         done = values[:, 2]
-        rows = np.argsort(np.where(is_top(done), -np.inf, -done), kind="stable")
+        rows = np.argsort(np.where(ties.is_top(done), -np.inf, -done), kind="stable")
         (start, stop, largest), (times, parameter, damage) = load_points[places[rows]].T, values[rows].T
         return SpectrumCycles(start, stop, largest, times.astype(np.int64), parameter, damage)

@@ -18,9 +18,8 @@ from matplotlib.colors import to_rgba
 from matplotlib.lines import Line2D
 
 from fastpin.errors import InputError
-from fastpin.figures import style
+from fastpin.figures import sketch, style
 from fastpin.figures.sheet import HEADING, Look, Plot
-from fastpin.figures.sketch import draw_sketch, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, InMemory, Subject
 from fastpin.figures.stick_slip import LOOKS, zone_look, zone_patch
 from fastpin.kernels.status import STICK
@@ -222,7 +221,9 @@ class _Scene:
         self.frame.scale(self.panels[-1])
         self.panels[-1].set_xlabel(style.ANGLE)
         self.joint.clear()
-        draw_sketch(state.problem, load_ranges([state]), Look(ax=self.joint), state, words=False, largest=self.force)
+        sketch.draw_sketch(
+            state.problem, sketch.load_ranges([state]), Look(ax=self.joint), state, words=False, largest=self.force
+        )
 
     def _shade(self, state: State) -> None:
         """Shade stick and slip in the colours of the sketch."""

@@ -19,8 +19,7 @@ from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import Subject, with_cycles
 from fastpin.figures.style import MAX_NAMED, caption, line, quantity, without_rounding
-from fastpin.model.checks import instance
-from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model import checks, loads
 from fastpin.model.units import units
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
@@ -59,7 +58,7 @@ def cycles_of(result: Result) -> Plot:
 
     Without cycles this raises :class:`InputError`.
     """
-    instance("result", result, Result, "a Result")
+    checks.instance("result", result, Result, "a Result")
     if not result.cycles:
         raise InputError("cycles", "the history has no repeated blocks")
     return Plot(
@@ -119,9 +118,9 @@ def _draw(look: Look, result: Result) -> Sheet:
 def _panels_with_values(result: Result, turns: dict[tuple[int, int], np.ndarray]) -> list[str]:
     """Return the panels with values beyond rounding; the first panel without any."""
     cycles, surfaces, radius = result.cycles, result.problem.surfaces, result.problem.hole_radius
-    largest_loads = dict(zip(LOADS, np.abs(result.history.distinct()).max(axis=0).tolist(), strict=True))
+    largest_loads = dict(zip(loads.LOADS, np.abs(result.history.distinct()).max(axis=0).tolist(), strict=True))
     strains = {"force": surfaces.beta_star / radius, "traction": surfaces.beta_star, "displacement": 1.0 / radius}
-    strain = max(strains.get(LOAD_KIND[name], 0.0) * load for name, load in largest_loads.items())
+    strain = max(strains.get(loads.LOAD_KIND[name], 0.0) * load for name, load in largest_loads.items())
     changes = [getattr(cycle, name) for cycle in cycles for name in CHANGES]
     found = {
         CHANGE: max(np.nan_to_num(changes), default=0.0),

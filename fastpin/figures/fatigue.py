@@ -24,9 +24,8 @@ from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import Subject, with_cycles
 from fastpin.figures.style import COLOURS, MAX_NAMED, caption, draw_grid, line, quantity, short
-from fastpin.model.angles import from_bottom
+from fastpin.model import angles, checks
 from fastpin.model.assessment import FatigueAssessment
-from fastpin.model.checks import choice, instances
 from fastpin.model.points import EDGES, Body, edge_body
 from fastpin.model.units import scaled, units
 from fastpin.states.choice import span_of
@@ -72,7 +71,7 @@ def _spectrum_plot(subject: Subject, criterion: Criterion, body: Body | None, de
 
     The stresses of many states are those of straight lines between the nodes.
     """
-    choice("criterion", criterion, CRITERIA)
+    checks.choice("criterion", criterion, CRITERIA)
     result = subject.whole()
     known = bodies_with_lives(result.problem, criterion)
     bodies = [one for one in known if one in EDGES] if body is None else [one for one in known if one == body]
@@ -95,7 +94,7 @@ def spectrum_of(found: Sequence[SpectrumDamage]) -> Plot:
     InputError
         If they are not of one problem and one criterion, or their points not at one depth.
     """
-    each = instances("found", found, SpectrumDamage, "damage of a spectrum, such as result.spectrum_damage()")
+    each = checks.instances("found", found, SpectrumDamage, "damage of a spectrum, such as result.spectrum_damage()")
     _check_alike(each)
     edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in found)
     return Plot(
@@ -120,9 +119,9 @@ def _draw_spectrum(look: Look, damages: Sequence[SpectrumDamage]) -> Sheet:
         if math.isnan(spot.theta):
             handles.append(Line2D([], [], linestyle="none", label=f"{before}no damage"))
             continue
-        axes[0, 0].plot(from_bottom(spot.theta), spot.damage, "o", markersize=4.5, color=colour)
+        axes[0, 0].plot(angles.from_bottom(spot.theta), spot.damage, "o", markersize=4.5, color=colour)
         median = f", median life {spot.life * 10.0**one.shift:.3g}" if one.shift else ""
-        where = f"{before}{spot.life:.3g} spectra at {from_bottom(spot.theta):.1f} deg{median}".replace("-", "−")
+        where = f"{before}{spot.life:.3g} spectra at {angles.from_bottom(spot.theta):.1f} deg{median}".replace("-", "−")
         handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
         _draw_planes(axes[0, 0], angle, damage, (one.plane.ravel() - one.theta.ravel())[order])
         axes[1, 0].semilogy(angle, np.where(damage > 0.0, one.life.ravel()[order], np.nan), **line(2 * place))
@@ -149,7 +148,7 @@ def fatigue_of(found: Fatigue | SpectrumDamage | Sequence[Fatigue] | Sequence[Sp
     if several and isinstance(several[0], SpectrumDamage):
         return spectrum_of(several)
     wanted = "a fatigue result, such as result.fatigue(...)"
-    each = instances("found", several, Fatigue, wanted)
+    each = checks.instances("found", several, Fatigue, wanted)
     if not each:
         raise InputError("found", f"must be {wanted}, not an empty list")
     _check_alike(each)
@@ -219,7 +218,7 @@ def _finish(
 
 def _by_angle(found: Fatigue | SpectrumDamage) -> tuple[np.ndarray, np.ndarray]:
     """The angles from the bottom, deg, in increasing order, and the order of the points."""
-    angle = np.array([from_bottom(place) for place in found.theta.ravel().tolist()])
+    angle = np.array([angles.from_bottom(place) for place in found.theta.ravel().tolist()])
     order = np.argsort(angle)
     return angle[order], order
 
@@ -233,8 +232,8 @@ def _draw_parameter(panel: Axes, found: Fatigue, factor: float, place: int, name
     handles = [Line2D([], [], label=name, **line(2 * place))] if name else []
     if math.isnan(spot.theta):
         return [*handles, Line2D([], [], linestyle="none", label=f"{before}{NO_CRACK}")]
-    panel.plot(from_bottom(spot.theta), factor * spot.parameter, "o", markersize=4.5, color=colour)
-    where = f"{before}hot spot at {from_bottom(spot.theta):.1f} deg".replace("-", "−")
+    panel.plot(angles.from_bottom(spot.theta), factor * spot.parameter, "o", markersize=4.5, color=colour)
+    where = f"{before}hot spot at {angles.from_bottom(spot.theta):.1f} deg".replace("-", "−")
     handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
     if found.plane is not None:
         _draw_planes(panel, angle, parameter, (found.plane.ravel() - found.theta.ravel())[order])
@@ -264,7 +263,9 @@ def crack_growth_of(found: Growth | Sequence[Growth]) -> Plot:
     All axes are logarithmic. A dot marks the length at which a crack stops. Several cracks of one problem, or several
     laws, share the panels.
     """
-    each = instances("found", [found] if isinstance(found, Growth) else found, Growth, "a Growth, or a list of them")
+    each = checks.instances(
+        "found", [found] if isinstance(found, Growth) else found, Growth, "a Growth, or a list of them"
+    )
     if not 1 <= len(each) <= MAX_NAMED:
         raise InputError("found", f"must be a Growth, or a list of 1 to {MAX_NAMED} of them, not of {len(each)}")
     if any(one.problem != each[0].problem for one in each):
@@ -285,7 +286,7 @@ plot_crack_growth = plotter("plot_crack_growth", crack_growth_of)
 
 
 def _place(growth: Growth) -> str:
-    return f"{from_bottom(growth.crack.theta):.1f} deg".replace("-", "−")
+    return f"{angles.from_bottom(growth.crack.theta):.1f} deg".replace("-", "−")
 
 
 def _draw_cracks(look: Look, growths: Sequence[Growth]) -> Sheet:

@@ -15,9 +15,7 @@ from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import Subject, problem_of
 from fastpin.figures.style import MAX_NAMED, Line, caption, draw_zero, line, quantity
-from fastpin.model import Case, LoadHistory, Problem, Profile
-from fastpin.model.angles import from_bottom
-from fastpin.model.checks import instance, number_array
+from fastpin.model import Case, LoadHistory, Problem, Profile, angles, checks
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import LOOKED_AT
 from fastpin.model.units import units
@@ -38,9 +36,9 @@ def history_of(problem: Problem, history: LoadHistory, initial: Sequence[float] 
 
     The `initial` load, shape (loads,), acts at corner 0 of a history that continues another one.
     """
-    instance("problem", problem, Problem, "a Problem")
-    instance("history", history, LoadHistory, "a LoadHistory")
-    first = np.zeros(len(LOADS)) if initial is None else number_array("initial", initial)
+    checks.instance("problem", problem, Problem, "a Problem")
+    checks.instance("history", history, LoadHistory, "a LoadHistory")
+    first = np.zeros(len(LOADS)) if initial is None else checks.number_array("initial", initial)
     if first.shape != (len(LOADS),):
         raise InputError("initial", f"must have the shape ({len(LOADS)},), not {first.shape}")
     folded = _folded(history, first)
@@ -156,7 +154,7 @@ def profile_curve(problem: Problem) -> Curve:
     given, radius = problem.profiles, problem.hole_radius
     notes = np.concatenate([profile.angles(0, radius) for profile in given.values()])
     theta = np.r_[np.linspace(-np.pi, np.pi, LOOKED_AT), notes - BESIDE, notes + BESIDE]
-    angle = np.array([from_bottom(each) for each in theta.tolist()])
+    angle = np.array([angles.from_bottom(each) for each in theta.tolist()])
     order = np.argsort(angle)
     length = units(problem)["displacement"].name
     columns = {"angle [deg]": angle[order]}

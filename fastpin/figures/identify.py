@@ -11,8 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.style import COLOURS, caption, line, quantity
-from fastpin.model.checks import instance
-from fastpin.model.loads import LOAD, LOAD_KIND
+from fastpin.model import checks, loads
 from fastpin.model.units import units
 from fastpin.report.identify import write_loop
 from fastpin.studies.identification import Identified
@@ -25,7 +24,7 @@ def identified_of(found: Identified) -> Plot:
     elastic, and a slender one is a line. Both loops have the measured offsets and drift. Bars are intervals of 95 %. An
     arrow stands for an interval without an upper bound.
     """
-    instance("found", found, Identified, "an Identified")
+    checks.instance("found", found, Identified, "an Identified")
     return Plot(
         lambda look: _draw(look, found),
         lambda path: write_loop(found, path),
@@ -62,7 +61,7 @@ def _draw(look: Look, found: Identified) -> Sheet:
 def _draw_loops(panel: Axes, lower: Axes, found: Identified) -> list[Line2D]:
     """Draw the loops, and below them what is left of their forces without a straight line."""
     unit, loop, (x, y) = units(found.problem), found.loop, found.computed
-    moves, move_unit = unit[LOAD_KIND[found.names[0]]].scale(x.tolist())
+    moves, move_unit = unit[loads.LOAD_KIND[found.names[0]]].scale(x.tolist())
     low, high = int(np.argmin(x)), int(np.argmax(x))
     slope = (y[high] - y[low]) / (x[high] - x[low])
 
@@ -71,12 +70,12 @@ def _draw_loops(panel: Axes, lower: Axes, found: Identified) -> list[Line2D]:
 
     measured = (loop.displacement, loop.force)
     for each, forces in ((panel, (loop.force, y)), (lower, (left(*measured), left(x, y)))):
-        factor, label = unit[LOAD_KIND[found.names[1]]].scale(np.concatenate(forces).tolist())
+        factor, label = unit[loads.LOAD_KIND[found.names[1]]].scale(np.concatenate(forces).tolist())
         each.plot(moves * loop.displacement, factor * forces[0], ".", markersize=2.5, color="0.5", zorder=2)
         each.plot(moves * x, factor * forces[1], zorder=3, **line(0, width=1.1))
-        words = LOAD[found.names[1]].short
+        words = loads.LOAD[found.names[1]].short
         each.set_ylabel(quantity(words if each is panel else f"{words} less a line", label))
-    lower.set_xlabel(quantity(LOAD[found.names[0]].short, move_unit))
+    lower.set_xlabel(quantity(loads.LOAD[found.names[0]].short, move_unit))
     dots = Line2D([], [], marker=".", linestyle="none", color="0.5", label=f"measured, {loop.time.size:,} samples")
     return [dots, Line2D([], [], label="computed", **line(0))]
 

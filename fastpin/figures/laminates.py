@@ -17,9 +17,7 @@ from fastpin.damage.laminates import MODES
 from fastpin.figures.sheet import Look, Plot, Sheet, plotter
 from fastpin.figures.states import DrawnStates, InMemory, Subject, name_states, problem_of, state_lines
 from fastpin.figures.style import ANGLE, angle_axis, line, quantity, short
-from fastpin.model import Case, Problem, StrengthAssessment
-from fastpin.model.angles import from_bottom
-from fastpin.model.checks import instance
+from fastpin.model import Case, Problem, StrengthAssessment, angles, checks
 from fastpin.model.laminate import Laminate, in_axes
 from fastpin.model.ply import PlyCriterion
 from fastpin.model.units import PASCAL, units
@@ -130,7 +128,7 @@ def strength_of(
 ) -> Plot:
     """Return the strength ratio round the hole of states that are drawn, see :func:`plot_strength`."""
     if how is not None:
-        instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
+        checks.instance("how", how, StrengthAssessment, "a fastpin.model.StrengthAssessment")
     given = how or StrengthAssessment(distance=0.0)
     criterion = given.criterion if criterion is None else criterion
     given = replace(given, criterion=criterion) if depth is None else StrengthAssessment(criterion, depth)
@@ -153,7 +151,7 @@ def strength_of(
 
 
 def _strength_curve(strength: JointStrength) -> Curve:
-    angle = np.array([from_bottom(each) for each in strength.theta.tolist()])
+    angle = np.array([angles.from_bottom(each) for each in strength.theta.tolist()])
     order, plies = np.argsort(angle), np.array([each for _, each in strength.laminate.plies])
     columns = {"angle [deg]": angle, "strength ratio": strength.ratio, "ply [deg]": plies[strength.ply]}
     return Curve({}, {name: values[order] for name, values in columns.items()})
@@ -168,7 +166,7 @@ def _name_branches(panel: Axes, strength: JointStrength) -> None:
     lowest = [part[np.argmin(strength.ratio[part])] for part in np.split(order, borders) if part.size > 1]
     named: list[float] = []
     for place in sorted(lowest, key=lambda each: strength.ratio[each]):
-        at = from_bottom(float(strength.theta[place]))
+        at = angles.from_bottom(float(strength.theta[place]))
         if strength.ratio[place] > 0.6 * top or any(abs(at - other) < LEAST_APART for other in named):
             continue
         named.append(at)

@@ -21,8 +21,7 @@ from fastpin.figures.stick_slip import zone_look, zone_patch
 from fastpin.figures.style import COLOURS, caption, line, point_text, quantity, range_text
 from fastpin.kernels.status import STICK
 from fastpin.lugs import Lug, Part, PartLoad
-from fastpin.model import Case, LoadHistory, Problem
-from fastpin.model.checks import as_toml, instance
+from fastpin.model import Case, LoadHistory, Problem, checks
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.points import edge_body
 from fastpin.solver.result import Result
@@ -111,11 +110,11 @@ def sketch_of(joint: Problem | Case | Result | State, history: LoadHistory | Non
     The `history` gives a problem its loads.
     """
     if history is not None:
-        instance("history", history, LoadHistory, "a LoadHistory")
+        checks.instance("history", history, LoadHistory, "a LoadHistory")
         if not isinstance(joint, Problem):
             raise InputError("history", "is for a Problem; a case, a result and a state have loads of their own")
     if not isinstance(joint, (Problem, Case, Result, State)):
-        raise InputError("joint", f"must be a Problem, Case, Result or State, not {as_toml(joint)}")
+        raise InputError("joint", f"must be a Problem, Case, Result or State, not {checks.as_toml(joint)}")
     problem = joint if isinstance(joint, Problem) else joint.problem
     state = joint if isinstance(joint, State) else None
     loads = [joint] if isinstance(joint, State) else history if isinstance(joint, Problem) else joint.history
@@ -328,7 +327,7 @@ def _draw_remote(panel: Axes, name: str, span: LoadRange, words: str, scale: Sca
 
 def lug_of(lug: Lug) -> Plot:
     """Draw the outline with names of its parts, all holes, supports and loads. Lengths are in millimetres."""
-    instance("lug", lug, Lug, "fastpin.lugs.Lug")
+    checks.instance("lug", lug, Lug, "fastpin.lugs.Lug")
     return Plot(lambda look: _draw(look, lug), width=5.0)
 
 

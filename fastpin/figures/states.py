@@ -17,10 +17,8 @@ from fastpin.errors import InputError
 from fastpin.figures import style
 from fastpin.figures.sheet import Sheet
 from fastpin.kernels.status import OPEN
-from fastpin.model import Case, Problem
-from fastpin.model.angles import AT_TOP, turns_from_bottom
+from fastpin.model import Case, Problem, angles, checks
 from fastpin.model.case import beside_of
-from fastpin.model.checks import as_toml, instance
 from fastpin.reading.zones import ALL_ROUND
 from fastpin.solver import Result
 from fastpin.states.choice import NO_CYCLE, StateChoice, chosen_places, even_choice
@@ -138,7 +136,7 @@ def drawn_states(
     """
     every = [result] if isinstance(result, State) else result
     if not isinstance(every, Sequence) or not all(isinstance(state, State) for state in every):
-        raise InputError("result", f"must be states or a result, not {as_toml(result)}")
+        raise InputError("result", f"must be states or a result, not {checks.as_toml(result)}")
     if any(not np.array_equal(state.theta, every[0].theta) for state in every):
         raise InputError("result", "its states must all be on one grid")
     cycles = every.cycles if isinstance(every, Result | DrawnStates) else ()
@@ -262,14 +260,16 @@ class Frame:
             # The circle is cut open in the middle of the longest stretch that is open in all states.
             self.order = np.roll(self.order, -_middle_of_longest_gap(touched))
         elif grid.closed:  # cut open at the top
-            self.order = np.roll(self.order, -int(np.argmin(np.mod(grid.theta - ALL_ROUND[0] + AT_TOP, 2.0 * math.pi))))
+            self.order = np.roll(
+                self.order, -int(np.argmin(np.mod(grid.theta - ALL_ROUND[0] + angles.AT_TOP, 2.0 * math.pi)))
+            )
         angle = np.degrees(np.unwrap(grid.theta[self.order])) + 90.0
         if grid.closed:
             self.order = np.append(self.order, self.order[0])
             angle = np.append(angle, angle[0] + 360.0)
         inside = angle[touched[self.order]]
         first, last = (inside[0], inside[-1]) if inside.size else (angle[0], angle[-1])
-        turn = 360.0 * turns_from_bottom(math.radians(0.5 * (first + last) - 90.0))
+        turn = 360.0 * angles.turns_from_bottom(math.radians(0.5 * (first + last) - 90.0))
         self.angle = angle - turn
         margin = 0.04 * (last - first) + 1.0
         self.limits = (max(first - margin, angle[0]) - turn, min(last + margin, angle[-1]) - turn)
@@ -438,7 +438,7 @@ class InMemory:
 
     def result(self) -> Result:
         """Return the result."""
-        return instance("result", self._result, Result, "a Result")
+        return checks.instance("result", self._result, Result, "a Result")
 
     def part(self, first: int, last: int) -> Result:
         """Return the result."""
@@ -453,7 +453,7 @@ class InMemory:
 
     def wear(self) -> WearResult:
         """Return the life of wear."""
-        return instance("result", self._life, WearResult, "a WearResult")
+        return checks.instance("result", self._life, WearResult, "a WearResult")
 
 
 class InFile:
@@ -503,7 +503,7 @@ class InFile:
 def problem_of(joint: Problem | Case | Result) -> Problem:
     """Return the problem of a joint. Anything else raises :class:`InputError`."""
     if not isinstance(joint, (Problem, Case, Result)):
-        raise InputError("joint", f"must be a Problem, Case or Result, not {as_toml(joint)}")
+        raise InputError("joint", f"must be a Problem, Case or Result, not {checks.as_toml(joint)}")
     return joint if isinstance(joint, Problem) else joint.problem
 
 

@@ -27,9 +27,6 @@ from fastpin.states.choice import StateChoice
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
 
-FIELD_WIDTH = 5.2
-"""Width of a map, inches."""
-
 LEVELS = 15
 """Colours of a map, about."""
 
@@ -183,7 +180,7 @@ def map_plot(
         f"Map of the {words} in {'plate' if component == UTILIZATION else 'pin and plate'} at {point}.",
         f"{words[0].upper()}{words[1:]} at {point}. The thick line is the contact, white where it slips.{doubt}",
         drawn.notes,
-        width=FIELD_WIDTH,
+        width=5.2,
         bitmap=True,
     )
 

@@ -21,10 +21,7 @@ from matplotlib.ticker import MaxNLocator
 
 from fastpin.assess.outputs import ROUNDING
 from fastpin.bodies.bushing import STUCK
-from fastpin.model import Laminate, Material, Problem, Profile
-from fastpin.model.checks import shortened
-from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.points import owner_of
+from fastpin.model import Laminate, Material, Problem, Profile, checks, loads, points
 from fastpin.model.units import PASCAL, Unit, acting_loads, units
 from fastpin.states.quantities import load_point, point_name
 from fastpin.states.state import State
@@ -220,8 +217,13 @@ def points_text(states: Sequence[State]) -> str:
 
 def load_text(states: Sequence[State], index: int, name: str) -> str:
     """A load of one of the states with its unit as text. All loads of one kind have the same unit."""
-    same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
-    factor, unit = units(states[0].problem)[LOAD_KIND[name]].scale(same_kind)
+    same_kind = [
+        state.load[other]
+        for state in states
+        for other in loads.LOADS
+        if loads.LOAD_KIND[other] == loads.LOAD_KIND[name]
+    ]
+    factor, unit = units(states[0].problem)[loads.LOAD_KIND[name]].scale(same_kind)
     load = states[index].load[name]
     if abs(load) <= ROUNDING * max(map(abs, same_kind)):
         return f"{name} = 0"
@@ -250,10 +252,8 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
     plate_body = problem.plate_body.caption(
         lambda length: short(length, unit["length"]), lambda material: _material(material, problem)
     )
-    parts = [
-        f"{owner_of(problem, 'pin')}: {_material(pair.pin, problem)}{pin_body}; plate: {_material(pair.plate, problem)}"
-    ]
-    parts[0] += f"{plate_body}; plane {pair.plane}"
+    of_pin = f"{points.owner_of(problem, 'pin')}: {_material(pair.pin, problem)}{pin_body}"
+    parts = [f"{of_pin}; plate: {_material(pair.plate, problem)}{plate_body}; plane {pair.plane}"]
     parts.append("bonded" if is_bonded(problem) else f"friction coefficient {problem.friction_words(DIGITS)}")
     if isinstance(problem.friction, Profile):
         parts[-1] += f": {_profile_words(problem.friction, lambda value: f'{value:.{DIGITS}g}')}"
@@ -299,14 +299,14 @@ def wrapped_parts(text: str, width: float, size: float = CAPTION_SIZE) -> list[s
 
 def short_load(problem: Problem, name: str, value: float) -> str:
     """A load with its unit as a caption shows it; forces and moments are in N and N m if there is a thickness."""
-    return short(value, units(problem)[LOAD_KIND[name]])
+    return short(value, units(problem)[loads.LOAD_KIND[name]])
 
 
 def range_text(problem: Problem, name: str, span: tuple[float, float]) -> str:
     """A load, or the range of its values, with its unit."""
     if span[0] == span[1]:
         return f"{name} = {short_load(problem, name, span[0])}"
-    factor, unit = units(problem)[LOAD_KIND[name]].scale(span)
+    factor, unit = units(problem)[loads.LOAD_KIND[name]].scale(span)
     low, high = (f"{factor * value:.{DIGITS}g}".replace("-", "−") for value in span)
     return f"{name}: {low} to {high}\N{NO-BREAK SPACE}{shown_unit(unit)}"
 
@@ -315,7 +315,7 @@ def loads_text(problem: Problem, load: Mapping[str, float]) -> str:
     """The loads that are not zero, with their units, as a heading shows them."""
     parts = []
     for name in acting_loads([load]):
-        parts.append(f"{name} = {short(load[name], units(problem)[LOAD_KIND[name]], LOAD_DIGITS)}")
+        parts.append(f"{name} = {short(load[name], units(problem)[loads.LOAD_KIND[name]], LOAD_DIGITS)}")
     return ", ".join(parts) or "no load"
 
 
@@ -329,8 +329,8 @@ def _material(material: Material, problem: Problem) -> str:
     if material.is_rigid:
         return "rigid"
     if isinstance(material, Laminate):
-        return shortened(material.label)
+        return checks.shortened(material.label)
     if material.label:
-        return shortened(material.label)
+        return checks.shortened(material.label)
     modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, PASCAL)
     return f"E = {modulus}, ν = {material.nu:.{DIGITS}g}"

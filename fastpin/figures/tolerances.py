@@ -25,17 +25,11 @@ HIGH: Any = {"facecolor": COLOURS[1], "edgecolor": "black", "linewidth": 0.5, "h
 
 INNER: Any = {"color": "black", "linestyle": "none", "marker": "o", "markersize": 2.5}
 
-WIDE_RATIO = 10.0
-"""Ratio of the largest to the smallest outcome beyond which the axis of a tornado is logarithmic."""
-
 ACROSS = 4
 """Most panels of samples side by side."""
 
 MOST_PANELS = 24
 """Most panels of samples. Of more fields the strongest ones are drawn."""
-
-BEYOND_CHANCE = 2.0
-"""Correlations above this number, divided by the root of the number of samples, are drawn darker."""
 
 
 def _charts_of(charts: ToleranceChart | Sequence[ToleranceChart]) -> Sequence[ToleranceChart]:
@@ -159,7 +153,7 @@ def _is_wide(chart: ToleranceChart) -> bool:
     drawn = [value for bar in chart.bars for value in bar.values] + [chart.nominal]
     drawn += [*(chart.corners or ()), *chart.percentiles.values()]
     known = np.array([value for value in drawn if math.isfinite(value)])
-    return bool(known.size and known.min() > 0.0 and known.max() > WIDE_RATIO * known.min())
+    return bool(known.size and known.min() > 0.0 and known.max() > 10.0 * known.min())
 
 
 def _write_limits(panel: Axes, nominal: float, row: int, limits: tuple[str, str], ends: tuple[float, float]) -> None:
@@ -191,7 +185,7 @@ def _draw_samples(look: Look, charts: Sequence[ToleranceChart]) -> Sheet:
         for place, panel in enumerate(panels):
             panel.set_visible(place < fields)
         for place, (panel, cloud) in enumerate(zip(panels, chart.clouds[:fields], strict=False)):
-            is_strong = abs(cloud.correlation) * math.sqrt(len(chart.samples)) > BEYOND_CHANCE
+            is_strong = abs(cloud.correlation) * math.sqrt(len(chart.samples)) > 2.0  # more than chance
             panel.plot(cloud.values, chart.samples, ".", markersize=2.8, color=COLOURS[0] if is_strong else "0.55")
             panel.axhline(chart.nominal, color="black", linewidth=0.7)
             if cloud.is_log:

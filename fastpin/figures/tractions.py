@@ -22,9 +22,8 @@ from fastpin.figures.sketch import draw_sketch, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, InMemory, Subject, name_states, state_lines
 from fastpin.figures.style import ANGLE, Line, is_bonded, point_text, points_text, quantity, shown_unit
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
-from fastpin.model.checks import true_or_false
+from fastpin.model import checks, points
 from fastpin.model.laminate import Laminate
-from fastpin.model.points import owner_of
 from fastpin.model.units import units
 from fastpin.states.choice import StateChoice
 from fastpin.states.curves import friction_along
@@ -76,8 +75,8 @@ def tractions_plot(subject: Subject, states: StateChoice = None, sketch: bool = 
         If there is no such state, or `bars` are asked for but the states have none.
     """
     drawn = subject.states(states)
-    true_or_false("sketch", sketch)
-    curves = traction_curves(drawn, true_or_false("bars", bars))
+    checks.true_or_false("sketch", sketch)
+    curves = traction_curves(drawn, checks.true_or_false("bars", bars))
     return Plot(
         lambda look: _draw(look, drawn, curves, sketch, bars),
         partial(write_csv, curves),
@@ -188,7 +187,7 @@ def _styles(states: DrawnStates, bars: bool) -> list[Artist]:
             styles.append(Patch(color="0.35", linewidth=0, label="dark: stick"))
             styles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="light: slip"))
         styles.append(Line2D([], [], linestyle="none", marker=r"$→$", markersize=8.0, color="0.25",
-                             label=f"{owner_of(states[0].problem, 'pin')} slips counter-clockwise"))  # fmt: skip
+                             label=f"{points.owner_of(states[0].problem, 'pin')} slips counter-clockwise"))  # fmt: skip
     return styles
 
 

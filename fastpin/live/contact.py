@@ -21,8 +21,7 @@ from fastpin.kernels.status import OPEN
 from fastpin.live.controls import ControlScales, changed_fields, load_controls, problem_controls, vector_axes
 from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import ALONE, MOST_UNDONE, Limits, Message, refusal
-from fastpin.model import LOADS, Case, Grid, Problem
-from fastpin.model.angles import angle_at
+from fastpin.model import LOADS, Case, Grid, Problem, angles
 from fastpin.model.doubts import doubts
 from fastpin.model.options import ALL_ROUND, SolveOptions
 from fastpin.model.profile import CALLED
@@ -412,7 +411,7 @@ def _named(given: np.ndarray) -> dict[str, float]:
 def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer:
     """A problem as the page needs it: units, sizes and shapes of the bodies, loads and controls."""
     lug, bush = problem.plate_body.lug, problem.plate_body.bush
-    around = angle_at(np.arange(CALLED) * (360.0 / CALLED) - 180.0)  # from -180 degrees from the bottom on
+    around = angles.angle_at(np.arange(CALLED) * (360.0 / CALLED) - 180.0)  # from -180 degrees from the bottom on
     return {
         "title": title,
         "units": {kind: asdict(unit) for kind, unit in units(problem).items()},

@@ -11,15 +11,11 @@ from typing import Any
 from fastpin.bodies.body import MOST_DRY, Control, PlateBody
 from fastpin.bodies.kinds import PIN_CONTROLS, PLATE_CONTROLS, SOLID_PIN, TITLES, changed_pin, changed_plate
 from fastpin.errors import InputError
-from fastpin.model import InitialGap, Laminate, Problem, Profile
-from fastpin.model.angles import angle_at, degrees_from_bottom
-from fastpin.model.checks import choice, not_negative, number
+from fastpin.model import InitialGap, Laminate, Problem, Profile, angles, checks, loads, synonyms
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory, check_loads
-from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
 from fastpin.model.profile_terms import Term
-from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, PASCAL, Unit, units
 
 OWN = "other"
@@ -62,7 +58,7 @@ class ControlScales:
     """
 
     def __init__(self, problem: Problem, history: LoadHistory) -> None:
-        largest = dict(zip(LOADS, abs(history.distinct()).max(axis=0).tolist(), strict=True))
+        largest = dict(zip(loads.LOADS, abs(history.distinct()).max(axis=0).tolist(), strict=True))
         natural = problem.natural_loads()
         self.force = math.hypot(largest["P"], largest["Q"]) or 1e-3 * natural["force"]  # a usual strain
         yielded = self.force * problem.surfaces.beta_star
@@ -83,15 +79,17 @@ class ControlScales:
 
     def friction_along(self, along: str, most: float) -> float | Profile:
         """The friction of the case along the rim, scaled to a largest coefficient; or this coefficient all round."""
-        if choice("friction_along", along, tuple(FRICTION_ALONG)) == "uniform":
+        if checks.choice("friction_along", along, tuple(FRICTION_ALONG)) == "uniform":
             return most
         if not self.has_varying_friction:
             raise InputError("most_friction", "the friction of the case is the same all round")
-        return Profile.of("friction", self._friction).scaled(not_negative("friction", most) / self._most_friction)
+        return Profile.of("friction", self._friction).scaled(
+            checks.not_negative("friction", most) / self._most_friction
+        )
 
     def of_load(self, name: str) -> float:
         """The size of a load."""
-        kind = LOAD_KIND[name]
+        kind = loads.LOAD_KIND[name]
         return float(getattr(self, {"traction": "stress"}.get(kind, kind)))
 
 
@@ -99,7 +97,7 @@ def load_controls(problem: Problem, scales: ControlScales) -> list[dict[str, Any
     """The loads that the problem allows, with their units and sizes."""
     unit = units(problem)
     found = []
-    for name, kind in LOAD_KIND.items():
+    for name, kind in loads.LOAD_KIND.items():
         try:
             check_loads(problem, LoadHistory([{name: scales.of_load(name)}]))
         except InputError:
@@ -147,7 +145,7 @@ def changed_fields(problem: Problem, changes: Mapping[str, Any], scales: Control
     """
     for name in changes:
         if name not in NAMES:
-            raise InputError(name, f"is no control of the page{closest(name, NAMES)}")
+            raise InputError(name, f"is no control of the page{synonyms.closest(name, NAMES)}")
     fields: dict[str, Any] = {}
     for name in ("friction", "clearance", "pin_load", "rotation"):
         if name in changes:
@@ -230,7 +228,7 @@ def _lobes(profile: Profile) -> tuple[int, float, float, tuple[Term, ...]]:
     for place, term in enumerate(profile.terms):
         count, amplitude = term.wave or (0, 0j)
         if count > 1:
-            angle = degrees_from_bottom(-cmath.phase(amplitude) / count)
+            angle = angles.degrees_from_bottom(-cmath.phase(amplitude) / count)
             rest = (*profile.terms[:place], *profile.terms[place + 1 :])
             return count, abs(amplitude), angle - round(angle * count / 360.0) * 360.0 / count, rest
     return 0, 0.0, 0.0, profile.terms
@@ -256,10 +254,10 @@ def _changed_profile(profile: Profile, body: str, changes: Mapping[str, Any], us
     """The profile of a body after changes of its lobes. Its other terms stay. New lobes have the `usual` amplitude."""
     before, present, angle, rest = _lobes(profile)
     lobes, amplitude, axis = (f"{body}_{name}" for name in ("lobes", "amplitude", "axis"))
-    count = int(choice(lobes, changes.get(lobes, str(before)), tuple(_forms(before))))
-    height = number(amplitude, changes.get(amplitude, present if before else usual))
-    angle = number(axis, changes.get(axis, angle), -360.0, 360.0)
-    new = Profile.lobes(count, height, angle_at(angle)).terms if count and height else ()
+    count = int(checks.choice(lobes, changes.get(lobes, str(before)), tuple(_forms(before))))
+    height = checks.number(amplitude, changes.get(amplitude, present if before else usual))
+    angle = checks.number(axis, changes.get(axis, angle), -360.0, 360.0)
+    new = Profile.lobes(count, height, angles.angle_at(angle)).terms if count and height else ()
     return Profile((*new, *rest))
 
 
@@ -277,7 +275,7 @@ def _material(body: str, material: Material, unit: Unit) -> list[dict[str, Any]]
 def _changed_material(material: Material, body: str, changes: Mapping[str, Any]) -> Material:
     name, modulus, ratio = _names_of_material(body)
     if name in changes:
-        chosen = choice(name, changes[name], (*MATERIALS, RIGID, OWN))
+        chosen = checks.choice(name, changes[name], (*MATERIALS, RIGID, OWN))
         if chosen != OWN:
             return Material.rigid() if chosen == RIGID else MATERIALS[chosen]
         if material.is_rigid:  # a rigid body has no moduli to go on from
@@ -306,7 +304,11 @@ def _changed_plate_material(plate: Material, changes: Mapping[str, Any]) -> Mate
     for name in _names_of_material("plate"):
         if name in changes:
             raise InputError(name, "can't be changed: the plate is a laminate")
-    return replace(plate, axis=angle_at(number(AXIS, changes[AXIS], -360.0, 360.0))) if AXIS in changes else plate
+    return (
+        replace(plate, axis=angles.angle_at(checks.number(AXIS, changes[AXIS], -360.0, 360.0)))
+        if AXIS in changes
+        else plate
+    )
 
 
 def _of_body(group: str, controls: Sequence[Control], unit: Mapping[str, Unit]) -> list[dict[str, Any]]:

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.assess.outputs import ROUNDING, json_ready
-from fastpin.model import LoadHistory, Points
-from fastpin.model.angles import BOTTOM, degrees_from_bottom, from_bottom, interval_from_bottom
+from fastpin.model import LoadHistory, Points, angles
 from fastpin.model.doubts import pressure_doubts
 from fastpin.states import LoadCycle, State
 from fastpin.states.curves import one_turn, thinned, traction_patches
@@ -33,7 +32,7 @@ def packed(values: np.ndarray, kind: str = "<f4") -> str:
 
 def hoop_degrees(state: State) -> np.ndarray:
     """The angles of the curve of the hoop stress, degrees from the bottom, ascending from -180 to 180, float32."""
-    borders = [degrees_from_bottom(angle) for ends in (*state.contact, *state.stick) for angle in ends]
+    borders = [angles.degrees_from_bottom(angle) for ends in (*state.contact, *state.stick) for angle in ends]
     # The hoop stress has sharp peaks beside the borders.
     beside = np.add.outer(borders, (-0.4, -0.1, -0.02, 0.0, 0.02, 0.1, 0.4)).ravel()
     regular = np.linspace(-180.0, 180.0, round(360.0 / EVERY) + 1)
@@ -73,7 +72,7 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
     hoop = None
     if not state.problem.surfaces.plate.is_rigid:
         degrees = hoop_degrees(state)
-        theta = np.radians(degrees.astype(float)) + BOTTOM
+        theta = np.radians(degrees.astype(float)) + angles.BOTTOM
         hoop = {"degrees": packed(degrees), "stress": packed(state.hoop_stress("plate", theta))}
         if state.problem.is_pressed:
             hoop["assembly"] = packed(state.assembly_stress(Points.at_depth(0.0, theta)).hoop)
@@ -125,11 +124,11 @@ def _numbers(state: State) -> dict[str, Any]:
 def _zones(state: State) -> dict[str, Any]:
     """The zones of a state, in degrees from the bottom."""
     return {
-        "contact": [interval_from_bottom(*ends) for ends in state.contact],
-        "stick": [interval_from_bottom(*ends) for ends in state.stick],
-        "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
+        "contact": [angles.interval_from_bottom(*ends) for ends in state.contact],
+        "stick": [angles.interval_from_bottom(*ends) for ends in state.stick],
+        "slip": [(*angles.interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
     }
 
 
 def _degrees(angle: float) -> float:
-    return from_bottom(angle) if math.isfinite(angle) else math.nan
+    return angles.from_bottom(angle) if math.isfinite(angle) else math.nan

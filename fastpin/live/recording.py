@@ -18,11 +18,10 @@ from fastpin.live.controls import ControlScales
 from fastpin.live.page import recorded_page
 from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import MOST_PICTURES
-from fastpin.model.angles import from_bottom
+from fastpin.model import angles, points
 from fastpin.model.case import Case
 from fastpin.model.checks import instance, instances, string, whole_number
 from fastpin.model.history import MAX_CORNERS
-from fastpin.model.points import edge_body
 from fastpin.states.state import State
 from fastpin.version import __version__
 from fastpin.wear_lives.wear_result import WearResult, WornCycle
@@ -140,7 +139,7 @@ def _life(result: WearResult, places: list[int]) -> dict[str, Any]:
 
 def _worn(cycle: WornCycle) -> dict[str, str]:
     """The worn depths of pin and hole at the nodes as a curve: degrees from the bottom, ascending."""
-    degrees = np.array([from_bottom(angle) for angle in cycle.theta.tolist()])
+    degrees = np.array([angles.from_bottom(angle) for angle in cycle.theta.tolist()])
     order = np.argsort(degrees)
     columns = np.array([degrees, cycle.pin_depth, cycle.plate_depth])[:, order]
     if cycle.grid.closed:  # the curve goes on to the top from both sides
@@ -154,7 +153,7 @@ def _damages(result: WearResult) -> dict[str, WornFatigue]:
     found = {}
     for body in ("pin", "plate"):
         with suppress(InputError):
-            found[edge_body(result.problem, body)] = result.fatigue(body=body)
+            found[points.edge_body(result.problem, body)] = result.fatigue(body=body)
     return found
 
 
@@ -166,7 +165,7 @@ def _damage(damages: dict[str, WornFatigue], places: list[int]) -> dict[str, Any
     words = [f"{owner}, {found.criterion}: {found.words}" for owner, found in damages.items()]
     document: dict[str, Any] = {"degrees": "", "words": words, "values": {}}
     for owner, found in damages.items():
-        degrees = np.array([from_bottom(angle) for angle in found.theta.tolist()])
+        degrees = np.array([angles.from_bottom(angle) for angle in found.theta.tolist()])
         order = np.argsort(degrees)
         there = np.where(found.is_gone, 0.0, found.damage).max(axis=1)[:, order]
         document["degrees"] = packed(degrees[order])

@@ -27,15 +27,13 @@ from fastpin.figures.stick_slip import stick_slip_plot
 from fastpin.figures.stress import hoop_plot, map_plot
 from fastpin.figures.tractions import tractions_plot
 from fastpin.kernels.status import SLIP_POSITIVE
-from fastpin.model.angles import interval_from_bottom
+from fastpin.model import angles, points, ties
 from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
 from fastpin.model.growth import Nasgro, Walker, law_words
 from fastpin.model.loads import LOAD, named_load
 from fastpin.model.materials import Material
 from fastpin.model.options import OPTIONS
-from fastpin.model.points import EDGES, edge_body
-from fastpin.model.ties import top
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
 from fastpin.pages.source import PageParts, Source, margins, sentence
@@ -54,10 +52,8 @@ from fastpin.report.states import (
     way_on,
 )
 from fastpin.solver.configuration import MAX_RESIDUAL
-from fastpin.states import LoadCycle, State
-from fastpin.states.extremes import READINGS, yield_doubts
+from fastpin.states import LoadCycle, State, extremes, walking
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, size
-from fastpin.states.walking import walk_doubts
 from fastpin.studies.identity import canonical, run_id
 
 RESIDUAL_WORDS = {
@@ -92,11 +88,11 @@ def overview(page: PageParts) -> PageSection:
     if source.points.size and not problem.dimensionless:
         parts.append(Text(f"Verdict: {verdict(page.margins, source.result.complete)}."))
     if source.peaks:
-        largest = source.peaks[top([state.peak_pressure for state in source.peaks])]
+        largest = source.peaks[ties.top([state.peak_pressure for state in source.peaks])]
         pressure, point = units(problem)["traction"].text(largest.peak_pressure, 5), point_name(load_point(largest))
         touched = f"largest contact pressure in all kept states: {pressure}, load point {point}"
         sentences = [touched if largest.peak_pressure else "the pin touches the hole in no kept state"]
-        sentences += [hoop_line(problem, source.peaks, body) for body in EDGES]
+        sentences += [hoop_line(problem, source.peaks, body) for body in points.EDGES]
         sentences += [*bush_line(problem, source.peaks).splitlines(), *_seat_lines(source)]
         lines = cycle_lines(problem, source.result.cycles, source.peaks)
         many = f"{len(lines):,} blocks of cycles: see hysteresis and slip"
@@ -117,8 +113,8 @@ def warnings_and_notes(source: Source) -> list[Text]:
     problem, history = source.case.problem, source.case.history
     warnings = [*doubts(problem, history, source.case.options)]
     warnings += pressure_doubts(problem, history, [np.array([source.held.pressure])])
-    warnings += yield_doubts(problem, history, lambda: source.held.extremes, source.held.read)
-    warnings += [] if source.cycle is None else walk_doubts(source.cycle.states, source.result.cycles)
+    warnings += extremes.yield_doubts(problem, history, lambda: source.held.extremes, source.held.read)
+    warnings += [] if source.cycle is None else walking.walk_doubts(source.cycle.states, source.result.cycles)
     warnings += [] if source.life is None else source.life.doubts
     notes = note_lines(source.case, source.result)
     return [Text(f"Warning: {each}.", "note") for each in warnings] + [Text(f"Note: {each}.", "note") for each in notes]
@@ -319,7 +315,7 @@ def _zone_rows(state: State) -> list[tuple[str, ...]]:
         found.append(("slip", start, stop, "counter-clockwise" if sign == SLIP_POSITIVE else "clockwise"))
     rows: list[tuple[str, ...]] = []
     for zone, start, stop, words in found:
-        first, last = (f"{angle:z.2f}" for angle in interval_from_bottom(start, stop))
+        first, last = (f"{angle:z.2f}" for angle in angles.interval_from_bottom(start, stop))
         ends = ("all round", "all round") if is_all_round(stop - start) else (first, last)
         rows.append((point, zone, *ends, words))
     return rows or [(point, "no contact", "-", "-", "")]
@@ -403,10 +399,10 @@ def stresses(page: PageParts) -> PageSection:
         return PageSection("stresses", "Stresses", [Text(NO_STATE, "missing")])
     parts = drawn_or_reason(lambda: page.album.figure(hoop_plot(InMemory(drawn))))
     peaks = page.source.peaks
-    lines = [hoop_line(problem, peaks, body) for body in EDGES]
+    lines = [hoop_line(problem, peaks, body) for body in points.EDGES]
     parts += [Text(sentence(line)) for line in lines if line]
     name = "peak_pressure" if problem.surfaces.plate.is_rigid else "peak_hoop"
-    largest = peaks[top([READINGS[name].of(state) for state in peaks])]
+    largest = peaks[ties.top([extremes.READINGS[name].of(state) for state in peaks])]
     parts += drawn_or_reason(lambda: page.album.figure(map_plot(InMemory(largest))))
     return PageSection("stresses", "Stresses", parts)
 
@@ -439,7 +435,7 @@ def fatigue(page: PageParts) -> PageSection:
     for one in found:
         parts.append(Text(sentence(hot_spot_line(one, page.source.peaks, page.source.over_yield))))
         if one.life is None:
-            words = f"There is no life: the material of the {edge_body(one.problem, one.body).split(' at ')[0]}"
+            words = f"There is no life: the material of the {points.edge_body(one.problem, one.body).split(' at ')[0]}"
             words += " lacks constants for it. The key fatigue of a case file gives them; see docs/fatigue.md."
             parts.append(Text(words, "missing"))
     return PageSection("fatigue", "Fatigue", parts)

@@ -26,11 +26,9 @@ from fastpin.model.points import edge_body, elastic_bodies
 from fastpin.pages.content import Album, Facts, PageSection, Text
 from fastpin.report.states import stored_rows
 from fastpin.solver import Result
-from fastpin.states import LoadCycle, State
-from fastpin.states.choice import even_choice, span_of
+from fastpin.states import LoadCycle, State, choice, extremes
 from fastpin.states.cycles import Cycle
-from fastpin.states.extremes import marked_places
-from fastpin.states.margins import Margin, over_yield, static_margins, walk_margins
+from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.storage.held import Held
 from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.layout import versions
@@ -183,7 +181,7 @@ class Source:
     @cached_property
     def marks(self) -> dict[int, str]:
         """The places of the extremes of all states, with words on each."""
-        return marked_places(self.held.extremes)
+        return extremes.marked_places(self.held.extremes)
 
     @cached_property
     def static_margins(self) -> list[Margin]:
@@ -212,7 +210,7 @@ class Source:
             places = places[(self.points > self.cycle.first) & (self.points <= self.cycle.last)]
             corners = places[self.points[places] % 1.0 == 0.0]
         places = corners if corners.size else places
-        chosen = even_choice(sorted({*places.tolist(), *self.marks}), MOST_DRAWN, self.marks)
+        chosen = choice.even_choice(sorted({*places.tolist(), *self.marks}), MOST_DRAWN, self.marks)
         marks = [self.marks.get(place, "") for place in chosen]
         return DrawnStates(self.held.read(chosen), self.points.size, self.result.cycles, marks)
 
@@ -238,7 +236,7 @@ class Source:
             first = self._closing_corner()
             if not first:
                 return "no cycle of the history has ended"
-        begin, end = (first, self.reached) if found is None else span_of(found)
+        begin, end = (first, self.reached) if found is None else choice.span_of(found)
         part = self.held.part(begin, end)
         try:
             return part.cycle() if found is not None else part.cycle(first=first, last=end)
@@ -293,7 +291,7 @@ class Source:
                 try:
                     self.answers[name] = question.find(self.case, self.held)
                 except InputError as error:
-                    failed = f"{question.FAILED[0].upper()}{question.FAILED[1:]}"
+                    failed = f"{question.failed[0].upper()}{question.failed[1:]}"
                     self.answers[name] = f"{failed}: {error.field} {error.reason}."
         return self.answers[name]
 
@@ -319,7 +317,7 @@ class Source:
         found: list[WornFatigue] = []
         if self.life is None or len(self.life) < 2:
             return found
-        cycles = [self.life[place] for place in even_choice(range(len(self.life)), MOST_SUMMED)]
+        cycles = [self.life[place] for place in choice.even_choice(range(len(self.life)), MOST_SUMMED)]
         bodies = elastic_bodies(self.life.problem)
         if self.case.fatigue is not None and self.case.fatigue.bodies is not None:
             bodies = tuple(body for body in bodies if body in self.case.fatigue.bodies)

@@ -13,25 +13,11 @@ from fastpin.damage import WornFatigue
 from fastpin.damage.criteria import criterion_title
 from fastpin.figures.scar import damage_of, scar_plot, wear_plot
 from fastpin.figures.states import InMemory
-from fastpin.model.angles import from_bottom
-from fastpin.model.points import edge_body, owner_of
-from fastpin.model.ties import top, top_angle
+from fastpin.model import angles, points, ties
 from fastpin.model.units import units
 from fastpin.model.wear import cycles_text
+from fastpin.pages import sections
 from fastpin.pages.content import Facts, Items, PageSection, SectionPart, Table, Text
-from fastpin.pages.sections import (
-    ANGLES,
-    case,
-    checks,
-    loads,
-    materials,
-    provenance,
-    slip_parts,
-    stresses,
-    tractions,
-    warnings_and_notes,
-    zones,
-)
 from fastpin.pages.source import PageParts, Source, margins, sentence
 from fastpin.report.states import TableRows, way_on
 from fastpin.states.margins import over_yield_words
@@ -46,10 +32,10 @@ def overview(page: PageParts) -> PageSection:
     """Return the most important sentences on a life of wear."""
     source, life = page.source, _life(page)
     unit = units(life.problem)
-    parts: list[SectionPart] = [_status(source, life), *warnings_and_notes(source)]
+    parts: list[SectionPart] = [_status(source, life), *sections.warnings_and_notes(source)]
     parts.append(Text(f"{sentence(DEBRIS)} Worn material leaves the contact at once.", "note"))
     if len(life):
-        first, last, peak = life[0], life[-1], life[top([each.largest_pressure for each in life])]
+        first, last, peak = life[0], life[-1], life[ties.top([each.largest_pressure for each in life])]
         worn = f"worn off after {cycles_text(last.cycle)}: {unit['work per stress'].text(last.volume, 4)}"
         worn += f", at most {unit['displacement'].text(last.depth, 4)} deep"
         share = "" if math.isnan(last.pin_share) else f"; {100.0 * last.pin_share:.3g} % of the volume from the pin"
@@ -62,11 +48,11 @@ def overview(page: PageParts) -> PageSection:
         ]
         lines += [
             f"damage of the {_subject(one)}: {one.words}"
-            + over_yield_words(source.over_yield, owner_of(life.problem, one.body))
+            + over_yield_words(source.over_yield, points.owner_of(life.problem, one.body))
             for one in source.worn
         ]
         parts.append(Items([sentence(line) for line in lines]))
-    parts.append(Text(ANGLES))
+    parts.append(Text(sections.ANGLES))
     return PageSection("overview", "Overview", parts)
 
 
@@ -112,13 +98,13 @@ def profile(page: PageParts) -> PageSection:
         return PageSection("profile", "Worn profile", [Text(NO_PROFILE, "missing")])
     last, unit = life[-1], units(life.problem)
     rows = []
-    names, depths = ("pin", edge_body(life.problem, "plate")), (last.pin_depth, last.plate_depth)
+    names, depths = ("pin", points.edge_body(life.problem, "plate")), (last.pin_depth, last.plate_depth)
     for name, depth, volume in zip(names, depths, last.volumes, strict=True):
         if not depth.any():
             rows.append((name, "nothing", "-", "-"))
             continue
         deepest = unit["displacement"].text(float(depth.max()), 4)
-        place = f"{from_bottom(float(life.theta[top_angle(depth, life.theta)])):z.2f} deg"
+        place = f"{angles.from_bottom(float(life.theta[ties.top_angle(depth, life.theta)])):z.2f} deg"
         rows.append((name, unit["work per stress"].text(volume, 4), deepest, place))
     energies = [
         ("dissipated by friction", unit["energy"].text(last.dissipation, 4), "in all cycles"),
@@ -153,7 +139,7 @@ def damage(page: PageParts) -> PageSection:
 
 
 def _subject(found: WornFatigue) -> str:
-    return f"{edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}"
+    return f"{points.edge_body(found.problem, found.body)}, {criterion_title(found.criterion)}"
 
 
 def _race(found: WornFatigue) -> list[tuple[str, str]]:
@@ -162,7 +148,7 @@ def _race(found: WornFatigue) -> list[tuple[str, str]]:
 
     left = found.hot_spots[-1]
     depth = f"{length.text(left.depth, 4)} under" if left.depth else "on"
-    place = f"at {from_bottom(left.theta):z.2f} deg, {depth} the first surface"
+    place = f"at {angles.from_bottom(left.theta):z.2f} deg, {depth} the first surface"
     alone = cycles_text(float(f"{found.first_life:.4g}")) if math.isfinite(found.first_life) else "infinite"
     gone = float(np.where(found.is_gone[-1], found.damage[-1], 0.0).max())
     change = "not known: it needs three stored cycles"
@@ -185,15 +171,16 @@ def contact(page: PageParts) -> PageSection:
     first, last = (load_point(life[-1].states[place]) for place in (0, -1))
     words = f"One cycle on the profile after {cycles_text(life[-1].cycle)}: load points {first:,.0f} to {last:,.0f}. "
     words += "Figures also show the states of the extremes of all stored profiles."
-    parts: list[SectionPart] = [Text(words), *tractions(page).parts]
+    parts: list[SectionPart] = [Text(words), *sections.tractions(page).parts]
     if source.cycle is None:
         parts.append(Text(f"There is no figure of the slip: {source.why_no_cycle}.", "missing"))
     else:
-        parts += slip_parts(page, source.cycle)
-    return PageSection("contact", "Contact on the last profile", [*parts, *zones(page).parts])
+        parts += sections.slip_parts(page, source.cycle)
+    return PageSection("contact", "Contact on the last profile", [*parts, *sections.zones(page).parts])
 
 
 WEAR_SECTIONS: Sequence[Callable[[PageParts], PageSection]] = (
-    overview, numbers, profile, damage, case, materials, loads, contact, stresses, margins, checks, provenance,
+    overview, numbers, profile, damage, sections.case, sections.materials, sections.loads, contact, sections.stresses,
+    margins, sections.checks, sections.provenance,
 )  # fmt: skip
 """All sections, in the order of the page."""

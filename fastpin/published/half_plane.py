@@ -35,8 +35,7 @@ from scipy.optimize import brentq
 
 from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
-from fastpin.model import MATERIALS, MaterialPair, Problem
-from fastpin.model.angles import BOTTOM
+from fastpin.model import MATERIALS, MaterialPair, Problem, angles
 from fastpin.published.records import PaperFigure, Report, grey, head, legend_below, marked, panels, steps
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -164,7 +163,7 @@ def like_errors(load_parameter: float, friction: float, nodes: int, ratio: float
         _, stick, middle, contact = stick_and_contact(state)
         yield "Cattaneo-Mindlin", f"stick size, {load}{low}", half_plane_stick * contact / stick - 1.0
         yield "Cattaneo-Mindlin", f"peak shear, {load}{low}", half_plane_shear / abs(state.peak_shear) - 1.0
-        for moved, origin in (("", BOTTOM), (", moved", middle)):
+        for moved, origin in (("", angles.BOTTOM), (", moved", middle)):
             x = state.theta - origin
             # The shear on the pin opposes Q.
             shear = -closed_forms.cattaneo_mindlin_shear(x, half, peak, friction, now, ratio, branch)

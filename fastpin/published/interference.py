@@ -25,8 +25,7 @@ from fastpin.published.records import PaperFigure, Report, add_legend, curves_of
 from fastpin.published.tractions import ANGLE, traction_curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from fastpin.verification import interference
-from fastpin.verification.comparisons import event_load
+from fastpin.verification import comparisons, interference
 from fastpin.verification.finite_elements import LIKE
 
 FRICTION = tuple(np.r_[0.0, 0.02, 0.05, 0.1:1.51:0.1].round(2).tolist())
@@ -62,7 +61,9 @@ def extrapolated(problem: Problem, happened: Callable[[State], bool], about: tup
     """
     unit = interference.uniform_pressure(problem) * problem.hole_radius
     bounds = about[0] * unit, about[1] * unit
-    coarse, fine = (event_load(problem, "P", bounds, happened, count) / unit for count in (nodes // 2, nodes // 2 * 2))
+    coarse, fine = (
+        comparisons.event_load(problem, "P", bounds, happened, count) / unit for count in (nodes // 2, nodes // 2 * 2)
+    )
     return (4.0 * fine - coarse) / 3.0
 
 

@@ -14,8 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fastpin.assess.outputs import Curve
-from fastpin.model import Grid, LoadHistory, Problem
-from fastpin.model.angles import BOTTOM
+from fastpin.model import Grid, LoadHistory, Problem, angles
 from fastpin.published.fretting import FRICTION
 from fastpin.published.records import PaperFigure, Report, add_legend, curves_of, grey, head, marked, panels, steps
 from fastpin.published.tractions import PAIRS
@@ -32,8 +31,8 @@ def cycles(problem: Problem, amplitude: float, nodes: int) -> Result:
     """Solve P, then cycles of +Q and -Q, on a grid that is its own mirror image."""
     history = LoadHistory.cycles({"P": 1.0}, {"Q": amplitude}, CYCLES)
     coarse = solve(problem, history[:3], nodes=LEAST_NODES)
-    half = 1.05 * max(abs(end - BOTTOM) for state in coarse for part in state.contact for end in part) + 0.02
-    return solve(problem, history, grid=Grid.arc(BOTTOM - half, BOTTOM + half, nodes + 1 - nodes % 2))
+    half = 1.05 * max(abs(end - angles.BOTTOM) for state in coarse for part in state.contact for end in part) + 0.02
+    return solve(problem, history, grid=Grid.arc(angles.BOTTOM - half, angles.BOTTOM + half, nodes + 1 - nodes % 2))
 
 
 def size(values: np.ndarray, state: State) -> float:

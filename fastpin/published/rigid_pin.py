@@ -16,8 +16,7 @@ from matplotlib.figure import Figure
 from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, angle_axis
-from fastpin.model import MATERIALS, Material, MaterialPair, Problem
-from fastpin.model.angles import BOTTOM
+from fastpin.model import MATERIALS, Material, MaterialPair, Problem, angles
 from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, marked, panels, steps
 from fastpin.published.tractions import ANGLE, QUANTITIES, traction_curve
 from fastpin.solver.solving import solve
@@ -37,7 +36,7 @@ PAIRS = ("centre to body", "centre to rigid", "body to rigid")
 def pushed_pin(pin: Material, pin_load: PinLoad, nodes: int) -> State:
     """Solve a pin pushed down by P = F, on the same nodes for all pins."""
     problem = Problem.from_load_parameter(MaterialPair(pin, PLATE), LOAD_PARAMETER, FRICTION, pin_load)
-    return solve(problem, [{"P": 1.0}], nodes=nodes, arc=(BOTTOM - 1.35, BOTTOM + 1.35))[-1]
+    return solve(problem, [{"P": 1.0}], nodes=nodes, arc=(angles.BOTTOM - 1.35, angles.BOTTOM + 1.35))[-1]
 
 
 def difference(one: State, two: State, quantity: str) -> float:

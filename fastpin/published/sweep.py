@@ -26,8 +26,7 @@ from matplotlib.figure import Figure
 from fastpin.assess.outputs import Curve
 from fastpin.figures.style import line
 from fastpin.kernels.status import STICK
-from fastpin.model import Grid, Problem
-from fastpin.model.angles import BOTTOM
+from fastpin.model import Grid, Problem, angles
 from fastpin.published.records import PaperFigure, Report, add_legend, grey, head, marked, panels, steps
 from fastpin.published.tractions import NAMES, PAIRS, values_of
 from fastpin.solver.solving import solve
@@ -72,7 +71,7 @@ def gathered_grid(nodes: int, reach: float = REACH, slip: tuple[float, float] | 
         spacing = np.minimum(spacing, 700.0 / nodes * (0.025 + away / 5.0))
     below = _count(x, spacing)
     side = np.radians(np.interp(np.linspace(0.0, below[-1], round(below[-1]) + 1), below, x))
-    return Grid(np.r_[BOTTOM - side[:0:-1], BOTTOM + side])
+    return Grid(np.r_[angles.BOTTOM - side[:0:-1], angles.BOTTOM + side])
 
 
 def _count(x: np.ndarray, spacing: np.ndarray) -> np.ndarray:
@@ -108,7 +107,7 @@ def _measured(state: State) -> tuple[float, float, float, float]:
     rho = math.nan
     for left, right in state.stick:
         inside = (state.theta > left) & (state.theta < right) & (state.status == STICK)
-        if left < BOTTOM < right and np.count_nonzero(inside) >= 9:
+        if left < angles.BOTTOM < right and np.count_nonzero(inside) >= 9:
             rho = 0.5 * (right - left)
     force = state.load["P"]
     parameter = state.problem.load_parameter(force)

@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from fastpin.bodies import Ring
-from fastpin.model import MATERIALS, Laminate, Material, MaterialPair, Ply, Points, Problem
-from fastpin.model.angles import BOTTOM
+from fastpin.model import MATERIALS, Laminate, Material, MaterialPair, Ply, Points, Problem, angles
 from fastpin.published.records import Benchmark, Outcome, Report, Row, steps
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
@@ -73,7 +72,7 @@ def open_hole(progress: Report | None = None) -> Outcome:
     stress = 1e6
     problem = Problem(MaterialPair(STEEL, STEEL), 10e-3, 1e-4, 0.3, "body")
     state = solve(problem, [{"P": TOUCH}, {"sxx": stress}], nodes=101)[-1]
-    top, side = state.hoop_stress("plate", [-BOTTOM, 0.0]) / stress
+    top, side = state.hoop_stress("plate", [-angles.BOTTOM, 0.0]) / stress
     if progress is not None:
         progress(1.0)
     return Outcome([
@@ -104,7 +103,7 @@ def open_hole_of_laminates(progress: Report | None = None) -> Outcome:
     for words, plate in steps(list(plates.items()), progress):
         problem = Problem(MaterialPair(STEEL, plate, "stress"), 10e-3, 1e-4, 0.3, "body")
         state = solve(problem, [{"P": TOUCH}, {"sxx": stress}], nodes=101)[-1]
-        (top,) = state.hoop_stress("plate", [-BOTTOM]) / stress
+        (top,) = state.hoop_stress("plate", [-angles.BOTTOM]) / stress
         rows.append(Row(f"hoop stress over sxx, top of the hole, {words}", "", printed[words], float(top)))
     return Outcome(rows)
 

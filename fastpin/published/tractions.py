@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 from fastpin.assess.outputs import Curve
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, angle_axis
-from fastpin.model import MATERIALS, MaterialPair, Problem
-from fastpin.model.angles import interval_near_bottom
+from fastpin.model import MATERIALS, MaterialPair, Problem, angles
 from fastpin.published.records import add_legend, head, panels
 from fastpin.reading.zones import ALL_ROUND, Interval, is_all_round
 from fastpin.solver.solving import solve
@@ -174,5 +173,5 @@ def _from_edge_to_edge(patch: np.ndarray, ends: Interval) -> np.ndarray:
             beside = np.hstack([end + part * (inside[:1, 0:1] - end), np.sqrt(part) * inside[:1, 1:]])
             patch = np.vstack([beside, inside])[::side]
     moved = patch.copy()
-    moved[:, 0] += interval_near_bottom(*ends)[0] - ends[0]
+    moved[:, 0] += angles.interval_near_bottom(*ends)[0] - ends[0]
     return moved

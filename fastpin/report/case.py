@@ -9,10 +9,8 @@ import numpy as np
 
 from fastpin import assess
 from fastpin.assess.outputs import ROUNDING, Column, table, visible_rows
-from fastpin.model import Case, LoadHistory, Material, Problem, Wear
-from fastpin.model.checks import instance
+from fastpin.model import Case, LoadHistory, Material, Problem, Wear, checks, points
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
-from fastpin.model.points import owner_of
 from fastpin.model.units import PASCAL, acting_loads, units
 
 
@@ -34,7 +32,7 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
 
     Another class than :class:`Case` raises :class:`InputError`.
     """
-    instance("case", case, Case, "a Case")
+    checks.instance("case", case, Case, "a Case")
     problem, options, count = case.problem, case.options, len(case.history)
     pair, surfaces = problem.pair, problem.surfaces
     alpha, beta = surfaces.dundurs()
@@ -57,7 +55,7 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         where = f"arc from {options.arc[0]:g} to {options.arc[1]:g} rad"
     method = options.method if options.method == "path" else f"increment, {options.increments} a corner"
     rows = [
-        (owner_of(problem, "pin"), _material(pair.pin, problem.dimensionless)),
+        (points.owner_of(problem, "pin"), _material(pair.pin, problem.dimensionless)),
         ("plate", _material(pair.plate, problem.dimensionless)),
         *_bodies(problem),
         ("pair", f"plane {pair.plane}, {contact}Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),

@@ -5,14 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from fastpin.assess.outputs import Curve, aligned, write_csv
+from fastpin.assess.outputs import Curve, Output, aligned, write_csv
 from fastpin.charts import lookups
 from fastpin.charts.groups import GROUPS, STORED, ChartTable, TableAxis, parameter_range, tables
-from fastpin.version import __version__
 
 
 def tables_of(chart: lookups.ChartQuantity) -> list[ChartTable]:
@@ -82,24 +81,34 @@ def value_text(chart: lookups.ChartQuantity, found: lookups.ChartValue) -> str:
     return f"{chart.name} = {value:.{places}f} +- {error:.{places}f} {unit}".rstrip()
 
 
-def chart_document(
-    chart: lookups.ChartQuantity | None, given: dict[str, Any], found: lookups.ChartValue | None
-) -> dict[str, Any]:
-    """Return the charts as a document for JSON: of all charts, or of one with the value at given parameters."""
-    listed = lookups.CHARTS.values() if chart is None else [chart]
-    document: dict[str, Any] = {"fastpin": __version__, "charts": {}}
-    for each in listed:
-        bounds = {table.group.name: bounds_of(table, each) for table in tables_of(each)}
-        document["charts"][each.name] = {
-            "words": each.words,
-            "unit": each.unit,
-            "parameters": list(each.parameters),
-            "relative": STORED[each.name].is_relative,
-            "bounds": {name: {"usual": usual, "largest": largest} for name, (usual, largest) in bounds.items()},
-        }
-    document["parameters"] = given
-    document["value"], document["error"] = (None, None) if found is None else (float(found), float(found.error))
-    return document
+class Looked(NamedTuple):
+    """Charts, the parameters that were given, and the value of the only chart at them, if it was looked up."""
+
+    charts: dict[str, lookups.ChartQuantity]
+    parameters: dict[str, Any]
+    found: lookups.ChartValue | None
+
+
+LOOKED = (
+    Output(
+        "charts", "map", words="the charts",
+        parts=(
+            Output("words", "text"),
+            Output("unit", "text"),
+            Output("parameters", "texts", lambda chart: list(chart.parameters)),
+            Output("relative", "truth", lambda chart: STORED[chart.name].is_relative),
+            Output(
+                "bounds", "map", words="bounds of each table",
+                of=lambda chart: {table.group.name: bounds_of(table, chart) for table in tables_of(chart)},
+                parts=(Output("usual", of=lambda bounds: bounds[0]), Output("largest", of=lambda bounds: bounds[1])),
+            ),
+        ),
+    ),
+    Output("parameters", form={"type": "object", "description": "the parameters that were given"}),
+    Output("value", of=lambda looked: None if looked.found is None else float(looked.found), optional=True),
+    Output("error", of=lambda looked: None if looked.found is None else float(looked.found.error), optional=True),
+)  # fmt: skip
+"""Outputs of a look-up."""
 
 
 def write_chart(chart: lookups.ChartQuantity, path: Path) -> None:

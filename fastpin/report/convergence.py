@@ -9,31 +9,34 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fastpin.assess.outputs import ROUNDING, Column, csv_cell, json_ready, table, unit_names
+from fastpin.assess import outputs
+from fastpin.assess.outputs import (
+    NUMBER,
+    ROUNDING,
+    TEXT,
+    UNITS,
+    UNKNOWN,
+    WHOLE,
+    Column,
+    Output,
+    csv_cell,
+    list_of,
+    map_of,
+    table,
+)  # fmt: skip
+from fastpin.model.options import METHODS
 from fastpin.model.problem import Problem
 from fastpin.model.units import DEGREE, named_loads, printed_loads, scaled, units
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
 from fastpin.storage.files import replacing
 from fastpin.studies.convergence import Convergence, QuantitySeries, Study
 from fastpin.studies.extrapolate import Verdict
-from fastpin.version import __version__
-
-COLUMNS = (
-    "corner", "solver", "nodes", "increments", "quantity", "unit", "value", "verdict", "order", "limit", "bar",
-    "scatter", "path",
-)  # fmt: skip
-"""Columns of the CSV file. Each value has a line.
-
-Verdict, order, limit, error bar and scatter belong to the whole sequence of values. ``scatter`` is relative. ``path``
-is the value of the path solver on the grid of the increment solver.
-"""
-
 
 MOST_DECIMALS = 9
 """Most decimals of a value in the text tables. A value that needs more is written with an exponent."""
@@ -190,8 +193,60 @@ def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
     return cells
 
 
+SERIES = (
+    Output("corner", "whole"),
+    Output("quantity", "text", lambda row: row.name),
+    Output("unit", "text"),
+    Output("values", form=list_of(UNKNOWN)),
+    Output("verdict", "text"),
+    *outputs.numbers("order limit bar scatter path", optional=True),
+)
+"""Outputs of a :class:`ReportedSeries`."""
+
+COLUMNS = ("corner", "solver", "nodes", "increments", "quantity", "unit", "value", *(each.name for each in SERIES[4:]))
+"""Columns of the CSV file. Each value has a line."""
+
+
+def _with_series(convergence: Convergence) -> Iterator[tuple[Study, list[ReportedSeries]]]:
+    """Yield the studies, each with its series at all corners."""
+    for study in convergence.studies:
+        corners = (reported_series(study, convergence.problem, corner) for corner in convergence.loads)
+        yield study, [row for rows in corners for row in rows]
+
+
+CONVERGENCE = (
+    Output("complete", "truth"),
+    Output("arc", form=list_of(NUMBER, 2)),
+    UNITS,
+    Output(
+        "loads", form=map_of(map_of(NUMBER, "loads"), "loads at each corner"),
+        of=lambda found: {corner: printed_loads(found.problem, load) for corner, load in found.loads.items()},
+    ),
+    Output("unread", form=map_of(TEXT, "why a quantity could not be read")),
+    Output(
+        "studies", "list", _with_series,
+        parts=(
+            Output("solver", "text", lambda each: each[0].method, allowed=METHODS),
+            Output(
+                "nodes", of=lambda each: each[0].counts if each[0].of_grids else each[0].nodes,
+                form={"type": ["array", "integer", "null"], "items": WHOLE},
+            ),
+            Output(
+                "increments", of=lambda each: None if each[0].of_grids else each[0].counts,
+                form={"type": ["array", "integer", "null"], "items": WHOLE},
+            ),
+            Output("quantities", "list", lambda each: each[1], parts=SERIES),
+        ),
+    ),
+)  # fmt: skip
+"""Outputs of a convergence study."""
+
+
 def write_csv(convergence: Convergence, path: Path) -> None:
     """Write all values as CSV, one a line. Unknown values are empty cells.
+
+    Verdict, order, limit, error bar and scatter belong to the whole sequence of values. ``scatter`` is relative.
+    ``path`` is the value of the path solver on the grid of the increment solver.
 
     Raises
     ------
@@ -199,47 +254,18 @@ def write_csv(convergence: Convergence, path: Path) -> None:
         If the file can't be written.
     """
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        for study in convergence.studies:
-            for corner in convergence.loads:
-                for row in reported_series(study, convergence.problem, corner):
-                    for count, value in zip(study.counts, row.values, strict=True):
-                        grid = (count, "") if study.method == "path" else (study.nodes, count)
-                        known: list[Any] = [value, row.verdict, row.order, row.limit, row.bar, row.scatter, row.path]
-                        head = [corner, study.method, *grid, csv_cell(row.name), csv_cell(row.unit)]
-                        known = ["" if isinstance(each, float) and math.isnan(each) else each for each in known]
-                        writer.writerow([*head, *known])
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        for study, rows in _with_series(convergence):
+            for row in rows:
+                cells = {"solver": study.method} | outputs.document(SERIES, row, {})
+                for count, value in zip(study.counts, cells.pop("values"), strict=True):
+                    grid = (count, "") if study.of_grids else (study.nodes, count)
+                    whole = cells | dict(zip(("nodes", "increments", "value"), (*grid, value), strict=True))
+                    unknown = {name for name, cell in whole.items() if isinstance(cell, float) and math.isnan(cell)}
+                    writer.writerow({name: "" if name in unknown else csv_cell(whole[name]) for name in COLUMNS})
 
 
 def document(convergence: Convergence, title: str = "") -> dict[str, Any]:
     """Return a study as a JSON-ready dict. Unknown values are None."""
-    grid = convergence.grid
-    return json_ready(
-        {
-            "fastpin": __version__,
-            "title": title,
-            "complete": convergence.complete,
-            "arc": [float(grid.theta[0]), 2.0 * math.pi + grid.theta[0] if grid.closed else float(grid.theta[-1])],
-            "units": unit_names(convergence.problem),
-            "loads": {corner: printed_loads(convergence.problem, load) for corner, load in convergence.loads.items()},
-            "unread": convergence.unread,
-            "studies": [
-                {
-                    "solver": study.method,
-                    "nodes": study.counts if study.method == "path" else study.nodes,
-                    "increments": study.counts if study.method == "increment" else None,
-                    "quantities": [
-                        {
-                            "corner": row.corner, "quantity": row.name, "unit": row.unit, "values": row.values,
-                            "verdict": row.verdict, "order": row.order, "limit": row.limit, "bar": row.bar,
-                            "scatter": row.scatter, "path": row.path,
-                        }
-                        for corner in convergence.loads
-                        for row in reported_series(study, convergence.problem, corner)
-                    ],
-                }
-                for study in convergence.studies
-            ],
-        }
-    )  # fmt: skip
+    return outputs.whole_document(CONVERGENCE, convergence, {}, title=title)

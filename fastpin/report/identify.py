@@ -6,14 +6,15 @@ import math
 from pathlib import Path
 from typing import Any
 
-from fastpin.assess.outputs import Curve, aligned, json_ready, unit_names, write_csv
+from fastpin.assess import outputs
+from fastpin.assess.outputs import Curve, Output, aligned, write_csv
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.units import units
 from fastpin.studies.identification import FittedValue, Identified
-from fastpin.version import __version__
 
 TOLD = 0.9
 """Least correlation that the text names."""
+
 
 ENERGIES = ("measured", "deviation", "computed")
 """Keys of the energy of a cycle."""
@@ -57,34 +58,53 @@ def text(found: Identified) -> str:
     return "\n".join([*lines, *(f"note: {note}" for note in found.notes)])
 
 
+def _shown(found: Identified, name: str, *values: float) -> list[float]:
+    """Values of an estimate, or of the loop's displacement or force, in their unit."""
+    factor = units(found.problem)[kind_of(found, name)].factor
+    return [factor * value for value in values]
+
+
+IDENTIFIED = (
+    outputs.UNITS,
+    Output("displacement", "text", lambda found: found.names[0]),
+    Output("force", "text", lambda found: found.names[1]),
+    Output("samples", "whole", lambda found: found.loop.time.size),
+    Output("turning_points", "whole", lambda found: len(found.loop.ends) - 2),
+    Output("least_reversal", of=lambda found: _shown(found, "displacement", found.loop.width)[0]),
+    Output(
+        "noise", of=lambda found: found,
+        parts=(
+            Output("displacement", of=lambda found: _shown(found, "displacement", found.loop.noise[0])[0]),
+            Output("force", of=lambda found: _shown(found, "force", found.loop.noise[1])[0]),
+        ),
+    ),
+    Output("scatter"),
+    Output(
+        "estimates", "map",
+        lambda found: {name: FittedValue(*_shown(found, name, *each)) for name, each in found.estimates.items()},
+        "an identified value and its interval of 95 %; null: no bound",
+        parts=(Output("value", words="null: not told", optional=True), *outputs.numbers("low high", optional=True)),
+    ),
+    Output(
+        "correlations", of=lambda found: [[*pair, each] for pair, each in found.correlations.items()],
+        form=outputs.list_of({"type": "array", "prefixItems": [outputs.TEXT, outputs.TEXT, outputs.NUMBER]}),
+    ),
+    Output(
+        "energies",
+        of=lambda found: [
+            dict(zip(ENERGIES, each, strict=True))
+            for each in (units(found.problem)["energy"].factor * found.energies).tolist()
+        ],
+        form=outputs.list_of(outputs.object_of(dict.fromkeys(ENERGIES, outputs.NUMBER)))
+    ),
+    Output("notes", "texts", lambda found: list(found.notes)),
+)  # fmt: skip
+"""Outputs of what a loop tells."""
+
+
 def document(found: Identified, title: str) -> dict[str, Any]:
     """Return what a loop tells as a JSON-ready dict. A value that it does not tell is None."""
-    unit = units(found.problem)
-
-    def shown(name: str, each: FittedValue) -> dict[str, float]:
-        factor = unit[kind_of(found, name)].factor
-        return {end: factor * value for end, value in each._asdict().items()}
-
-    moves, forces = (unit[LOAD_KIND[name]].factor for name in found.names)
-    loop, energies = found.loop, unit["energy"].factor * found.energies
-    return json_ready(
-        {
-            "fastpin": __version__,
-            "title": title,
-            "units": unit_names(found.problem),
-            "displacement": found.names[0],
-            "force": found.names[1],
-            "samples": loop.time.size,
-            "turning_points": len(loop.ends) - 2,
-            "least_reversal": moves * loop.width,
-            "noise": {"displacement": moves * loop.noise[0], "force": forces * loop.noise[1]},
-            "scatter": found.scatter,
-            "estimates": {name: shown(name, each) for name, each in found.estimates.items()},
-            "correlations": [[*pair, each] for pair, each in found.correlations.items()],
-            "energies": [dict(zip(ENERGIES, each, strict=True)) for each in energies.tolist()],
-            "notes": list(found.notes),
-        }
-    )
+    return outputs.whole_document(IDENTIFIED, found, {}, title=title)
 
 
 def write_loop(found: Identified, path: Path) -> None:

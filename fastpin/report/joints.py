@@ -10,8 +10,7 @@ import numpy as np
 from fastpin.assess import outputs
 from fastpin.assess.outputs import Column, json_ready, table
 from fastpin.joints import JointResult, JointState
-from fastpin.model.angles import from_bottom
-from fastpin.model.ties import top
+from fastpin.model import angles, ties
 from fastpin.model.units import scaled
 from fastpin.states.state import State
 from fastpin.version import __version__
@@ -70,7 +69,7 @@ def largest_table(result: JointResult) -> str:
     factor, label = scaled([row["hoop"] for row in rows], "Pa")
     words = [f"{factor * row['hoop']:.5g}{'' if row['resolved'] else UNRESOLVED}" for row in rows]
     columns.append(("largest hoop", label, words))
-    columns.append(("at", "deg", [f"{from_bottom(row['hoop_angle']):z.1f}" for row in rows]))
+    columns.append(("at", "deg", [f"{angles.from_bottom(row['hoop_angle']):z.1f}" for row in rows]))
     columns.append(("load point", "", [str(row["hoop_step"]) for row in rows]))
     columns.append(_column("slip", [row["slip"] for row in rows], "m"))
     columns.append(_column("dissipated", [row["dissipation"] for row in rows], "J"))
@@ -87,7 +86,7 @@ def contact_row(result: JointResult, place: int) -> dict[str, Any]:
     contacts = [state.contacts[place] for state in result.states]
     forces = [float(np.hypot(*state.forces[place])) for state in result.states]
     peaks = [contact.peak_hoop_stress("plate") for contact in contacts]
-    hoop = top([peak.value for peak in peaks])
+    hoop = ties.top([peak.value for peak in peaks])
     touched = result.first_touches[pin.name, plate.name]
     return {
         "pin": pin.name,

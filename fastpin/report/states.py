@@ -15,20 +15,17 @@ import numpy as np
 from fastpin import storage
 from fastpin.assess import outputs
 from fastpin.assess.outputs import ROUNDING
-from fastpin.model import LOADS, Case, Problem
+from fastpin.model import LOADS, Case, Problem, checks, ties
 from fastpin.model.angles import from_bottom, interval_from_bottom
-from fastpin.model.checks import instance, instances
 from fastpin.model.points import Body, edge_body, elastic_bodies
-from fastpin.model.ties import top
 from fastpin.model.units import Unit, units
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import load_columns
 from fastpin.solver import Interrupted, Result
-from fastpin.states import Regime, State
+from fastpin.states import Regime, State, walking
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.error_bars import known_bar
 from fastpin.states.quantities import QUANTITIES, load_point, point_name, sizes
-from fastpin.states.walking import walk_words
 
 LOAD_POINT = "load point"
 """Heading of the first column."""
@@ -207,7 +204,7 @@ def state_table(problem: Problem, states: Sequence[State], rows: TableRows | Non
     """
     states = _checked(problem, states)
     if rows is not None:
-        instance("rows", rows, TableRows, "the rows of table_rows")
+        checks.instance("rows", rows, TableRows, "the rows of table_rows")
     if rows is None:
         rows = table_rows(problem, states)
         states = [states[place] for place in rows.printed]
@@ -250,8 +247,8 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[outputs.Col
 
 def _checked(problem: Problem, states: Sequence[State]) -> list[State]:
     """Check the class of the problem and of each state."""
-    instance("problem", problem, Problem, "a Problem")
-    return instances("states", states, State, "a list of states")
+    checks.instance("problem", problem, Problem, "a Problem")
+    return checks.instances("states", states, State, "a list of states")
 
 
 def quantity_column(
@@ -299,7 +296,7 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
     for state in states:  # Steady cycles repeat their states, and a peak takes some milliseconds.
         first.setdefault(_identity(state), state)
     distinct = list(first.values())
-    state = distinct[top([state.peak_hoop_stress(body).value for state in distinct])]
+    state = distinct[ties.top([state.peak_hoop_stress(body).value for state in distinct])]
     peak = state.peak_hoop_stress(body)
     if peak.value == 0.0:
         return ""
@@ -334,7 +331,7 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     if problem.joint.bush is None or not any(state.in_contact for state in states):
         return ""
     fits = [(state, state.bush_fit()) for state in states]
-    state, fit = fits[top([-fit.open_margin for _, fit in fits])]
+    state, fit = fits[ties.top([-fit.open_margin for _, fit in fits])]
     unit = units(problem)["traction"]
     where = f"at {_angle(fit.open_angle)} deg, load point {_point(state)}"
     if problem.bush_slips and fit.open_margin <= 0.0:
@@ -371,7 +368,7 @@ def seat_lines(problem: Problem, states: Sequence[State], last: State, cycle: Se
     seat, unit = last.seat, units(problem)
     if seat is None or not seats or not problem.bush_slips:
         return []
-    most = seats[top([abs(each.peak_slip) for each in seats])]
+    most = seats[ties.top([abs(each.peak_slip) for each in seats])]
 
     def shown(kind: str, value: float, digits: int) -> str:
         return unit[kind].text(0.0 if abs(value) <= ROUNDING * sizes(seat)[kind] else value, digits)
@@ -386,7 +383,7 @@ def seat_lines(problem: Problem, states: Sequence[State], last: State, cycle: Se
     if turned:
         text += f", {shown('rotation', turned[-1] - turned[0], 3)} in the last cycle"
     text += f"; dissipated {shown('energy', seat.dissipation, 4)} of {shown('energy', last.dissipation, 4)}"
-    words = walk_words(cycle)
+    words = walking.walk_words(cycle)
     return [text, *([f"bush in its seat: {words}"] if words else [])]
 
 

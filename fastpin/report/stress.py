@@ -11,9 +11,7 @@ from fastpin.assess.outputs import Curve
 from fastpin.damage.hole_strength import laminate_of
 from fastpin.damage.laminates import first_ply_failure
 from fastpin.errors import InputError
-from fastpin.model import points
-from fastpin.model.angles import from_bottom
-from fastpin.model.checks import choice, number
+from fastpin.model import angles, checks, points
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.reading.stress import Stress
@@ -56,7 +54,7 @@ def component_of(stress: Stress, component: str) -> np.ndarray:
     InputError
         If there is no such component.
     """
-    name = choice("component", component, tuple(COMPONENTS))
+    name = checks.choice("component", component, tuple(COMPONENTS))
     values: np.ndarray = stress.principal[..., 0] if name == "largest" else getattr(stress, name)
     return values
 
@@ -69,7 +67,7 @@ def bodies_of(state: State, body: str = "both") -> tuple[points.Body, ...]:
     InputError
         If there is no such body.
     """
-    if choice("body", body, (*points.BODIES, "both")) != "both":
+    if checks.choice("body", body, (*points.BODIES, "both")) != "both":
         return (body,)  # type: ignore[return-value]
     return points.elastic_bodies(state.problem)
 
@@ -117,18 +115,20 @@ def depth_curves(
     """
     points.material_of(states[0].problem, body)
     usual = min(0.5 if body == "pin" else 1.0, points.known_depth(states[0].problem, body))
-    deepest = usual if depth is None else number("depth", depth)
+    deepest = usual if depth is None else checks.number("depth", depth)
     _check_depth(deepest, states[0].problem, body)
     unit = units(states[0].problem)
     radius, curves = states[0].problem.hole_radius, []
     below = deepest * radius * np.linspace(0.0, 1.0, DEPTHS) ** 3
     for state in states:
-        place = state.peak_hoop_stress(body).angle if angle is None else math.radians(number("angle", angle) - 90.0)
+        place = (
+            state.peak_hoop_stress(body).angle if angle is None else math.radians(checks.number("angle", angle) - 90.0)
+        )
         found = state.stress(points.Points.at_depth(below, place), body)
         columns = {f"depth [{unit['length'].name}]": below}
         for name in ("radial", "hoop", "shear", "von_mises"):
             columns[f"{COMPONENTS[name]} [{unit['traction'].name}]"] = component_of(found, name)
-        parameters = {"body": body, "load point": load_point(state), "angle [deg]": from_bottom(place)}
+        parameters = {"body": body, "load point": load_point(state), "angle [deg]": angles.from_bottom(place)}
         curves.append(Curve(parameters, columns))
     return curves
 
@@ -176,12 +176,12 @@ def field_curves(
     InputError
         If an argument is out of range, or there is no such component.
     """
-    choice("component", component, tuple(FIELDS))
-    outer = number("extent", extent)
+    checks.choice("component", component, tuple(FIELDS))
+    outer = checks.number("extent", extent)
     if not 1.0 < outer <= 100.0:
         raise InputError("extent", f"must be above 1 and at most 100 radii, not {outer:g}")
     unit, radius, curves = units(state.problem), state.problem.hole_radius, []
-    choice("body", body, ("plate", "pin", "both"))
+    checks.choice("body", body, ("plate", "pin", "both"))
     drawn = tuple(each for each in bodies_of(state, body) if each != "seat")  # the plate has it
     if component == UTILIZATION:
         drawn = ("plate",)

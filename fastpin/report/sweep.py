@@ -17,11 +17,9 @@ from fastpin.assess.outputs import ROUNDING, Column, Curve, csv_cell, table
 from fastpin.assess.strength import strength_words
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import InputError
-from fastpin.model import LOADS, Case, Problem, Profile, StrengthAssessment, Wear
-from fastpin.model.checks import as_toml
+from fastpin.model import LOADS, Case, Problem, Profile, StrengthAssessment, Wear, checks, synonyms
 from fastpin.model.points import BODIES
 from fastpin.model.profile_terms import TERMS
-from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, Unit, scaled, units
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.index import DONE, FAILED
@@ -199,14 +197,14 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
     """
     known = (*plan.outcomes, *KEY_FIGURES, "seconds")
     if value not in known:
-        hint = closest(value, known) or f"; there are {', '.join(known)}"
-        raise InputError("value", f"there is no outcome or key figure {as_toml(value)}{hint}")
+        hint = synonyms.closest(value, known) or f"; there are {', '.join(known)}"
+        raise InputError("value", f"there is no outcome or key figure {checks.as_toml(value)}{hint}")
     values = {name: _different([point.values.get(name) for point in plan.points]) for name in plan.fields}
     numeric = [name for name, found in values.items() if all(_is_number(item) for item in found)]
     for option, name in (("x", x), ("y", y)):
         if name is not None and name not in plan.fields:
-            hint = closest(name, tuple(plan.fields)) or f"; there are {', '.join(plan.fields)}"
-            raise InputError(option, f"the plan does not vary {as_toml(name)}{hint}")
+            hint = synonyms.closest(name, tuple(plan.fields)) or f"; there are {', '.join(plan.fields)}"
+            raise InputError(option, f"the plan does not vary {checks.as_toml(name)}{hint}")
         if name is not None and name not in numeric:
             raise InputError(option, f"the values of {name} are not all numbers, which an axis needs")
     if y is not None and y == x:
@@ -239,12 +237,12 @@ def restricted(plan: Plan, where: Mapping[str, Any]) -> Plan:
     points = plan.points
     for name, value in where.items():
         if name not in plan.fields:
-            hint = closest(name, tuple(plan.fields)) or f"; there are {', '.join(plan.fields)}"
-            raise InputError("where", f"the plan does not vary {as_toml(name)}{hint}")
+            hint = synonyms.closest(name, tuple(plan.fields)) or f"; there are {', '.join(plan.fields)}"
+            raise InputError("where", f"the plan does not vary {checks.as_toml(name)}{hint}")
         known = _different([point.values.get(name) for point in plan.points])
         if not any(_is_same(value, each) for each in known):
             listed = ", ".join(brief(each) for each in known[:6]) + ", ..." * (len(known) > 6)
-            raise InputError("where", f"the plan has no {name} = {as_toml(value)}; it has {listed}")
+            raise InputError("where", f"the plan has no {name} = {checks.as_toml(value)}; it has {listed}")
         points = [point for point in points if _is_same(value, point.values.get(name))]
     if not points:
         raise InputError("where", "no point of the plan has all of these values")
@@ -434,7 +432,7 @@ def brief(value: Any) -> str:
     """Return a value as text, numbers with six significant digits."""
     if isinstance(value, list):
         return f"[{', '.join(map(brief, value))}]"
-    return f"{value:.6g}" if _is_number(value) else as_toml(value)
+    return f"{value:.6g}" if _is_number(value) else checks.as_toml(value)
 
 
 def _is_number(value: Any) -> bool:

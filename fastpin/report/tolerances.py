@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.assess import outputs
 from fastpin.assess.outputs import Column, table
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml
-from fastpin.model.synonyms import closest
+from fastpin.model import checks, synonyms
 from fastpin.model.units import scaled
 from fastpin.report.sweep import TableRow, axis_label, printed_rows, unit_name
 from fastpin.studies.index import DONE, FAILED
@@ -113,8 +113,8 @@ def check_outcomes(study: Tolerances, names: Sequence[str]) -> None:
     known = tuple(study.plan.outcomes)
     for name in names:
         if name not in known:
-            hint = closest(name, known) or f"; there are {', '.join(known)}"
-            raise InputError("value", f"there is no outcome {as_toml(name)}{hint}")
+            hint = synonyms.closest(name, known) or f"; there are {', '.join(known)}"
+            raise InputError("value", f"there is no outcome {checks.as_toml(name)}{hint}")
     if len(names) > MOST_OUTCOMES:
         raise InputError("value", f"a figure shows at most {MOST_OUTCOMES} outcomes, not {len(names)}")
 
@@ -309,6 +309,39 @@ def document(study: Tolerances, rows: Sequence[TableRow]) -> dict[str, Any]:
         },
         "outcomes": outcomes,
     }
+
+
+def schema() -> outputs.Schema:
+    """Return the JSON schema of :func:`document`."""
+    values = outputs.map_of(outputs.NUMBER, "the fields")
+    reached = outputs.object_of({"value": outputs.NUMBER, "part": outputs.TEXT, "values": values})
+    span = outputs.or_null(outputs.object_of({"smallest": reached, "largest": reached}))
+    alone = {"values": outputs.list_of(outputs.NUMBER), "outcomes": outputs.list_of(outputs.UNKNOWN)}
+    field = outputs.object_of(alone | dict.fromkeys(("swing", "rank_correlation"), outputs.UNKNOWN))
+    outcome = outputs.object_of(
+        {
+            "unit": outputs.TEXT,
+            "nominal": outputs.UNKNOWN,
+            "fields": outputs.map_of(field, "the effect of each field, the largest swing first"),
+            "corners": span,
+            "all": span,
+            "percentiles": outputs.map_of(outputs.NUMBER, "percentiles of the samples"),
+            "unresolved": outputs.WHOLE | {"description": "number of runs whose value the nodes do not resolve"},
+        }
+    )
+    spacing = {"spacing": {"enum": ["linear", "log"]}}
+    limits = outputs.object_of(dict.fromkeys(("nominal", "from", "to"), outputs.NUMBER) | spacing)
+    failed = outputs.object_of({"part": outputs.TEXT, "values": values, "reason": outputs.TEXT})
+    return outputs.object_of(
+        {
+            "fastpin": outputs.TEXT,
+            "title": outputs.TEXT,
+            **dict.fromkeys(("points", "done", "corners", "samples"), outputs.WHOLE),
+            "failed": outputs.list_of(failed),
+            "fields": outputs.map_of(limits, "the limits of each field, in the units of the case file"),
+            "outcomes": outputs.map_of(outcome, "the effects on each outcome"),
+        }
+    )
 
 
 def _known(row: TableRow, name: str) -> float:

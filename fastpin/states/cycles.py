@@ -38,6 +38,10 @@ class Cycle(NamedTuple):
     solved: bool
 
 
+CYCLE_KINDS = dict.fromkeys(Cycle._fields, "") | {"dissipation": "energy", "rotation_change": "rotation"}
+"""Kind of quantity of each field of a cycle; "" for a plain number."""
+
+
 def periodic_from(cycles: Sequence[Cycle]) -> Cycle | None:
     """The first cycle from which on no cycle changes the tractions, to rounding.
 

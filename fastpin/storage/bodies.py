@@ -14,8 +14,7 @@ import numpy as np
 
 from fastpin.bodies.body import BodyBase
 from fastpin.bodies.kinds import KINDS
-from fastpin.model import FatigueConstants, Problem
-from fastpin.model.checks import as_toml
+from fastpin.model import FatigueConstants, Problem, checks
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries, law_from
 from fastpin.model.laminate import Laminate, laminate_from
@@ -111,7 +110,7 @@ def _write(parent: h5py.Group, name: str, entries: Mapping[str, Any]) -> None:
 def _read_body(group: h5py.Group) -> BodyBase:
     kind = group.attrs.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
-        raise ValueError(f"the kind {as_toml(kind)} of {group.name[1:]} is unknown")
+        raise ValueError(f"the kind {checks.as_toml(kind)} of {group.name[1:]} is unknown")
     given: dict[str, Any] = {
         name: value.tolist() if isinstance(value, np.ndarray) else as_python(value)
         for name, value in group.attrs.items()
@@ -177,7 +176,7 @@ def _term(group: h5py.Group) -> Term:
     term = {name: as_python(value) for name, value in group.attrs.items()}
     kind = term.pop("kind", None)
     if kind not in TERMS:
-        raise ValueError(f"the kind {as_toml(kind)} of a profile is unknown")
+        raise ValueError(f"the kind {checks.as_toml(kind)} of a profile is unknown")
     for name in group:
         array = dataset_of(group, name, float)
         if array.ndim != 1 or array.shape[0] > MOST_SAMPLES:

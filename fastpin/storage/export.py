@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Any
 import h5py
 
 from fastpin.errors import InputError
-from fastpin.model.checks import file_path, instance
-from fastpin.model.loads import LOADS
+from fastpin.model import checks, loads
 from fastpin.model.units import units_per_thickness
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, load_point
-from fastpin.storage import layout
-from fastpin.storage.hdf5 import as_python
+from fastpin.storage import hdf5, layout
 from fastpin.storage.store import open_result
 
 if TYPE_CHECKING:
@@ -57,7 +55,9 @@ def to_xarray(source: Result | str | Path) -> xarray.Dataset:
         import xarray
     except ImportError:
         raise InputError("xarray", "is not installed: pip install 'fastpin[xarray]'") from None
-    variables, attributes = _of_result(source) if isinstance(source, Result) else _of_file(file_path("source", source))
+    variables, attributes = (
+        _of_result(source) if isinstance(source, Result) else _of_file(checks.file_path("source", source))
+    )
     dataset = xarray.Dataset(variables, attrs=attributes)
     return dataset.set_coords([name for name in variables if name in (*SCALES, "step", "fraction")])
 
@@ -77,7 +77,7 @@ def _of_file(path: Path) -> tuple[Variables, dict[str, Any]]:
         for name, (dimensions, values, _) in variables.items():
             if values.shape != tuple(sizes[dimension] for dimension in dimensions):
                 raise ValueError(f"states/{name} has the shape {values.shape}")
-        return variables, {name: as_python(value) for name, value in file.attrs.items()}
+        return variables, {name: hdf5.as_python(value) for name, value in file.attrs.items()}
 
 
 def _own(names: Iterable[str]) -> list[str]:
@@ -102,7 +102,7 @@ def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
     variables: Variables = {
         "state": (["state"], list(range(len(result))), {"units": ""}),
         "theta": (["theta"], result.grid.theta, {"units": "rad"}),
-        "load_name": (["load_name"], list(LOADS), {"units": ""}),
+        "load_name": (["load_name"], list(loads.LOADS), {"units": ""}),
         "residual_name": (["residual_name"], list(layout.RESIDUALS), {"units": ""}),
     }
     rows = layout.rows_of(list(result))
@@ -136,9 +136,9 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
         import pandas
     except ImportError:
         raise InputError("pandas", "is not installed: pip install 'fastpin[pandas]'") from None
-    instance("result", result, Result, "a Result")
+    checks.instance("result", result, Result, "a Result")
     unit = {**units_per_thickness(result.problem), "angle": "rad", "width": "rad", "class": ""}
-    named = dict(zip(LOADS, layout.load_units(result.problem), strict=True))
+    named = dict(zip(loads.LOADS, layout.load_units(result.problem), strict=True))
     rows = [
         {
             "load_point": load_point(state),
@@ -150,7 +150,7 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
         }
         for state in result
     ]
-    columns = ["load_point", "step", "fraction", *(f"load_{name}" for name in LOADS), *QUANTITIES, "unresolved"]
+    columns = ["load_point", "step", "fraction", *(f"load_{name}" for name in loads.LOADS), *QUANTITIES, "unresolved"]
     frame = pandas.DataFrame(rows, columns=columns)
     frame.attrs["units"] = {
         **{f"load_{name}": label for name, label in named.items()},

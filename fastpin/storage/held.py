@@ -12,11 +12,10 @@ import numpy as np
 from fastpin.errors import InputWarning
 from fastpin.model.doubts import pressure_doubts
 from fastpin.solver.result import Result
-from fastpin.states import extremes
+from fastpin.states import extremes, walking
 from fastpin.states.extremes import Found, KeptStates, yield_doubts_of
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
-from fastpin.states.walking import walk_doubts
 
 
 class Held:
@@ -77,4 +76,4 @@ class Held:
         problem, history, states = self.result.problem, self.result.history, self.result.states
         yield from pressure_doubts(problem, history, (state.pressure for state in states))
         yield from yield_doubts_of(problem, history, states)
-        yield from walk_doubts(states, self.result.cycles)
+        yield from walking.walk_doubts(states, self.result.cycles)

@@ -13,13 +13,11 @@ from fastpin.model import LoadHistory, Problem
 from fastpin.model.checks import file_path, instance
 from fastpin.model.doubts import pressure_doubts
 from fastpin.solver.result import Result
-from fastpin.states.choice import span_of
+from fastpin.states import choice, walking
 from fastpin.states.extremes import Found, yield_doubts, yield_extremes
 from fastpin.states.state import State
-from fastpin.states.walking import walk_doubts
-from fastpin.storage.hdf5 import text_of
+from fastpin.storage import hdf5, layout
 from fastpin.storage.held import Held
-from fastpin.storage.layout import RESIDUALS
 from fastpin.storage.store import load, load_points, open_result, places_between
 from fastpin.storage.stored_states import read_extremes
 
@@ -39,7 +37,7 @@ def provenance(path: str | Path) -> dict[str, str]:
         See :func:`fastpin.load`.
     """
     with open_result(file_path("path", path)) as file:
-        attributes = {text_of(name): text_of(value) for name, value in file.attrs.items()}
+        attributes = {hdf5.text_of(name): hdf5.text_of(value) for name, value in file.attrs.items()}
     versions = {name: value for name, value in attributes.items() if name.startswith("version_")}
     found = {name.removeprefix("version_"): value for name, value in versions.items()}
     return found | {name: attributes[name] for name in ("created", "host", "platform", "run") if name in attributes}
@@ -57,7 +55,7 @@ def largest_residuals(path: str | Path) -> dict[str, float]:
     """
     with open_result(file_path("path", path)) as file:
         rows: np.ndarray = file["states/residuals"][()]
-    return dict(zip(RESIDUALS, rows.max(axis=0).tolist(), strict=True)) if len(rows) else {}
+    return dict(zip(layout.RESIDUALS, rows.max(axis=0).tolist(), strict=True)) if len(rows) else {}
 
 
 def largest_pressure(path: str | Path) -> float:
@@ -96,8 +94,8 @@ def stored_walk_doubts(path: str | Path, problem: Problem) -> list[InputWarning]
     """
     if instance("problem", problem, Problem, "a Problem").seat is None or not (cycles := load(path, states=[]).cycles):
         return []
-    states = load(path, states=places_between(path, *span_of(cycles[-1]))).states
-    return walk_doubts(states, cycles)
+    states = load(path, states=places_between(path, *choice.span_of(cycles[-1]))).states
+    return walking.walk_doubts(states, cycles)
 
 
 def stored_yield_doubts(path: str | Path, problem: Problem, history: LoadHistory) -> list[InputWarning]:

@@ -44,7 +44,7 @@ from fastpin.model.units import units_per_thickness
 from fastpin.reading.marks import Marks
 from fastpin.reading.old_borders import BITS
 from fastpin.solver.result import Result
-from fastpin.states.cycles import Cycle
+from fastpin.states.cycles import CYCLE_KINDS, Cycle
 from fastpin.states.state import State
 from fastpin.storage import hdf5
 from fastpin.storage.bodies import (
@@ -121,18 +121,6 @@ SEATED = ("", "seat/")
 
 RESIDUALS = ("gap", "slip", "cone", "equilibrium")
 """Names of the residuals of a state, in the order of a row."""
-
-CYCLE_FIELDS = {
-    "corner": "",
-    "length": "",
-    "number": "",
-    "pressure_change": "",
-    "shear_change": "",
-    "dissipation": "energy",
-    "rotation_change": "rotation",
-    "solved": "",
-}
-"""Kind of quantity of each field of a cycle."""
 
 SMALL_NUMBERS = ("status", "old_borders")
 """Fields of states that are whole numbers of one byte."""
@@ -211,7 +199,7 @@ def write_grid(file: h5py.Group, problem: Problem, history: LoadHistory, grid: G
     file.create_group("grid").attrs["closed"] = grid.closed
     _make_states(file, problem, grid, fields)
     cycles, unit = file.create_group("cycles"), units_per_thickness(problem)
-    for name, kind in CYCLE_FIELDS.items() if history.longest_cycle else ():
+    for name, kind in CYCLE_KINDS.items() if history.longest_cycle else ():
         _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
 
 
@@ -440,7 +428,7 @@ def _own_rows(states: Sequence[State], names: Sequence[str]) -> Rows:
 
 def cycle_rows(cycles: Sequence[Cycle]) -> Rows:
     """Return the rows of some cycles."""
-    return {name: np.array([getattr(cycle, name) for cycle in cycles], dtype=_dtype(name)) for name in CYCLE_FIELDS}
+    return {name: np.array([getattr(cycle, name) for cycle in cycles], dtype=_dtype(name)) for name in CYCLE_KINDS}
 
 
 def count(group: h5py.Group) -> int:
@@ -518,7 +506,7 @@ def check_growing(file: h5py.File, nodes: int) -> None:
         raise ValueError("states/slip_distance and the option slip_sums don't fit")
     names = {
         "states": ("state", *state_rows(file["states"])),
-        "cycles": tuple(CYCLE_FIELDS) if len(file["cycles"]) else (),
+        "cycles": tuple(CYCLE_KINDS) if len(file["cycles"]) else (),
     }
     for part, arrays in names.items():
         group = file[part]
@@ -546,8 +534,8 @@ def read_cycles(file: h5py.File) -> list[Cycle]:
     """Read the cycles of a result."""
     if not count(file["cycles"]):
         return []
-    rows = read_rows(file["cycles"], list(CYCLE_FIELDS), slice(None))
-    return [Cycle(*values) for values in zip(*(rows[name].tolist() for name in CYCLE_FIELDS), strict=True)]
+    rows = read_rows(file["cycles"], list(CYCLE_KINDS), slice(None))
+    return [Cycle(*values) for values in zip(*(rows[name].tolist() for name in CYCLE_KINDS), strict=True)]
 
 
 def check_format(file: h5py.File, path: str) -> None:

@@ -18,26 +18,17 @@ from fastpin.model import (
     Problem,
     StrengthAssessment,
     checks,
+    synonyms,
 )
 from fastpin.model.case import checked_beside
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.options import OPTIONS, OptionValues, SolveOptions
-from fastpin.model.synonyms import unknown_keyword
 from fastpin.solver import ArcError, ConvergenceError, Interrupted, Result, SolveError
 from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, Unfit, as_history, check_options, check_start
-from fastpin.storage.files import check_exists, check_writable
-from fastpin.storage.hdf5 import text_of
+from fastpin.storage import files, hdf5, journal, layout
 from fastpin.storage.held_in_file import HeldInFile, provenance
-from fastpin.storage.journal import check_beside, is_empty
-from fastpin.storage.layout import (
-    read_about,
-    read_beside,
-    read_history,
-    read_options,
-    read_problem,
-)
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
 
@@ -102,7 +93,7 @@ def record(
     A KeyboardInterrupt ends the file properly, with all earlier states.
     """
     path = checks.file_path("path", path)
-    check_writable(path, result=True)
+    files.check_writable(path, result=True)
     checks.string("title", title)
     about = About() if about is None else checks.instance("about", about, About, "an About")
     checks.true_or_false("overwrite", overwrite)
@@ -112,7 +103,7 @@ def record(
     save_corners = _checked_corners(save_after, len(history))
     for name in options:
         if name not in OPTIONS:
-            raise unknown_keyword("record", name, OPTIONS)
+            raise synonyms.unknown_keyword("record", name, OPTIONS)
     solve_options = SolveOptions(**options)
     check_options(solve_options, grid, start)
     _check_bars(solve_options, start)
@@ -159,7 +150,7 @@ def _record_coarse(path: Path, task: Task) -> None:
     An earlier run on the coarse grid goes on. It has a file of its own until it ends.
     """
     beside, run = coarse_of(path), provenance(path)["run"]
-    check_beside(beside)
+    journal.check_beside(beside)
     halves = replace(coarse_task(task, load(path, states=[]).grid), stops=frozenset())
     try:
         with words_for_coarse(halves):
@@ -212,8 +203,8 @@ def resume(path: str | Path, progress: RunProgress | None = None) -> None:
     """
     path = checks.file_path("path", path)
     checks.check_callable("progress", progress)
-    check_exists(path)
-    if not is_empty(path) and lacks_error_bars(path):
+    files.check_exists(path)
+    if not journal.is_empty(path) and lacks_error_bars(path):
         with open_result(path) as file:
             task = replace(stored_task(file), progress=progress)
         _record_coarse(path, task)
@@ -245,7 +236,7 @@ def lacks_error_bars(path: str | Path) -> bool:
         See :func:`fastpin.load`.
     """
     with open_result(checks.file_path("path", path)) as file:
-        wanted = read_options(file).error_bars and bool(file.attrs["complete"]) and "run" in file.attrs
+        wanted = layout.read_options(file).error_bars and bool(file.attrs["complete"]) and "run" in file.attrs
         return wanted and "coarse" not in file
 
 
@@ -259,7 +250,7 @@ def stored_error(path: str | Path) -> str | None:
     """
     with open_result(checks.file_path("path", path)) as file:
         error = file.attrs.get("error")
-        return None if error is None else text_of(error)
+        return None if error is None else hdf5.text_of(error)
 
 
 def stored_case(path: str | Path) -> Case:
@@ -271,6 +262,12 @@ def stored_case(path: str | Path) -> Case:
         See :func:`fastpin.load`.
     """
     with open_result(checks.file_path("path", path)) as file:
-        title = text_of(file["solver"].attrs.get("title", ""))
-        parts = read_problem(file), read_history(file), read_options(file), title, read_about(file)
-        return Case(*parts, **read_beside(file))
+        title = hdf5.text_of(file["solver"].attrs.get("title", ""))
+        parts = (
+            layout.read_problem(file),
+            layout.read_history(file),
+            layout.read_options(file),
+            title,
+            layout.read_about(file),
+        )
+        return Case(*parts, **layout.read_beside(file))

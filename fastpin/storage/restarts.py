@@ -8,8 +8,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from fastpin.model.checks import number, whole_number
-from fastpin.model.loads import LOADS
+from fastpin.model import checks, loads
 from fastpin.reading.marks import Marks
 from fastpin.solver.configuration import MARKS, Configuration
 from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
@@ -100,16 +99,16 @@ def read_restart(group: h5py.Group, nodes: int) -> Restart:
     check_between("marks", marks[:, 2], 0, size - 1)
     check_finite("marks_dissipation", dissipations)
     load = all_loads(group["load"][()], 0.0)
-    if load.shape != (len(LOADS),):
+    if load.shape != (len(loads.LOADS),):
         raise ValueError(f"the load of {group.name[1:]} has the shape {load.shape}")
     check_finite("load", load)
     return Restart(
-        corner=whole_number("corner", as_python(group.attrs["corner"]), 0),
+        corner=checks.whole_number("corner", as_python(group.attrs["corner"]), 0),
         load=load,
-        force=number("force", group.attrs["force"], LEAST_FORCE, 1.0 / LEAST_FORCE),
-        configuration=configurations[whole_number("configuration", as_python(group.attrs["configuration"]), 0)],
-        dissipation=number("dissipation", group.attrs["dissipation"]),
-        work=number("work", group.attrs["work"]),
+        force=checks.number("force", group.attrs["force"], LEAST_FORCE, 1.0 / LEAST_FORCE),
+        configuration=configurations[checks.whole_number("configuration", as_python(group.attrs["configuration"]), 0)],
+        dissipation=checks.number("dissipation", group.attrs["dissipation"]),
+        work=checks.number("work", group.attrs["work"]),
         repeats=Repeats(
             [
                 KnownConfiguration(configurations[index], bool(ends), last, period, since)
@@ -124,7 +123,7 @@ def read_restart(group: h5py.Group, nodes: int) -> Restart:
         },
         statistics=numbers_of(group["statistics"]),
         slip_tally=_read_slip_tally(group, nodes),
-        seat_dissipation=number("seat_dissipation", group.attrs.get("seat_dissipation", 0.0)),
+        seat_dissipation=checks.number("seat_dissipation", group.attrs.get("seat_dissipation", 0.0)),
     )
 
 
@@ -148,7 +147,7 @@ def _read_configurations(group: h5py.Group, name: str, nodes: int, motions: int)
         return np.full((len(group["status"]), nodes), value, dtype=dtype)
     if name == "load":
         array = all_loads(dataset_of(group, name, float)[()], 0.0)
-        size = len(LOADS)
+        size = len(loads.LOADS)
     else:
         dtype = np.int8 if name.removeprefix(SEATED[1]) in SMALL_NUMBERS else float
         array = dataset_of(group, name, dtype, (size,))[()]

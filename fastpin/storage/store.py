@@ -26,11 +26,9 @@ from fastpin.solver.result import Restart, Result, with_error_bars
 from fastpin.solver.task import Task
 from fastpin.states.extremes import KeptStates
 from fastpin.states.state import State
-from fastpin.storage import hdf5, layout, packed
+from fastpin.storage import files, hdf5, journal, layout, packed
 from fastpin.storage.file_objects import written_h5
-from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.hdf5 import reading, text_of
-from fastpin.storage.journal import open_h5
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.stored_states import all_nodes, read_states, write_extremes
 
@@ -76,7 +74,7 @@ def save(
     if error is not None:
         checks.string("error", error)
     path = checks.file_path("path", path)
-    check_writable(path, result=True)
+    files.check_writable(path, result=True)
     if is_unfinished(path):
         raise InputError(str(path), "holds an unfinished run; resume it, or remove it")
     if any(not np.array_equal(state.theta, result.grid.theta) for state in result):
@@ -86,7 +84,7 @@ def save(
     if path.exists() and not path.is_file():
         raise InputError(str(path), "must be an ordinary file")
     large = len(result) * result.grid.size > MOST_IN_MEMORY
-    with replacing(path, result=True) as temporary, written_h5(temporary, large) as file:
+    with files.replacing(path, result=True) as temporary, written_h5(temporary, large) as file:
         _write(file, result, error, sections)
         if result.complete and result.states:
             write_extremes(file, KeptStates(result.states))
@@ -320,9 +318,9 @@ def open_result(path: Path, *arguments: str) -> Iterator[Any]:
         with _opened(content, path, *arguments) as file:
             yield file
         return
-    check_exists(path)
+    files.check_exists(path)
     note_input(path)
-    with open_h5(path) as h5, reading(path, *arguments):
+    with journal.open_h5(path) as h5, reading(path, *arguments):
         stored = hdf5.Group(h5)
         layout.check_format(stored, str(path))
         yield stored

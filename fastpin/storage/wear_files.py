@@ -16,9 +16,8 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model import FatigueAssessment, Grid, LoadHistory, Problem, Wear
+from fastpin.model import FatigueAssessment, Grid, LoadHistory, Problem, Wear, checks
 from fastpin.model.case import checked_beside
-from fastpin.model.checks import check_callable, file_path, string, true_or_false
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
 from fastpin.model.options import OptionValues, SolveOptions
 from fastpin.model.profile import ProfileLike
@@ -26,10 +25,8 @@ from fastpin.model.units import units_per_thickness
 from fastpin.solver import Interrupted, SolveError
 from fastpin.solver.run import RunProgress
 from fastpin.solver.task import as_history
-from fastpin.storage import hdf5, layout
-from fastpin.storage.files import check_exists, check_writable
+from fastpin.storage import files, hdf5, journal, layout
 from fastpin.storage.hdf5 import as_python, check_between, check_finite, dataset_of, numbers_of, text_of
-from fastpin.storage.journal import is_empty
 from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import load, open_result
 from fastpin.storage.writer import GrowingFile, check_overwriting, clear_checkpoints, closing_file
@@ -121,23 +118,23 @@ def wear(
     if given:
         raise InputError(next(iter(given)), "has no effect on wear; of the options of a run it takes nodes and arc")
     how = Wear(coefficient, pin, plate, last.count if cycles is None else cycles, law, at, tolerance)  # type: ignore[arg-type]
-    check_callable("progress", progress)
-    check_callable("friction", friction, 1)
+    checks.check_callable("progress", progress)
+    checks.check_callable("friction", friction, 1)
     if friction is not None and output is not None:
         raise InputError("friction", "is a function of lives in memory: a file can't hold it, so leave output out")
     task = WearTask(problem, history, how, SolveOptions(**options), grid, progress, friction)
     warn_of([*doubts(problem, history, task.options), *wear_doubts(problem, how)], 2)
-    title, judged = string("title", title), checked_beside(problem, {"fatigue": fatigue})
+    title, judged = checks.string("title", title), checked_beside(problem, {"fatigue": fatigue})
     for name, value in (("overwrite", overwrite), ("resume", resume)):
-        if true_or_false(name, value) and output is None:
+        if checks.true_or_false(name, value) and output is None:
             raise InputError(name, "needs an output")
     if output is None:
         return _in_memory(task)
-    path = file_path("output", output)
-    check_writable(path, result=True)
+    path = checks.file_path("output", output)
+    files.check_writable(path, result=True)
     if resume:
-        check_exists(path)
-        if not is_empty(path):  # a killed life may have left a file without any transaction
+        files.check_exists(path)
+        if not journal.is_empty(path):  # a killed life may have left a file without any transaction
             return _resumed(WearFile(path, task, title, judged))
     writer = WearFile(path, task, title, judged)
     check_overwriting(path, overwrite)
@@ -291,7 +288,7 @@ def holds_wear(path: str | Path) -> bool:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(file_path("path", path)) as file:
+    with open_result(checks.file_path("path", path)) as file:
         return "wear" in file
 
 
@@ -303,7 +300,7 @@ def load_wear(path: str | Path) -> WearResult:
     InputError
         If the file can't be read, or holds no life of wear.
     """
-    path = file_path("path", path)
+    path = checks.file_path("path", path)
     states = load(path).states
     with open_result(path) as file:
         if "wear" not in file:

@@ -23,9 +23,8 @@ from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.task import Task, deferred_interrupts
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
-from fastpin.storage import hdf5, layout
+from fastpin.storage import files, hdf5, layout
 from fastpin.storage.file_objects import written_h5
-from fastpin.storage.files import forget_temporaries, replacing
 from fastpin.storage.hdf5 import reading
 from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
 from fastpin.storage.restarts import read_restart, write_restart
@@ -72,7 +71,7 @@ def clear_checkpoints(path: Path) -> None:
     coarse_of(path).unlink(missing_ok=True)
     checkpoint = checkpoint_of(path)
     checkpoint.unlink(missing_ok=True)
-    forget_temporaries(checkpoint)
+    files.forget_temporaries(checkpoint)
 
 
 def check_overwriting(path: Path, overwrite: bool) -> None:
@@ -165,7 +164,7 @@ class GrowingFile:
         if now <= self._next_checkpoint:
             return
         if self._next_checkpoint:
-            with replacing(checkpoint_of(self.path), result=True) as temporary, written_h5(temporary) as file:
+            with files.replacing(checkpoint_of(self.path), result=True) as temporary, written_h5(temporary) as file:
                 file.attrs["run"] = self.run
                 write(file)
         duration = time.monotonic() - now

@@ -12,13 +12,11 @@ import numpy as np
 
 from fastpin.assess.outputs import ROUNDING
 from fastpin.errors import InputError
-from fastpin.model import LoadHistory, Problem
-from fastpin.model.checks import as_toml, check_callable, items, whole_number
+from fastpin.model import LoadHistory, Problem, checks, synonyms
 from fastpin.model.doubts import doubts, doubts_given, warn_of
 from fastpin.model.grid import MAX_NODES, Grid
 from fastpin.model.options import Method, SolveOptions
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.synonyms import explains_keywords
 from fastpin.solver import ArcError, Result, SolveError, solve
 from fastpin.solver.arc import first_direction
 from fastpin.solver.task import Task, as_history, first_followed, wider_arcs
@@ -103,6 +101,11 @@ class Study:
     nodes: int
     series: tuple[QuantitySeries, ...]
 
+    @property
+    def of_grids(self) -> bool:
+        """Whether its values are those of several grids, not of several numbers of increments."""
+        return self.method == "path"
+
 
 @dataclass(frozen=True)
 class Convergence(ReadOnly):
@@ -135,6 +138,12 @@ class Convergence(ReadOnly):
         counts = ", ".join(f"{study.method}: {'-'.join(map(str, study.counts))}" for study in self.studies)
         return f"<Convergence: {counts}; corners {', '.join(map(str, self.loads))}>"
 
+    @property
+    def arc(self) -> tuple[float, float]:
+        """Start and stop of the nodes, rad."""
+        start = float(self.grid.theta[0])
+        return start, 2.0 * math.pi + start if self.grid.closed else float(self.grid.theta[-1])
+
 
 class StudyInterrupted(KeyboardInterrupt):
     """Ctrl-C during a study. ``study`` holds the finished grids, or None for fewer than three grids."""
@@ -155,7 +164,7 @@ class StudyLostError(SolveError):
     """The finished part of the study, or None."""
 
 
-@explains_keywords
+@synonyms.explains_keywords
 def converge(
     problem: Problem,
     history: LoadHistory | Sequence[dict[str, float]],
@@ -210,7 +219,7 @@ def converge(
     StudyInterrupted
         After Ctrl-C. It holds the study of the finished grids, if there are three.
     """
-    check_callable("progress", progress, 3)
+    checks.check_callable("progress", progress, 3)
     counts = _increasing("nodes", nodes, LEAST_NODES, MAX_NODES)
     for before, after in pairwise(counts):
         if after < 1.1 * before:
@@ -220,10 +229,12 @@ def converge(
     if increment_nodes is not None:
         if not steps:
             raise InputError("increment_nodes", "is for the increment solver: give increments, too")
-        single = whole_number("increment_nodes", increment_nodes, LEAST_NODES, MAX_NODES)
+        single = checks.whole_number("increment_nodes", increment_nodes, LEAST_NODES, MAX_NODES)
     task = Task(problem, as_history(history), SolveOptions(nodes=counts[0], arc=arc))
-    if corner is not None and whole_number("corner", corner, 1) > len(task.history):
-        raise InputError("corner", f"must be one of the history, 1 to {len(task.history)}, not {as_toml(corner)}")
+    if corner is not None and checks.whole_number("corner", corner, 1) > len(task.history):
+        raise InputError(
+            "corner", f"must be one of the history, 1 to {len(task.history)}, not {checks.as_toml(corner)}"
+        )
     chosen = _checked_outcomes({} if outcomes is None else outcomes)
     warn_of(doubts(problem, task.history, task.options), 3)  # above are the explanation of keywords and the user
     return _Work(task, counts, steps, single, corner, progress, chosen).study()
@@ -245,12 +256,12 @@ def _is_empty(values: object) -> bool:
 def _increasing(field: str, numbers: object, least: int, most: int | None = None) -> tuple[int, ...]:
     listed: list[Any] = []
     if isinstance(numbers, Sequence | np.ndarray) and not isinstance(numbers, (str, bytes)):
-        listed = items(field, numbers, "a list of numbers")
+        listed = checks.items(field, numbers, "a list of numbers")
     if len(listed) < LEAST_GRIDS:
         raise InputError(
-            field, f"must be at least {LEAST_GRIDS} numbers, from which an order follows, not {as_toml(numbers)}"
+            field, f"must be at least {LEAST_GRIDS} numbers, from which an order follows, not {checks.as_toml(numbers)}"
         )
-    checked = tuple(whole_number(field, number, least, most) for number in listed)
+    checked = tuple(checks.whole_number(field, number, least, most) for number in listed)
     for before, after in pairwise(checked):
         if after <= before:
             raise InputError(field, f"must increase from one to the next, but {after} follows {before}")

@@ -10,15 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import (
-    check_callable,
-    choice,
-    instance,
-    items,
-    known_name,
-    true_or_false,
-    whole_number,
-)
+from fastpin.model import checks
 from fastpin.model.grid import MAX_NODES
 from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import LOADS, Corner
@@ -146,14 +138,14 @@ def identify(
     SolveError
         If the first guess has no state under these loads.
     """
-    instance("problem", problem, Problem, "a Problem")
-    wanted = items("fit", fit, "a list of names")
+    checks.instance("problem", problem, Problem, "a Problem")
+    wanted = checks.items("fit", fit, "a list of names")
     for name in wanted:
-        known_name("fit", name, FITTED)
-    true_or_false("by_cycle", by_cycle)
-    choice("start", start, ("rest", "cycle"))
-    whole_number("nodes", nodes, 5, MAX_NODES)
-    check_callable("progress", progress)
+        checks.known_name("fit", name, FITTED)
+    checks.true_or_false("by_cycle", by_cycle)
+    checks.choice("start", start, ("rest", "cycle"))
+    checks.whole_number("nodes", nodes, 5, MAX_NODES)
+    checks.check_callable("progress", progress)
     names = _measured(problem, loop)
     measured = measured_loop(names, loop[names[0]], loop[names[1]])
     sense = -1.0 if names[0] == "uy" else 1.0

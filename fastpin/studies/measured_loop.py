@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, file_path, number, number_array
-from fastpin.model.loads import LOADS
+from fastpin.model import checks, loads
 from fastpin.model.problem import Problem
 from fastpin.model.recorded import least_reversal, noise, turning_points
 from fastpin.runtime.extensions import interpolate
@@ -137,7 +136,7 @@ def measured_loop(names: tuple[str, str], displacement: Any, force: Any) -> Meas
     """
     both = []
     for name, given in zip(names, (displacement, force), strict=True):
-        values = number_array(name, given)
+        values = checks.number_array(name, given)
         if not np.isfinite(values).all():
             first = np.flatnonzero(~np.isfinite(values))[0] + 1
             raise InputError(name, f"sample {first:,} is missing or no finite number")
@@ -206,15 +205,15 @@ def read_loop(
         If another argument can't be used.
     """
     usual = {"ux": "ux", "uy": "uy", "both": "ux"}.get(problem.drive, "rotation")
-    moved = choice("over", usual if over is None else over, tuple(REACTIONS))
+    moved = checks.choice("over", usual if over is None else over, tuple(REACTIONS))
     names = moved, REACTIONS[moved]
-    factor = number("force_factor", force_factor)
+    factor = checks.number("force_factor", force_factor)
     if factor == 0.0:
         raise InputError("force_factor", "must not be 0")
     choices = {names[0]: ColumnChoice((displacement or "",)), names[1]: ColumnChoice((force or "",), factor)}
     basis: Basis = "per metre" if problem.thickness is None else "with thickness"
-    ((table, _),) = read_corners(file_path("path", path), choices, basis)
-    found = {name: table[:, LOADS.index(name)] for name in names}
+    ((table, _),) = read_corners(checks.file_path("path", path), choices, basis)
+    found = {name: table[:, loads.LOADS.index(name)] for name in names}
     found[names[1]] = found[names[1]] / (problem.thickness or 1.0)
     return found
 

@@ -22,19 +22,18 @@ from typing import Any
 
 from fastpin.assess.questions import LEAST, QUESTIONS, of_margin, of_question
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES, of_wear
-from fastpin.casefile.beside import READERS, read_assessment
+from fastpin.casefile.beside import READERS
 from fastpin.casefile.profiles import read_wear
 from fastpin.casefile.toml_text import CaseText, NamedTable, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
+from fastpin.model import points, synonyms
 from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA
 from fastpin.model.case import BESIDE
 from fastpin.model.checks import alternatives, as_toml, file_path, string
 from fastpin.model.crack import CRACK_KEYS
-from fastpin.model.points import BODIES
 from fastpin.model.profile import Profile
 from fastpin.model.strength import STRENGTH_KEYS
-from fastpin.model.synonyms import closest
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.margins import MARGINS
 from fastpin.states.quantities import QUANTITIES
@@ -277,7 +276,7 @@ def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> Study
     asked = beside["fatigue"].criteria if "fatigue" in beside else ()
     with_life = tuple(name for name, each in FATIGUE_CRITERIA.items() if each.counting is not None)
     criterion = section.choice("criterion", (*asked, *(name for name in with_life if name not in asked)))
-    body: Any = section.choice("body", BODIES)
+    body: Any = section.choice("body", points.BODIES)
     if quantity in WEAR_OUTCOMES:
         for key in ("criterion", "body"):
             if key in section:
@@ -295,9 +294,8 @@ def _of_wear(section: Section, folder: Path, beside: Mapping[str, Any]) -> Study
 
 def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[str, Any]) -> StudyOutcome | None:
     """Read a number of a section beside the problem: as the case says, unless the table does."""
-    quantity = section.choice(name, tuple(QUESTIONS[name].OUTCOMES))
-    read: Callable[..., Any] = READERS.get(name, read_assessment)
-    how = read(source, section, _entries(name, beside[name]) if name in beside else {})
+    quantity = section.choice(name, tuple(QUESTIONS[name].outcomes))
+    how = READERS[name](source, section, _entries(name, beside[name]) if name in beside else {})
     if quantity is None or how is None:
         return None
     if name == "fatigue" and "criterion" in section and len(how.criteria) > 1:
@@ -305,7 +303,7 @@ def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[s
         return None
     how = _alone(name, how)
     definition = json.dumps({name: quantity, "how": _entries(name, how)}, sort_keys=True)
-    output, _ = QUESTIONS[name].OUTCOMES[quantity]
+    output, _ = QUESTIONS[name].outcomes[quantity]
     kind, unit = output.kind, ""
     if kind == "life":  # spectra are no cycles, and have no kind
         passes = getattr(how, "passes", beside.get("passes", "cycles or spectra"))
@@ -333,7 +331,7 @@ def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | No
     if name is None or ("body" in section and owner is None):
         return None
     # Some kinds of margins need a section of the case.
-    needed = next((section for section, question in QUESTIONS.items() if name in question.MARGINS), None)
+    needed = next((section for section, question in QUESTIONS.items() if name in question.margin_names), None)
     if needed is not None and needed not in beside:
         section.report(f'margin: "{name}" needs a section [{needed}] of the case', "margin")
         return None
@@ -370,7 +368,9 @@ def _of_function(section: Section, folder: Path) -> StudyOutcome | None:
             section.report(f"{file}{f', line {line}' if line else ''}: {message}", "function")
         return None
     if function not in functions:
-        hint = closest(function, tuple(functions)) or (f"; there are {', '.join(functions)}" if functions else "")
+        hint = synonyms.closest(function, tuple(functions)) or (
+            f"; there are {', '.join(functions)}" if functions else ""
+        )
         section.report(f'there is no function "{function}" in {file}{hint}', "function")
         return None
     definition = {"function": function, "file": digest(text)}

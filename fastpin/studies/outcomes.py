@@ -23,14 +23,11 @@ import numpy as np
 from fastpin.assess.outputs import ROUNDING, Output, kept
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import FastpinError, InputError, printable
-from fastpin.model.angles import from_bottom
-from fastpin.model.checks import number
+from fastpin.model import angles, checks, ties
 from fastpin.model.points import Body, owner_of
-from fastpin.model.ties import top
 from fastpin.model.units import DEGREE, Unit
 from fastpin.model.wear import Wear
-from fastpin.states import NodeBehaviour, State
-from fastpin.states.choice import missing_corners, span_of, states_between
+from fastpin.states import NodeBehaviour, State, choice
 from fastpin.states.error_bars import known_bar, number_bar, value_bar
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.regimes import REGIMES
@@ -125,7 +122,7 @@ class StudyOutcome:
     def reported(self, value: float) -> float:
         """A value in the units of reports: angles in degrees from the bottom of the hole, widths in degrees."""
         if self.kind == "angle" and math.isfinite(value):
-            return from_bottom(value)
+            return angles.from_bottom(value)
         return self.reported_bar(value)
 
     def reported_bar(self, bar: float) -> float:
@@ -165,7 +162,7 @@ def value_of(outcome: StudyOutcome, result: Result) -> OutcomeValue:
         value = outcome.read(result)
         if value is None or (isinstance(value, float | np.floating) and math.isnan(value)):
             return OutcomeValue(outcome.definition, None)
-        known = number("its value", value)
+        known = checks.number("its value", value)
         if outcome.classes and known not in outcome.classes:
             allowed = ", ".join(map(str, outcome.classes))
             raise FastpinError(f"its value must be the number of a class, {allowed}, not {known:g}")
@@ -315,12 +312,12 @@ def bar_of_taken(quantity: str, take: str, span: str, interface: str, result: Re
     if not states:
         return math.nan
     readings = np.array([of(state) for state in states])
-    lowest, highest = states[top(-readings)], states[top(readings)]
+    lowest, highest = states[ties.top(-readings)], states[ties.top(readings)]
     ends = {
         "range": [lowest, highest],
         "smallest": [lowest],
         "largest": [highest],
-        "largest magnitude": [states[top(np.abs(readings))]],
+        "largest magnitude": [states[ties.top(np.abs(readings))]],
     }
     if result.coarse is None:
         return math.nan if all(QUANTITIES[quantity].is_resolved(state) for state in ends[take]) else math.inf
@@ -412,9 +409,9 @@ def _states_of(span: str, result: Result) -> Sequence[State]:
 def _states_of_cycle(result: Result) -> list[State]:
     """The kept states of the last cycle, from its beginning to its end."""
     _check_cycles(result)
-    first, last = span_of(result.cycles[-1])
-    states = states_between(result, first, last)
-    if missing_corners(states, first + 1, last):
+    first, last = choice.span_of(result.cycles[-1])
+    states = choice.states_between(result, first, last)
+    if choice.missing_corners(states, first + 1, last):
         raise FastpinError('not all corners of the last cycle are kept; keep = "corners" keeps them')
     return states
 

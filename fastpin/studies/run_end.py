@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fastpin.model.angles import interval_from_bottom
-from fastpin.model.ties import top_angle
+from fastpin.model import angles, ties
 from fastpin.reading.zones import Interval
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees
 from fastpin.studies.outcomes import OutcomeValue, bar_of_taken, taken
@@ -85,7 +84,7 @@ def key_figures(result: Result) -> dict[str, Any]:
     if not result.complete:
         return figures
     last = result[-1]
-    start, stop = interval_from_bottom(*last.contact[_widest(last.contact)]) if last.contact else (None, None)
+    start, stop = angles.interval_from_bottom(*last.contact[_widest(last.contact)]) if last.contact else (None, None)
     figures |= {
         **{name: in_degrees(of, taken(of, take, "history", "pin", result)) for name, (of, take) in TAKEN.items()},
         "contact_start": start,
@@ -122,7 +121,7 @@ def key_bars(result: Result) -> dict[str, float]:
 def _widest(intervals: list[Interval]) -> int:
     """The place of the widest interval; of equal ones the one farthest to the right."""
     ends = np.array(intervals)
-    return top_angle(ends[:, 1] - ends[:, 0], ends.mean(axis=1))
+    return ties.top_angle(ends[:, 1] - ends[:, 0], ends.mean(axis=1))
 
 
 def _number(value: Any) -> int | float | None:

@@ -24,10 +24,9 @@ import numpy as np
 from fastpin.assess.outputs import ROUNDING
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, parse_text, read_text
 from fastpin.errors import InputError
-from fastpin.model import Case, Problem
+from fastpin.model import Case, Problem, points
 from fastpin.model.checks import as_toml, check_callable, file_path, string, true_or_false, whole_number
 from fastpin.model.doubts import warn_of
-from fastpin.model.points import elastic_bodies
 from fastpin.studies.index import DONE
 from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
 from fastpin.studies.plan import (
@@ -446,7 +445,7 @@ def _nominal(base: BaseCase, case: Case, name: str) -> float | None:
 
 def _usual_outcomes(problem: Problem) -> Outcomes:
     """Return the outcomes of a plan without any."""
-    without = set() if "plate" in elastic_bodies(problem) else {"largest_hoop"}
+    without = set() if "plate" in points.elastic_bodies(problem) else {"largest_hoop"}
     if problem.joint.bush is None:
         without.add("least_bush_pressure")
     return outcomes_from({name: table for name, table in USUAL_OUTCOMES.items() if name not in without})

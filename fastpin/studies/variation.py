@@ -136,9 +136,6 @@ _REPLACED: dict[str, tuple[str, ...]] = {
 }
 """Keys of the base case that each key of the sections of bodies and their materials replaces, in the same section."""
 
-_REPLACED_SECTIONS = {"pin": ("dundurs",), "plate": ("dundurs",), "dundurs": ("pin", "plate")}
-"""Sections of the base case that each section replaces."""
-
 _FILE = "history.csv"
 
 
@@ -220,7 +217,7 @@ def _copied(table: Any) -> Any:
 def _make_room(tables: dict[str, Any], name: str, value: Any, materials: Mapping[str, Material]) -> None:
     """Remove the inputs that a field replaces from the tables of the base case."""
     section, key = name.split(".")[0], name.split(".")[-1]
-    for replaced in _REPLACED_SECTIONS.get(section, ()):
+    for replaced in {"pin": ("dundurs",), "plate": ("dundurs",), "dundurs": ("pin", "plate")}.get(section, ()):
         tables.pop(replaced, None)
     if name == "solve.method" and value == "path" and isinstance(tables.get("solve"), dict):
         tables["solve"].pop("increments", None)

@@ -30,8 +30,7 @@ from fastpin.runtime.jit import limit_to_one_thread
 from fastpin.runtime.threads import in_one_thread
 from fastpin.solver import SolveError, solve
 from fastpin.solver.result import Result, without_restart
-from fastpin.storage import store
-from fastpin.storage.layout import versions
+from fastpin.storage import layout, store
 from fastpin.studies.index import Index
 from fastpin.studies.outcomes import OutcomeValue, check_loadable, pickled, values_in_worker
 from fastpin.studies.plan import Plan
@@ -323,7 +322,9 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, settin
         bars = {}
     except Exception as error:  # Any error is the failure of this run only. The other runs continue.
         seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
-    return RunEnd(run, reason, figures, seconds, started, socket.gethostname(), versions(), values, bars, content)
+    return RunEnd(
+        run, reason, figures, seconds, started, socket.gethostname(), layout.versions(), values, bars, content
+    )
 
 
 def read_run(run: str, path: str, content: bytes | None, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:

@@ -21,13 +21,7 @@ from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.profile_terms import Harmonic
 from fastpin.states.state import State
-from fastpin.verification import closed_forms, joint_rows
-from fastpin.verification.comparisons import (
-    cattaneo_mindlin,
-    cattaneo_mindlin_differences,
-    residuals_away,
-    stress_resultant,
-)
+from fastpin.verification import closed_forms, comparisons, joint_rows
 from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE, FiniteElements
 from fastpin.verification.rows import Check, Checks, Solving, angle_check, difference_check, half_width, relative_check
 from fastpin.verification.sliding import solve_sliding
@@ -114,7 +108,7 @@ def _half_plane(solving: Solving) -> Checks:
         arc=(BOTTOM - 1.2 * half, BOTTOM + 1.2 * half),
     )
     yield relative_check("peak N", pushed.peak_pressure, float(closed_forms.hertz_peak_pressure(load_parameter)), "P")
-    differences = cattaneo_mindlin_differences(fretted[:3], ratio)
+    differences = comparisons.cattaneo_mindlin_differences(fretted[:3], ratio)
     exact = float(closed_forms.cattaneo_mindlin_stick_ratio(ratio))
     for case, state, difference in zip(("+Q", "-Q", "+Q again"), fretted[:3], differences, strict=True):
         yield difference_check("int |dT|", difference, "int mu N", case)
@@ -131,7 +125,11 @@ def _peak_shear(state: State, ratio: float, part: float) -> float:
     """
     half = float(closed_forms.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
     border = half * float(closed_forms.cattaneo_mindlin_stick_ratio(ratio))
-    return abs(float(cattaneo_mindlin(state, border, part * ratio, ratio, "unloading" if part < 1.0 else "loading")))
+    return abs(
+        float(
+            comparisons.cattaneo_mindlin(state, border, part * ratio, ratio, "unloading" if part < 1.0 else "loading")
+        )
+    )
 
 
 def _sliding(pair: MaterialPair, solving: Solving) -> Checks:
@@ -147,7 +145,7 @@ def _sliding(pair: MaterialPair, solving: Solving) -> Checks:
 
 def _singular_equations(solving: Solving) -> Checks:
     (state,) = solving(Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body"), [{"P": 1.0}])
-    first, second = residuals_away(state, 0.085)
+    first, second = comparisons.residuals_away(state, 0.085)
     yield difference_check("(46)", first, "F beta*")
     yield difference_check("(47)", second, "F beta*")
 
@@ -155,7 +153,7 @@ def _singular_equations(solving: Solving) -> Checks:
 def _singular_equations_with_stress(solving: Solving) -> Checks:
     problem = Problem.from_load_parameter(UNLIKE, 0.3, 0.5, "centre")
     state = solving(problem, [{"P": 1.0}, {"Q": 0.2, "sxx": 0.3, "syy": -0.1}])[-1]
-    yield difference_check("(47)", residuals_away(state, 0.15)[1], "F beta*")
+    yield difference_check("(47)", comparisons.residuals_away(state, 0.15)[1], "F beta*")
 
 
 FREE = Problem.from_load_parameter(UNLIKE, 0.05, 0.5, "body")
@@ -223,7 +221,7 @@ def _edges_and_circles(name: str, problem: Problem, solving: Solving) -> Checks:
             difference = np.array([stress.radial, stress.hoop, stress.shear])[:, :-1] - known
             edge.append(float(np.abs(difference).max()) / state.peak_pressure)
             for radius in (1.2, 3.0) if body == "plate" else (0.3, 0.8):
-                carried, turned = stress_resultant(state, body, radius)
+                carried, turned = comparisons.stress_resultant(state, body, radius)
                 part = radius**2 if body == "pin" and problem.pin_load == "body" else 1.0
                 force.append(abs(carried - part * complex(state.load["Q"], -state.load["P"])))
                 moment.append(abs(turned - state.resultants["M"]))

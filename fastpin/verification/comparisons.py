@@ -12,9 +12,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.model.angles import BOTTOM, angle_between
+from fastpin.model import angles, loads
 from fastpin.model.grid import LEAST_NODES, Grid
-from fastpin.model.loads import LOADS
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.solver.rest import rest_position
@@ -74,7 +73,7 @@ def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[
     ]
     differences = []
     for state, (now, branch) in zip(states, branches, strict=True):
-        shear = cattaneo_mindlin(state, state.theta - BOTTOM, now, ratio, branch)
+        shear = cattaneo_mindlin(state, state.theta - angles.BOTTOM, now, ratio, branch)
         weights = state.grid.weights
         differences.append(
             float(weights @ np.abs(state.shear - shear) / (state.problem.uniform_friction * (weights @ state.pressure)))
@@ -127,9 +126,9 @@ def residuals_away(state: State, margin: float) -> tuple[float, float]:
         sxx=load["sxx"], syy=load["syy"], sxy=load["sxy"], rest=_bottom(state),
     )  # fmt: skip
     ((start, stop),) = state.contact
-    away = np.abs(angle_between(state.theta, 0.5 * (start + stop))) < 0.5 * (stop - start) - margin
+    away = np.abs(angles.angle_between(state.theta, 0.5 * (start + stop))) < 0.5 * (stop - start) - margin
     for border in np.ravel(state.stick):
-        away &= np.abs(angle_between(state.theta, border)) > margin
+        away &= np.abs(angles.angle_between(state.theta, border)) > margin
     first, second = (float(np.abs(residual[away]).max()) for residual in equations)
     return first, second
 
@@ -139,7 +138,7 @@ def _bottom(state: State) -> tuple[float, float] | None:
     if not state.problem.gap:
         return None
     system = System.build(state.problem, Grid.circle(LEAST_NODES), state.problem.natural_loads()["force"])
-    x, y = rest_position(system, np.zeros(len(LOADS)), BOTTOM)[0] * system.scales.displacement
+    x, y = rest_position(system, np.zeros(len(loads.LOADS)), angles.BOTTOM)[0] * system.scales.displacement
     return float(x), float(y)
 
 

@@ -28,8 +28,7 @@ from fastpin.model.profile import InitialGap, Profile
 from fastpin.model.profile_terms import Harmonic
 from fastpin.solver.result import Result
 from fastpin.solver.solving import MemoryRecorder
-from fastpin.verification import closed_forms, interference
-from fastpin.verification.comparisons import all_round_difference, event_load
+from fastpin.verification import closed_forms, comparisons, interference
 from fastpin.verification.finite_elements import LIKE, UNLIKE
 from fastpin.verification.rows import NODES, Checks, Solving, difference_check, relative_check
 from fastpin.wear_lives.life import KEPT_ON_DEMAND
@@ -64,7 +63,7 @@ def all_round(pair: MaterialPair, case: str, solving: Solving) -> Checks:
     """An interference fit that stays closed all round, against its closed form."""
     friction, loads = FITS[case]
     problem = Problem.from_load_parameter(pair, -0.3, friction)
-    yield difference_check("tractions", all_round_difference(solving(problem, [loads(problem)])[-1]), "N0")
+    yield difference_check("tractions", comparisons.all_round_difference(solving(problem, [loads(problem)])[-1]), "N0")
 
 
 def first_slip(pair: MaterialPair, solving: Solving) -> Checks:
@@ -72,7 +71,9 @@ def first_slip(pair: MaterialPair, solving: Solving) -> Checks:
     problem = Problem.from_load_parameter(pair, -0.3, 0.3)
     exact = interference.first_slip_load(problem)
     bounds = 0.9 * exact, 1.1 * exact
-    load = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status != STICK)), NODES, solving)
+    load = comparisons.event_load(
+        problem, "P", bounds, lambda state: bool(np.any(state.status != STICK)), NODES, solving
+    )
     yield relative_check("slip begins", load, exact)
 
 

@@ -33,8 +33,7 @@ from threadpoolctl import threadpool_limits
 from fastpin.bodies.compliance import complex_coefficients, plate_coefficients
 from fastpin.elasticity.terms import BodyTerms, body_terms
 from fastpin.errors import InputError
-from fastpin.model.angles import interval_near_bottom, near_bottom
-from fastpin.model.checks import as_toml, number, whole_number
+from fastpin.model import angles, checks
 from fastpin.model.loads import SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError
@@ -130,7 +129,7 @@ class Sliding:
             method="bounded",
             options={"xatol": 1e-12},
         )
-        return near_bottom(float(found.x)), -float(found.fun)
+        return angles.near_bottom(float(found.x)), -float(found.fun)
 
 
 def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, terms: int | None = None) -> Sliding:
@@ -165,12 +164,12 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
         parts, or it is too narrow for the digits of an angle. Walls of 2% have more harmonics than 128 terms resolve.
     """
     if not isinstance(problem, Problem):
-        raise InputError("problem", f"must be a Problem, not {as_toml(problem)}")
+        raise InputError("problem", f"must be a Problem, not {checks.as_toml(problem)}")
     check_isotropic(problem)
     given = _checked_load(load)
     if isinstance(slip, bool) or not isinstance(slip, (int, np.integer)) or slip not in (1, -1):
-        raise InputError("slip", f"must be 1 (counter-clockwise) or -1, not {as_toml(slip)}")
-    counts = TERMS if terms is None else (whole_number("terms", terms, 4, 2_000),)  # the matrix then takes 30 MB
+        raise InputError("slip", f"must be 1 (counter-clockwise) or -1, not {checks.as_toml(slip)}")
+    counts = TERMS if terms is None else (checks.whole_number("terms", terms, 4, 2_000),)  # the matrix then takes 30 MB
     case = _Case.of(problem, given, -float(slip))
     ends: tuple[float, float] | None = None
     with threadpool_limits(limits=1, user_api="blas"):
@@ -189,7 +188,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
             problem,
             given,
             int(slip),
-            interval_near_bottom(centre - half, centre + half),
+            angles.interval_near_bottom(centre - half, centre + half),
             case.exponents,
             moment,
             patch.coefficients,
@@ -201,13 +200,13 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
 
 def _checked_load(load: Mapping[str, float]) -> dict[str, float]:
     if not isinstance(load, Mapping):
-        raise InputError("load", f"must map load names to numbers, not {as_toml(load)}")
+        raise InputError("load", f"must map load names to numbers, not {checks.as_toml(load)}")
     for name in load:
         if name not in SLIDING_LOADS:
             raise InputError(
                 str(name), f"a sliding contact takes {', '.join(SLIDING_LOADS)}; moment and rotation are results"
             )
-    given = {name: number(name, load.get(name, 0.0)) for name in SLIDING_LOADS}
+    given = {name: checks.number(name, load.get(name, 0.0)) for name in SLIDING_LOADS}
     if given["P"] == 0.0 and given["Q"] == 0.0:
         raise InputError("P", "P and Q can't both be zero: a force must press the pin on the hole")
     return given

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fastpin import LoadHistory, Material, MaterialPair, Problem, Result, solve
-from fastpin.assess.margins import in_order, margin_lines, margin_rows, verdict
+from fastpin.assess.margins import in_json, in_order, margin_lines, margin_rows, verdict
 from fastpin.bodies import Bushing, Ring
 from fastpin.damage import fatigue
 from fastpin.damage.margins import fatigue_margins, last_cycle_margins
@@ -85,10 +85,8 @@ def test_the_margin_of_a_part_is_never_called_the_smallest(
     problem = Problem(MaterialPair(STEEL, ALUMINIUM), 10e-3, 30e-6, 0.3)
     assert [row[3] for row in margin_rows(problem, rows)] == verdicts
     assert margin_rows(problem, rows)[0][-1] == part
-    assert [row["part"] for row in summary.margins_document(problem, rows)] == [part, ""]
-    assert [row["smallest"] for row in summary.margins_document(problem, rows)] == [
-        "smallest" in each for each in verdicts
-    ]
+    assert [row.margin.part for row in in_json(problem, rows)] == [part, ""]
+    assert [row.is_smallest for row in in_json(problem, rows)] == ["smallest" in each for each in verdicts]
 
 
 @pytest.mark.parametrize("bushed", [True, False])

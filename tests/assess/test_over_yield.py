@@ -5,7 +5,7 @@ import pytest
 from fastpin.assess import fatigue as assessment
 from fastpin.assess.crack import growth_line
 from fastpin.assess.fatigue import fatigue_lines, spectrum_damages, spectrum_line
-from fastpin.assess.margins import document, margin_rows
+from fastpin.assess.margins import in_json, margin_rows
 from fastpin.cracks import planned_growth
 from fastpin.damage import cycle_states
 from fastpin.damage.margins import reserve_margins
@@ -65,7 +65,7 @@ def test_rows_of_margins_are_marked(result: Result) -> None:
     remarks = [row[-1] for row in margin_rows(result.problem, ROWS)]
     mark = "at 3 deg; above yield: stresses reach 2 times the yield strength"
     assert remarks == ["", "", "", mark, "at 4 deg"]
-    assert [row["over_yield"] for row in document(result.problem, ROWS)] == [None, None, None, 2.0, None]
+    assert [row.over_yield for row in in_json(result.problem, ROWS)] == [None, None, None, 2.0, None]
 
 
 def test_a_body_below_yield_has_no_mark() -> None:

@@ -12,10 +12,8 @@ from fastpin import damage
 from fastpin.assess.fatigue import Assessed, document, lines
 from fastpin.casefile.reader import parse_case
 from fastpin.damage.counted import CountedMaterial, Spectrum
-from fastpin.damage.counting import rainflow
 from fastpin.damage.criteria import equivalent_stress
-from fastpin.damage.lives import cycles_on_curve, stress_life_curve
-from fastpin.damage.reliability import failure_probability, tolerance_factor
+from fastpin.damage.lives import cycles_on_curve, failure_probability, rainflow, stress_life_curve, tolerance_factor
 from fastpin.errors import CaseFileError
 from fastpin.model import FatigueAssessment, FatigueConstants, Material
 from fastpin.model.assessment import USUAL

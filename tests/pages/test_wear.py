@@ -14,7 +14,8 @@ from fastpin.errors import InputError
 from fastpin.model.case import About
 from fastpin.model.wear import cycles_text
 from fastpin.pages import source, write_report
-from fastpin.pages.wear import WEAR_SECTIONS, damage, numbers, overview, provenance
+from fastpin.pages.sections import provenance
+from fastpin.pages.wear import WEAR_SECTIONS, damage, numbers, overview
 from fastpin.solver.errors import Interrupted
 from fastpin.wear_lives.wear_result import WearResult, WornCycle
 from tests.support.html import Page, words_of

@@ -15,6 +15,7 @@ import pytest
 import fastpin
 from fastpin.casefile.reader import KEYS
 from fastpin.cli.options import parser
+from fastpin.states.cycles import CYCLE_KINDS
 from fastpin.storage import layout, stored_states, wear_files
 from tests.support.tiers import some_survey
 
@@ -113,7 +114,7 @@ def test_the_file_format_of_the_reference_has_every_array(extension, monkeypatch
         monkeypatch.setattr(module, "LEAST_STORED", 6)
     text = extension.PARTS["file_layout"]()
     assert "\n## /extremes\n" in text
-    assert_explained(text, *layout.FIELD_KINDS, *layout.CYCLE_FIELDS)
+    assert_explained(text, *layout.FIELD_KINDS, *CYCLE_KINDS)
 
 
 def test_the_file_format_of_a_life_of_wear_has_every_member(extension: ModuleType) -> None:

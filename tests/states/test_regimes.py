@@ -8,7 +8,7 @@ import pytest
 from fastpin import LoadHistory, Problem, solve
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.report.states import state_columns
-from fastpin.report.summary import _state_summary
+from fastpin.report.summary import STATE, ReadState
 from fastpin.states import QUANTITIES, LoadCycle, Regime
 from fastpin.states.quantities import values
 from fastpin.states.regimes import REGIMES, regime_of
@@ -47,7 +47,8 @@ def test_the_regime_of_a_state_is_a_quantity_in_words():
     for regime, state in states_of_each_regime().items():
         assert state.regime is regime
         assert QUANTITIES["regime"].of(state) == float(regime)
-        assert _state_summary(state, {})["regime"] == regime.words
+        (output,) = (each for each in STATE if each.name == "regime")
+        assert output.shown(ReadState(state, {}), {}) == regime.words
         assert "regime" not in values(state)  # a class has no error bar and no order
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.assess.margins import document
+from fastpin.assess.margins import ROW, in_json
+from fastpin.assess.outputs import document
 from fastpin.errors import InputWarning
 from fastpin.states.margins import smallest_margin, walk_margins
 from fastpin.states.walking import LEAST_WALK, Walk, walk_doubts, walk_words
@@ -54,7 +55,7 @@ def test_a_bush_walks_where_no_part_of_its_seat_sticks_throughout(cycle, turn, s
     assert margin.margin == (-1.0 if goes_on else np.inf)
     assert walk_words(states) == f"it {margin.remark}"
     assert margin.loads == states[-1].load
-    (row,) = document(states[0].problem, [margin])
+    (row,) = (document(ROW, each, {}) for each in in_json(states[0].problem, [margin]))
     assert (row["name"], row["body"], row["smallest"]) == ("walk", "bush", goes_on)
     assert smallest_margin([margin]) == (margin if goes_on else None)
     found = walk_doubts(states, sample_seat().cycles)

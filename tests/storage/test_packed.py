@@ -16,9 +16,10 @@ from fastpin.errors import InputError
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
+from fastpin.states.cycles import CYCLE_KINDS
 from fastpin.storage import packed, store
 from fastpin.storage.files import INDEX
-from fastpin.storage.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS, SLIP_FIELDS
+from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS, SLIP_FIELDS
 from tests.support.commands import printed
 
 STEEL = MATERIALS["steel"]
@@ -52,8 +53,8 @@ def assert_same(one: Result, other: Result) -> None:
     )  # fmt: skip
     assert np.array_equal(one.grid.theta, other.grid.theta)
     assert np.array_equal(one.history.values(), other.history.values(), equal_nan=True)
-    assert [[getattr(cycle, name) for name in CYCLE_FIELDS] for cycle in one.cycles] == [
-        [getattr(cycle, name) for name in CYCLE_FIELDS] for cycle in other.cycles
+    assert [[getattr(cycle, name) for name in CYCLE_KINDS] for cycle in one.cycles] == [
+        [getattr(cycle, name) for name in CYCLE_KINDS] for cycle in other.cycles
     ]
     for first, second in zip(one, other, strict=True):
         assert (first.load, first.residuals) == (second.load, second.residuals)

@@ -14,10 +14,10 @@ from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
-from fastpin.states.cycles import Cycle
+from fastpin.states.cycles import CYCLE_KINDS, Cycle
 from fastpin.states.state import State
 from fastpin.storage.export import to_xarray
-from fastpin.storage.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS, SLIP_FIELDS, WITH_LAMINATE
+from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS, SLIP_FIELDS, WITH_LAMINATE
 from fastpin.storage.store import load, load_points, save
 from tests.support.files import replaced
 from tests.support.samples import PAIR, sample_result
@@ -53,7 +53,7 @@ def test_every_field_of_a_state_is_stored() -> None:
     others = ("load", "theta", "residuals", "problem", "grid", "error_bars", "marks", "seat")
     known = {*NODE_FIELDS, *SLIP_FIELDS, *NUMBER_FIELDS, *others}
     assert known == {field.name for field in dataclasses.fields(State)}
-    assert set(CYCLE_FIELDS) == set(Cycle._fields)
+    assert set(CYCLE_KINDS) == set(Cycle._fields)
 
 
 @pytest.mark.parametrize(

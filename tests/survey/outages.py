@@ -37,10 +37,11 @@ from fastpin.errors import InputError
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.states.cycles import CYCLE_KINDS
 from fastpin.storage import recording, store, writer
 from fastpin.storage.files import BESIDE_RESULT
 from fastpin.storage.journal import is_empty
-from fastpin.storage.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS
+from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS
 from fastpin.studies import sweep
 from fastpin.studies.plan import read_plan
 
@@ -167,7 +168,7 @@ def content(path: Path) -> object:
         return {row["id"]: (row["status"], content(_result(path, row["id"]))) for row in sweep.rows(plan, path)}
     if path.suffix == ".h5":
         result = store.load(path)
-        of_cycles = [name for name in CYCLE_FIELDS if name != "solved"]  # a resumed run does not know it
+        of_cycles = [name for name in CYCLE_KINDS if name != "solved"]  # a resumed run does not know it
         pairs = (result, (*NODE_FIELDS, *NUMBER_FIELDS)), (result.cycles, of_cycles)
         return [
             [tuple(np.asarray(getattr(each, name)).tobytes() for name in fields) for each in found]
