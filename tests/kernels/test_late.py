@@ -12,8 +12,8 @@ from fastpin.runtime import jit
 pytestmark = pytest.mark.skipif(jit.PLAIN, reason="nothing is compiled")
 
 NAMES = {
-    "end_places", "evaluate", "exponential", "fit", "least_squares", "match", "residuals", "series", "solve", "solve_few",
-    "value_errors", "wanted_status",
+    "end_places", "evaluate", "exponential", "fit", "least_squares", "match",
+    "residuals", "series", "solve", "solve_few", "value_errors", "wanted_status",
 }  # fmt: skip
 """The kernels of :func:`fastpin.runtime.jit.late`. No one may be missing in the calls below."""
 
