@@ -1,8 +1,7 @@
 """The kernels of a first run that two processes compile at the same time.
 
-:func:`fastpin.kernels.held.step` takes longest. The first process compiles it while the second one compiles
-:func:`fastpin.kernels.held_table.fill` and most kernels of the readings. ``tests/kernels/test_first.py`` compares the
-list with a run.
+:func:`fastpin.kernels.held.step` takes longest. The first process compiles it while the second one compiles the
+matrices, the table of the held contact, and the readings. ``tests/kernels/test_first.py`` compares both with a run.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ from fastpin.kernels import arrays, cauchy, conjugate, power_laws
 from fastpin.kernels.half_line import end_places, value_errors
 from fastpin.kernels.held import step
 from fastpin.kernels.held_table import fill
+from fastpin.kernels.influence import fill_columns
 from fastpin.runtime import beside
 
 MODULE = __name__
@@ -27,11 +27,12 @@ BY_COLUMNS, WHOLE, SIGNS, MARKS = np.asfortranarray(TABLE), LINE.astype(np.int64
 def kernels() -> list[tuple[Any, ...]]:
     """Kernels of the second process, each before arguments of the types of a first run.
 
-    After the first one come kernels that no process interprets, and then others.
+    The last two are interpreted at first.
     """
     row, rows, block = (array.astype(np.complex128) for array in (LINE, TABLE, CUBE))
     places = TABLE.astype(np.int64)
     return [
+        (fill_columns, LINE, LINE, LINE, LINE, 0.0, 0.0, CUBE, CUBE[:, 0], CUBE[:, 0]),
         (fill, TABLE, 0, 0, TABLE, TABLE, TABLE, BY_COLUMNS),
         (cauchy.cauchy, LINE, LINE, True, TABLE, 0, places, row, LINE, block, rows),
         (cauchy.grow, TABLE, 0, LINE, LINE, TABLE, places, row, LINE, block),
@@ -58,8 +59,7 @@ def step_arguments() -> tuple[Any, ...]:
 def share() -> None:
     """Let a second process compile :func:`kernels` when this one compiles, and this one the step meanwhile."""
     own: Any = step
-    beside.module = MODULE
-    beside.meanwhile[fill] = lambda: own.prepare(*step_arguments())
+    beside.module, beside.meanwhile[fill_columns] = MODULE, lambda: own.prepare(*step_arguments())
 
 
 if __name__ == "__main__":

@@ -39,7 +39,7 @@ LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 """Bits of ``ndarray.flags.num`` on which compiled code depends."""
 
 PATIENCE = 0.25
-"""Time that a kernel of :func:`late` runs as Python in a process before it is compiled, s."""
+"""Processor time for which a kernel of :func:`late` runs as Python before a process compiles it, s."""
 
 logger = logging.getLogger("fastpin.compiler")
 
@@ -54,7 +54,7 @@ class Kernel(KernelSource):
     inner : bool
         Whether only kernels call it. The wrapper for calls from Python is then never compiled.
     spent : float
-        Time for which it has run as Python, s; inf if it is to be compiled at once.
+        Processor time for which it has run as Python, s; inf if it is to be compiled at once.
     """
 
     def __init__(self, function: Callable[..., Any], inner: bool, spent: float = math.inf) -> None:
@@ -114,14 +114,14 @@ class Kernel(KernelSource):
         """The function as Python, for arguments of these types, until :data:`PATIENCE` is at its end."""
 
         def run(*arguments: Any) -> Any:
-            began = time.perf_counter()
+            began = time.thread_time()
             try:
                 with np.errstate(all="ignore"):
                     return self.py_func(*arguments)
             except (ArithmeticError, ValueError):  # compiled code goes on with inf or nan
                 self.spent = math.inf
             finally:
-                self.spent += time.perf_counter() - began
+                self.spent += time.thread_time() - began
                 if self.spent >= PATIENCE:
                     self._entries.pop(types, None)
             return self(*arguments)

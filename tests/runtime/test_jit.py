@@ -135,9 +135,9 @@ def arguments_of_columns(rng: np.random.Generator) -> tuple[object, ...]:
 @keeps
 def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
     arguments = arguments_of_columns(np.random.default_rng(1))
-    entry, code = compiler.compile_kernel(influence._columns, arguments)
+    entry, code = compiler.compile_kernel(influence.fill_columns, arguments)
     assert isinstance(code, machine.Code)
-    loaded = machine.load(code, "_columns", "fastpin.kernels.influence")
+    loaded = machine.load(code, "fill_columns", "fastpin.kernels.influence")
     entry(*arguments)
     direct, cross = arguments[-2:]
     expected = direct.copy(), cross.copy()
