@@ -23,7 +23,7 @@ import math
 
 import numpy as np
 
-from fastpin.runtime.jit import compiled, inner
+from fastpin.runtime.jit import inner, late
 
 TERMS = 6
 """Most terms of a fit at one end."""
@@ -101,7 +101,7 @@ def _product(a, b, first):
     return (s0 + s1) + (s2 + s3)
 
 
-@compiled
+@late
 def exponential(series, found):
     """Fill `found` (n,) with the coefficients of the exponential of a power series, from those of `series` (n,)."""
     found[0] = math.exp(series[0])
@@ -199,8 +199,8 @@ def _rotate(a, b, also_a, also_b):
     ratio = 0.5 * (size_b - size_a) / part
     if abs(ratio) > NO_TURN:
         return True
-    tangent = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + math.sqrt(1.0 + ratio**2))
-    cosine = 1.0 / math.sqrt(1.0 + tangent**2)
+    tangent = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + math.sqrt(1.0 + ratio * ratio))
+    cosine = 1.0 / math.sqrt(1.0 + tangent * tangent)
     sine = cosine * tangent
     for i in range(a.size):
         a[i], b[i] = cosine * a[i] - sine * b[i], sine * a[i] + cosine * b[i]
@@ -234,7 +234,7 @@ def _pseudo_invert(A, diagonal, inverse):
     inverse[:] = 0.0
     for k in range(n):
         square = _product(columns[k], columns[k], 0)
-        if square > SMALLEST**2 * largest:
+        if square > SMALLEST * SMALLEST * largest:
             for i in range(n):
                 for j in range(n):
                     inverse[i, j] += turns[k, i] * columns[k, j] / square
@@ -269,7 +269,7 @@ def _solve(values, degree, ends, tables, coefficients, spread):
             left = diagonal[i] * coefficients[i] - A[n, i]
             for k in range(i + 1, n):
                 left += A[k, i] * coefficients[k]
-            misfit += left**2
+            misfit += left * left
     for k in range(n):
         coefficients[k] /= sizes[k]
         for i in range(n):
@@ -376,11 +376,11 @@ def _norm_of(row, spread):
         part = 0.0
         for k in range(row.size):
             part += row[k] * spread[k, i]
-        square += part**2
+        square += part * part
     return math.sqrt(square)
 
 
-@compiled
+@late
 def least_squares(columns, values, coefficients):
     """Fit `values` (m,) by independent columns, shape (m, n). Return the standard error of the first coefficient.
 
@@ -401,7 +401,7 @@ def least_squares(columns, values, coefficients):
     return math.sqrt(misfit / spare) * (1.0 + 10.0 / spare) * math.sqrt(_product(inverse[0], inverse[0], 0))
 
 
-@compiled
+@late
 def solve(values, degree, ends, tables, coefficients, spread):
     """Fit the values of a window.
 
@@ -426,7 +426,7 @@ def solve(values, degree, ends, tables, coefficients, spread):
     return _solve(values, degree, ends, tables, coefficients, spread)
 
 
-@compiled
+@late
 def match(degree, ends, tables, coefficients, matches, levers):
     """Find the places of the ends: the first power of the distance from the place is 0.
 
@@ -445,7 +445,7 @@ def match(degree, ends, tables, coefficients, matches, levers):
     _match_all(degree, ends, tables, coefficients, matches, levers)
 
 
-@compiled
+@late
 def series(at, degree, ends, tables, matches, rows):
     """Fill `rows` (terms - 1, n), zeros, with the power series at the end number `at` of the coefficients of a fit.
 
@@ -466,7 +466,7 @@ def series(at, degree, ends, tables, matches, rows):
             factor *= origin / (p - q + 1)
 
 
-@compiled
+@late
 def evaluate(x, last, degree, ends, tables, matches, rows):
     """Fill `rows` (k, n) with the continuous functions of the coefficients at the places `x` (k,).
 
@@ -476,7 +476,7 @@ def evaluate(x, last, degree, ends, tables, matches, rows):
         _row(x[i], last, degree, ends, tables, matches, rows[i])
 
 
-@compiled
+@late
 def end_places(values, tries, ends, tables, found):
     """The place of the first end of each of many fits, and its standard error.
 
@@ -499,7 +499,7 @@ def end_places(values, tries, ends, tables, found):
         found[t, 0], found[t, 1] = matches[0, 0], scatter * _norm_of(levers[0], spread)
 
 
-@compiled
+@late
 def value_errors(values, tries, ends, tables, at, found):
     """The standard error of the fitted function of each of many fits.
 

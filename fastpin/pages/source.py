@@ -28,7 +28,7 @@ from fastpin.report.states import stored_rows
 from fastpin.solver import Result
 from fastpin.states import LoadCycle, State, choice, extremes
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import Margin, over_yield, static_margins
+from fastpin.states.margins import Margin, over_yield, static_margins, walk_margins
 from fastpin.storage.held import Held
 from fastpin.storage.held_in_file import HeldInFile
 from fastpin.storage.layout import versions

@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import functools
 import logging
+import math
 import os
 import sys
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -36,6 +38,9 @@ C_ORDER, F_ORDER, ALIGNED, WRITEABLE = 0x1, 0x2, 0x100, 0x400
 LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 """Bits of ``ndarray.flags.num`` on which compiled code depends."""
 
+PATIENCE = 0.25
+"""Processor time for which a kernel of :func:`late` runs as Python before a process compiles it, s."""
+
 logger = logging.getLogger("fastpin.compiler")
 
 _lock = threading.RLock()
@@ -48,15 +53,19 @@ class Kernel(KernelSource):
     ----------
     inner : bool
         Whether only kernels call it. The wrapper for calls from Python is then never compiled.
+    spent : float
+        Processor time for which it has run as Python, s; inf if it is to be compiled at once.
     """
 
-    def __init__(self, function: Callable[..., Any], inner: bool) -> None:
+    def __init__(self, function: Callable[..., Any], inner: bool, spent: float = math.inf) -> None:
         super().__init__(function)
         functools.update_wrapper(self, function)
-        self.inner = inner
+        self.inner, self.spent = inner, spent
         self._entries: dict[tuple[Any, ...], Callable[..., Any]] = {}
 
     def __call__(self, *arguments: Any) -> Any:
+        if self.inner:  # a kernel that runs as Python calls it
+            return self.py_func(*arguments)
         try:
             types = argument_types(arguments)
         except KeyError:  # types that no kernel of fastpin takes: the compiler decides
@@ -70,6 +79,7 @@ class Kernel(KernelSource):
 
     def prepare(self, *arguments: Any) -> None:
         """Load or compile the machine code for arguments of these types. Nothing is called."""
+        self.spent = math.inf
         self._find(argument_types(arguments), arguments)
 
     @functools.cached_property
@@ -79,8 +89,6 @@ class Kernel(KernelSource):
 
     def _find(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
         """Load the machine code for these arguments, or compile it."""
-        if self.inner:
-            raise TypeError(f"{self.py_func.__qualname__} is called by kernels only")
         return undisturbed(lambda: self._load_or_compile(types, arguments))
 
     def _load_or_compile(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
@@ -88,15 +96,37 @@ class Kernel(KernelSource):
             if types not in self._entries:
                 place = stored.place_of(self, signature(types)) if CACHED else None
                 entry: Any = place and (place.load() or stored.load_shipped(self, signature(types)))
+                if entry is None and place and self.spent < PATIENCE:
+                    entry = self._as_python(types)
                 if entry is None:
                     _announce()
-                    if place and machine.CAN_LOAD:
-                        beside.start()
+                    if place and machine.CAN_LOAD and beside.start() and self in beside.meanwhile:
+                        beside.meanwhile[self]()
+                        entry = place.load()
+                if entry is None:
                     entry, code = machine.compile_kernel(self, arguments)
                     if place and code:
                         place.save(code)
                 self._entries[types] = entry
             return self._entries[types]
+
+    def _as_python(self, types: tuple[Any, ...]) -> Callable[..., Any]:
+        """The function as Python, for arguments of these types, until :data:`PATIENCE` is at its end."""
+
+        def run(*arguments: Any) -> Any:
+            began = time.thread_time()
+            try:
+                with np.errstate(all="ignore"):
+                    return self.py_func(*arguments)
+            except (ArithmeticError, ValueError):  # compiled code goes on with inf or nan
+                self.spent = math.inf
+            finally:
+                self.spent += time.thread_time() - began
+                if self.spent >= PATIENCE:
+                    self._entries.pop(types, None)
+            return self(*arguments)
+
+        return run
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -104,16 +134,20 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     return function if PLAIN else Kernel(function, inner=False)
 
 
+def late(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a kernel after :data:`PATIENCE` only: the decorator of kernels with few numbers.
+
+    Most runs call them for a few milliseconds, and compiling takes seconds. As Python they give the same bits: they use
+    numbers and functions of C, and multiply in place of squares. ``tests/kernels/test_late.py`` checks it.
+    """
+    return function if PLAIN else Kernel(function, inner=False, spent=0.0)
+
+
 def inner(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a kernel that only kernels call: the decorator of these.
 
     The wrapper for calls from Python is left out. With arguments of many arrays the wrapper takes longer to compile
     than the kernel.
-
-    Raises
-    ------
-    TypeError
-        When it is called from Python.
     """
     return function if PLAIN else Kernel(function, inner=True)
 

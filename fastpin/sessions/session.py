@@ -416,9 +416,8 @@ class Session:
 
     def _arrive(self, place: Place, run: Run) -> None:
         """Make the end of a run the present place."""
-        system = run.system
-        reached = replace(place, grid=run.grid, force=system.scales.force, restart=run.bookmark())
-        self._leave_for(replace(reached, state=self._recorder.states[-1]))
+        system, state = run.system, self._recorder.states[-1]
+        self._leave_for(replace(place, grid=run.grid, force=system.scales.force, restart=run.bookmark(), state=state))
         self._run, self._system = run if run.strict else None, system
 
     def _leave_for(self, place: Place) -> None:

@@ -70,8 +70,8 @@ class OutsideGap:
         known = self._rest
         if known is None or known[0] is not now.rest_gap or known[1] is not system.problem:
             known = self._rest = now.rest_gap, system.problem, rest_gap_at(system, now, self._theta)
-        gap = elastic + moved + known[2]
-        return bool(gap.min() < -PENETRATION * max(float(np.abs(elastic).max()), float(np.abs(moved).max())))
+        lowest = float((elastic + moved + known[2]).min())
+        return lowest < 0.0 and lowest < -PENETRATION * float(max(np.abs(elastic).max(), np.abs(moved).max()))
 
 
 def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import re
 import stat
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
@@ -185,11 +185,11 @@ def replacing(path: str | Path, result: bool = False) -> Iterator[Path]:
         raise OutputError(str(path), f"can't be written: {error.strerror or error}") from None
 
 
-def forget_temporaries(path: Path) -> None:
-    """Remove the partly written files that killed processes have left of an output."""
-    pattern = re.compile(rf"\.{re.escape(path.stem)}\.[0-9a-f]+{re.escape(path.suffix)}")
-    for found in path.parent.glob(f".*{path.suffix}"):
-        if pattern.fullmatch(found.name) and stat.S_ISREG(found.lstat().st_mode):
+def forget_temporaries(folder: Path, names: Collection[str]) -> None:
+    """Remove the partly written files that killed processes have left of the outputs `names` in a folder."""
+    for found in folder.glob(".*"):
+        parts = re.fullmatch(r"\.(.+?)\.[0-9a-f]+(\.[^.]*)?", found.name)
+        if parts and parts[1] + (parts[2] or "") in names and stat.S_ISREG(found.lstat().st_mode):
             found.unlink(missing_ok=True)
 
 

@@ -71,7 +71,7 @@ def clear_checkpoints(path: Path) -> None:
     coarse_of(path).unlink(missing_ok=True)
     checkpoint = checkpoint_of(path)
     checkpoint.unlink(missing_ok=True)
-    files.forget_temporaries(checkpoint)
+    files.forget_temporaries(checkpoint.parent, [checkpoint.name])
 
 
 def check_overwriting(path: Path, overwrite: bool) -> None:

@@ -146,8 +146,7 @@ def run(
         _check_plan_copy(directory, plan.text)
         with Index(directory, write=True) as index:
             results = ensure_directory(directory / FOLDER).resolve()
-            for run in points:  # Killed workers leave partly written files.
-                forget_temporaries(results / f"{run}.h5")
+            forget_temporaries(results, {f"{run}.h5" for run in points})  # Killed workers leave them.
             _keep_plan(directory, plan.text)
             index.expect(plan, points.values())
             if retry:

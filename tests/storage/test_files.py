@@ -130,5 +130,5 @@ def test_only_temporary_files_of_the_output_are_forgotten(tmp_path: Path) -> Non
     for name in (*keep, ".a.0123456789abcdef.h5", ".a.4711.h5"):
         (tmp_path / name).write_text("x")
     (tmp_path / ".a.0123.h5").symlink_to(tmp_path / keep[0])
-    forget_temporaries(tmp_path / "a.h5")
+    forget_temporaries(tmp_path, ["a.h5"])
     assert {path.name for path in tmp_path.iterdir()} == {*keep, ".a.0123.h5"}
