@@ -12,7 +12,7 @@ import resource
 import time
 
 from fastpin.joints import Joint, JointPin, JointPlate, solve_joint
-from fastpin.lugs.lug import rectangle
+from fastpin.lugs.outline import rectangle
 from fastpin.model.materials import MATERIALS
 
 PITCH, RADIUS, FORCE = 20e-3, 2.5e-3, 5e3

@@ -75,6 +75,7 @@ def _draw(look: Look, problem: Problem, folded: Folded) -> Sheet:
             "rotation": "prescribed",
             "displacement": "prescribed",
             "ratio": "relative",
+            "temperature": "rise of",
         }
         panel.set_ylabel(quantity(f"{other.get(kind, kind)} {', '.join(names)}", label))
         panel.set_xlim(0.0, len(loads) - 1.0)

@@ -49,6 +49,8 @@ class ControlScales:
         Largest prescribed displacement, or else the clearance and the displacement under the force together, m.
     ratio : float
         A usual change of the friction.
+    temperature : float
+        Largest rise of a temperature in the history, or a usual one, K.
     stress : float
         Bearing stress of the force or largest remote stress, whichever is larger, Pa.
     misfit : float
@@ -67,6 +69,7 @@ class ControlScales:
         self.moment = max(largest["M"], max(problem.most_friction, 0.1) * self.force * problem.hole_radius)
         self.rotation = max(largest["rotation"], yielded / problem.hole_radius)
         self.ratio = 0.5
+        self.temperature = max(largest["temperature"], largest["pin_temperature"]) or 100.0
         largest_gap = max(abs(each - problem.assembled_clearance) for each in problem.clearances)
         self.misfit = max(abs(problem.clearance), yielded)
         self.gap = max(abs(problem.clearance), largest_gap) or yielded

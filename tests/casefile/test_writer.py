@@ -75,7 +75,7 @@ def test_a_dimensionless_case_reads_back() -> None:
     assert back.problem.dimensionless
     assert back.problem.clearance == problem.clearance
     assert pytest.approx(problem.pair.pin.E, rel=1e-14) == back.problem.pair.pin.E
-    assert back.history.values().tolist() == [[1.0] + [0.0] * 9, [1.0, 0.1] + [0.0] * 8]
+    assert back.history.values().tolist() == [[1.0] + [0.0] * 11, [1.0, 0.1] + [0.0] * 10]
 
 
 def test_the_built_in_case_is_written_whole() -> None:

@@ -13,7 +13,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels import toeplitz
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.solver import path, shortcut
+from fastpin.solver import path, tableau
 from fastpin.solver.solving import solve
 from tests.support.checks.body_cases import ring_compliance
 from tests.support.kernels import python
@@ -88,7 +88,7 @@ def _transforms(monkeypatch):
     """Small grids too are followed in the way of large ones."""
     as_with_many_nodes(monkeypatch)
     monkeypatch.setattr(large, "MOST_KEPT", 0)
-    monkeypatch.setattr(shortcut, "WORTHWHILE", 1)
+    monkeypatch.setattr(tableau, "WORTHWHILE", 1)
 
 
 @pytest.mark.gate

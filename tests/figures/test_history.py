@@ -33,7 +33,7 @@ def test_every_kind_of_load_has_a_panel() -> None:
     figure = plot_history(PROBLEM, LoadHistory([dict.fromkeys(LOADS, 1.0)]))
     assert [panel.get_ylabel() for panel in figure.axes] == [
         "force P, Q (N/m)", "moment M (N)", "remote stress sxx, syy, sxy (Pa)", "prescribed rotation (rad)",
-        "prescribed ux, uy (m)", "relative friction_change",
+        "prescribed ux, uy (m)", "relative friction_change", "rise of temperature, pin_temperature (K)",
     ]  # fmt: skip
 
 

@@ -14,6 +14,7 @@ from fastpin import Grid, InputError, Material, MaterialPair, Problem
 from fastpin.joints import Joint, JointPin, JointPlate, JointResult, solve_joint, tate_rosenfeld
 from fastpin.lugs.outline import rectangle
 from fastpin.model.angles import BOTTOM
+from fastpin.model.loads import LOADS
 from fastpin.solver import Interrupted, SolveError
 
 ALUMINIUM, STEEL = Material(72e9, 0.33), Material(210e9, 0.30)
@@ -344,7 +345,7 @@ def test_a_lost_load_is_told_with_its_place_and_keeps_what_was_solved(monkeypatc
     followed = path.PathStep.follow
 
     def lose(step: Any, *arguments: Any) -> Any:
-        if step.rate[10 + 3] < 0.0:
+        if step.rate[len(LOADS) + 3] < 0.0:
             raise path.StepLostError(path.exchange.CYCLING, 0.25)
         return followed(step, *arguments)
 

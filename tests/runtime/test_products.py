@@ -94,12 +94,12 @@ HISTORY = """
 import hashlib
 import fastpin
 from fastpin.elasticity import operator
-from fastpin.solver import shortcut
+from fastpin.solver import tableau
 pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], fastpin.MATERIALS["aluminium"])
 problem = fastpin.Problem.from_load_parameter(pair, 0.1, friction=0.4, pin_load="body")
 result = fastpin.solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=701, arc=(-3.0, -0.1))
 digest = hashlib.sha256()
-operator.LARGEST_DENSE, shortcut.WORTHWHILE = 3, 1  # Fourier transforms
+operator.LARGEST_DENSE, tableau.WORTHWHILE = 3, 1  # Fourier transforms
 transformed = fastpin.solve(problem, [{"P": 1.0}, {"Q": 0.3}], nodes=521, arc=(-3.0, -0.1))
 for state in [*result, *transformed]:
     for name in ("pressure", "shear", "gap", "slip"):

@@ -6,6 +6,7 @@ import pytest
 import fastpin
 from fastpin.casefile import builtin_case
 from fastpin.errors import CaseFileError
+from fastpin.model.loads import FRICTION_CHANGE, P
 from fastpin.studies.plan import parse_plan
 from fastpin.studies.variation import field_words, with_values
 from tests.support.faults import fault_of
@@ -39,7 +40,7 @@ def test_a_factor_multiplies_the_loads_of_all_blocks():
 
 def test_a_factor_leaves_the_friction_and_its_changes():
     history = fastpin.LoadHistory([{"P": 2.0, "friction_change": 0.5}, {"P": 4.0}])
-    assert history.scaled({"P": 3.0}).values()[:, [0, -1]].tolist() == [[6.0, 0.5], [12.0, 0.5]]
+    assert history.scaled({"P": 3.0}).values()[:, [P, FRICTION_CHANGE]].tolist() == [[6.0, 0.5], [12.0, 0.5]]
     with pytest.raises(fastpin.InputError, match="factors: unknown load"):
         history.scaled({"p": 3.0})
 
