@@ -123,6 +123,9 @@ class JointPlate:
 
         `centres` are those of the pinned holes, m, and `radius` is theirs.
         """
+        centres = [point("centres", each) for each in items("centres", centres, "a list of points")]
+        if not centres:
+            raise InputError("centres", "must have at least one point")
         first = centres[0]
         shifted = tuple(
             Part(
@@ -212,7 +215,8 @@ class JointPin:
 
     def value_in(self, name: str, plate: str) -> float:
         """The clearance or the friction in a plate."""
-        value = getattr(self, name)
+        known_name("plate", plate, self.plates)
+        value = getattr(self, choice("name", name, ("clearance", "friction")))
         return float(value[plate] if isinstance(value, Mapping) else value)
 
 
@@ -305,10 +309,13 @@ class Joint:
 
     def is_stress(self, load: str) -> bool:
         """Whether a load is a stress, Pa. The others are forces, N."""
+        known_name("load", load, self.load_names)
         return load.rsplit(".", 1)[1] in REMOTE_NAMES
 
     def problem(self, pin: JointPin, plate: JointPlate) -> Problem:
         """The contact of a pin in one plate, as if that plate were infinite."""
+        instance("pin", pin, JointPin, "a JointPin")
+        instance("plate", plate, JointPlate, "a JointPlate")
         pair = MaterialPair(pin.material, plate.material, self.plane)
         try:
             return Problem(
@@ -337,14 +344,22 @@ def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], 
     Raises
     ------
     InputError
-        If a length is out of range.
+        If a length is out of range, or an argument is of another class.
     """
-    d, (_, a), (_, b) = number("diameter", diameter, LEAST_RADIUS, MOST_RADIUS), one, other
-    a, b = (number("thickness", each, LEAST_RADIUS, MOST_RADIUS) for each in (a, b))
+    d = number("diameter", diameter, LEAST_RADIUS, MOST_RADIUS)
+    instance("pin", pin, Material, "a Material")
+    a, b = (_thickness(field, plate) for field, plate in (("one", one), ("other", other)))
     area, inertia = 0.25 * math.pi * d * d, math.pi * d**4 / 64.0
     shear = 4.0 * (a + b) / (9.0 * pin.shear_modulus * area)
     bending = (a**3 + 5.0 * a * a * b + 5.0 * a * b * b + b**3) / (40.0 * pin.E * inertia)
     return shear + bending
+
+
+def _thickness(field_: str, plate: tuple[Material, float]) -> float:
+    """The thickness of a plate, m, given with its material."""
+    if not isinstance(plate, tuple) or len(plate) != 2 or not isinstance(plate[0], Material):
+        raise InputError(field_, f"must be a material and a thickness in m, not {as_toml(plate)}")
+    return number(field_, plate[1], LEAST_RADIUS, MOST_RADIUS)
 
 
 def _name(field_: str, value: object) -> str:

@@ -17,6 +17,7 @@ import numpy as np
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
 from fastpin.kernels.status import STICK
+from fastpin.model.checks import instance
 from fastpin.model.doubts import doubts, doubts_given, pressure_doubts, warn_of
 from fastpin.model.grid import Grid, halved
 from fastpin.model.history import LoadHistory
@@ -250,7 +251,6 @@ class MemoryRecorder:
         )  # fmt: skip
 
 
-@lru_cache(maxsize=8)
 def assembled_tractions(problem: Problem, grid: Grid) -> tuple[Tractions, ...]:
     """The tractions before any load, Pa: on the pin, and in the seat of a bush if that is an interface of its own.
 
@@ -267,6 +267,11 @@ def assembled_tractions(problem: Problem, grid: Grid) -> tuple[Tractions, ...]:
     tuple of Tractions
         Empty if nothing is pressed.
     """
+    return _assembled(instance("problem", problem, Problem, "a Problem"), instance("grid", grid, Grid, "a Grid"))
+
+
+@lru_cache(maxsize=8)
+def _assembled(problem: Problem, grid: Grid) -> tuple[Tractions, ...]:
     if not problem.is_pressed:
         return ()
     if not problem.is_round:

@@ -1,6 +1,5 @@
 from .export import to_dataframe as to_dataframe
 from .export import to_xarray as to_xarray
-from .held_in_file import HeldInFile as HeldInFile
 from .held_in_file import largest_pressure as largest_pressure
 from .held_in_file import largest_residuals as largest_residuals
 from .held_in_file import marked_extremes as marked_extremes

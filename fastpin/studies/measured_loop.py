@@ -204,6 +204,10 @@ def read_loop(
     InputError
         If another argument can't be used.
     """
+    checks.instance("problem", problem, Problem, "a Problem")
+    for name, header in (("displacement", displacement), ("force", force)):
+        if header is not None:
+            checks.string(name, header)
     usual = {"ux": "ux", "uy": "uy", "both": "ux"}.get(problem.drive, "rotation")
     moved = checks.choice("over", usual if over is None else over, tuple(REACTIONS))
     names = moved, REACTIONS[moved]

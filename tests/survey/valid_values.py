@@ -6,6 +6,7 @@ import contextlib
 import importlib
 import shutil
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from fastpin import (
     charts,
     cracks,
     damage,
+    joints,
     lugs,
     model,
     published,
@@ -28,6 +30,8 @@ from fastpin import (
 )
 from fastpin.assess.outputs import Curve
 from fastpin.errors import FastpinError
+from fastpin.model.loads import LOADS
+from fastpin.studies.measured_loop import measured_loop
 from scripts.inline import Inline
 
 LEFT_OUT = object()
@@ -47,6 +51,21 @@ LUG = (
 
 MATRIX = np.diag(0.1 ** np.repeat([0.0, 0.0, 1.0, 4.0], [2, 4, 4, 4]))
 """The matrix of a compliance."""
+
+JOINT = joints.parse_joint(joints.JOINT_EXAMPLE).joint
+"""A joint of three pins in two straps."""
+
+PAIRED = joints.Joint(
+    (joints.JointPlate("sheet", fastpin.MATERIALS["aluminium"], 1.0),),
+    tuple(
+        joints.JointPin(name, at, fastpin.MATERIALS["steel"], 5e-3, ("sheet",), 1e-5, 0.3)
+        for name, at in (("a", 0j), ("b", 0.02 + 0j))
+    ),
+)
+"""A joint that is solved fast: two pins in an infinite plate."""
+
+RUBBED = np.cos(np.linspace(0.0, 4.0 * np.pi, 81))
+"""Displacement and force of a measured loop, in parts of their largest."""
 
 HISTORY = [[[1.0, 0.5, 0.1, 0.2], [-1.0, 0.0, 0.3, 0.1]]]
 """A history of stresses of one point."""
@@ -154,6 +173,13 @@ class Valid:
         spectrum = damage.spectrum_damage(result, constants=STRENGTHS)
         laminated = fastpin.Problem(fastpin.MaterialPair(pair.pin, LAMINATE, "stress"), 0.01, 1e-5, 0.4)
         stressed = fastpin.solve(laminated, [{"P": 1e5}], nodes=NODES)
+        jointed = joints.solve_joint(PAIRED, [{"a.x": 1e6}], nodes=16)
+        loop = measured_loop(("ux", "Q"), 1e-5 * RUBBED, 1e5 * RUBBED)
+        fitted = studies.FittedValue(0.4, 0.3, 0.5)
+        identified = studies.Identified(
+            _driven(steel), ("ux", "Q"), {"friction": fitted}, {}, 1.0, loop, (loop.displacement, loop.force),
+            np.ones((1, 3)), (), 9,
+        )  # fmt: skip
         lug = casefile.parse_lug(LUG).lug
         compliance = bodies.Compliance(0.3, "strain", 1.0, MATRIX)
         grid = result.grid
@@ -182,7 +208,9 @@ class Valid:
             damage.first_ply_failure(LAMINATE, [1e8, 1e7, 1e7]), model.StrengthAssessment(distance=1e-3),
             damage.joint_strength(stressed[-1], distance=1e-3), charts.CHARTS["kt_bearing"],
             charts.lookup("kt_bearing", load_parameter=0.1, friction=0.4), charts.chart_formulas()[0],
-            assess.failure_load(laminated, [{"P": 1e5}], distance=1e-3, nodes=NODES),
+            assess.failure_load(laminated, [{"P": 1e5}], distance=1e-3, nodes=NODES), PAIRED, PAIRED.pins[0],
+            PAIRED.plates[0], jointed, jointed[0], identified, fitted,
+            joints.parse_joint(joints.JOINT_EXAMPLE),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
@@ -198,9 +226,11 @@ class Valid:
             "Outcome": lambda: published.Outcome([published.Row("peak", "1", "0.5", 0.5)]),
         }
         self._by_target = self._targets(result) | {"worn_fatigue.cycles": _always(life), "after.cycles": _always(1)}
+        self._by_target["of_life.life"] = _always(life)
         self._by_target["damage_ranking.states"] = _always(list(life[0].states))
         self._by_target["assessed_fatigue.states"] = _always(list(life[0].states))
         self._by_target["assessed_reserves.states"] = _always(list(life[0].states))
+        self._by_target["identify.problem"] = self._by_target["read_loop.problem"] = _always(_driven(steel))
         self._by_target |= {name: _always(stressed[-1]) for name in ("joint_strength.state", "ply_stresses.state")}
         self._by_target |= {name: _always(stressed) for name in ("least_strength.states", "plot_strength.result")}
         self._by_target |= {name: _always(laminated) for name in ("failure_load.problem", "plot_stiffness.joint")}
@@ -214,6 +244,8 @@ class Valid:
             "tolerances.toml": TOLERANCES,
             "lug.toml": LUG,
             "loads.csv": "P, Q\n1.0, 0\n1.0, 0.2\n",
+            "loop.csv": "ux, Q\n0, 0\n1e-6, 1\n",
+            "joint.toml": joints.JOINT_EXAMPLE,
             "rim.csv": "angle, gap\n0, 0\n90, 1e-5\n180, 2e-5\n270, 1e-5\n",
             "outcomes.toml": '[outcomes]\nwork = {quantity = "work"}\n',
             "materials.toml": '["own steel"]\nE = 2e11\nnu = 0.3\n',
@@ -235,6 +267,8 @@ class Valid:
         """A valid object of a class, for a call of one of its methods."""
         if target == "fastpin.State.bush_fit":
             return self._bushed
+        if target == "fastpin.joints.JointPlate.lug":  # an infinite plate is none
+            return JOINT.plates[0]
         if target in ("fastpin.Result.assessed_fatigue", "fastpin.Result.assessed_reserves"):
             return self._with_constants
         if owner.__name__ not in self.objects:
@@ -284,6 +318,34 @@ class Valid:
             "fatigue_at_distance.length": 0.01,
             "read_case.path": "case.toml",
             "from_csv.path": "loads.csv",
+            "column_choices.field": "columns",
+            "column_choices.given": {"P": {"column": "P"}},
+            "read_samples.path": "rim.csv",
+            "read_samples.columns": {"angles": {"column": 1}, "values": "gap"},
+            "read_loop.path": "loop.csv",
+            "read_joint.path": "joint.toml",
+            "parse_joint.text": joints.JOINT_EXAMPLE,
+            "solve_joint.corners": [{"a.x": 1e6}],
+            "solve_joint.nodes": 16,
+            "Joint.place.pin": "a",
+            "Joint.place.plate": "sheet",
+            "Joint.is_stress.load": "sheet.sxx",
+            "JointPin.value_in.name": "friction",
+            "JointPin.value_in.plate": "sheet",
+            "JointResult.of.pin": "a",
+            "JointResult.of.plate": "sheet",
+            "shares.plate": "sheet",
+            "JointPlate.lug.centres": [0j],
+            "JointPlate.lug.radius": 2.5e-3,
+            "tate_rosenfeld.diameter": 5e-3,
+            "tate_rosenfeld.pin": PLATE,
+            "tate_rosenfeld.one": (PLATE, 2e-3),
+            "tate_rosenfeld.other": (PLATE, 2e-3),
+            "identify.history": [{"P": 1e5}],
+            "identify.loop": {"ux": 1e-5 * RUBBED, "Q": 1e5 * RUBBED},
+            "identify.progress": enough,
+            "check_temperature.name": "temperature",
+            "check_temperature.largest": 0.0,
             "from_csv.columns": {"P": {"column": "P", "scale": -1.0}},
             "from_csv.thickness": 5e-3,
             "json_schema.command": "run",
@@ -412,7 +474,8 @@ class Valid:
 BY_NAME: dict[str, Any] = {
     "E": 2e11, "E1": 1e11, "E2": 1e10, "G12": 5e9, "K_max": [2e6], "K_min": [1e6], "R": [0.1], "a": 0.3, "alpha": 0.25,
     "amplitude": 1e8, "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0, "body": "plate", "centre": -1.5,
-    "corners": [[1.0] * 10], "count": 3, "counts": [1.0, 2.0], "criterion": "smith-watson-topper", "depth": 0.01,
+    "corners": [[1.0] * len(LOADS)],
+    "count": 3, "counts": [1.0, 2.0], "criterion": "smith-watson-topper", "depth": 0.01,
     "directory": "sweep", "distance": 0.01, "ductility_exponent": -0.6, "factor": 2.0, "fatigue_ductility": 0.5,
     "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0, "half_width": 1.0,
     "height": 1e-5, "high": 0.5, "history": HISTORY, "host": "127.0.0.1", "index": 1, "k": 0.3, "knee_amplitude": 1e8,
@@ -433,6 +496,11 @@ BY_NAME: dict[str, Any] = {
     "yield_strength": 4e8,
 }  # fmt: skip
 """Valid values by the name of a parameter."""
+
+
+def _driven(problem: fastpin.Problem) -> fastpin.Problem:
+    """The problem with a prescribed displacement along x."""
+    return replace(problem, drive="ux", rotation="fixed")
 
 
 def _sliding_problem(pair: fastpin.MaterialPair) -> fastpin.Problem:
