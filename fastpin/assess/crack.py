@@ -15,7 +15,7 @@ from fastpin.assess.outputs import Curve, Follow, Output, chosen, kept, or_null,
 from fastpin.cracks.fates import CRACK_FATES, CrackFate, crack_margins
 from fastpin.errors import InputError
 from fastpin.model import Case, LoadHistory, Problem, angles, points
-from fastpin.model.crack import CrackGrowth, law_of
+from fastpin.model.crack import CRACK_KEYS, CrackGrowth, law_of
 from fastpin.model.doubts import doubts_given
 from fastpin.model.growth import Nasgro, Walker, law_entries, law_words
 from fastpin.model.units import units
@@ -150,10 +150,24 @@ def find(case: Case, held: Held | None, progress: Follow | None = None) -> crack
     return CrackStops.of(len(case.history), held.result.cycles, held.between).growth(case.crack, progress)
 
 
+def crack_words(problem: Problem, crack: CrackGrowth) -> str:
+    """Lengths, place, direction, law and residual stress of a crack that is to grow."""
+    length = units(problem)["length"]
+    place = "where it grows fastest" if crack.theta is None else f"at {angles.from_bottom(crack.theta):.4g} deg"
+    parts = [f"{length.text(crack.first)} to {length.text(crack.last)}", place]
+    parts += [f"{math.degrees(crack.angle):.4g} deg from the radius"] if crack.angle else []
+    parts += ["in the plate round the bush"] if crack.body == "seat" else []
+    parts += [law_words(law_of(problem, crack))]
+    return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
+
+
 QUESTION = outputs.Question(
+    words=crack_words,
     bar="{whole} of {total} places",
     failed="no crack is followed",
     margin_names=("fracture", "growth"),
+    unvaried="no run of a sweep grows a crack",
+    keys=CRACK_KEYS,
     outcomes={
         name: (output, grown)
         for name, output in {
@@ -170,17 +184,6 @@ QUESTION = outputs.Question(
     margins=crack_margins,
 )
 """The crack of [crack]. Its outcome "largest_K" is the largest K_I up to the last length."""
-
-
-def crack_words(problem: Problem, crack: CrackGrowth) -> str:
-    """Lengths, place, direction, law and residual stress of a crack that is to grow."""
-    length = units(problem)["length"]
-    place = "where it grows fastest" if crack.theta is None else f"at {angles.from_bottom(crack.theta):.4g} deg"
-    parts = [f"{length.text(crack.first)} to {length.text(crack.last)}", place]
-    parts += [f"{math.degrees(crack.angle):.4g} deg from the radius"] if crack.angle else []
-    parts += ["in the plate round the bush"] if crack.body == "seat" else []
-    parts += [law_words(law_of(problem, crack))]
-    return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
 
 
 def growth_curve(growth: cracks.Growth) -> Curve:
