@@ -274,17 +274,14 @@ class Question(NamedTuple):
         Outcomes of sweeps by name, pairs of an :class:`Output` and a callable ``read(result, how)``, which gives the
         subject of the output for the value of the section.
     find : callable
-        ``find(case, held, progress)``: what is found; None if it is not looked for. InputError says why nothing is
-        found.
+        ``find(case, held, progress)``: what is found; None if it is not looked for. InputError says why there is none.
     judged : callable
         ``judged(result, how)``: what margins need of a whole result in a sweep.
-    lines : callable
-        ``lines(found, over)``: lines of text. `over` has the bodies that yield, see
+    lines, document : callable
+        ``lines(found, over)``: lines of text, and a dict for JSON. `over` has the bodies that yield, see
         :func:`fastpin.states.margins.over_yield`.
-    document : callable
-        ``document(found, over)``: a dict for JSON.
     schema : callable
-        ``schema()``: its JSON schema.
+        ``schema()``: the JSON schema of the dict.
     margins : callable
         ``margins(found)``: its margins of safety.
     in_sweeps : callable
