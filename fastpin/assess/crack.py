@@ -12,16 +12,16 @@ from fastpin import cracks, damage
 from fastpin.assess import outputs
 from fastpin.assess.margins import ROW, in_json
 from fastpin.assess.outputs import Curve, Follow, Output, chosen, kept, or_null, table
-from fastpin.cracks.fates import CRACK_FATES, CrackFate, crack_margins
+from fastpin.cracks.fates import CRACK_FATES, CrackFate
 from fastpin.errors import InputError
 from fastpin.model import Case, LoadHistory, Problem, angles, points
-from fastpin.model.crack import CrackGrowth, law_of
+from fastpin.model.crack import CRACK_KEYS, CrackGrowth, law_of
 from fastpin.model.doubts import doubts_given
 from fastpin.model.growth import Nasgro, Walker, law_entries, law_words
 from fastpin.model.units import units
 from fastpin.states.choice import missing_corners, span_of
 from fastpin.states.cycles import Cycle
-from fastpin.states.margins import over_yield_words
+from fastpin.states.margins import Margin, over_yield_words
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # it imports compiled code, and a plan is read without it
@@ -150,10 +150,62 @@ def find(case: Case, held: Held | None, progress: Follow | None = None) -> crack
     return CrackStops.of(len(case.history), held.result.cycles, held.between).growth(case.crack, progress)
 
 
+def crack_words(problem: Problem, crack: CrackGrowth) -> str:
+    """Lengths, place, direction, law and residual stress of a crack that is to grow."""
+    length = units(problem)["length"]
+    place = "where it grows fastest" if crack.theta is None else f"at {angles.from_bottom(crack.theta):.4g} deg"
+    parts = [f"{length.text(crack.first)} to {length.text(crack.last)}", place]
+    parts += [f"{math.degrees(crack.angle):.4g} deg from the radius"] if crack.angle else []
+    parts += ["in the plate round the bush"] if crack.body == "seat" else []
+    parts += [law_words(law_of(problem, crack))]
+    return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
+
+
+def crack_margins(growth: cracks.Growth) -> list[Margin]:
+    """Return the margins of a crack, each with the state that has its largest K_I.
+
+    Fracture: toughness over the largest K_I, at the first length, and of a crack that grows on its way to the last
+    length or to its arrest. Growth: threshold over the range of K_I at the first length.
+    """
+    length, body = units(growth.problem)["length"], growth.crack.body
+    where = f"mouth at {angles.from_bottom(growth.crack.theta):z.2f} deg"
+    subject = f"{points.edge_body(growth.problem, body)}: crack"
+
+    def row(name: str, words: str, value: np.ndarray, allowable: float, at: int, remark: str) -> Margin:
+        point = float(growth.largest_at[at])
+        return Margin(
+            f"{subject}, {words}", "stress intensity", float(value[at]), allowable, point, remark, growth.loads[point],
+            name, points.owner_of(growth.problem, body),
+        )  # fmt: skip
+
+    rows, toughness = [], growth.law.fracture_toughness
+    first, reached = length.text(float(growth.length[0])), growth.K_max[: growth.reached + 1]
+    top = int(np.argmax(reached))
+    lengths = {"fracture at its first length": 0}
+    if growth.fate != CrackFate.NONE:
+        end = "before it stops" if growth.fate == CrackFate.STOPS else "up to its last length"
+        lengths[f"fracture {end}"] = top
+    for words, at in lengths.items():
+        remark = f"length {length.text(float(growth.length[at]), 4)}, {where}"
+        if math.isinf(toughness):
+            known = "not known: the law of growth has no toughness"
+            rows.append(row("fracture", words, growth.K_max, math.nan, at, f"{known}; {remark}"))
+        else:
+            rows.append(row("fracture", words, growth.K_max, toughness, at, remark))
+    threshold = float(growth.threshold[0])
+    if threshold > 0.0:
+        grows = "does not grow" if growth.fate == CrackFate.NONE else "above its threshold it grows, and does not fail"
+        rows.append(row("growth", "threshold", growth.delta_K, threshold, 0, f"length {first}, {where}; {grows}"))
+    return rows
+
+
 QUESTION = outputs.Question(
+    words=crack_words,
     bar="{whole} of {total} places",
     failed="no crack is followed",
     margin_names=("fracture", "growth"),
+    unvaried="no run of a sweep grows a crack",
+    keys=CRACK_KEYS,
     outcomes={
         name: (output, grown)
         for name, output in {
@@ -170,17 +222,6 @@ QUESTION = outputs.Question(
     margins=crack_margins,
 )
 """The crack of [crack]. Its outcome "largest_K" is the largest K_I up to the last length."""
-
-
-def crack_words(problem: Problem, crack: CrackGrowth) -> str:
-    """Lengths, place, direction, law and residual stress of a crack that is to grow."""
-    length = units(problem)["length"]
-    place = "where it grows fastest" if crack.theta is None else f"at {angles.from_bottom(crack.theta):.4g} deg"
-    parts = [f"{length.text(crack.first)} to {length.text(crack.last)}", place]
-    parts += [f"{math.degrees(crack.angle):.4g} deg from the radius"] if crack.angle else []
-    parts += ["in the plate round the bush"] if crack.body == "seat" else []
-    parts += [law_words(law_of(problem, crack))]
-    return ", ".join(parts + (["with a residual stress"] if crack.residual_stress is not None else []))
 
 
 def growth_curve(growth: cracks.Growth) -> Curve:

@@ -17,7 +17,7 @@ from fastpin.damage.spectrum import bodies_with_lives
 from fastpin.errors import InputError
 from fastpin.model import Case, Problem
 from fastpin.model.angles import from_bottom
-from fastpin.model.assessment import DISTANCES, MINER_RULES, SPECTRA, FatigueAssessment
+from fastpin.model.assessment import ASSESSMENT_KEYS, DISTANCES, MINER_RULES, SPECTRA, FatigueAssessment
 from fastpin.model.doubts import doubts_given
 from fastpin.model.fatigue import LIFE_CONSTANTS
 from fastpin.model.points import BODIES, EDGES, Body, edge_body, elastic_bodies, material_of, owner_of
@@ -212,9 +212,12 @@ def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
 
 
 QUESTION = outputs.Question(
+    words=lambda _, how: f"{', '.join(how.criteria).title()}, over {assessment_words(how)}",
     bar="damage of the spectrum",
     failed="",  # never said: what is found holds the reason
     margin_names=("fatigue",),
+    unvaried="changes no run of a sweep",
+    keys=ASSESSMENT_KEYS,
     outcomes={
         **{
             name: (output, worst_damage)

@@ -258,34 +258,42 @@ class Question(NamedTuple):
 
     Attributes
     ----------
+    words : callable
+        ``words(problem, how)``: the value of the section in words, in the description of a case.
     bar : str
         Text of the progress bar while it is looked for.
     failed : str
         What it means that nothing is found; the reason follows.
     margin_names : tuple of str
         Names of its margins of safety.
+    unvaried : str
+        Why no plan varies its keys.
+    keys : tuple of str
+        Keys of its section that may stand beside an outcome.
     outcomes : mapping of str
         Outcomes of sweeps by name, pairs of an :class:`Output` and a callable ``read(result, how)``, which gives the
         subject of the output for the value of the section.
     find : callable
-        ``find(case, held, progress)``: what is found; None if it is not looked for. InputError says why nothing is
-        found.
+        ``find(case, held, progress)``: what is found; None if it is not looked for. InputError says why there is none.
     judged : callable
         ``judged(result, how)``: what margins need of a whole result in a sweep.
-    lines : callable
-        ``lines(found, over)``: lines of text. `over` has the bodies that yield, see
+    lines, document : callable
+        ``lines(found, over)``: lines of text, and a dict for JSON. `over` has the bodies that yield, see
         :func:`fastpin.states.margins.over_yield`.
-    document : callable
-        ``document(found, over)``: a dict for JSON.
     schema : callable
-        ``schema()``: its JSON schema.
+        ``schema()``: the JSON schema of the dict.
     margins : callable
         ``margins(found)``: its margins of safety.
+    in_sweeps : callable
+        ``in_sweeps(how)``: what outcomes and margins of sweeps take of the value of the section.
     """
 
+    words: Callable[[Problem, Any], str]
     bar: str
     failed: str
     margin_names: tuple[str, ...]
+    unvaried: str
+    keys: tuple[str, ...]
     outcomes: Mapping[str, tuple[Output, Callable[[Any, Any], Any]]]
     find: Callable[..., Any]
     judged: Callable[[Any, Any], Any]
@@ -293,6 +301,7 @@ class Question(NamedTuple):
     document: Callable[[Any, Mapping[str, float]], dict[str, Any]]
     schema: Callable[[], Schema]
     margins: Callable[[Any], list[Margin]]
+    in_sweeps: Callable[[Any], Any] = lambda how: how
 
 
 @dataclass(frozen=True, eq=False)

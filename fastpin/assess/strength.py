@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -18,7 +18,7 @@ from fastpin.model import Case, LoadHistory, Problem, angles, checks
 from fastpin.model.doubts import doubts_given
 from fastpin.model.loads import LOAD_KIND, Corner
 from fastpin.model.ply import CRITERION_NAMES, PlyCriterion
-from fastpin.model.strength import LENGTHS, StrengthAssessment
+from fastpin.model.strength import LENGTHS, STRENGTH_KEYS, StrengthAssessment
 from fastpin.model.units import printed_loads, units
 from fastpin.solver.errors import ConvergenceError, SolveError
 from fastpin.states.quantities import load_point
@@ -190,9 +190,12 @@ FOUND = (
 
 
 QUESTION = outputs.Question(
+    words=lambda problem, how: strength_words(problem, how) + ", with the load at failure" * how.failure,
     bar="state {n} of {total}",
     failed="no strength is assessed",
     margin_names=("ply",),
+    unvaried="changes no run of a sweep",
+    keys=STRENGTH_KEYS[:-1],
     outcomes={name: (output, worst_state) for name, output in outputs.chosen(PLACE, ("ratio", "angle")).items()}
     | {"factor": (outputs.Output("factor"), _load_at_failure)},
     find=find,
@@ -201,6 +204,7 @@ QUESTION = outputs.Question(
     document=lambda found, over: outputs.document(FOUND, found, units(found.state.problem)),
     schema=lambda: outputs.schema_of(FOUND),
     margins=lambda found: strength_margins(found.how, found.state, found.strength),
+    in_sweeps=lambda how: replace(how, failure=False),
 )
 """The strength of [strength]. The history is solved several times for its outcome "factor" at failure."""
 

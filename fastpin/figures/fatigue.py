@@ -311,7 +311,8 @@ def _draw_cracks(look: Look, growths: Sequence[Growth]) -> Sheet:
         handles.append(Line2D([], [], label=label, **line(7, dashes, 1.0)))
     for panel in (top, bottom):
         panel.set_xscale("log")
-        panel.set_yscale("log")
+        if any(np.isfinite(curve.get_ydata()).any() for curve in panel.get_lines()):  # a crack may never grow
+            panel.set_yscale("log")
         draw_grid(panel)
     top.set_ylabel(quantity("range of K", intensity_name))
     bottom.set_ylabel(quantity("growth", rate_name))

@@ -10,6 +10,7 @@ import numpy as np
 from fastpin import assess
 from fastpin.assess.outputs import ROUNDING, Column, table, visible_rows
 from fastpin.model import Case, LoadHistory, Material, Problem, Wear, checks, points
+from fastpin.model.case import beside_of
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.units import PASCAL, acting_loads, units
 
@@ -69,15 +70,9 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         rows.append(("states", f"kept: {options.keep}"))
     if case.wear is not None:
         rows.append(("wear", _wear_words(case.wear)))
-    if case.fatigue is not None:
-        over = assess.fatigue.assessment_words(case.fatigue)
-        rows.append(("fatigue", f"{', '.join(case.fatigue.criteria).title()}, over {over}"))
-    if case.crack is not None:
-        rows.append(("crack", assess.crack.crack_words(problem, case.crack)))
-    if case.strength is not None:
-        asked = ", with the load at failure" if case.strength.failure else ""
-        rows.append(("strength", f"{assess.strength.strength_words(problem, case.strength)}{asked}"))
-    return rows
+    return rows + [
+        (name, assess.questions.QUESTIONS[name].words(problem, how)) for name, how in beside_of(case).items()
+    ]
 
 
 def _wear_words(wear: Wear) -> str:

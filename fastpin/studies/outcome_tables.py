@@ -14,7 +14,6 @@ import os
 import pickle
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -28,12 +27,9 @@ from fastpin.casefile.toml_text import CaseText, NamedTable, Section, read_text
 from fastpin.damage.criteria import FATIGUE_CRITERIA
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model import points, synonyms
-from fastpin.model.assessment import ASSESSMENT_KEYS, SPECTRA
-from fastpin.model.case import BESIDE
+from fastpin.model.assessment import SPECTRA
 from fastpin.model.checks import alternatives, as_toml, file_path, string
-from fastpin.model.crack import CRACK_KEYS
 from fastpin.model.profile import Profile
-from fastpin.model.strength import STRENGTH_KEYS
 from fastpin.model.wear import WEAR_KEYS, Wear
 from fastpin.states.margins import MARGINS
 from fastpin.states.quantities import QUANTITIES
@@ -57,9 +53,7 @@ KEYS = {
     "quantity": ("quantity", "take", "over", "interface"),
     "cycle": ("cycle", "interface"),
     "wear": ("wear", *WEAR_KEYS, "criterion", "body"),
-    "fatigue": ("fatigue", *ASSESSMENT_KEYS),
-    "crack": ("crack", *CRACK_KEYS),
-    "strength": ("strength", *STRENGTH_KEYS[:-1]),
+    **{name: (name, *question.keys) for name, question in QUESTIONS.items()},
     "margin": ("margin", "body"),
     "function": ("function", "classes"),
 }
@@ -298,10 +292,13 @@ def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[s
     how = READERS[name](source, section, _entries(name, beside[name]) if name in beside else {})
     if quantity is None or how is None:
         return None
-    if name == "fatigue" and "criterion" in section and len(how.criteria) > 1:
-        section.report(f"criterion: must be one criterion, not {len(how.criteria)}; each outcome has one", "criterion")
-        return None
-    how = _alone(name, how)
+    if name == "fatigue":
+        if "criterion" in section and len(how.criteria) > 1:
+            words = f"must be one criterion, not {len(how.criteria)}; each outcome has one"
+            section.report(f"criterion: {words}", "criterion")
+            return None
+        how = how.changed(criterion=how.criteria[0])
+    how = QUESTIONS[name].in_sweeps(how)
     definition = json.dumps({name: quantity, "how": _entries(name, how)}, sort_keys=True)
     output, _ = QUESTIONS[name].outcomes[quantity]
     kind, unit = output.kind, ""
@@ -309,13 +306,6 @@ def _of_section(name: str, source: CaseText, section: Section, beside: Mapping[s
         passes = getattr(how, "passes", beside.get("passes", "cycles or spectra"))
         kind, unit = ("life", "") if passes == "cycles" else ("", passes)
     return StudyOutcome(kind, unit, definition, partial(of_question, name, quantity, how), dict(output.classes))
-
-
-def _alone(name: str, how: Any) -> Any:
-    """Return what one outcome takes of a section: its first criterion, and no load at failure unless that is asked."""
-    if name == "fatigue":
-        return how.changed(criterion=how.criteria[0])
-    return replace(how, failure=False) if name == "strength" else how
 
 
 def _entries(name: str, how: Any) -> dict[str, Any]:
@@ -335,9 +325,11 @@ def _of_margin(section: Section, beside: Mapping[str, Any]) -> StudyOutcome | No
     if needed is not None and needed not in beside:
         section.report(f'margin: "{name}" needs a section [{needed}] of the case', "margin")
         return None
-    sections = {each: beside[each] for each in BESIDE if each in beside and (name == LEAST or each == needed)}
-    if "strength" in sections:
-        sections["strength"] = _alone("strength", sections["strength"])
+    sections = {
+        each: question.in_sweeps(beside[each])
+        for each, question in QUESTIONS.items()
+        if each in beside and (name == LEAST or each == needed)
+    }
     definition = {"margin": name, "body": owner, **{each: _entries(each, value) for each, value in sections.items()}}
     text = json.dumps({key: value for key, value in definition.items() if value is not None}, sort_keys=True)
     return StudyOutcome("", "", text, partial(of_margin, name, owner, tuple(sections.items())), has_strengths=True)

@@ -20,6 +20,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from fastpin.assess.questions import QUESTIONS
 from fastpin.casefile.profiles import PROFILES, part_fault
 from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
 from fastpin.casefile.toml_text import (
@@ -69,9 +70,7 @@ ROOT_KEYS = {name: name for name in ("title", "case")} | {
 
 UNVARIED = {
     "wear": ("no run of a sweep wears", "depth"),
-    "fatigue": ("changes no run of a sweep", "life"),
-    "crack": ("no run of a sweep grows a crack", "fate"),
-    "strength": ("changes no run of a sweep", "ratio"),
+    **{name: (question.unvaried, next(iter(question.outcomes))) for name, question in QUESTIONS.items()},
 }
 """Sections whose keys no plan varies: the reason, and an outcome that has the keys."""
 

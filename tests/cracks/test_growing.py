@@ -161,3 +161,11 @@ def test_pickles_and_figures(small_states, tmp_path):
         fastpin.figures.plot_crack_growth([])
     with pytest.raises(InputError, match="found: must be a Growth"):
         fastpin.figures.plot_crack_growth(3)
+
+
+@pytest.mark.gate
+def test_the_figure_of_a_crack_that_never_grows(small_states, tmp_path):
+    found = growth(small_states, Crack(-0.5), walker(1e3), 1e-4, 1e-3)
+    assert found.rate.max() == 0.0
+    figure = fastpin.figures.plot_crack_growth(found, tmp_path / "crack.pdf")
+    assert [panel.get_yscale() for panel in figure.axes] == ["log", "linear"]

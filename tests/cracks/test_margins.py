@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from fastpin.assess.crack import crack_margins
 from fastpin.cracks import Crack, Nasgro, Walker, growth, paris, spectrum_growth
-from fastpin.cracks.fates import crack_margins
 from fastpin.states.margins import smallest_margin
 from tests.support.cracks import M, made
 from tests.support.tiers import gate
