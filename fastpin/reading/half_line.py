@@ -304,34 +304,24 @@ class Fit:
 
     def __init__(self, values: np.ndarray, ends: tuple[End, ...], degree: int = -1) -> None:
         packed = _packed(values.size, degree, ends)
-        self._ends, self._degree, self.last = ends, degree, values.size - 1.0
+        self._ends, self.last = ends, values.size - 1.0
         self._packed = degree, packed.ends, packed.tables
         unknowns = values.size - Try(0, values.size, degree, ends).spare
         self._coefficients, self._spread = np.empty(unknowns), np.empty((unknowns, unknowns))
-        self._matches, self._levers = np.empty((len(ends), 3)), np.empty((len(ends), unknowns))
+        self._matches, levers = np.empty((len(ends), 3)), np.empty((len(ends), unknowns))
         self._scatter = kernel.solve(np.array(values), *self._packed, self._coefficients, self._spread)
-        kernel.match(*self._packed, self._coefficients, self._matches, self._levers)
+        kernel.match(*self._packed, self._coefficients, self._matches, levers)
 
     def place(self, at: int) -> float:
         """Place of the end number `at`, in node distances from the node 0. NaN where there is none."""
         end = self._ends[at]
         return end.node + end.inwards * float(self._matches[at, 0])
 
-    def place_error(self, at: int) -> float:
-        """Standard error of this place."""
-        return self._error(self._levers[at])
-
     def values(self, x: np.ndarray) -> np.ndarray:
         """The fitted function at some places, shape (k,), in node distances from the node 0."""
-        return np.asarray(self._rows_at(x) @ self._coefficients)
-
-    def value(self, x: float) -> float:
-        """The fitted function at one place."""
-        return float(self.values(np.array([x]))[0])
-
-    def value_error(self, x: float) -> float:
-        """Standard error of the fitted function at a place x, without the part from the places of the ends."""
-        return self._error(self._rows_at(np.array([x]))[0])
+        rows = np.empty((x.size, self._coefficients.size))
+        kernel.evaluate(np.array(x, dtype=float), self.last, *self._packed, self._matches, rows)
+        return np.asarray(rows @ self._coefficients)
 
     def series(self, at: int) -> tuple[np.ndarray, float]:
         """The power series at the end number `at`.
@@ -345,17 +335,7 @@ class Fit:
         """
         rows = np.zeros((self._ends[at].terms - 1, self._coefficients.size))
         kernel.series(at, *self._packed, self._matches, rows)
-        return np.asarray(rows @ self._coefficients), self._error(rows[0])
-
-    def _error(self, row: np.ndarray) -> float:
-        """Standard error of the number that a row (n,) gives from the coefficients."""
-        return self._scatter * float(np.linalg.norm(row @ self._spread))
-
-    def _rows_at(self, x: np.ndarray) -> np.ndarray:
-        """The continuous functions of the coefficients at some places, with the present places of the ends."""
-        rows = np.empty((x.size, self._coefficients.size))
-        kernel.evaluate(np.array(x, dtype=float), self.last, *self._packed, self._matches, rows)
-        return rows
+        return np.asarray(rows @ self._coefficients), self._scatter * float(np.linalg.norm(rows[0] @ self._spread))
 
 
 @functools.lru_cache(maxsize=64)

@@ -55,9 +55,8 @@ def test_values_between_the_nodes_beside_an_edge() -> None:
     for offset in (0.3, 0.9, 2.6):
         x = -half_width + offset
         exact = math.sqrt(half_width**2 - x**2) / math.pi
-        assert fit.value(x + 30.0 - inside[0]) == pytest.approx(exact, rel=3e-3)
-        assert fit.value_error(x + 30.0 - inside[0]) < 1e-3 * exact
-    assert fit.value(fit.place(0) - 0.1) == 0.0
+        assert fit.values(np.array([x + 30.0 - inside[0]]))[0] == pytest.approx(exact, rel=3e-3)
+    assert fit.values(np.array([fit.place(0) - 0.1]))[0] == 0.0
 
 
 @pytest.mark.parametrize(("exponent", "coupling"), [(0.5, None), (0.46, None), (0.53, 0.2)])
@@ -92,8 +91,7 @@ def test_the_largest_shear_lies_beyond_an_old_border_of_unlike_bodies() -> None:
     fit = Fit(2.0 + 0.5 * columns(end, 31) @ [1.0, 0.01], (end._replace(place=None),), 2)
     place = fit.place(0)
     assert place == pytest.approx(11.7, abs=1e-6)
-    near = fit.values(place + np.array([-0.01, 0.0, 0.01])) - fit.value(place)
-    assert fit.place_error(0) < 1e-6
+    near = fit.values(place + np.array([-0.01, 0.0, 0.01])) - fit.values(np.array([place]))[0]
     assert near[0] / near[2] == pytest.approx(math.cos(math.pi * 0.47), rel=0.01)
 
 
@@ -107,7 +105,7 @@ def test_a_place_between_nodes_and_a_known_one(inwards: int) -> None:
     fit = Fit(values, (first._replace(place=None), second), 1)
     assert fit.place(0) == pytest.approx(10.0 - 0.3 * inwards, abs=1e-6)
     assert fit.place(1) == pytest.approx(10.0 + 3.2 * inwards, abs=1e-12)
-    assert fit.value(fit.place(0)) == pytest.approx(1.0 + 0.02 * fit.place(0), abs=1e-6)
+    assert fit.values(np.array([fit.place(0)]))[0] == pytest.approx(1.0 + 0.02 * fit.place(0), abs=1e-6)
 
 
 def test_the_end_of_a_zone_beside_an_old_border() -> None:
