@@ -276,8 +276,8 @@ class Setting:
         """Limit the threads of a worker. Return why it can't work for this sweep, or None."""
         if os.getpid() != self.main_process:
             one_thread()
-        same = self.version == __version__
-        return None if same else f"the worker has fastpin {__version__}, the sweep {self.version}"
+        other = f"the worker has fastpin {__version__}, the sweep {self.version}"
+        return None if self.version == __version__ else other
 
 
 def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:
