@@ -16,10 +16,10 @@ MOST = {
     "isinstance of bodies outside bodies/": 0,
     "drive is None, or not": 0,
     "classes defined twice": 0,
-    "small private functions used once": 61,
+    "small private functions used once": 60,
     "constants of modules": 1_321,
     "hidden imports": 0,
-    "lines of code": 50_086,
+    "lines of code": 50_084,
     "places that say unknown key": 6,
 }
 """The most that each number may be. A smaller number takes its place here."""
