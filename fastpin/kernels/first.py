@@ -10,59 +10,45 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.kernels import arrays, cauchy, conjugate, power_laws
-from fastpin.kernels.half_line import end_places, value_errors
-from fastpin.kernels.held import step
-from fastpin.kernels.held_table import fill
-from fastpin.kernels.influence import fill_columns
+from fastpin.kernels import cauchy, conjugate, half_line, held, held_table, influence, power_laws
+from fastpin.kernels.arrays import Contact, ContactValues, Equations, LoadTerms, Queue, RightSides, Tableau
 from fastpin.runtime import beside
-
-MODULE = __name__
-"""The module that a second process runs."""
-
-LINE, TABLE, CUBE = (np.zeros((2,) * k) for k in (1, 2, 3))
-BY_COLUMNS, WHOLE, SIGNS, MARKS = np.asfortranarray(TABLE), LINE.astype(np.int64), LINE.astype(np.int8), LINE > 0.0
 
 
 def kernels() -> list[tuple[Any, ...]]:
-    """Kernels of the second process, each before arguments of the types of a first run.
+    """Kernels before arguments of the types of a first run: that of the first process, then those of the second one.
 
-    The last two are interpreted at first.
+    ``value_errors`` and ``end_places`` are interpreted until they are stored.
     """
-    row, rows, block = (array.astype(np.complex128) for array in (LINE, TABLE, CUBE))
-    places = TABLE.astype(np.int64)
+    line, table, cube = (np.zeros((2,) * k) for k in (1, 2, 3))
+    columns, whole, places = np.asfortranarray(table), line.astype(np.int64), table.astype(np.int64)
+    signs, row, rows, block = line.astype(np.int8), 1j * line, 1j * table, 1j * cube
+    values, sides = ContactValues(line, line, line, line, signs, line), RightSides(line, line, line)
+    contact = Contact(line, line, line, line, signs, signs, line > 0.0, line, line, table)
+    tableau = Tableau(columns, whole, columns, whole, whole, line, line, whole, line, line, 0)
+    load, queue = LoadTerms(line, line, line, line, line, line, whole, table), Queue(whole, signs, whole, line)
+    matrices = columns, Equations(table, table, table, line), line, line, sides
     return [
-        (fill_columns, LINE, LINE, LINE, LINE, 0.0, 0.0, CUBE, CUBE[:, 0], CUBE[:, 0]),
-        (fill, TABLE, 0, 0, TABLE, TABLE, TABLE, BY_COLUMNS),
-        (cauchy.cauchy, LINE, LINE, True, TABLE, 0, places, row, LINE, block, rows),
-        (cauchy.grow, TABLE, 0, LINE, LINE, TABLE, places, row, LINE, block),
-        (conjugate.edge, LINE, LINE, TABLE, 0, places, TABLE, TABLE, TABLE),
-        (conjugate.gather, TABLE, places, LINE, TABLE, TABLE, TABLE, TABLE),
-        (power_laws.evaluate, LINE, 0j, row, LINE),
-        (value_errors, LINE, places, TABLE, CUBE, LINE, LINE),
-        (end_places, LINE, places, TABLE, CUBE, TABLE),
+        (held.step, True, whole, *matrices, contact, tableau, load, queue, line > 0.0, 0.0, 0.0, 0, 0, values),
+        (influence.fill_columns, line, line, line, line, 0.0, 0.0, cube, cube[:, 0], cube[:, 0]),
+        (held_table.fill, table, 0, 0, table, table, table, columns),
+        (half_line.value_errors, line, places, table, cube, line, line),
+        (cauchy.cauchy, line, line, True, table, 0, places, row, line, block, rows),
+        (cauchy.grow, table, 0, line, line, table, places, row, line, block),
+        (conjugate.edge, line, line, table, 0, places, table, table, table),
+        (conjugate.gather, table, places, line, table, table, table, table),
+        (power_laws.evaluate, line, 0j, row, line),
+        (half_line.end_places, line, places, table, cube, table),
     ]
 
 
-def step_arguments() -> tuple[Any, ...]:
-    """Arguments of :func:`fastpin.kernels.held.step` of the types of a first run."""
-    contact = arrays.Contact(LINE, LINE, LINE, LINE, SIGNS, SIGNS, MARKS, LINE, LINE, TABLE)
-    tableau = arrays.Tableau(BY_COLUMNS, WHOLE, BY_COLUMNS, WHOLE, WHOLE, LINE, LINE, WHOLE, LINE, LINE, 1)
-    load = arrays.LoadTerms(LINE, LINE, LINE, LINE, LINE, LINE, WHOLE, TABLE)
-    return (
-        True, WHOLE, BY_COLUMNS, arrays.Equations(TABLE, TABLE, TABLE, LINE), LINE, LINE,
-        arrays.RightSides(LINE, LINE, LINE), contact, tableau, load, arrays.Queue(WHOLE, SIGNS, WHOLE, LINE), MARKS,
-        0.0, 0.0, 0, 0, arrays.ContactValues(LINE, LINE, LINE, LINE, SIGNS, LINE),
-    )  # fmt: skip
-
-
 def share() -> None:
-    """Let a second process compile :func:`kernels` when this one compiles, and this one the step meanwhile."""
-    own: Any = step
-    beside.module, beside.meanwhile[fill_columns] = MODULE, lambda: own.prepare(*step_arguments())
+    """Let a second process compile when this one compiles, and this one its own kernel meanwhile."""
+    kernel, *arguments = kernels()[0]
+    beside.module, beside.meanwhile[influence.fill_columns] = __name__, lambda: kernel.prepare(*arguments)
 
 
 if __name__ == "__main__":
-    for kernel, *arguments in kernels():
+    for kernel, *arguments in kernels()[1:]:
         if beside.is_needed():
             kernel.prepare(*arguments)

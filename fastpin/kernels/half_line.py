@@ -240,9 +240,28 @@ def _pseudo_invert(A, diagonal, inverse):
                     inverse[i, j] += turns[k, i] * columns[k, j] / square
 
 
-@inner
-def _solve(values, degree, ends, tables, coefficients, spread):
-    """See :func:`solve`."""
+@late
+def solve(values, degree, ends, tables, coefficients, spread):
+    """Fit the values of a window.
+
+    Parameters
+    ----------
+    values : ndarray, shape (m,)
+    degree : int
+        Degree of the polynomial; -1 for none.
+    ends : ndarray, shape (e, 5)
+    tables : ndarray, shape (t, LAW + 1, TERMS)
+    coefficients : ndarray, shape (n,)
+        Output: the coefficients of the polynomial, then those of each end.
+    spread : ndarray, shape (n, n)
+        Output: the norm of a row times this matrix is the amplification of the errors of the values in the number that
+        the row gives from the coefficients.
+
+    Returns
+    -------
+    float
+        Standard error of a value, a little enlarged if there are few nodes beyond the unknowns.
+    """
     m, n = values.size, coefficients.size
     A, diagonal, sizes = np.empty((n + 1, m)), np.empty(n), np.empty(n)
     _fill(degree, ends, tables, A)
@@ -355,9 +374,22 @@ def _row(x, last, degree, ends, tables, matches, row):
         first += count
 
 
-@inner
-def _match_all(degree, ends, tables, coefficients, matches, levers):
-    """See :func:`match`."""
+@late
+def match(degree, ends, tables, coefficients, matches, levers):
+    """Find the places of the ends: the first power of the distance from the place is 0.
+
+    Parameters
+    ----------
+    degree : int
+    ends, tables, coefficients : ndarray
+        As for :func:`solve`.
+    matches : ndarray, shape (e, 3)
+        Output for each end: its place, NaN if that is not plausible; the point from which distances count, which is
+        the place, or half a node distance outwards; and the least power, 0 or 1. Without a plausible place there is
+        the first power, too.
+    levers : ndarray, shape (e, n)
+        Output: change of each place for a unit of each coefficient.
+    """
     first = degree + 1
     levers[:] = 0.0
     for e in range(ends.shape[0]):
@@ -399,50 +431,6 @@ def least_squares(columns, values, coefficients):
     spare = m - n
     misfit = _product(A[n], A[n], n)
     return math.sqrt(misfit / spare) * (1.0 + 10.0 / spare) * math.sqrt(_product(inverse[0], inverse[0], 0))
-
-
-@late
-def solve(values, degree, ends, tables, coefficients, spread):
-    """Fit the values of a window.
-
-    Parameters
-    ----------
-    values : ndarray, shape (m,)
-    degree : int
-        Degree of the polynomial; -1 for none.
-    ends : ndarray, shape (e, 5)
-    tables : ndarray, shape (t, LAW + 1, TERMS)
-    coefficients : ndarray, shape (n,)
-        Output: the coefficients of the polynomial, then those of each end.
-    spread : ndarray, shape (n, n)
-        Output: the norm of a row times this matrix is the amplification of the errors of the values in the number that
-        the row gives from the coefficients.
-
-    Returns
-    -------
-    float
-        Standard error of a value, a little enlarged if there are few nodes beyond the unknowns.
-    """
-    return _solve(values, degree, ends, tables, coefficients, spread)
-
-
-@late
-def match(degree, ends, tables, coefficients, matches, levers):
-    """Find the places of the ends: the first power of the distance from the place is 0.
-
-    Parameters
-    ----------
-    degree : int
-    ends, tables, coefficients : ndarray
-        As for :func:`solve`.
-    matches : ndarray, shape (e, 3)
-        Output for each end: its place, NaN if that is not plausible; the point from which distances count, which is
-        the place, or half a node distance outwards; and the least power, 0 or 1. Without a plausible place there is
-        the first power, too.
-    levers : ndarray, shape (e, n)
-        Output: change of each place for a unit of each coefficient.
-    """
-    _match_all(degree, ends, tables, coefficients, matches, levers)
 
 
 @late
@@ -494,8 +482,8 @@ def end_places(values, tries, ends, tables, found):
         first, n = tries[t, FIRST], _unknowns(degree, own)
         coefficients, spread, levers = np.empty(n), np.empty((n, n)), np.empty((own.shape[0], n))
         matches = np.empty((own.shape[0], 3))
-        scatter = _solve(values[first : first + tries[t, COUNT]], degree, own, tables, coefficients, spread)
-        _match_all(degree, own, tables, coefficients, matches, levers)
+        scatter = solve(values[first : first + tries[t, COUNT]], degree, own, tables, coefficients, spread)
+        match(degree, own, tables, coefficients, matches, levers)
         found[t, 0], found[t, 1] = matches[0, 0], scatter * _norm_of(levers[0], spread)
 
 
@@ -518,8 +506,8 @@ def value_errors(values, tries, ends, tables, at, found):
         first, count, n = tries[t, FIRST], tries[t, COUNT], _unknowns(degree, own)
         coefficients, spread, levers = np.empty(n), np.empty((n, n)), np.empty((own.shape[0], n))
         matches, row, beside = np.empty((own.shape[0], 3)), np.empty(n), np.empty(n)
-        scatter = _solve(values[first : first + count], degree, own, tables, coefficients, spread)
-        _match_all(degree, own, tables, coefficients, matches, levers)
+        scatter = solve(values[first : first + count], degree, own, tables, coefficients, spread)
+        match(degree, own, tables, coefficients, matches, levers)
         x = own[0, NODE] + own[0, INWARDS] * matches[0, 0] if math.isnan(at[t]) else at[t]
         if math.isnan(x):
             found[t] = np.nan

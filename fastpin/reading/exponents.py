@@ -42,7 +42,7 @@ class Coupling:
         """The coupling of the surfaces of a problem at the angles `theta` (n,), with the `friction` (n,) there."""
         laminate = None if problem.pair.plate.is_isotropic else problem.joint.hole.laminate
         if laminate is None or laminate.is_isotropic_contact:
-            return _isotropic(friction.tobytes(), problem.surfaces.dundurs()[1])
+            return isotropic_coupling(friction.tobytes(), problem.surfaces.dundurs()[1])
         surfaces, turned = problem.surfaces, laminate.delta * np.exp(-2j * theta)
         mean, s = 0.5 * surfaces.beta_star, 0.25 * surfaces.alpha_star
         pressed = mean + turned.real  # Lambda_rr of both bodies; Lambda_rt is that of the plate
@@ -52,15 +52,6 @@ class Coupling:
         beta = s / np.sqrt(mean * mean - abs(laminate.delta) ** 2)
         share = pressed / held
         return cls(tilt, np.full(theta.size, beta), share, ones * share * s / held)
-
-    @classmethod
-    def of_isotropic(cls, friction: np.ndarray, beta: float) -> Coupling:
-        """The coupling of isotropic bodies with Dundurs' parameter `beta`, with the `friction` (n,) at the nodes."""
-        values = friction.tolist()
-        known = {value: math.atan(value * beta) / math.pi for value in set(values)}
-        tilt = np.array([known[value] for value in values])
-        ones = np.ones((3, friction.size))
-        return cls(np.array([np.zeros_like(tilt), tilt, tilt]), np.full(tilt.size, beta), ones, beta * ones)
 
     def at(self, nodes: np.ndarray) -> Coupling:
         """The coupling at some `nodes` (k,)."""
@@ -73,8 +64,13 @@ class Coupling:
 
 
 @functools.lru_cache(maxsize=8)  # the states of a run share them
-def _isotropic(friction: bytes, beta: float) -> Coupling:
-    return Coupling.of_isotropic(np.frombuffer(friction), beta)
+def isotropic_coupling(friction: bytes, beta: float) -> Coupling:
+    """The coupling of isotropic bodies with Dundurs' parameter `beta`. The `friction` (n,) is that of the nodes."""
+    values = np.frombuffer(friction).tolist()
+    known = {value: math.atan(value * beta) / math.pi for value in set(values)}
+    tilt = np.array([known[value] for value in values])
+    ones = np.ones((3, tilt.size))
+    return Coupling(np.array([np.zeros_like(tilt), tilt, tilt]), np.full(tilt.size, beta), ones, beta * ones)
 
 
 def contact_exponents(status: np.ndarray, tilt: np.ndarray, run: np.ndarray) -> tuple[float, float]:

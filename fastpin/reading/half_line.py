@@ -304,7 +304,7 @@ class Fit:
 
     def __init__(self, values: np.ndarray, ends: tuple[End, ...], degree: int = -1) -> None:
         packed = _packed(values.size, degree, ends)
-        self._ends, self._degree, self.last = ends, degree, values.size - 1.0
+        self._ends, self.last = ends, values.size - 1.0
         self._packed = degree, packed.ends, packed.tables
         unknowns = values.size - Try(0, values.size, degree, ends).spare
         self._coefficients, self._spread = np.empty(unknowns), np.empty((unknowns, unknowns))
@@ -335,8 +335,7 @@ class Fit:
         """
         rows = np.zeros((self._ends[at].terms - 1, self._coefficients.size))
         kernel.series(at, *self._packed, self._matches, rows)
-        error = self._scatter * float(np.linalg.norm(rows[0] @ self._spread))
-        return np.asarray(rows @ self._coefficients), error
+        return np.asarray(rows @ self._coefficients), self._scatter * float(np.linalg.norm(rows[0] @ self._spread))
 
 
 @functools.lru_cache(maxsize=64)

@@ -38,7 +38,7 @@ C_ORDER, F_ORDER, ALIGNED, WRITEABLE = 0x1, 0x2, 0x100, 0x400
 LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 """Bits of ``ndarray.flags.num`` on which compiled code depends."""
 
-PATIENCE = 0.25
+PATIENCE = 0.05
 """Processor time for which a kernel of :func:`late` runs as Python before a process compiles it, s."""
 
 logger = logging.getLogger("fastpin.compiler")
@@ -97,7 +97,7 @@ class Kernel(KernelSource):
                 place = stored.place_of(self, signature(types)) if CACHED else None
                 entry: Any = place and (place.load() or stored.load_shipped(self, signature(types)))
                 if entry is None and place and self.spent < PATIENCE:
-                    entry = self._as_python(types)
+                    entry = functools.partial(self.interpret, types)
                 if entry is None:
                     _announce()
                     if place and machine.CAN_LOAD and beside.start() and self in beside.meanwhile:
@@ -110,23 +110,19 @@ class Kernel(KernelSource):
                 self._entries[types] = entry
             return self._entries[types]
 
-    def _as_python(self, types: tuple[Any, ...]) -> Callable[..., Any]:
-        """The function as Python, for arguments of these types, until :data:`PATIENCE` is at its end."""
-
-        def run(*arguments: Any) -> Any:
-            began = time.thread_time()
-            try:
-                with np.errstate(all="ignore"):
-                    return self.py_func(*arguments)
-            except (ArithmeticError, ValueError):  # compiled code goes on with inf or nan
-                self.spent = math.inf
-            finally:
-                self.spent += time.thread_time() - began
-                if self.spent >= PATIENCE:
-                    self._entries.pop(types, None)
-            return self(*arguments)
-
-        return run
+    def interpret(self, types: tuple[Any, ...], *arguments: Any) -> Any:
+        """Run the function as Python. After :data:`PATIENCE` the next call compiles it."""
+        began = time.thread_time()
+        try:
+            with np.errstate(all="ignore"):
+                return self.py_func(*arguments)
+        except (ArithmeticError, ValueError):  # compiled code goes on with inf or nan
+            self.spent = math.inf
+        finally:
+            self.spent += time.thread_time() - began
+            if self.spent >= PATIENCE:
+                self._entries.pop(types, None)
+        return self(*arguments)
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:

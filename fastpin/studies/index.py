@@ -130,7 +130,8 @@ class Index:
                         WAITING,
                         json.loads(point.input)["dimensionless"],
                         point.input,
-                        *(_cell(point.values.get(name)) for name in fields),
+                        # A list or table becomes JSON; a number or text stays.
+                        *(json.dumps(v) if isinstance(v, list | dict) else v for v in map(point.values.get, fields)),
                     )
                     for point in points
                 ),
@@ -138,10 +139,11 @@ class Index:
 
     def record(self, ends: Iterable[RunEnd]) -> None:
         """Write the ends of runs into their rows, with their results and the values of their outcomes, all at once."""
-        assignments = ", ".join(f'"{name}" = ?' for name in _END_COLUMNS)
+        assignments = ", ".join(f'"{name}" = :{name}' for name in _END_COLUMNS)
         with self._as_input_error(), self._transaction():
             for end in ends:
                 cells: dict[str, Any] = {
+                    "id": end.id,
                     "status": DONE if end.reason is None else FAILED,
                     "reason": end.reason,
                     **dict.fromkeys(KEY_FIGURES),
@@ -151,8 +153,7 @@ class Index:
                     "host": end.host,
                     "versions": json.dumps(end.versions),
                 }
-                values = [cells[name] for name in _END_COLUMNS]
-                self._database.execute(f"UPDATE runs SET {assignments} WHERE id = ?", [*values, end.id])
+                self._database.execute(f"UPDATE runs SET {assignments} WHERE id = :id", cells)
                 self._database.execute("DELETE FROM bars WHERE run = ?", [end.id])
                 self._write_bars(end.id, end.bars)
                 self._write_outcomes(end.id, end.outcomes)
@@ -443,11 +444,6 @@ def _table(text: Any) -> dict[str, Any]:
 def _quoted(names: Iterable[str]) -> str:
     """Return names of columns in SQL. A quote inside a name is doubled: a merged index may come from elsewhere."""
     return ", ".join('"' + name.replace('"', '""') + '"' for name in names)
-
-
-def _cell(value: Any) -> Any:
-    """Return a value of a field for SQL. A list or table becomes JSON; a number or text stays."""
-    return json.dumps(value) if isinstance(value, list | dict) else value
 
 
 def ensure_directory(directory: Path) -> Path:

@@ -30,7 +30,7 @@ from fastpin.runtime.jit import limit_to_one_thread
 from fastpin.runtime.threads import in_one_thread
 from fastpin.solver import SolveError, solve
 from fastpin.solver.result import Result, without_restart
-from fastpin.storage import layout, store
+from fastpin.storage import store
 from fastpin.studies.index import Index
 from fastpin.studies.outcomes import OutcomeValue, check_loadable, pickled, values_in_worker
 from fastpin.studies.plan import Plan
@@ -270,6 +270,13 @@ class Setting:
     version: str
     most: int
 
+    def begin(self) -> str | None:
+        """Limit the threads of a worker. Return why it can't work for this sweep, or None."""
+        if os.getpid() != self.main_process:
+            one_thread()
+        other = f"the worker has fastpin {__version__}, the sweep {self.version}"
+        return None if self.version == __version__ else other
+
 
 def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:
     """Solve one case, pack or save its result, and read its outcomes.
@@ -291,17 +298,11 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, settin
         Key figures, times, outcomes and the packed result. Every exception of the run becomes the reason of a failure.
         An exception of an outcome becomes the reason of its missing value.
     """
-    if setting.version != __version__:
-        return RunEnd(run, _other_version(setting.version))
-    if os.getpid() != setting.main_process:
-        one_thread()
-    started = datetime.now(UTC).isoformat(timespec="milliseconds")
-    began = time.perf_counter()
-    reason: str | None = None
-    figures: dict[str, Any] = {}
-    values: dict[str, OutcomeValue] = {}
-    bars: dict[str, float] = {}
-    content: bytes | None = None
+    if (refused := setting.begin()) is not None:
+        return RunEnd(run, refused)
+    started, host = datetime.now(UTC).isoformat(timespec="milliseconds"), socket.gethostname()
+    ended = functools.partial(RunEnd, run, started=started, host=host, versions=layout.versions())
+    began, reason = time.perf_counter(), None
     try:
         try:
             with in_one_thread(), doubts_given():
@@ -309,22 +310,19 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, settin
         except SolveError as error:
             reason, result = str(error), error.result
         seconds = time.perf_counter() - began
-        if result is not None and len(result):
-            figures, bars = key_figures(result), key_bars(result)
-            sections = beside_of(case)
-            content = store.pack(result, reason, setting.most, sections)
-            if content is None:
-                store.save(result, path, error=reason, restart=False, sections=sections)
-            if reason is None:  # Without its restart, the result is the same as the stored one.
-                values = values_in_worker(outcomes, without_restart(result))
+        if result is None or not len(result):
+            return ended(reason, seconds=seconds)
+        figures, bars, sections = key_figures(result), key_bars(result), beside_of(case)
+        content = store.pack(result, reason, setting.most, sections)
+        if content is None:
+            store.save(result, path, error=reason, restart=False, sections=sections)
+        # Without its restart, the result is the same as the stored one.
+        values = values_in_worker(outcomes, without_restart(result)) if reason is None else {}
+        return ended(reason, figures, seconds, outcomes=values, bars=bars, content=content)
     except MemoryError:
-        seconds, reason, figures = time.perf_counter() - began, "not enough memory", {}
-        bars = {}
+        return ended("not enough memory", seconds=time.perf_counter() - began)
     except Exception as error:  # Any error is the failure of this run only. The other runs continue.
-        seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
-    return RunEnd(
-        run, reason, figures, seconds, started, socket.gethostname(), layout.versions(), values, bars, content
-    )
+        return ended(f"{type(error).__name__}: {error}", seconds=time.perf_counter() - began)
 
 
 def read_run(run: str, path: str, content: bytes | None, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:
@@ -337,10 +335,8 @@ def read_run(run: str, path: str, content: bytes | None, outcomes: PickledOutcom
     RunEnd
         The outcomes and their time. A reason: the result can't be read, or the worker has another version of fastpin.
     """
-    if setting.version != __version__:
-        return RunEnd(run, _other_version(setting.version))
-    if os.getpid() != setting.main_process:
-        one_thread()
+    if (refused := setting.begin()) is not None:
+        return RunEnd(run, refused)
     began = time.perf_counter()
     try:
         result = store.load(path) if content is None else store.unpack(content, Path(path))
@@ -348,10 +344,6 @@ def read_run(run: str, path: str, content: bytes | None, outcomes: PickledOutcom
         return RunEnd(run, f"the result can't be read: {error}")
     values = values_in_worker(outcomes, result)
     return RunEnd(run, None, seconds=time.perf_counter() - began, outcomes=values)
-
-
-def _other_version(version: str) -> str:
-    return f"the worker has fastpin {__version__}, the sweep {version}"
 
 
 def _end_with_parent() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.kernels import first, held
+from fastpin.kernels import first
 from fastpin.runtime import jit, machine
 from fastpin.runtime.threads import cores
 from tests.support.processes import ROOT, finished, python, started
@@ -30,8 +30,7 @@ print(*found, sep="\\n", file=sys.stderr)
 
 def test_the_list_has_the_kernels_and_types_of_a_run() -> None:
     done = finished(python(SEEN))
-    kernels = [(held.step, *first.step_arguments()), *first.kernels()]
-    listed = [f"{one.__name__}: {jit.signature(jit.argument_types(tuple(given)))}" for one, *given in kernels]
+    listed = [f"{one.__name__}: {jit.signature(jit.argument_types(tuple(given)))}" for one, *given in first.kernels()]
     assert len(listed) == len(set(listed))
     assert set(listed) <= set(done.stderr.splitlines())
 

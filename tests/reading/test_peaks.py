@@ -9,7 +9,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.reading import peaks
 from fastpin.reading.cusps import ShearNodes
-from fastpin.reading.exponents import Coupling
+from fastpin.reading.exponents import isotropic_coupling
 from fastpin.solver.solving import solve
 
 GRID = Grid.arc(-1.0, 1.0, 81)
@@ -24,7 +24,7 @@ def nodal(values: np.ndarray) -> float:
 def contact_of(pressure: np.ndarray, shear: np.ndarray, sticking: np.ndarray, tilt: float = 0.0) -> ShearNodes:
     """A contact with mu = 1, without old borders."""
     no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
-    coupling = Coupling.of_isotropic(ALL * 1.0, math.tan(math.pi * tilt))
+    coupling = isotropic_coupling((ALL * 1.0).tobytes(), math.tan(math.pi * tilt))
     return ShearNodes(GRID, pressure, shear, sticking, no_marks, no_places, ALL * 1.0, coupling)
 
 

@@ -10,7 +10,7 @@ import pytest
 from fastpin import Grid, InputError, Material, MaterialPair, Problem, Status, solve
 from fastpin.kernels.status import OPEN
 from fastpin.reading import power_laws, refined
-from fastpin.reading.exponents import Coupling
+from fastpin.reading.exponents import isotropic_coupling
 from fastpin.reading.half_line import End, half_line
 from tests.support.half_line import columns, powers
 from tests.support.tiers import for_gate
@@ -225,7 +225,7 @@ def test_the_pressure_beside_a_border_of_unlike_bodies_needs_four_nodes_on_eithe
     exact = np.polyval([1e-4, 1e-3, -0.02, 1.0], x) + height * np.maximum(-x, 0.0) ** 0.45
     noisy = exact + np.where(np.abs(x) < near, 0.01, 0.0)
     ends = (-0.01 * edge, 0.01 * edge)
-    coupling = Coupling.of_isotropic(0.5 + 0.0 * x, 0.1)
+    coupling = isotropic_coupling((0.5 + 0.0 * x).tobytes(), 0.1)
     patch = refined.Patch(0.01 * x, noisy, 0.0 * x, ends, ends, (0.5 + 0j, 0.5 + 0j), (), 0.5 + 0.0 * x, coupling)
     assert np.count_nonzero((x > near) & (x < edge - near)) == nodes
     found = refined._pressure_at_borders(patch, refined.Laws((), [(law, 1)], [], []))
