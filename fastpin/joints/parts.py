@@ -348,18 +348,16 @@ def tate_rosenfeld(diameter: float, pin: Material, one: tuple[Material, float], 
     """
     d = number("diameter", diameter, LEAST_RADIUS, MOST_RADIUS)
     instance("pin", pin, Material, "a Material")
-    a, b = (_thickness(field, plate) for field, plate in (("one", one), ("other", other)))
+    lengths = []
+    for name, plate in (("one", one), ("other", other)):
+        if not isinstance(plate, tuple) or len(plate) != 2 or not isinstance(plate[0], Material):
+            raise InputError(name, f"must be a material and a thickness in m, not {as_toml(plate)}")
+        lengths.append(number(name, plate[1], LEAST_RADIUS, MOST_RADIUS))
+    a, b = lengths
     area, inertia = 0.25 * math.pi * d * d, math.pi * d**4 / 64.0
     shear = 4.0 * (a + b) / (9.0 * pin.shear_modulus * area)
     bending = (a**3 + 5.0 * a * a * b + 5.0 * a * b * b + b**3) / (40.0 * pin.E * inertia)
     return shear + bending
-
-
-def _thickness(field_: str, plate: tuple[Material, float]) -> float:
-    """The thickness of a plate, m, given with its material."""
-    if not isinstance(plate, tuple) or len(plate) != 2 or not isinstance(plate[0], Material):
-        raise InputError(field_, f"must be a material and a thickness in m, not {as_toml(plate)}")
-    return number(field_, plate[1], LEAST_RADIUS, MOST_RADIUS)
 
 
 def _name(field_: str, value: object) -> str:

@@ -12,17 +12,16 @@ import lazy_loader
 from fastpin.moved import with_moved
 
 
-def _sessions() -> Any:
+def _wing(name: str) -> Any:
     import fastpin.sessions
-
-    return fastpin.sessions
-
-
-def _wear_lives() -> Any:
     import fastpin.wear_lives
 
-    return fastpin.wear_lives
+    return getattr(fastpin, name)
 
 
 _face, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
-__getattr__ = with_moved(with_moved(_face, _sessions, ("Session",)), _wear_lives, ("WearResult", "WornCycle"))
+__getattr__ = with_moved(
+    with_moved(_face, lambda: _wing("sessions"), ("Session",)),
+    lambda: _wing("wear_lives"),
+    ("WearResult", "WornCycle"),
+)

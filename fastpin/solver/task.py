@@ -47,7 +47,7 @@ log = logging.getLogger(__name__)
 
 Followed = TypeVar("Followed")
 
-Tries = Generator[tuple[Grid, bool], SolveError, None]
+Attempts = Generator[tuple[Grid, bool], SolveError, None]
 """Grids on which a history is tried, and whether strictly. The answer to each is the error with which it ended."""
 
 LEAST_LOAD = 1e-50
@@ -132,7 +132,7 @@ class Task:
         progress: RunProgress | None = None,
         unfit: Unfit | None = None,
         arcs: Callable[[], Iterable[Grid]] | None = None,
-    ) -> Tries:
+    ) -> Attempts:
         """Yield the grids on which the history is tried, until it is followed from no load to its end.
 
         1. Equally spaced nodes: those of the user, or nodes on the arc that a coarse run chooses. Wider arcs follow, up
@@ -259,7 +259,7 @@ class Task:
         return progress
 
 
-def first_followed(tries: Tries, follow: Callable[[Grid, bool], Followed]) -> Followed:
+def first_followed(tries: Attempts, follow: Callable[[Grid, bool], Followed]) -> Followed:
     """Follow a history on one grid after the other, until it is followed to its end. Return what `follow` returns.
 
     Raises
@@ -276,7 +276,7 @@ def first_followed(tries: Tries, follow: Callable[[Grid, bool], Followed]) -> Fo
         attempt = tries.send(lost)
 
 
-def wider_arcs(arcs: Iterable[Grid], strict: bool = True) -> Tries:
+def wider_arcs(arcs: Iterable[Grid], strict: bool = True) -> Attempts:
     """Yield one arc after the other, until the contact keeps clear of its ends.
 
     Raises

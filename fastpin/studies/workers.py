@@ -30,7 +30,7 @@ from fastpin.runtime.jit import limit_to_one_thread
 from fastpin.runtime.threads import in_one_thread
 from fastpin.solver import SolveError, solve
 from fastpin.solver.result import Result, without_restart
-from fastpin.storage import store
+from fastpin.storage import layout, store
 from fastpin.studies.index import Index
 from fastpin.studies.outcomes import OutcomeValue, check_loadable, pickled, values_in_worker
 from fastpin.studies.plan import Plan
