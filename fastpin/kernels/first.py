@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.kernels import cauchy, conjugate, half_line, held, held_table, influence, power_laws
+from fastpin.kernels import cauchy, conditions, conjugate, half_line, held, held_table, influence, power_laws
 from fastpin.kernels.arrays import Contact, ContactValues, Equations, LoadTerms, Queue, RightSides, Tableau
 from fastpin.runtime import beside
 
@@ -18,7 +18,7 @@ from fastpin.runtime import beside
 def kernels() -> list[tuple[Any, ...]]:
     """Kernels before arguments of the types of a first run: that of the first process, then those of the second one.
 
-    ``value_errors`` and ``end_places`` are interpreted until they are stored.
+    The four after the table are interpreted until they are stored. As Python they take longest of such kernels.
     """
     line, table, cube = (np.zeros((2,) * k) for k in (1, 2, 3))
     columns, whole, places = np.asfortranarray(table), line.astype(np.int64), table.astype(np.int64)
@@ -32,13 +32,15 @@ def kernels() -> list[tuple[Any, ...]]:
         (held.step, True, whole, *matrices, contact, tableau, load, queue, line > 0.0, 0.0, 0.0, 0, 0, values),
         (influence.fill_columns, line, line, line, line, 0.0, 0.0, cube, cube[:, 0], cube[:, 0]),
         (held_table.fill, table, 0, 0, table, table, table, columns),
+        (conditions.residuals, matrices[1], values, line, line, line, line, line),
+        (half_line.end_places, line, places, table, cube, table),
+        (half_line.solve, line, 0, table, cube, line, table),
         (half_line.value_errors, line, places, table, cube, line, line),
         (cauchy.cauchy, line, line, True, table, 0, places, row, line, block, rows),
         (cauchy.grow, table, 0, line, line, table, places, row, line, block),
         (conjugate.edge, line, line, table, 0, places, table, table, table),
         (conjugate.gather, table, places, line, table, table, table, table),
         (power_laws.evaluate, line, 0j, row, line),
-        (half_line.end_places, line, places, table, cube, table),
     ]
 
 

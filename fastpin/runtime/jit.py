@@ -38,7 +38,7 @@ C_ORDER, F_ORDER, ALIGNED, WRITEABLE = 0x1, 0x2, 0x100, 0x400
 LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 """Bits of ``ndarray.flags.num`` on which compiled code depends."""
 
-PATIENCE = 0.05
+PATIENCE = 0.1
 """Processor time for which a kernel of :func:`late` runs as Python before a process compiles it, s."""
 
 logger = logging.getLogger("fastpin.compiler")
