@@ -33,11 +33,10 @@ TAG = "py3-none-manylinux_2_17_x86_64"
 
 AS_SHIPPED = """
 import sys
-from fastpin.runtime import beside, jit, stored
+from fastpin.runtime import beside, stored
 level, *commands = sys.argv[1:]
 stored.own_environment = lambda: stored.environment_of(level)
 beside.start = lambda: None
-jit.PATIENCE = 0.0
 """
 """The first lines of a process whose code is stored for all processors of a level."""
 

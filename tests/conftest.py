@@ -8,7 +8,6 @@ import pytest
 
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.pages.content import Album, Picture
-from fastpin.runtime import jit
 from tests.support.approx import quicken
 from tests.support.drawing import outline_figures
 from tests.support.processes import hear_interrupts
@@ -20,7 +19,6 @@ pytest_plugins = ["tests.support.tiers", "tests.support.guard"]
 OUTLINED = ("cli", "pages", "project", "studies")
 """Folders of tests that need the content of figures. The tests of figures draw them."""
 
-jit.PATIENCE = 0.0  # kernels are compiled: tests compare them with Python
 quicken()
 gc.disable()  # until all tests are collected
 

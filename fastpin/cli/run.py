@@ -36,6 +36,7 @@ from fastpin.report.states import (
     stored_rows,
     way_on,
 )
+from fastpin.runtime import beside
 from fastpin.states import choice, extremes
 from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.storage.held import Held
@@ -61,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
     if start is not None:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
-    first.share()
+    beside.module = first.MODULE  # compiles in a second process during a first run
     with Bar(len(case.history), LOAD_POINTS) as progress_bar, terminal.as_options(_given(options)):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:

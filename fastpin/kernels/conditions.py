@@ -9,7 +9,7 @@ import numpy as np
 
 from fastpin.kernels.arrays import ContactValues
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.runtime.jit import compiled, inner, late
+from fastpin.runtime.jit import compiled, inner
 
 SMALLEST = 1e-300
 """Least scale of a relative error."""
@@ -60,7 +60,7 @@ def _balance(equations, values, forces, k):
     return forces[k] - carried, size
 
 
-@late
+@compiled
 def residuals(equations, values, elastic, loaded, forces, rest_gap, concentric_gap):
     """Largest relative violation of each contact condition.
 
@@ -320,7 +320,7 @@ def settle(tableau, updates, operator, equations, contact, sides, settled):
     return error, before, traction, gap
 
 
-@late
+@compiled
 def wanted_status(friction, solution, start_slip, rest_gap, tolerance, wanted):
     """Set `wanted` (n,) to the statuses of a solution, changed where the solution breaks a condition.
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.runtime.jit import inner, late
+from fastpin.runtime.jit import compiled, inner
 
 MOST_UNKNOWNS = 48
 """Unknown tractions, at most, for which this takes less time than LAPACK."""
@@ -56,7 +56,7 @@ def _eliminate(matrix):
             matrix[k, column] /= matrix[k, k]
 
 
-@late
+@compiled
 def solve_few(operator, equations, loaded, forces, rest_gap, stuck_slip, width, solution):
     """Solve for tractions and motion under given statuses.
 

@@ -23,7 +23,7 @@ import math
 
 import numpy as np
 
-from fastpin.runtime.jit import inner, late
+from fastpin.runtime.jit import compiled, inner
 
 TERMS = 6
 """Most terms of a fit at one end."""
@@ -101,7 +101,7 @@ def _product(a, b, first):
     return (s0 + s1) + (s2 + s3)
 
 
-@late
+@compiled
 def exponential(series, found):
     """Fill `found` (n,) with the coefficients of the exponential of a power series, from those of `series` (n,)."""
     found[0] = math.exp(series[0])
@@ -199,8 +199,8 @@ def _rotate(a, b, also_a, also_b):
     ratio = 0.5 * (size_b - size_a) / part
     if abs(ratio) > NO_TURN:
         return True
-    tangent = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + math.sqrt(1.0 + ratio * ratio))
-    cosine = 1.0 / math.sqrt(1.0 + tangent * tangent)
+    tangent = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + math.sqrt(1.0 + ratio**2))
+    cosine = 1.0 / math.sqrt(1.0 + tangent**2)
     sine = cosine * tangent
     for i in range(a.size):
         a[i], b[i] = cosine * a[i] - sine * b[i], sine * a[i] + cosine * b[i]
@@ -234,34 +234,15 @@ def _pseudo_invert(A, diagonal, inverse):
     inverse[:] = 0.0
     for k in range(n):
         square = _product(columns[k], columns[k], 0)
-        if square > SMALLEST * SMALLEST * largest:
+        if square > SMALLEST**2 * largest:
             for i in range(n):
                 for j in range(n):
                     inverse[i, j] += turns[k, i] * columns[k, j] / square
 
 
-@late
-def solve(values, degree, ends, tables, coefficients, spread):
-    """Fit the values of a window.
-
-    Parameters
-    ----------
-    values : ndarray, shape (m,)
-    degree : int
-        Degree of the polynomial; -1 for none.
-    ends : ndarray, shape (e, 5)
-    tables : ndarray, shape (t, LAW + 1, TERMS)
-    coefficients : ndarray, shape (n,)
-        Output: the coefficients of the polynomial, then those of each end.
-    spread : ndarray, shape (n, n)
-        Output: the norm of a row times this matrix is the amplification of the errors of the values in the number that
-        the row gives from the coefficients.
-
-    Returns
-    -------
-    float
-        Standard error of a value, a little enlarged if there are few nodes beyond the unknowns.
-    """
+@inner
+def _solve(values, degree, ends, tables, coefficients, spread):
+    """See :func:`solve`."""
     m, n = values.size, coefficients.size
     A, diagonal, sizes = np.empty((n + 1, m)), np.empty(n), np.empty(n)
     _fill(degree, ends, tables, A)
@@ -288,7 +269,7 @@ def solve(values, degree, ends, tables, coefficients, spread):
             left = diagonal[i] * coefficients[i] - A[n, i]
             for k in range(i + 1, n):
                 left += A[k, i] * coefficients[k]
-            misfit += left * left
+            misfit += left**2
     for k in range(n):
         coefficients[k] /= sizes[k]
         for i in range(n):
@@ -374,22 +355,9 @@ def _row(x, last, degree, ends, tables, matches, row):
         first += count
 
 
-@late
-def match(degree, ends, tables, coefficients, matches, levers):
-    """Find the places of the ends: the first power of the distance from the place is 0.
-
-    Parameters
-    ----------
-    degree : int
-    ends, tables, coefficients : ndarray
-        As for :func:`solve`.
-    matches : ndarray, shape (e, 3)
-        Output for each end: its place, NaN if that is not plausible; the point from which distances count, which is
-        the place, or half a node distance outwards; and the least power, 0 or 1. Without a plausible place there is
-        the first power, too.
-    levers : ndarray, shape (e, n)
-        Output: change of each place for a unit of each coefficient.
-    """
+@inner
+def _match_all(degree, ends, tables, coefficients, matches, levers):
+    """See :func:`match`."""
     first = degree + 1
     levers[:] = 0.0
     for e in range(ends.shape[0]):
@@ -408,11 +376,11 @@ def _norm_of(row, spread):
         part = 0.0
         for k in range(row.size):
             part += row[k] * spread[k, i]
-        square += part * part
+        square += part**2
     return math.sqrt(square)
 
 
-@late
+@compiled
 def least_squares(columns, values, coefficients):
     """Fit `values` (m,) by independent columns, shape (m, n). Return the standard error of the first coefficient.
 
@@ -433,7 +401,51 @@ def least_squares(columns, values, coefficients):
     return math.sqrt(misfit / spare) * (1.0 + 10.0 / spare) * math.sqrt(_product(inverse[0], inverse[0], 0))
 
 
-@late
+@compiled
+def solve(values, degree, ends, tables, coefficients, spread):
+    """Fit the values of a window.
+
+    Parameters
+    ----------
+    values : ndarray, shape (m,)
+    degree : int
+        Degree of the polynomial; -1 for none.
+    ends : ndarray, shape (e, 5)
+    tables : ndarray, shape (t, LAW + 1, TERMS)
+    coefficients : ndarray, shape (n,)
+        Output: the coefficients of the polynomial, then those of each end.
+    spread : ndarray, shape (n, n)
+        Output: the norm of a row times this matrix is the amplification of the errors of the values in the number that
+        the row gives from the coefficients.
+
+    Returns
+    -------
+    float
+        Standard error of a value, a little enlarged if there are few nodes beyond the unknowns.
+    """
+    return _solve(values, degree, ends, tables, coefficients, spread)
+
+
+@compiled
+def match(degree, ends, tables, coefficients, matches, levers):
+    """Find the places of the ends: the first power of the distance from the place is 0.
+
+    Parameters
+    ----------
+    degree : int
+    ends, tables, coefficients : ndarray
+        As for :func:`solve`.
+    matches : ndarray, shape (e, 3)
+        Output for each end: its place, NaN if that is not plausible; the point from which distances count, which is
+        the place, or half a node distance outwards; and the least power, 0 or 1. Without a plausible place there is
+        the first power, too.
+    levers : ndarray, shape (e, n)
+        Output: change of each place for a unit of each coefficient.
+    """
+    _match_all(degree, ends, tables, coefficients, matches, levers)
+
+
+@compiled
 def series(at, degree, ends, tables, matches, rows):
     """Fill `rows` (terms - 1, n), zeros, with the power series at the end number `at` of the coefficients of a fit.
 
@@ -454,7 +466,7 @@ def series(at, degree, ends, tables, matches, rows):
             factor *= origin / (p - q + 1)
 
 
-@late
+@compiled
 def evaluate(x, last, degree, ends, tables, matches, rows):
     """Fill `rows` (k, n) with the continuous functions of the coefficients at the places `x` (k,).
 
@@ -464,7 +476,7 @@ def evaluate(x, last, degree, ends, tables, matches, rows):
         _row(x[i], last, degree, ends, tables, matches, rows[i])
 
 
-@late
+@compiled
 def end_places(values, tries, ends, tables, found):
     """The place of the first end of each of many fits, and its standard error.
 
@@ -482,12 +494,12 @@ def end_places(values, tries, ends, tables, found):
         first, n = tries[t, FIRST], _unknowns(degree, own)
         coefficients, spread, levers = np.empty(n), np.empty((n, n)), np.empty((own.shape[0], n))
         matches = np.empty((own.shape[0], 3))
-        scatter = solve(values[first : first + tries[t, COUNT]], degree, own, tables, coefficients, spread)
-        match(degree, own, tables, coefficients, matches, levers)
+        scatter = _solve(values[first : first + tries[t, COUNT]], degree, own, tables, coefficients, spread)
+        _match_all(degree, own, tables, coefficients, matches, levers)
         found[t, 0], found[t, 1] = matches[0, 0], scatter * _norm_of(levers[0], spread)
 
 
-@late
+@compiled
 def value_errors(values, tries, ends, tables, at, found):
     """The standard error of the fitted function of each of many fits.
 
@@ -506,8 +518,8 @@ def value_errors(values, tries, ends, tables, at, found):
         first, count, n = tries[t, FIRST], tries[t, COUNT], _unknowns(degree, own)
         coefficients, spread, levers = np.empty(n), np.empty((n, n)), np.empty((own.shape[0], n))
         matches, row, beside = np.empty((own.shape[0], 3)), np.empty(n), np.empty(n)
-        scatter = solve(values[first : first + count], degree, own, tables, coefficients, spread)
-        match(degree, own, tables, coefficients, matches, levers)
+        scatter = _solve(values[first : first + count], degree, own, tables, coefficients, spread)
+        _match_all(degree, own, tables, coefficients, matches, levers)
         x = own[0, NODE] + own[0, INWARDS] * matches[0, 0] if math.isnan(at[t]) else at[t]
         if math.isnan(x):
             found[t] = np.nan

@@ -216,7 +216,7 @@ def hat_cauchy(u, h_left, h_right):
 
 
 @compiled
-def fill_columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
+def _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
     """Run the loops of :func:`log_columns`. The `series` come from :func:`_hat_series`."""
     m = seen.size
     sin_seen, cos_seen = np.empty(m), np.empty(m)
@@ -313,7 +313,7 @@ def log_columns(
     direct, cross : ndarray, shape (m, k), output
     """
     series = _hat_series(h_left, h_right, ratio)
-    fill_columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross)
+    _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross)
 
 
 @compiled

@@ -7,14 +7,14 @@ import math
 import numpy as np
 
 from fastpin.kernels.half_line import least_squares
-from fastpin.runtime.jit import compiled, late
+from fastpin.runtime.jit import compiled
 
 FIRST, COUNT, DEGREE, DECAYING = range(4)
 """Columns of windows: nodes that are left out, number of nodes, degree of the polynomial, whether x^(a - 2) is fitted.
 """
 
 
-@late
+@compiled
 def fit(x, values, exponent, turns, windows, series):
     """Fit x^a (c0 + c1 x + ...) in each window, and keep the fit with the smallest error. Return it and its last x.
 

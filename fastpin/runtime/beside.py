@@ -7,7 +7,6 @@ import functools
 import os
 import select
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 from fastpin.runtime.threads import cores
@@ -16,9 +15,6 @@ CODE = "import runpy, sys; sys.path.append(sys.argv[1]); runpy.run_module(sys.ar
 
 module: str | None = None
 """The module that the second process runs, as soon as this one compiles a kernel and stores it. None: no process."""
-
-meanwhile: dict[object, Callable[[], None]] = {}
-"""Work of this process while the second one compiles a kernel, by the kernel."""
 
 
 @functools.cache

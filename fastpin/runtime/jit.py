@@ -10,11 +10,9 @@ from __future__ import annotations
 
 import functools
 import logging
-import math
 import os
 import sys
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -38,9 +36,6 @@ C_ORDER, F_ORDER, ALIGNED, WRITEABLE = 0x1, 0x2, 0x100, 0x400
 LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 """Bits of ``ndarray.flags.num`` on which compiled code depends."""
 
-PATIENCE = 0.1
-"""Processor time for which a kernel of :func:`late` runs as Python before a process compiles it, s."""
-
 logger = logging.getLogger("fastpin.compiler")
 
 _lock = threading.RLock()
@@ -53,19 +48,15 @@ class Kernel(KernelSource):
     ----------
     inner : bool
         Whether only kernels call it. The wrapper for calls from Python is then never compiled.
-    spent : float
-        Processor time for which it has run as Python, s; inf if it is to be compiled at once.
     """
 
-    def __init__(self, function: Callable[..., Any], inner: bool, spent: float = math.inf) -> None:
+    def __init__(self, function: Callable[..., Any], inner: bool) -> None:
         super().__init__(function)
         functools.update_wrapper(self, function)
-        self.inner, self.spent = inner, spent
+        self.inner = inner
         self._entries: dict[tuple[Any, ...], Callable[..., Any]] = {}
 
     def __call__(self, *arguments: Any) -> Any:
-        if self.inner:  # a kernel that runs as Python calls it
-            return self.py_func(*arguments)
         try:
             types = argument_types(arguments)
         except KeyError:  # types that no kernel of fastpin takes: the compiler decides
@@ -79,7 +70,6 @@ class Kernel(KernelSource):
 
     def prepare(self, *arguments: Any) -> None:
         """Load or compile the machine code for arguments of these types. Nothing is called."""
-        self.spent = math.inf
         self._find(argument_types(arguments), arguments)
 
     @functools.cached_property
@@ -89,6 +79,8 @@ class Kernel(KernelSource):
 
     def _find(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
         """Load the machine code for these arguments, or compile it."""
+        if self.inner:
+            raise TypeError(f"{self.py_func.__qualname__} is called by kernels only")
         return undisturbed(lambda: self._load_or_compile(types, arguments))
 
     def _load_or_compile(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
@@ -96,33 +88,15 @@ class Kernel(KernelSource):
             if types not in self._entries:
                 place = stored.place_of(self, signature(types)) if CACHED else None
                 entry: Any = place and (place.load() or stored.load_shipped(self, signature(types)))
-                if entry is None and place and self.spent < PATIENCE:
-                    entry = functools.partial(self.interpret, types)
                 if entry is None:
                     _announce()
-                    if place and machine.CAN_LOAD and beside.start() and self in beside.meanwhile:
-                        beside.meanwhile[self]()
-                        entry = place.load()
-                if entry is None:
+                    if place and machine.CAN_LOAD:
+                        beside.start()
                     entry, code = machine.compile_kernel(self, arguments)
                     if place and code:
                         place.save(code)
                 self._entries[types] = entry
             return self._entries[types]
-
-    def interpret(self, types: tuple[Any, ...], *arguments: Any) -> Any:
-        """Run the function as Python. After :data:`PATIENCE` the next call compiles it."""
-        began = time.thread_time()
-        try:
-            with np.errstate(all="ignore"):
-                return self.py_func(*arguments)
-        except (ArithmeticError, ValueError):  # compiled code goes on with inf or nan
-            self.spent = math.inf
-        finally:
-            self.spent += time.thread_time() - began
-            if self.spent >= PATIENCE:
-                self._entries.pop(types, None)
-        return self(*arguments)
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -130,20 +104,16 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     return function if PLAIN else Kernel(function, inner=False)
 
 
-def late(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a kernel after :data:`PATIENCE` only: the decorator of kernels with few numbers.
-
-    Most runs call them for a few milliseconds, and compiling takes seconds. As Python they give the same bits: they use
-    numbers and functions of C, and multiply in place of squares. ``tests/kernels/test_late.py`` checks it.
-    """
-    return function if PLAIN else Kernel(function, inner=False, spent=0.0)
-
-
 def inner(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a kernel that only kernels call: the decorator of these.
 
     The wrapper for calls from Python is left out. With arguments of many arrays the wrapper takes longer to compile
     than the kernel.
+
+    Raises
+    ------
+    TypeError
+        When it is called from Python.
     """
     return function if PLAIN else Kernel(function, inner=True)
 

@@ -321,7 +321,7 @@ def test_plain_python_fills_agree_with_compiled_ones(grid, uniform, monkeypatch)
         uniform = False
     compiled = *matrices(grid, uniform), operator(grid, uniform, 0.7)
     pv = cauchy(grid, uniform)
-    for name in ("fill_columns", "cauchy_columns"):
+    for name in ("_columns", "cauchy_columns"):
         monkeypatch.setattr(influence, name, python(getattr(influence, name)))
     plain = *matrices(grid, uniform), operator(grid, uniform, 0.7)
     for one, other in zip(plain, compiled, strict=True):

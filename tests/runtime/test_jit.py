@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.kernels import influence
+from fastpin.kernels import exchange, influence
 from fastpin.runtime import jit, machine
 from tests.support import small_kernels
 from tests.support.processes import finished, python
@@ -135,9 +135,9 @@ def arguments_of_columns(rng: np.random.Generator) -> tuple[object, ...]:
 @keeps
 def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
     arguments = arguments_of_columns(np.random.default_rng(1))
-    entry, code = machine.compile_kernel(influence.fill_columns, arguments)
+    entry, code = machine.compile_kernel(influence._columns, arguments)
     assert isinstance(code, machine.Code)
-    loaded = machine.load(code, "fill_columns", "fastpin.kernels.influence")
+    loaded = machine.load(code, "_columns", "fastpin.kernels.influence")
     entry(*arguments)
     direct, cross = arguments[-2:]
     expected = direct.copy(), cross.copy()
@@ -199,6 +199,11 @@ def test_compiling_is_announced_once(monkeypatch: pytest.MonkeyPatch, caplog: py
     with caplog.at_level("INFO", "fastpin.compiler"):
         assert (kernel(1), kernel(1.5), kernel(2)) == (2, 3.0, 4)
     assert [record.message for record in caplog.records] == ["compiling the solver; this takes some seconds"]
+
+
+def test_only_kernels_call_inner_kernels() -> None:
+    with pytest.raises(TypeError, match="_column is called by kernels only"):
+        exchange._column(np.zeros(1))
 
 
 AFTER = """
