@@ -9,15 +9,9 @@ import numpy as np
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model import LOADS, Problem
+from fastpin.model.acting import check_friction_changes, check_largest, check_loads
 from fastpin.model.checks import any_text, as_toml, number, true_or_false, whole_number
-from fastpin.model.history import (
-    MAX_CORNERS,
-    MOST_POINTS,
-    LoadHistory,
-    check_friction_changes,
-    check_largest,
-    check_loads,
-)
+from fastpin.model.history import MAX_CORNERS, MOST_POINTS, LoadHistory
 from fastpin.model.recorded import turning_corners
 from fastpin.tables.columns import COLUMN_KEYS, COUNT, ColumnChoice, column_choice
 from fastpin.tables.files import MAX_ROWS, history_from_csv

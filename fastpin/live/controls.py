@@ -12,8 +12,9 @@ from fastpin.bodies.body import MOST_DRY, Control, PlateBody
 from fastpin.bodies.kinds import PIN_CONTROLS, PLATE_CONTROLS, SOLID_PIN, TITLES, changed_pin, changed_plate
 from fastpin.errors import InputError
 from fastpin.model import InitialGap, Laminate, Problem, Profile, angles, checks, loads, synonyms
+from fastpin.model.acting import check_loads
 from fastpin.model.fields import FIELDS
-from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
 from fastpin.model.profile_terms import Term
 from fastpin.model.units import DEGREE, PASCAL, Unit, units

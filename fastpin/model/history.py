@@ -30,8 +30,8 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
-from fastpin.model.loads import FRICTION_CHANGE, LOAD_KIND, LOADS, REMOTE, THERMAL, Corner, check_corner, load_index
-from fastpin.model.problem import Problem, checked_thickness
+from fastpin.model.loads import LOAD_KIND, LOADS, Corner, check_corner, load_index
+from fastpin.model.problem import checked_thickness
 from fastpin.model.synonyms import explains_keywords
 
 POINTS = 24
@@ -42,9 +42,6 @@ MAX_CORNERS = 100_000_000
 
 MOST_POINTS = 100_000
 """Most corners in a harmonic cycle."""
-
-MOST_LOAD = 1e50
-"""Limit of every load, in parts of the load that strains the bodies by about 1. Squares of all results are numbers."""
 
 CycleKey = tuple[int, int]
 """A cycle of a history: the block, counted from 0, and the inner cycle, counted from 1; 0 is the block itself."""
@@ -526,52 +523,6 @@ def _locate(history: LoadHistory, index: int) -> tuple[int, int]:
     begins = history._begins
     block_index = bisect.bisect_right(begins, index) - 1
     return block_index, index - begins[block_index]
-
-
-def check_loads(problem: Problem, history: LoadHistory) -> None:
-    """Raise :class:`InputError` if a load of `history` can't act in `problem`, or is beyond :data:`MOST_LOAD`."""
-    check_largest(problem, history.largest)
-    check_friction_changes(problem, history)
-
-
-def check_friction_changes(problem: Problem, history: LoadHistory) -> None:
-    """Raise :class:`InputError` if the friction of `problem` can't change as in `history`."""
-    given = np.concatenate([block.given[:, FRICTION_CHANGE] for block in history.blocks])
-    low, high = np.fmin.reduce(given, initial=0.0), np.fmax.reduce(given, initial=0.0)
-    problem.check_friction_change(float(low), float(high))
-
-
-def check_largest(problem: Problem, largest: Mapping[str, float]) -> None:
-    """Check loads as :func:`check_loads`. `largest` has the largest value of every load that is given."""
-    natural = problem.natural_loads()
-    for name, value in largest.items():
-        most = MOST_LOAD * natural[LOAD_KIND[name]]
-        number(name, value, -most, most)
-    for name in (LOADS[place] for place in REMOTE):
-        if largest.get(name, 0.0) != 0.0:
-            problem.plate_body.lug.check_remote(name)
-    for name in (LOADS[place] for place in THERMAL):
-        problem.check_temperature(name, largest.get(name, 0.0))
-    if problem.pin_load == "body" and largest.get("M", 0.0) != 0.0:
-        raise InputError(
-            "M",
-            "a body-loaded pin can't carry a moment: uniform body forces leave the moment's singularity at the centre "
-            '(section 4 of the paper); use pin_load = "centre"',
-        )
-    if problem.held and "M" in largest:
-        raise InputError(
-            "M", f'the moment is a reaction where rotation = "{problem.rotation}"; leave it out or let the pin rotate'
-        )
-    if not problem.held and "rotation" in largest:
-        raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed" or "spring"')
-    for place, is_driven in enumerate(problem.driven):
-        force, displacement = ("Q", "P")[place], ("ux", "uy")[place]
-        if (force if is_driven else displacement) not in largest:
-            continue
-        if is_driven:
-            raise InputError(force, f'the force is a reaction where drive = "{problem.drive}"; give {displacement}')
-        words = f'a displacement can be prescribed only where drive = "{displacement}" or "both"; give {force}'
-        raise InputError(displacement, words)
 
 
 def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | None) -> np.ndarray:

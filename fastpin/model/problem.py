@@ -42,9 +42,6 @@ Rotation = Literal["free", "fixed", "spring"]
 LEAST_RADIUS, MOST_RADIUS = 1e-30, 1e30
 """Limits of the hole radius, m. Squares of dimensional results are then still numbers, in any units."""
 
-MOST_STRAIN = 0.1
-"""Largest strain of a body by a temperature."""
-
 MOST_GAP = 0.1
 """Largest initial gap, in parts of R. A larger one is no small change of a circle."""
 
@@ -468,46 +465,11 @@ class Problem:
             return np.full(number_array("theta", theta).shape, self.friction)
         return np.maximum(self.friction.at(theta, self.hole_radius), 0.0)  # a spline may pass below zero in between
 
-    def check_friction_change(self, low: float, high: float) -> None:
-        """Raise :class:`InputError` if the friction can't change by parts from `low` to `high`."""
-        low, high = number("friction_change", low), number("friction_change", high)
-        if low == high == 0.0:
-            return
-        if self.frictionless:
-            raise InputError("friction_change", "there is no friction that could change: friction = 0")
-        if low <= -1.0:
-            raise InputError("friction_change", f"must be more than -1, which would leave no friction, not {low:g}")
-        if (1.0 + high) * self.most_friction > MOST_FRICTION:
-            largest = f"{high:g} makes the coefficient of friction {(1.0 + high) * self.most_friction:g}"
-            raise InputError("friction_change", f"{largest}; it must be at most {MOST_FRICTION:g}")
-
     @property
     def expansions(self) -> tuple[float, float] | None:
         """Coefficients of thermal expansion of the pin, and of the body round it, 1/K; None if one is not known."""
         pin, hole = self.pair.pin.expansion, self.surfaces.plate.expansion
         return None if pin is None or hole is None else (pin, hole)
-
-    def check_temperature(self, name: str, largest: float) -> None:
-        """Raise :class:`InputError` if the load `name`, a temperature of this size, can't act."""
-        if largest == 0.0:
-            return
-        if self.dimensionless:
-            raise InputError(name, "has no meaning with load_parameter: the bodies have no sizes")
-        if why := self.plate_body.hindered(self.pair):
-            raise InputError(name, why)
-        if not self.pair.plate.is_isotropic:
-            raise InputError(name, "a laminate has no coefficient of thermal expansion here")
-        bodies = {"pin": self.pair.pin, "plate": self.pair.plate}
-        if self.plate_body.bush is not None:
-            bodies["bush"] = self.plate_body.bush.material
-        for body, material in bodies.items():
-            if material.expansion is None:
-                raise InputError(
-                    name, f"needs the coefficient of thermal expansion of the {body}: its key expansion, 1/K"
-                )
-            if abs(material.expansion * largest) > MOST_STRAIN:
-                words = f"{largest:g} K strain the {body} by {material.expansion * largest:g}"
-                raise InputError(name, f"{words}; at most {MOST_STRAIN:g} are allowed")
 
     def gap_at(self, theta: np.ndarray) -> np.ndarray:
         """Initial gap beside the clearance and two derivatives at the angles `theta` (...), rad, m, shape (3, ...)."""

@@ -17,10 +17,11 @@ import numpy as np
 from fastpin.elasticity.large import build_system
 from fastpin.elasticity.system import IN_PLACE, System
 from fastpin.errors import InputError
+from fastpin.model.acting import MOST_LOAD, check_loads
 from fastpin.model.checks import as_toml, choice, true_or_false, whole_number
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
-from fastpin.model.history import MAX_CORNERS, MOST_LOAD, LoadHistory, check_loads
+from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.model.loads import ACTING, LOAD_KIND, LOADS, Corner, complete_load
 from fastpin.model.options import ALL_ROUND, KeepRule, SolveOptions
 from fastpin.model.problem import Problem

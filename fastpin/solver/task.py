@@ -28,10 +28,11 @@ from threadpoolctl import ThreadpoolController
 from fastpin.elasticity.large import build_system
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
+from fastpin.model.acting import check_loads
 from fastpin.model.case import check_arc, check_keep
 from fastpin.model.checks import as_toml, check_callable, instance
 from fastpin.model.grid import Grid
-from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE, THERMAL, Corner, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem

@@ -11,8 +11,9 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model import checks
+from fastpin.model.acting import check_loads
 from fastpin.model.grid import MAX_NODES
-from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, Corner
 from fastpin.model.problem import Problem
 from fastpin.solver.task import as_history

@@ -20,11 +20,11 @@ from fastpin.casefile.profiles import PROFILES, varied
 from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
+from fastpin.model.acting import check_loads
 from fastpin.model.case import Case, beside_of
 from fastpin.model.checks import number
 from fastpin.model.fields import FIELDS
 from fastpin.model.growth import law_entries
-from fastpin.model.history import check_loads
 from fastpin.model.laminate import LAMINATE_KEYS, MODULI
 from fastpin.model.loads import ACTING, LOAD, LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, NUMBERS, Material

@@ -33,8 +33,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
+from fastpin.model.acting import check_loads
 from fastpin.model.checks import instance, numbers
-from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.history import LoadHistory
 from fastpin.model.loads import check_corner
 from fastpin.model.problem import Problem
 

@@ -115,7 +115,7 @@ def test_a_life_that_ended_at_its_beginning_has_one_cycle_and_no_damage(result: 
 
 
 def test_what_is_no_life_with_cycles_is_refused(result: WearResult) -> None:
-    with pytest.raises(fastpin.InputError, match=r"result: must be a fastpin\.solver\.WearResult"):
+    with pytest.raises(fastpin.InputError, match=r"result: must be a fastpin\.wear_lives\.WearResult"):
         record_life([])  # type: ignore[arg-type]
     with pytest.raises(fastpin.InputError, match="result: there is no stored cycle to record"):
         record_life(replace(result, cycles=(), complete=False))

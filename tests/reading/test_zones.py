@@ -26,7 +26,7 @@ The largest error here is 0.18.
 def contact(grid, values):
     """The intervals of a contact of like bodies with these nodal pressures (n,)."""
     status = np.where(values > 0.0, STICK, OPEN)
-    return zones.contact_intervals(grid, status, values, isotropic_coupling(np.zeros(grid.size), 0.0))
+    return zones.contact_intervals(grid, status, values, isotropic_coupling(np.zeros(grid.size).tobytes(), 0.0))
 
 
 def half_circle(theta, start, stop):
@@ -99,7 +99,7 @@ def test_stick_zones_of_a_contact_all_round():
     sticking = (grid.theta < 1.0) | (grid.theta > 5.0)
     status[sticking] = STICK
     none, pressure = np.zeros(100), np.ones(100)
-    coupling = isotropic_coupling(none, 0.0)
+    coupling = isotropic_coupling(none.tobytes(), 0.0)
     marks = np.zeros(100, dtype=np.int8), np.full(100, np.nan)
     shear = np.where(sticking, 0.0, 1.0)
     nodes = ShearNodes(grid, pressure, shear, sticking, *marks, np.ones(100), coupling)

@@ -14,6 +14,7 @@ ABOVE_BODIES = tuple(
     f"model/{name}.py"
     for name in (
         "__init__",
+        "acting",
         "assessment",
         "case",
         "crack",

@@ -11,7 +11,8 @@ from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.reader import parse_case
 from fastpin.cli.main import main
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.acting import check_loads
+from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.studies.plan import parse_plan

@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 import fastpin
 from fastpin.casefile.reader import parse_case
 from fastpin.errors import CaseFileError, FastpinError, InputError, printable
+from fastpin.model.acting import check_loads
 from fastpin.model.case import Case, check_arc
-from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.history import LoadHistory
 from fastpin.model.loads import Corner
 from fastpin.model.options import SolveOptions
 from fastpin.model.profile import is_pair
