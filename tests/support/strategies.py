@@ -157,7 +157,9 @@ def corners(draw: st.DrawFn, problem: fastpin.Problem, most: int = 5) -> list[di
     """Corners of loads that a problem can carry, of the size that strains it by some thousandths."""
     natural = problem.natural_loads()
     kinds = fastpin.model.loads.LOAD_KIND
-    refused = {"M", "rotation", *(["friction_change"] if problem.frictionless else [])}
+    refused = {"M", "rotation", "temperature", "pin_temperature"}
+    if problem.frictionless:
+        refused.add("friction_change")
     for is_driven, force, displacement in zip(problem.driven, ("Q", "P"), ("ux", "uy"), strict=True):
         refused.add(force if is_driven else displacement)
     names = [name for name in LOADS if name not in refused]

@@ -20,7 +20,7 @@ from fastpin.elasticity.terms import body_terms
 from fastpin.errors import FastpinError
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
+from fastpin.model.loads import LOADS, THERMAL
 from fastpin.model.problem import Problem
 from fastpin.model.profile import InitialGap
 from fastpin.model.profile_terms import Crown, Flat, Harmonic
@@ -202,6 +202,8 @@ class Integrals:
         assert self.bodies is not None
         moved = np.zeros(self.theta.size, dtype=complex)
         for place, column in self.bodies.columns.items():
+            if place in THERMAL:  # the growth of the gap is given
+                continue
             unit = self.beta if LOADS[place] in "PQ" else self.beta * self.problem.hole_radius
             half = column.size // 2
             for k in range(-half, half + 1):
