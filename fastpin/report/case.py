@@ -207,4 +207,5 @@ def _material(material: Material, dimensionless: bool) -> str:
     ]
     strength = material.known_yield_strength
     yields = "" if strength is None else f"yields at {PASCAL.text(strength, 4)}"
-    return ", ".join(filter(None, [material.label, *moduli, material.direction_words, yields]))
+    expands = "" if material.expansion is None else f"expands by {material.expansion:.4g} per K"
+    return ", ".join(filter(None, [material.label, *moduli, material.direction_words, expands, yields]))
