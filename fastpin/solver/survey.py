@@ -198,12 +198,13 @@ class _Survey:
         self._last = places[0] if len(places) == 1 else None
 
     def _place(self, patch: np.ndarray) -> GapPlace:
-        """Middle and width of a patch of closed nodes."""
+        """Middle and width of a patch of closed nodes. It ends midway between its end nodes and the next ones."""
         left, right = self._system.grid.knots()
         theta = self._system.grid.theta
-        first, last = theta[patch[0]] + left[patch[0]], theta[patch[-1]] + right[patch[-1]]
-        width = (0.5 * (last - first)) % (2.0 * math.pi) or 2.0 * math.pi
-        return 0.5 * first + 0.5 * width, max(width, LEAST_WIDTH)
+        begin = 0.5 * (theta[patch[0]] + left[patch[0]])
+        end = 0.5 * (theta[patch[-1]] + right[patch[-1]])
+        width = (end - begin) % (2.0 * math.pi) or 2.0 * math.pi
+        return begin + 0.5 * width, max(width, LEAST_WIDTH)
 
     def _look_at_contact(self, finer: float) -> None:
         """Go to a grid that is dense where the contact is now, `finer` times the usual spacing."""
