@@ -153,9 +153,13 @@ def von_mises_peak(state: State, owner: str, edges_only: bool = False) -> MisesP
 
 
 def elastic_owners(problem: Problem) -> dict[str, Material]:
-    """The bodies of :data:`OWNERS` that are not rigid, with their materials, the bush first."""
+    """The bodies of :data:`OWNERS` that have a stress, with their materials, the bush first.
+
+    A bush as the pin of its seat has none there: its stress is that of its joint.
+    """
     materials = problem.joint.materials
-    return {owner: materials[owner] for owner in OWNERS[::-1] if owner in materials and not materials[owner].is_rigid}
+    elastic = [owner for owner in OWNERS[::-1] if owner in materials and not materials[owner].is_rigid]
+    return {owner: materials[owner] for owner in elastic if owner != "pin" or not problem.pin_body.is_bush}
 
 
 def yielding_owners(problem: Problem) -> dict[str, float]:
