@@ -39,8 +39,7 @@ TEXT: Schema = {"type": "string"}
 TRUTH: Schema = {"type": "boolean"}
 
 UNKNOWN: Schema = {"type": ["number", "null"]}
-
-"""Schemas of single values. NaN and infinity are null."""
+"""A number that may be NaN or infinite: null then."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

@@ -15,12 +15,11 @@ from fastpin.model.case import Case
 from fastpin.model.crack import CrackGrowth, crack_from
 from fastpin.model.growth import LAWS
 from fastpin.model.units import units
-from fastpin.storage.held_in_file import HeldInFile
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the growth of a crack, at one place or where a crack grows fastest, and draw it."""
-    case, held = storage.stored_case(options.result), HeldInFile(options.result)
+    case, held = storage.stored_case(options.result), storage.held_in_file.HeldInFile(options.result)
     stops = CrackStops.of(len(case.history), held.result.cycles, held.between, options.spectrum)
     check_outputs({"--output": options.output, "--csv": options.csv, "--json": options.json}, figures=("--output",))
     try:

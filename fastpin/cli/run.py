@@ -40,7 +40,6 @@ from fastpin.runtime import beside
 from fastpin.states import choice, extremes
 from fastpin.states.margins import Margin, over_yield, static_margins
 from fastpin.storage.held import Held
-from fastpin.storage.held_in_file import HeldInFile
 
 if TYPE_CHECKING:  # they import compiled code
     from fastpin.states.load_cycle import LoadCycle
@@ -219,7 +218,7 @@ def _check_outputs(options: argparse.Namespace) -> None:
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
     """Write the states of a stored run. Without a state, a file with this name belongs to another run."""
-    held = None if ended is not None and ended.result is None else HeldInFile(options.output)
+    held = None if ended is not None and ended.result is None else storage.held_in_file.HeldInFile(options.output)
     return RunReport(case, held, ended).write(options)
 
 

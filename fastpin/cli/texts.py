@@ -12,7 +12,6 @@ from fastpin.cli.options import parser
 from fastpin.cli.terminal import EXIT_OK, say
 from fastpin.errors import InputError
 from fastpin.model.doubts import doubts, warn_of, wear_doubts
-from fastpin.report.schema import json_schema
 
 
 def example(_: argparse.Namespace) -> int:
@@ -32,7 +31,7 @@ def check(options: argparse.Namespace) -> int:
 
 def schema(options: argparse.Namespace) -> int:
     """Print the schema."""
-    sys.stdout.write(json.dumps(json_schema(options.written_by), indent=2) + "\n")
+    sys.stdout.write(json.dumps(report.json_schema(options.written_by), indent=2) + "\n")
     return EXIT_OK
 
 

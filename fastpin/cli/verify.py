@@ -9,11 +9,9 @@ from functools import partial
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from fastpin import storage, verification
-from fastpin.assess import outputs
+from fastpin import assess, report, storage, verification
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, write_outputs
-from fastpin.report.schema import CHECKS
 from fastpin.runtime.threads import cores
 
 if TYPE_CHECKING:  # it imports NumPy
@@ -32,7 +30,7 @@ def run(options: argparse.Namespace) -> int:
     libraries = ", ".join(f"{name} {version}" for name, version in storage.versions().items())
     end = f"{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {cores()} cores"
     found = {"versions": storage.versions(), "cores": cores(), "seconds": seconds, "passed": code == EXIT_OK}
-    document = partial(outputs.whole_document, CHECKS, found | {"checks": checks}, {})
+    document = partial(assess.outputs.whole_document, report.schema.CHECKS, found | {"checks": checks}, {})
     lines = [*check_table(checks).split("\n"), "", end]
     return write_outputs([], options.json, document, lambda: lines) or code
 
@@ -46,7 +44,7 @@ def check_table(checks: Sequence[Check]) -> str:
         same = (check.topic, check.case) == above
         rows.append(("" if same else check.case, *_cells(check)))
         above = check.topic, check.case
-    first, *lines = outputs.aligned(rows, "llrrrrll")
+    first, *lines = assess.outputs.aligned(rows, "llrrrrll")
     units = "Dimensionless (R = F = beta* = 1): N and T in F/R, angles in rad, moments in F R, energies in F^2 beta*."
     text = [units, "", first]
     for topic, group in groupby(zip(checks, lines, strict=True), lambda pair: pair[0].topic):

@@ -2,6 +2,7 @@ from . import charts as charts
 from . import convergence as convergence
 from . import identify as identify
 from . import joints as joints
+from . import schema as schema
 from . import stress as stress
 from . import summary as summary
 from . import sweep as sweep

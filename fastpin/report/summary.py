@@ -175,8 +175,8 @@ def _quantity(name: str) -> Output:
     each = QUANTITIES[name]
     has_classes = bool(each.classes)
     return Output(
-        name, each.kind, lambda read: read.known(name, lambda: each.of(read.state)), "" if has_classes else each.kind,
-        classes=each.classes, optional=not has_classes,
+        name, each.kind, lambda read: read.known(name, lambda: QUANTITIES[name].of(read.state)),
+        "" if has_classes else each.kind, classes=each.classes, optional=not has_classes,
     )  # fmt: skip
 
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fastpin import reading
 from fastpin.errors import InputError
@@ -24,6 +23,9 @@ from fastpin.model.ties import is_top, top_angle
 from fastpin.states.curves import traction_patches, tractions_at
 from fastpin.states.quantities import QUANTITIES, intervals, matching_values, quantity, size, sizes, values, width
 from fastpin.states.state import ErrorBars, State
+
+if TYPE_CHECKING:  # it takes long to import
+    from numpy.typing import ArrayLike
 
 ORDER = 1.0
 """Assumed order of convergence.

@@ -1,3 +1,4 @@
+from . import held_in_file as held_in_file
 from .export import to_dataframe as to_dataframe
 from .export import to_xarray as to_xarray
 from .held_in_file import largest_pressure as largest_pressure

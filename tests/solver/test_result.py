@@ -152,7 +152,7 @@ def test_a_result_without_states_is_exported(similar):
         fastpin.solve(problem, [{"P": 1.0, "M": 1.0}], nodes=51)
     empty = raised.value.result
     assert len(empty) == 0
-    assert dict(empty.to_xarray().sizes) == {"state": 0, "theta": 51, "load_name": 10, "residual_name": 4}
+    assert dict(empty.to_xarray().sizes) == {"state": 0, "theta": 51, "load_name": 12, "residual_name": 4}
     frame = empty.to_dataframe()
     assert len(frame) == 0
     assert "peak_pressure" in frame.columns
