@@ -64,7 +64,6 @@ def test_page_is_whole_and_escapes_the_title(text: str) -> None:
     assert "Moments & <i>friction</i>" in page.text
 
 
-@pytest.mark.gate
 def test_page_has_plan_figures_runs_failed_runs_and_versions(text: str, folder: Path) -> None:
     page = Page(text)
     assert page.tags.count("svg") == 1
