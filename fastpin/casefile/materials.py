@@ -76,7 +76,7 @@ def read_material(
         if strength in section and _has_stresses(source, section, strength):
             given[strength] = section.checked(strength, positive)
     if "expansion" in section:
-        given["expansion"] = section.checked("expansion", checked_expansion)
+        given["expansion"] = section.checked("expansion", checked_expansion) or 0.0  # a faulty one is not missing
     material = _elastic(section, materials, may_be_rigid)
     if material is None:
         return None

@@ -9,7 +9,7 @@ harmless one, so that the rest is still checked.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from datetime import date
 from functools import partial
 from pathlib import Path
@@ -291,7 +291,8 @@ def _problem(
 ) -> Problem | None:
     """The problem. None if [contact] is missing, or pin_load, rotation or drive is wrong: the loads depend on them."""
     contact = source.section("contact", required=True)
-    pair = given or MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # replaces a wrong pair: the rest is checked
+    steel = replace(MATERIALS["steel"], expansion=0.0)
+    pair = given or MaterialPair(steel, steel)  # replaces a wrong pair: the rest is checked
     if not contact.present:
         read_bodies(source, folder, None, given, materials)
         return None

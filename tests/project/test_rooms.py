@@ -19,7 +19,7 @@ MOST = {
     "small private functions used once": 57,
     "constants of modules": 1_323,
     "hidden imports": 0,
-    "lines of code": 49_992,
+    "lines of code": 49_993,
     "lines of code of the core": 18_851,
     "files of the core": 138,
     "functions of the core": 1_984,

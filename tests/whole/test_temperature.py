@@ -231,6 +231,26 @@ def test_files_hold_temperatures_and_expansions(tmp_path):
     assert np.array_equal(found[-1].pressure, solved[-1].pressure)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "line", "fault"),
+    [
+        ("23.6e-6", "23.6", 8, "expansion: must lie between -0.001 and 0.001, not 23.6"),
+        ("72e9", '"72 GPa"', 6, 'E: must be a number, not "72 GPa"'),
+        ("nu = 0.33", 'material = "brass pot"', 6, "E can't be given together with material"),
+        ("expansion = 23.6e-6", "", 17, "needs the coefficient of thermal expansion of the plate"),
+    ],
+)
+def test_a_faulty_material_has_no_fault_of_its_temperature_too(tmp_path, old, new, line, fault):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE.strip().replace(old, new))
+    with pytest.raises(fastpin.CaseFileError) as raised:
+        fastpin.read_case(path)
+    found = raised.value.problems
+    assert found[0][0] == line
+    assert fault in found[0][1]
+    assert any("needs the coefficient" in words for _, words in found) == (new == "")
+
+
 def test_columns_of_degrees_need_their_zero(tmp_path):
     path = tmp_path / "loads.csv"
     path.write_text("P,T [C]\n1e6,20\n1e6,-30.5\n")
