@@ -214,7 +214,7 @@ def document(assessed: Assessed, over: Mapping[str, float]) -> dict[str, Any]:
 QUESTION = outputs.Question(
     words=lambda _, how: f"{', '.join(how.criteria).title()}, over {assessment_words(how)}",
     bar="damage of the spectrum",
-    failed="",  # never said: what is found holds the reason
+    failed="",  # is not needed: the damage holds the reason
     margin_names=("fatigue",),
     unvaried="changes no run of a sweep",
     keys=ASSESSMENT_KEYS,

@@ -253,7 +253,7 @@ UNITS = Output("units", of=lambda found: unit_names(found.problem), form=map_of(
 
 
 class Question(NamedTuple):
-    """A question that a case asks of its result. What is found is an object of its own class.
+    """A question that a case asks of its result. The answer is an object with a class of its own.
 
     Attributes
     ----------
@@ -273,7 +273,7 @@ class Question(NamedTuple):
         Outcomes of sweeps by name, pairs of an :class:`Output` and a callable ``read(result, how)``, which gives the
         subject of the output for the value of the section.
     find : callable
-        ``find(case, held, progress)``: what is found; None if it is not looked for. InputError says why there is none.
+        ``find(case, held, progress)``: the answer; None if it is not looked for. InputError says why there is none.
     judged : callable
         ``judged(result, how)``: what margins need of a whole result in a sweep.
     lines, document : callable

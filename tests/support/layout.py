@@ -315,7 +315,7 @@ def _calls_a_face(tree: Tree, one: Import) -> bool:
 
 
 def wings_apart(tree: Tree) -> Iterator[str]:
-    """The core imports no wing, but for faces inside functions and the faces of names that have moved there."""
+    """The core imports no file of a wing. It may import the public face of a wing, for names that have moved there."""
     for one in tree.imports:
         target = tree.target(one) or ""
         if _folder(one.file) in CORE and _folder(target) in WINGS and not target.endswith("/__init__.py"):
