@@ -36,7 +36,7 @@ extensions = [
     "no_network",
     "package_names",
 ]
-exclude_patterns = ["extensions", "gallery", "joss", "static"]
+exclude_patterns = ["beyond", "extensions", "gallery", "joss", "static"]
 nitpicky = True
 # Dashes only: quotes are those of a value.
 smartquotes_action = "D"

@@ -201,7 +201,7 @@ def add_plot(commands: Any) -> None:
     words = "; ".join(f"{name}: {kind.words}" if kind.words else name for name, kind in KINDS.items())
     defaults = "default: tractions; scar of a life of wear, sketch of a case file"
     plot.add_argument("kind", nargs="?", choices=tuple(KINDS), help=f"{words} ({defaults})")
-    words = "the figure (png, pdf or svg; default KIND.png), or the animation (gif, or mp4 by ffmpeg)"
+    words = "the figure (png, pdf or svg; default KIND.png)"
     _option(plot, "-o --output", "FIGURE", words, Path)
     _option(plot, "--csv", "FILE", "also write the numbers of the figure", Path)
     _add_interface(plot)
@@ -415,9 +415,7 @@ def add_joint(commands: Any) -> None:
 def add_paper(commands: Any) -> None:
     """Add ``paper``."""
     paper = _command(commands, "paper", "published", "paper", "compute and draw the figures of the paper")
-    words = "a figure's number, 3 to 17, or one of ten more: memory, sliding-onset, half-plane, rigid-pin, rings, "
-    words += "supports, hollow-pins, rectangular-lug, interference, regimes "
-    words += "(repeat the option for several figures; default: figures 3 to 17)"
+    words = "a figure's number, 3 to 17, or half-plane (repeat the option for several figures; default: 3 to 17)"
     _option(paper, "--figure", "NAME", words, action="append")
     paper.add_argument("--nodes", type=literal, help="number of nodes (default 400)")
     words = "png, pdf or svg (repeat the option for several formats; default: png)"

@@ -1,4 +1,4 @@
-"""What others publish, beside fastpin's numbers: the figures of the paper, others beyond it, and benchmarks.
+"""What others publish, beside fastpin's numbers: the figures of the paper, and benchmarks.
 
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """

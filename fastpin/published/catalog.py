@@ -1,4 +1,4 @@
-"""The figures of the paper, others beyond it, and the benchmarks: find them, compute them, write their files."""
+"""The figures of the paper, one of half-planes, and the benchmarks: find them, compute them, write their files."""
 
 from __future__ import annotations
 
@@ -12,19 +12,13 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, whole_number
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
 from fastpin.published import (
-    finite_bodies,
     fretting,
     half_plane,
     handbook_formulas,
-    interference,
     klang,
     loaded_pins,
-    memory,
     monotonic,
-    rectangular_lug,
     remote_stress,
-    rigid_pin,
-    sliding_onset,
     sweep,
     textbooks,
 )
@@ -34,20 +28,13 @@ from fastpin.version import __version__
 
 FIGURES: dict[str, PaperFigure] = {
     figure.name: figure
-    for subject in (
-        monotonic, sweep, fretting,
-        memory, sliding_onset, half_plane, rigid_pin, finite_bodies, rectangular_lug, interference,
-        remote_stress,
-    )
+    for subject in (monotonic, sweep, fretting, half_plane, remote_stress)
     for figure in subject.FIGURES
-}  # fmt: skip
+}
 """All figures by name. Each file of a subject has its figures in ``FIGURES``."""
 
 PAPER = tuple(sorted((name for name in FIGURES if name.isdecimal()), key=int))
 """Names of the figures of the paper (1 and 2 are sketches)."""
-
-BEYOND = tuple(name for name in FIGURES if name not in PAPER)
-"""Names of the figures that the paper does not have."""
 
 NODES = 400
 """Number of nodes unless another one is chosen."""
@@ -78,15 +65,14 @@ def figure_name(name: str | int) -> str:
     text = str(name).strip().lower()
     known = text.lstrip("0") if text.lstrip("0") in PAPER else text
     if known not in FIGURES:
-        beyond = ", ".join(BEYOND)
         raise InputError(
-            "figure", f"there is no {text!r}; there are {PAPER[0]} to {PAPER[-1]} of the paper, and {beyond}"
+            "figure", f"there is no {text!r}; there are {PAPER[0]} to {PAPER[-1]} of the paper, and half-plane"
         )
     return known
 
 
 def figure(name: str | int) -> PaperFigure:
-    """Return a figure: a number from 3 to 17, or a name of :data:`BEYOND`.
+    """Return a figure: a number from 3 to 17, or half-plane.
 
     Raises
     ------

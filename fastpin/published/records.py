@@ -41,7 +41,7 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True)
 class PaperFigure:
-    """A figure of the paper, or one beyond it.
+    """A figure of the paper, or one like them.
 
     Attributes
     ----------

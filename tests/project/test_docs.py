@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
 
+from docs.beyond.figures import FIGURES
 from fastpin.assess.wear import RACE_OUTCOMES, WEAR_OUTCOMES
 from fastpin.published import catalog
 from fastpin.studies import sweep
@@ -75,8 +76,8 @@ def test_every_statement_of_the_paper_has_a_number_a_verdict_and_a_test() -> Non
 
 def test_every_figure_is_shown() -> None:
     text = "".join(path.read_text(encoding="utf-8") for path in DOCUMENTS)
-    for name in (*catalog.PAPER, *catalog.BEYOND):
-        assert f"figures/{catalog.stem(name)}.png" in text
+    for name in (*map(catalog.stem, catalog.FIGURES), *FIGURES):
+        assert f"figures/{name}.png" in text
 
 
 def test_the_plan_of_the_sweeps_can_be_run(tmp_path: Path) -> None:

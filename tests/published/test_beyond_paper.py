@@ -5,9 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from docs.beyond import memory, sliding_onset
+from docs.beyond.figures import FIGURES
 from fastpin.assess.outputs import Curve
 from fastpin.model.problem import Problem
-from fastpin.published import catalog, memory, sliding_onset, tractions
+from fastpin.published import tractions
 from fastpin.solver.solving import solve
 from fastpin.verification.sliding import solve_sliding
 from tests.support.tiers import for_gate
@@ -25,7 +27,7 @@ def remembered() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(memory, "LOAD_PARAMETERS", (0.05, 0.2, 0.5, 2.0, 8.0))
         patch.setattr(memory, "AMPLITUDES", (0.5, 1.0, 1.25))
-        return catalog.figure("memory").compute(NODES)
+        return FIGURES["memory"].compute(NODES)
 
 
 def test_memory_is_largest_in_between_and_grows_with_the_amplitude(remembered):
@@ -95,7 +97,7 @@ def test_drawn(name, remembered, monkeypatch):
     monkeypatch.setattr(sliding_onset, "FRICTION", (0.1, 0.5))
     monkeypatch.setattr(sliding_onset, "SHOWN_FRICTION", (0.1, 0.3))
     monkeypatch.setattr(sliding_onset, "SHOWN_LOAD_PARAMETERS", (1.0,))
-    chosen = catalog.figure(name)
+    chosen = FIGURES[name]
     curves = remembered if name == "memory" else chosen.compute(41)
     figure = chosen.draw(curves)
     figure.draw_without_rendering()

@@ -5,9 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from docs.beyond import interference, regimes
+from docs.beyond.figures import FIGURES
 from fastpin.assess.outputs import Curve
 from fastpin.model.grid import Grid
-from fastpin.published import catalog, interference, remote_stress
+from fastpin.published import remote_stress
 from fastpin.solver.solving import solve
 from fastpin.verification.interference import release_stress
 from tests.support.tiers import for_gate
@@ -40,7 +42,7 @@ def test_without_friction_it_opens_at_pi():
 def loads() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(interference, "FRICTION", (0.0, 0.3, 1.0))
-        return catalog.figure("interference").compute(101)
+        return FIGURES["interference"].compute(101)
 
 
 def test_slip_comes_before_opening_and_both_come_later_with_more_friction(loads):
@@ -63,7 +65,7 @@ def test_tractions_at_the_stages(loads):
 
 
 def test_loads_are_drawn(loads):
-    figure = catalog.figure("interference").draw(loads)
+    figure = FIGURES["interference"].draw(loads)
     figure.draw_without_rendering()
     drawn = [[one for one in panel.lines if len(one.get_xdata()) > 2] for panel in figure.axes]
     assert [len(lines) for lines in drawn] == [3, 3, 4, 4]
@@ -79,14 +81,14 @@ def test_loads_are_drawn(loads):
 
 @pytest.mark.parametrize("turn", [0.0, 0.4, 1.0, 1.5, 2.0, 3.0, 3.9, 4.0, 5.0, 6.3, 7.0, 7.9])
 def test_directions_run_round_the_square(turn):
-    point = remote_stress.direction(turn)
+    point = regimes.direction(turn)
     assert np.abs(point).max() == pytest.approx(1.0)
-    assert remote_stress._turn(*(0.3 * point)) == pytest.approx(turn)
-    assert np.abs(remote_stress.direction(turn + 1e-6) - point).sum() == pytest.approx(1e-6)
+    assert regimes._turn(*(0.3 * point)) == pytest.approx(turn)
+    assert np.abs(regimes.direction(turn + 1e-6) - point).sum() == pytest.approx(1e-6)
 
 
 def start(force: float, load_parameter: float, nodes: int = NODES):
-    return solve(remote_stress.problem_of(load_parameter), [{"P": force}], grid=Grid.circle(nodes))
+    return solve(regimes.problem_of(load_parameter), [{"P": force}], grid=Grid.circle(nodes))
 
 
 @pytest.mark.parametrize("stress", [(1.0, 0.0), (-1.0, 0.0), (0.2, 1.0), (1.0, -1.0)])
@@ -94,7 +96,7 @@ def test_a_loose_pin_without_force_is_gripped_where_the_hole_has_shrunk_by_the_c
     """The edge moves by [(sxx + syy)/2 + (sxx - syy) cos 2 theta] c/s_c."""
     begun = start(0.0, 0.75)
     target = 6.0 * release_stress(begun.problem) * -np.array(stress)  # negative for a clearance
-    found = remote_stress.regimes_along(begun, target)
+    found = regimes.regimes_along(begun, target)
     inwards = abs(stress[0] - stress[1]) - 0.5 * sum(stress)
     assert [kind for _, kind in found] == [0, 2]
     assert found[1][0] == pytest.approx(1.0 / (6.0 * inwards), abs=2e-3)
@@ -105,9 +107,9 @@ def test_equal_stress_closes_the_clearance_and_releases_the_interference(load_pa
     """Just off the diagonal: on it, all nodes would change at once."""
     begun = start(0.0, load_parameter)
     towards = 2.0 * release_stress(begun.problem) * np.array([1.0, 0.98])
-    kinds = [kind for _, kind in remote_stress.regimes_along(begun, towards)]
-    assert kinds[0] == (0 if load_parameter > 0.0 else remote_stress.ALL_ROUND)
-    assert kinds[-1] == (remote_stress.ALL_ROUND if load_parameter > 0.0 else 0)
+    kinds = [kind for _, kind in regimes.regimes_along(begun, towards)]
+    assert kinds[0] == (0 if load_parameter > 0.0 else regimes.ALL_ROUND)
+    assert kinds[-1] == (regimes.ALL_ROUND if load_parameter > 0.0 else 0)
     assert kinds[1:-1] == [2]
 
 
@@ -116,7 +118,7 @@ def test_figure_10_has_one_arc_each():
     unit = remote_stress.stress_unit("Ti/Al")
     for case in remote_stress.DASHES:
         if case != (0.0, 0.0):
-            assert [kind for _, kind in remote_stress.regimes_along(begun, unit * np.array(case))] == [1]
+            assert [kind for _, kind in regimes.regimes_along(begun, unit * np.array(case))] == [1]
     assert abs(release_stress(begun.problem)) == pytest.approx(0.75 * unit)
 
 
@@ -124,18 +126,18 @@ def test_figure_10_has_one_arc_each():
 @for_gate
 def mapped() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(remote_stress, "RAYS", RAYS)
-        patch.setattr(remote_stress, "HALVINGS", 1)
-        return catalog.figure("regimes").compute(81)
+        patch.setattr(regimes, "RAYS", RAYS)
+        patch.setattr(regimes, "HALVINGS", 1)
+        return FIGURES["regimes"].compute(81)
 
 
 def test_regimes_of_all_four_panels(mapped):
     kinds = {(c.parameters["P"], c.parameters["L_p"]): set(c["arcs"].astype(int).tolist()) for c in mapped}
     assert kinds == {
-        (0.0, 0.75): {0, 2, remote_stress.ALL_ROUND},
-        (0.0, -0.75): {0, 2, remote_stress.ALL_ROUND},
-        (1.0, 0.75): {1, 2, remote_stress.ALL_ROUND},
-        (1.0, -0.75): {1, 2, remote_stress.ALL_ROUND},
+        (0.0, 0.75): {0, 2, regimes.ALL_ROUND},
+        (0.0, -0.75): {0, 2, regimes.ALL_ROUND},
+        (1.0, 0.75): {1, 2, regimes.ALL_ROUND},
+        (1.0, -0.75): {1, 2, regimes.ALL_ROUND},
     }
 
 
@@ -147,12 +149,12 @@ def test_rays_are_added_where_neighbours_differ(mapped):
 
 
 def test_the_map_is_drawn_with_names_in_its_regions(mapped):
-    figure = catalog.figure("regimes").draw(mapped)
+    figure = FIGURES["regimes"].draw(mapped)
     figure.draw_without_rendering()
     assert len(figure.axes) == 4
     for panel, curve in zip(figure.axes, mapped, strict=True):
         names = {text.get_text() for text in panel.texts}
-        assert {remote_stress.REGIMES[kind].words for kind in set(curve["arcs"].astype(int).tolist())} <= names
+        assert {regimes.REGIMES[kind].words for kind in set(curve["arcs"].astype(int).tolist())} <= names
         for text in panel.texts:
             box = text.get_window_extent()
             assert panel.bbox.x0 <= box.x0 < box.x1 <= panel.bbox.x1
@@ -162,7 +164,7 @@ def test_the_map_is_drawn_with_names_in_its_regions(mapped):
 def test_names_have_greys_that_differ():
     """Black text on each, and neighbours at least 8 % of white apart."""
     greys = []
-    for _, colour in remote_stress.REGIMES.values():
+    for _, colour in regimes.REGIMES.values():
         red, green, blue = (int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
         greys.append(0.299 * red + 0.587 * green + 0.114 * blue)
     assert min(greys) > 0.5

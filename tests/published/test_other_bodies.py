@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
+from docs.beyond import finite_bodies, rectangular_lug, rigid_pin
+from docs.beyond.figures import FIGURES
 from fastpin.assess.outputs import Curve
 from fastpin.bodies.ring import SUPPORTS
 from fastpin.lugs import plates
 from fastpin.model.problem import Problem
-from fastpin.published import catalog, finite_bodies, half_plane, rectangular_lug, rigid_pin
+from fastpin.published import half_plane
 
 pytestmark = pytest.mark.gate
 
@@ -25,7 +27,7 @@ def curve_of(curves: list[Curve], column: str, **parameters: float | str) -> np.
 
 def assert_drawn(name: str, curves: list[Curve], *words: str) -> None:
     """A figure has its legends inside, and these words."""
-    figure = catalog.figure(name).draw(curves)
+    figure = FIGURES[name].draw(curves)
     figure.draw_without_rendering()
     for legend in figure.legends:
         assert 0.0 <= legend.get_window_extent().x0 < legend.get_window_extent().x1 <= figure.bbox.width
@@ -36,7 +38,7 @@ def assert_drawn(name: str, curves: list[Curve], *words: str) -> None:
 
 def test_rings_have_the_pressures_of_the_support_table():
     """The peaks with mu = 0.3 are those of an independent trial; 121 nodes give them to 1e-4."""
-    curves = catalog.figure("rings").compute(NODES)
+    curves = FIGURES["rings"].compute(NODES)
     peaks = {
         "infinite plate": max(curve_of(curves, "N", support="infinite plate")),
         **{kind: max(curve_of(curves, "N", support=kind, outer_radius=2.0)) for kind in ("held", "uniform")},
@@ -51,7 +53,7 @@ def test_rings_have_the_pressures_of_the_support_table():
 
 def test_supports_tend_to_the_infinite_plate(monkeypatch):
     monkeypatch.setattr(finite_bodies, "OUTER_RADII", (2.0, 200.0))
-    curves = catalog.figure("supports").compute(NODES)
+    curves = FIGURES["supports"].compute(NODES)
     infinite = curve_of(curves, "N_max", support="infinite plate")[0]
     expected = {"held": 0.6219, "uniform": 0.4601, "normal": 0.4585, "half": 0.5197}
     for support in SUPPORTS:
@@ -66,7 +68,7 @@ def test_supports_tend_to_the_infinite_plate(monkeypatch):
 
 def test_hollow_pins_tend_to_a_load_at_the_centre(monkeypatch):
     monkeypatch.setattr(finite_bodies, "BORES", (0.0, 0.02, 0.5))
-    curves = catalog.figure("hollow-pins").compute(NODES)
+    curves = FIGURES["hollow-pins"].compute(NODES)
     for load in finite_bodies.BORE_LOADS:
         for friction in finite_bodies.FRICTIONS:
             solid, narrow, hollow = curve_of(curves, "N_max", load=load, mu=friction)
@@ -81,7 +83,7 @@ def test_a_rectangular_lug_has_less_pressure_and_more_hoop_stress(monkeypatch):
     """An independent finite-element model has the peaks 0.563806 and 0.465317."""
     monkeypatch.setattr(plates, "FINE", plates.COARSE)  # errors of 2e-9
     monkeypatch.setattr(rectangular_lug, "HALF_WIDTHS", (2.5,))
-    curves = catalog.figure("rectangular-lug").compute(NODES)
+    curves = FIGURES["rectangular-lug"].compute(NODES)
     for friction, peak in ((0.0, 0.563806), (0.4, 0.465317)):
         infinite, lug = curve_of(curves, "N_max", mu=friction)
         assert lug == pytest.approx(peak, abs=1e-4)
@@ -97,10 +99,10 @@ def test_a_rectangular_lug_has_less_pressure_and_more_hoop_stress(monkeypatch):
 
 def test_rigid_pins_have_one_quantity_on_each_axis(monkeypatch):
     monkeypatch.setattr(rigid_pin, "RATIOS", (1.0, 10.0, 100.0))
-    curves = catalog.figure("rigid-pin").compute(101)
+    curves = FIGURES["rigid-pin"].compute(101)
     differences = curves[-1]
     assert np.all(np.diff(differences["N, centre to rigid"]) < 0.0)
-    figure = catalog.figure("rigid-pin").draw(curves)
+    figure = FIGURES["rigid-pin"].draw(curves)
     labels = [panel.get_ylabel() for panel in figure.axes]
     assert labels == ["pressure  $N\\,R/F$", "shear traction  $T\\,R/F$", "∫|ΔN| / ∫N", "∫|ΔT| / ∫N"]
     assert [len(panel.lines) for panel in figure.axes] == [7, 7, 3, 3]
