@@ -110,7 +110,7 @@ READING = (
     "show fretting.h5 --cycle-csv cycles.csv --cycles cycles.svg",
     *(
         f"plot fretting.h5 {kind} --csv {kind}.csv -o {kind}.svg"
-        for kind in ["tractions", "polar", "stick-slip", "hoop", "profile", "map", "cycles", "slip", "loops"]
+        for kind in ["tractions", "stick-slip", "hoop", "profile", "map", "cycles", "slip", "loops"]
     ),
     "plot example.toml sketch -o sketch.svg",
     "sweep plan.toml -o runs --status",

@@ -18,28 +18,20 @@ def run(options: argparse.Namespace) -> int:
     is_text = options.result.suffix.lower() == ".toml"
     if options.kind is None:
         options.kind = "sketch" if is_text else "scar" if storage.holds_wear(options.result) else "tractions"
-    kind = KINDS[options.kind]
-    is_case = is_text and "case" in kind.sources
+    is_case = is_text and "case" in KINDS[options.kind].sources
     _check(options, is_case)
-    film = kind.ending == "gif"
-    figure = Path(f"{options.kind}.{kind.ending}") if options.output is None else options.output
-    if film:
-        figures.animation.check_animation("--output", figure)
+    figure = Path(f"{options.kind}.png") if options.output is None else options.output
     title = "" if is_case else storage.stored_case(options.result).title
     if options.interface == "seat":
         title = seat_title(title)
-    check_outputs({"--output": figure, "--csv": options.csv}, figures=() if film else ("--output",))
+    check_outputs({"--output": figure, "--csv": options.csv}, figures=("--output",))
     if is_case:
         case = casefile.read_case(options.result)
         plot, title = figures.plotting.plot_of_case(options.kind, case), case.title
     else:
         plot = _plot(options)
-
-    def draw(path: Path) -> None:
-        with Bar(plot.frames, "state {n:.0f} of {total:.0f}") as progress_bar:  # it moves for an animation only
-            plot.save(path, title, progress_to(progress_bar))
-
-    code = write_files([(figure, draw), *([(options.csv, plot.write_numbers)] if plot.write_numbers else [])])
+    numbers = [(options.csv, plot.write_numbers)] if plot.write_numbers else []
+    code = write_files([(figure, lambda path: plot.save(path, title)), *numbers])
     if code == 0:
         say(f"wrote {figure}" + ("" if options.csv is None else f" and {options.csv}"))
     return code

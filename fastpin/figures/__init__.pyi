@@ -1,4 +1,3 @@
-from . import animation as animation
 from . import load_cycle as load_cycle
 from . import plotting as plotting
 from . import sheet as sheet
@@ -9,7 +8,6 @@ from . import stress as stress
 from . import style as style
 from . import sweep as sweep
 from . import tractions as tractions
-from .animation import animate as animate
 from .charts import write_chart_book as write_chart_book
 from .convergence import plot_convergence as plot_convergence
 from .cycles import plot_cycles as plot_cycles
@@ -35,5 +33,4 @@ from .stress import plot_stress_profile as plot_stress_profile
 from .sweep import plot_sweep as plot_sweep
 from .tolerances import plot_samples as plot_samples
 from .tolerances import plot_tornado as plot_tornado
-from .tractions import plot_polar as plot_polar
 from .tractions import plot_tractions as plot_tractions

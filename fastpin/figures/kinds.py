@@ -45,7 +45,6 @@ KIND_OPTIONS = {
     ),
     "sketch": KindOption("tractions: add a small sketch of the joint", type="flag"),
     "bars": KindOption("tractions: draw the error bars as bands (run --error-bars)", type="flag"),
-    "rate": KindOption("animation: states a second (default 4)", "N", "number"),
     "body": KindOption("plate, pin, seat (the plate round a bush), or (hoop and map) both"),
     "component": KindOption(
         "map: von_mises (default), largest, hoop, radial, shear, sxx, ..., or utilization of a laminate"
@@ -73,8 +72,6 @@ class Kind(NamedTuple):
         Its help on the command line; empty if the name says it.
     options : tuple of str
         Names of :data:`KIND_OPTIONS`, and "csv" if the figure has numbers.
-    ending : str
-        The ending of the file, unless the user names one.
     sources : tuple of str
         What the figure may show: "result" is the result of a run, "life" a life of wear, "case" a case file. For a case
         file the function is ``KIND_of(case)``.
@@ -85,7 +82,6 @@ class Kind(NamedTuple):
     file: str
     words: str
     options: tuple[str, ...]
-    ending: str = "png"
     sources: tuple[str, ...] = ("result", "life")
     of_laminates: bool = False
 
@@ -96,11 +92,9 @@ SOURCES = {"result": "the result of a run", "life": "a life of wear", "case": "a
 
 KINDS = {
     "tractions": Kind("tractions", "", ("states", "csv", "sketch", "bars")),
-    "polar": Kind("tractions", "tractions over the circle of the hole", ("states", "csv")),
     "stick-slip": Kind("stick_slip", "map of stick and slip over load points", ("states", "csv")),
     "sketch": Kind("sketch", "pin, plate and loads", ("states",), sources=("result", "life", "case")),
     "gap": Kind("history", "initial gap and friction along the rim", ("csv",), sources=("result", "life", "case")),
-    "animation": Kind("animation", "the states of the last cycle, one after the other", ("states", "rate"), "gif"),
     "hoop": Kind("stress", "hoop stress round hole and pin", ("states", "csv", "body")),
     "profile": Kind("stress", "stresses below the edge", ("states", "csv", "body", "angle", "depth")),
     "map": Kind(

@@ -88,7 +88,7 @@ def plot_result(
     **options: Any,
 ) -> Figure:
     """Draw a figure of a result, see :meth:`fastpin.Result.plot`, or of a life of wear."""
-    choice("kind", kind, [name for name, each in KINDS.items() if each.ending == "png"])
+    choice("kind", kind, tuple(KINDS))
     if isinstance(path, str) and path in KINDS:
         raise InputError("path", f'must be the name of a file, not "{path}"; for this figure write kind="{path}"')
     for name in options:

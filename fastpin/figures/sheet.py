@@ -120,7 +120,7 @@ class Plot:
     Attributes
     ----------
     draw : callable
-        ``draw(look)`` draws a :class:`Sheet`, or the scene of an animation.
+        ``draw(look)`` draws a :class:`Sheet`.
     write_numbers : callable or None
         ``write_numbers(path)`` writes the numbers of the figure as CSV.
     instead : str
@@ -137,8 +137,6 @@ class Plot:
         Why given axes can't hold the figure; empty if they can.
     bitmap : bool
         Whether the figure is too large for a page as SVG.
-    frames : int
-        Number of pictures of an animation; 0 for a figure.
     """
 
     draw: Callable[[Look], Any]
@@ -151,10 +149,9 @@ class Plot:
     width: float = WIDTH
     alone: str = ""
     bitmap: bool = False
-    frames: int = 0
 
-    def save(self, path: Path, title: str = "", progress: Callable[[float, float], None] | None = None) -> None:
-        """Draw the figure and write it to a file. `progress` follows the pictures of an animation."""
+    def save(self, path: Path, title: str = "") -> None:
+        """Draw the figure and write it to a file."""
         Look(path, title, self.width).drawn(self)
 
 

@@ -114,7 +114,6 @@ def drawn_states(
     result: Sequence[State] | State,
     states: StateChoice = None,
     most: int = style.MAX_NAMED,
-    in_a_row: bool = False,
     whole: bool = False,
     extremes: Collection[tuple[str, Side]] = TRACTIONS,
 ) -> DrawnStates:
@@ -124,7 +123,7 @@ def drawn_states(
     ----------
     result : State, Result or sequence of State
         Of one problem and on one grid.
-    states, most, in_a_row, whole
+    states, most, whole
         See :func:`drawn_places`.
     extremes : collection
         The extremes whose states are drawn, of :data:`fastpin.states.extremes.MARKS`.
@@ -147,7 +146,7 @@ def drawn_states(
     def marked() -> dict[int, str]:
         return marked_places(find_extremes(KeptStates(every), extremes))
 
-    places, marks, chosen = drawn_places(points, cycles, states, most, in_a_row, whole, marked)
+    places, marks, chosen = drawn_places(points, cycles, states, most, whole, marked)
     total = every.total if isinstance(every, DrawnStates) else len(every)
     return DrawnStates([every[place] for place in places], total, cycles, marks, chosen)
 
@@ -157,7 +156,6 @@ def drawn_places(
     cycles: Sequence[Cycle],
     states: StateChoice = None,
     most: int = style.MAX_NAMED,
-    in_a_row: bool = False,
     whole: bool = False,
     marked: Callable[[], dict[int, str]] = dict,
 ) -> tuple[list[int], list[str], int]:
@@ -175,9 +173,6 @@ def drawn_places(
         of a history with more than `most` states, with the states of the extremes.
     most : int
         Of more states, an even choice is drawn, with the first and the last one, and the states of the extremes.
-    in_a_row : bool
-        Whether the first states are drawn instead of an even choice, if the history has cycles. An even choice from
-        many cycles would look like a slow cycle.
     whole : bool
         Whether all chosen states are drawn, in the order of the history: the figure joins more than `most` of them.
         Without a choice these are all states, up to :data:`MOST_JOINED`.
@@ -202,9 +197,6 @@ def drawn_places(
     if whole and len(places) > most:
         places = sorted(set(places))
         return places, [""] * len(places), count
-    if in_a_row:
-        places = places[:most] if cycles else even_choice(places, most)
-        return places, [""] * len(places), count
     is_part = states is None and len(places) < len(points) and not whole
     marks = marked() if len(places) > most or is_part else {}
     if states is None:
@@ -217,7 +209,6 @@ def held_states(
     held: Held,
     states: StateChoice = None,
     most: int = style.MAX_NAMED,
-    in_a_row: bool = False,
     whole: bool = False,
     extremes: Collection[tuple[str, Side]] = TRACTIONS,
 ) -> DrawnStates:
@@ -233,7 +224,7 @@ def held_states(
     def marked() -> dict[int, str]:
         return marked_places({each: held.extremes[each] for each in extremes if each in held.extremes})
 
-    places, marks, chosen = drawn_places(held.points, cycles, states, most, in_a_row, whole, marked)
+    places, marks, chosen = drawn_places(held.points, cycles, states, most, whole, marked)
     return DrawnStates(held.read(places), len(held.points), cycles, marks, chosen)
 
 

@@ -146,8 +146,8 @@ def test_the_usual_kind_is_that_of_the_file(stored, life):
 
 def test_kinds_and_options_of_a_result_in_memory_are_checked(stored):
     result = load(stored)
-    with pytest.raises(InputError, match=r'^kind: must be "tractions", "polar", .* not "animation"$'):
-        result.plot(kind="animation")
+    with pytest.raises(InputError, match=r'^kind: must be "tractions", "stick-slip", .* not "polar"$'):
+        result.plot(kind="polar")
     with pytest.raises(
         InputError, match=r"^body: has no effect on loops; it is for hoop, profile, map, fatigue, damage$"
     ):
@@ -202,13 +202,6 @@ def test_a_sketch_of_a_result_and_of_a_case_file(stored):
 
 
 @pytest.mark.gate
-def test_an_animation_of_the_last_cycle(stored):
-    words = printed("plot", stored, "animation", "-o", "a.gif", "--rate", "10")
-    assert words.startswith("the figure shows 5 of 10 states: ")
-    assert Path("a.gif").read_bytes().startswith(b"GIF89a")
-
-
-@pytest.mark.gate
 @pytest.mark.usefixtures("coarse")
 def test_the_name_of_the_figure_is_the_kind(stored):
     said("plot", stored, "map", "--component", "hoop", "--extent", "3", "--body", "plate")
@@ -230,10 +223,8 @@ def test_states_are_chosen_by_load_points(stored):
     ("arguments", "message"),
     [
         (["hoop", "--component", "sxx"], "--component: has no effect on hoop; it is for map"),
-        (["slip", "--states", "last"], "--states: has no effect on slip; it is for tractions, polar, stick-slip, "),
-        (["sketch", "--csv", "a.csv"], "--csv: has no effect on sketch; it is for tractions, polar, stick-slip, gap"),
-        (["animation", "--states", "last"], "--states: an animation needs two states or more"),
-        (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
+        (["slip", "--states", "last"], "--states: has no effect on slip; it is for tractions, stick-slip, "),
+        (["sketch", "--csv", "a.csv"], "--csv: has no effect on sketch; it is for tractions, stick-slip, gap"),
         (["hoop", "--states", "20"], "--states: there is no state at load point 20; the last is 5"),
         (["hoop", "--bars"], "--bars: has no effect on hoop; it is for tractions"),
         *gate(
@@ -244,7 +235,7 @@ def test_states_are_chosen_by_load_points(stored):
         ),
         (["hoop", "--sketch"], "--sketch: has no effect on hoop; it is for tractions"),
         (["hoop", "--states", "now"], "load points such as 2,3.5, 1-9 or 10-, not 'now'"),
-        (["polar", "--states", "3-2"], "load points such as 2,3.5, 1-9 or 10-, not '3-2'"),
+        (["tractions", "--states", "3-2"], "load points such as 2,3.5, 1-9 or 10-, not '3-2'"),
         (["hoop", "--cycle", "2"], "--cycle: has no effect on hoop; it is for loops"),
         (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),
         (["map", "--component", "x"], "--component: must be "),

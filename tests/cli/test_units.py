@@ -184,7 +184,7 @@ PARTS = {
 
 
 def walk(found: Walk, part: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Run the commands of a part. Pictures of an animation are drawn: their texts are heard. Others are outlined."""
+    """Run the commands of a part. Texts that are drawn are heard. Figures are outlined."""
     monkeypatch.chdir(found.folder)
     drawn: list[str] = []
     draw = Text.draw

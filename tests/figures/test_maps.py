@@ -1,7 +1,6 @@
-"""The map of stick and slip, the polar view and the sketch: what is drawn, and where."""
+"""The map of stick and slip and the sketch: what is drawn, and where."""
 
 import dataclasses
-import math
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from matplotlib.patches import Circle, FancyArrowPatch, Rectangle, Wedge
 from fastpin import MATERIALS, Case, InputError, LoadHistory, MaterialPair, Problem, figures
 from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.figures.stick_slip import BOTH_WAYS, LOOKS, MOST_COLUMNS, columns_of, zone_boxes
-from fastpin.figures.style import COLOURS
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.states.cycles import Cycle
 from tests.support.drawing import legend_words, plain
@@ -93,14 +91,11 @@ def test_slip_without_friction_has_no_direction():
 
 
 @pytest.mark.gate
-def test_many_cycles_show_their_first_states_and_no_slow_cycle():
+def test_without_a_choice_many_cycles_show_the_extremes_and_the_last_cycle():
     result = sample_result([{"P": 1e6 * (2 + k % 2)} for k in range(MOST_COLUMNS + 50)], nodes=21)
     result.cycles = tuple(Cycle(k, 2, k // 2, 0.0, 0.0, 0.0, 0.0, True) for k in range(3, len(result), 2))
-    drawn = figures.states.drawn_states(result, "all", MOST_COLUMNS, in_a_row=True)
-    assert [state.step for state in drawn] == list(range(MOST_COLUMNS))
-    assert drawn.note == f"{MOST_COLUMNS} of {MOST_COLUMNS + 50} states: load points 1 to {MOST_COLUMNS}"
-    usual = figures.states.drawn_states(result, None, MOST_COLUMNS)
-    assert [state.step for state in usual] == [0, 247, 248, 249]  # the extremes, and the last cycle
+    drawn = figures.states.drawn_states(result, None, MOST_COLUMNS)
+    assert [state.step for state in drawn] == [0, 247, 248, 249]
 
 
 def long_result(corners=700, largest=650, friction=0.4):
@@ -173,35 +168,6 @@ def test_columns_of_cycles_and_of_single_states():
     assert apart[-1].left == 8.0  # nothing is drawn where states are left out
 
 
-# -- the polar view --------------------------------------------------------------------------------------------------
-
-
-def first_curve(panel):
-    lines = (line for line in panel.lines if line.get_color() == COLOURS[0])
-    return max(lines, key=lambda line: len(line.get_xdata())).get_data()
-
-
-def test_polar_curves_stand_over_the_circle():
-    result = sample_result()
-    pressure, shear = figures.plot_polar(result).axes
-    state = result[0]
-    x, y = first_curve(pressure)
-    height = np.hypot(x, y) - 1.0
-    top = int(np.argmax(height))
-    assert math.atan2(y[top], x[top]) == pytest.approx(state.peak_pressure_angle, abs=0.02)
-    assert height[[0, -1]] == pytest.approx([0.0, 0.0], abs=1e-9)
-    assert math.atan2(y[0], x[0]) == pytest.approx(state.contact[0][0], abs=1e-9)
-    x, y = first_curve(shear)
-    assert np.all(x[np.hypot(x, y) < 1.0 - 1e-6] < 0.0)  # T is negative left of the bottom
-    assert pressure.get_xlabel() == "pressure N (MPa)"
-    assert pressure.get_aspect() == shear.get_aspect() == 1.0
-    assert {"0°", "90°", "−90°"} <= {text.get_text() for text in pressure.texts}
-
-
-def test_a_polar_view_without_friction_has_one_panel():
-    assert len(figures.plot_polar(sample_result(friction=0.0)).axes) == 1
-
-
 # -- the sketch ------------------------------------------------------------------------------------------------------
 
 
@@ -262,7 +228,7 @@ def test_a_sketch_needs_a_joint_and_may_stand_in_given_axes():
         figures.plot_sketch(sample_result().problem, history=[{"P": 1.0}])
     with pytest.raises(InputError, match="history: is for a Problem; a case, a result and a state have loads"):
         figures.plot_sketch(sample_result(), history=LoadHistory([{"P": 1.0}]))
-    figure = figures.plot_polar(sample_result())
+    figure = figures.plot_stick_slip(sample_result())
     panel = figure.add_axes((0.8, 0.8, 0.2, 0.2))
     assert figures.plot_sketch(sample_result()[0], ax=panel) is figure
     assert panel.get_aspect() == 1.0

@@ -16,7 +16,7 @@ from fastpin.figures.states import drawn_states
 from fastpin.figures.stick_slip import plot_stick_slip
 from fastpin.figures.stress import plot_hoop_stress
 from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, Drawing, caption, spread
-from fastpin.figures.tractions import plot_polar, plot_tractions, traction_curves
+from fastpin.figures.tractions import plot_tractions, traction_curves
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
@@ -204,7 +204,7 @@ def test_axes_of_the_caller() -> None:
 @pytest.mark.gate
 def test_notebooks_show_a_figure_without_pyplot() -> None:
     assert plot_tractions(sample_result())._repr_png_().startswith(b"\x89PNG")
-    for plot in (plot_polar, plot_stick_slip, plot_sketch, plot_hoop_stress):
+    for plot in (plot_stick_slip, plot_sketch, plot_hoop_stress):
         assert isinstance(plot(sample_result()), Drawing)
 
 
